@@ -1,0 +1,189 @@
+"""What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from trsim.elements.joint import perpendicular
+from trsim.errors import ScenarioError, known
+from trsim.expressions import names
+from trsim.laws import functions
+
+
+class JointCoordinate(NamedTuple):
+    """An angle or a stroke of a joint, ready for those who act along it."""
+
+    index: int  # in S
+    kind: str  # angle, stroke
+    i: int
+    j: int
+    s_i: tuple[float, ...]  # the joint's point in both bodies
+    s_j: tuple[float, ...]
+    axis_i: tuple[float, ...]  # its axis in body i
+    axis: tuple[float, ...]  # and in world axes as drawn
+    drawn: float  # value as drawn
+
+
+@dataclass
+class Addresses:
+    """The scenario as drawn, and the tables that grow while elements are packed."""
+
+    scenario: Any
+    elements: dict[tuple[str, str], Any]  # (section, name) -> Element
+    tab: list[float] = field(default_factory=lambda: [0.0])
+    states: list[tuple[str | float, int]] = field(default_factory=list)  # scale, coordinate
+    coordinates: dict[str, JointCoordinate] = field(default_factory=dict)
+    sensors: dict[str, int] = field(default_factory=dict)
+    n_s: int = 0
+
+    def __post_init__(self) -> None:
+        self.frames = {"ground": 0}
+        for name in self.scenario.bodies:
+            self.frames[name] = len(self.frames)
+        specs = [None, *self.scenario.bodies.values()]
+        self.at_start = np.array([(0.0, 0.0, 0.0), *(spec.at for spec in specs[1:])], float)
+        self.angle = np.array([0.0, *(spec.angle for spec in specs[1:])])
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        self.rotation = np.zeros((len(specs), 3, 3))
+        self.rotation[:, 0, 0], self.rotation[:, 0, 1] = c, -s
+        self.rotation[:, 1, 0], self.rotation[:, 1, 1] = s, c
+        self.rotation[:, 2, 2] = 1.0
+        self.specs = specs
+        self.points: list[tuple[int, tuple[float, ...]]] = []  # for arms and the size
+
+    def body(self, name: str, *path: str) -> int:
+        """Frame of a body; ground is 0."""
+        if name not in self.frames:
+            raise ScenarioError(f"no body named '{name}'", known(name, self.frames), path)
+        return self.frames[name]
+
+    def bodies(self, pair: tuple[str, str]) -> tuple[int, int]:
+        """Frames of two different bodies."""
+        i, j = self.body(pair[0], "bodies"), self.body(pair[1], "bodies")
+        if i == j:
+            raise ScenarioError(
+                f"joins '{pair[0]}' to itself", "name two different bodies", ("bodies",)
+            )
+        return i, j
+
+    def centre(self, i: int) -> tuple[float, ...]:
+        """Centre of mass as drawn."""
+        return tuple(self.at_start[i])
+
+    def local(self, i: int, place: tuple[float, ...]) -> tuple[float, ...]:
+        """A world point as drawn, in the axes of a body from its centre of mass."""
+        s = tuple(self.rotation[i].T @ (np.array(place) - self.at_start[i]))
+        self.points.append((i, s))
+        return s
+
+    def axes(self, i: int, direction: tuple[float, ...]) -> tuple[float, ...]:
+        """A world direction as drawn, in the axes of a body."""
+        return tuple(self.rotation[i].T @ np.array(direction))
+
+    def drawn_angle(self, i: int, j: int, axis: tuple[float, ...]) -> float:
+        """Angle of body j's axes against body i's about an axis, as drawn."""
+        return float((self.angle[j] - self.angle[i]) * axis[2]) if abs(axis[2]) > 0.999 else 0.0
+
+    def mass(self, i: int) -> float:
+        return float(self.specs[i].mass) if i else float("inf")
+
+    def inertia_about(self, i: int, axis: tuple[float, ...]) -> float:
+        """Moment of inertia about an axis (world, as drawn) through the centre of mass."""
+        from trsim.elements.rigid_body import tensor
+
+        a = np.array(self.axes(i, axis))
+        return float(a @ np.array(tensor(self.specs[i].inertia)[0]).reshape(3, 3) @ a)
+
+    def coordinate(self, joint: str, kind: str = "") -> JointCoordinate:
+        """The coordinate of a joint; entering it in S is what makes it computed."""
+        if joint not in self.scenario.joints:
+            raise ScenarioError(
+                f"no joint named '{joint}'", known(joint, self.scenario.joints), ("joint",)
+            )
+        element = self.elements["joints", joint]
+        if not element.coordinate:
+            raise ScenarioError(
+                f"joint '{joint}' ({element.key}) has no coordinate",
+                "name a revolute or a prismatic joint",
+                ("joint",),
+            )
+        if kind and element.coordinate != kind:
+            raise ScenarioError(
+                f"joint '{joint}' has a {element.coordinate}, not an {kind}",
+                "name a revolute joint" if kind == "angle" else "name a prismatic joint",
+                ("joint",),
+            )
+        if joint not in self.coordinates:
+            spec = self.scenario.joints[joint]
+            i, j = self.bodies(spec.bodies)
+            place = self.centre(j) if spec.at is None else spec.at
+            axis = perpendicular(spec.axis)[2]
+            self.coordinates[joint] = JointCoordinate(
+                self.n_s,
+                element.coordinate,
+                i,
+                j,
+                self.local(i, place),
+                self.local(j, place),
+                self.axes(i, axis),
+                axis,
+                self.drawn_angle(i, j, axis) if element.coordinate == "angle" else 0.0,
+            )
+            self.n_s += 1
+        return self.coordinates[joint]
+
+    def sensor(self, name: str) -> int:
+        """Index of a sensor in S."""
+        if name not in self.sensors:
+            self.sensors[name] = self.n_s
+            self.n_s += 1
+        return self.sensors[name]
+
+    def state(self, scale: str | float, follows: int = -1) -> int:
+        """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 0: none
+        or a magnitude), and the coordinate it starts at.  Returns its index in z."""
+        from trsim.elements.contract import N_BOOK
+
+        self.states.append((scale, follows))
+        return N_BOOK + len(self.states) - 1
+
+    def contact_law(self, name: str | None) -> Any:
+        laws = self.scenario.contact_laws
+        if name is None and len(laws) == 1:
+            return next(iter(laws.values()))
+        if name is None or name not in laws:
+            what = f"no contact law named '{name}'" if name else "no contact law is named"
+            raise ScenarioError(what, known(str(name), laws) if laws else "add it under "
+                                "contact_laws", ("contact",) if name else ())  # fmt: skip
+        return laws[name]
+
+    def function(self, spec: Any, *path: str, time_only: bool = False) -> int:
+        """Store a function of t or of sensors in tab; its offset."""
+        offset = len(self.tab)
+        if spec.kind == "constant":
+            code = functions.constant(spec.value)
+        elif spec.kind == "table":
+            variable = -1 if spec.of == "t" else self.known_sensor(spec.of, time_only, path)
+            code = functions.table(spec.x, spec.y, variable, spec.ends)
+        else:
+            wanted = names(spec.node) - {"t", "pi"}
+            indices = {name: self.known_sensor(name, time_only, path) for name in wanted}
+            code = functions.expression(spec.node, indices)
+        self.tab.extend(code)
+        return offset
+
+    def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
+        if time_only:
+            raise ScenarioError(
+                f"'{name}' cannot stand here: a drive depends on t only",
+                "a load may depend on sensors",
+                path,
+            )
+        if name not in self.scenario.sensors:
+            raise ScenarioError(
+                f"no parameter or sensor named '{name}'",
+                known(name, [*self.scenario.sensors, *self.scenario.parameters, "t"]),
+                path,
+            )
+        return self.sensor(name)

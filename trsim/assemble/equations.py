@@ -1,0 +1,371 @@
+"""The equations of motion of a model, on one screen.
+
+    [ M  J^T ] [ V'  ]   [ F - gyroscopic ]
+    [ J  0   ] [ lam ] = [ gamma          ]        gamma - 2 alpha Phi' - beta^2 Phi with Baumgarte
+
+M is block diagonal, so the multipliers come from the small sparse matrix S = J M^-1 J^T,
+
+    S lam = J M^-1 F - gamma,        V' = M^-1 (F - J^T lam)              [Nikravesh1988]
+
+and the reactions on the bodies are -J^T lam.  `derivative` is the table of contents of the physics.
+"""
+
+from math import cos, sin
+
+import numpy as np
+from numba import njit
+
+from trsim.assemble.linear import factorise, solve
+from trsim.elements.calls import call_kernel
+from trsim.elements.contract import DRIVES
+from trsim.elements.scene import BAUMGARTE
+
+equation = njit(cache=True, error_model="numpy")
+
+
+@equation
+def derivative(s, t, y, yd):
+    """Fill yd = y' at (t, y)."""
+    s.status[1] += 1
+    poses(s, y)
+    forces(s, t)
+    free_accelerations(s)
+    if s.m > 0:
+        constraints(s, t)
+        rows(s)
+        factorise(s)
+        right_hand_side(s)
+        solve(s, s.x)
+        for k in range(s.m):
+            s.lam[k] = s.x[k]
+            # a moving constraint is a drive: the power it gives to the mechanism
+            s.zd[DRIVES] += s.lam[k] * s.phi_t[k]
+    accelerations(s, y, yd)
+
+
+@equation
+def poses(s, y):
+    """X, V, S and z from the state: the only place that knows the generalised coordinates."""
+    X, V, S, branch, turn = s.X, s.V, s.S, s.branch, s.turn
+    for k in range(s.n_z):
+        s.z[k] = y[s.n_q + s.n_v + k]
+    if s.d == 3:
+        for f in range(1, s.n):
+            q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
+            cosine, sine = cos(y[q + 2]), sin(y[q + 2])
+            X[f, 0], X[f, 1] = y[q], y[q + 1]
+            X[f, 3], X[f, 4], X[f, 6], X[f, 7] = cosine, -sine, sine, cosine
+            V[f, 0], V[f, 1], V[f, 5] = y[v], y[v + 1], y[v + 2]
+        for k in range(turn.shape[0]):
+            # planar angles are unwrapped by nature: the branch is the value itself
+            i, j, sign = turn[k, 1], turn[k, 2], turn[k, 3]
+            angle_i = y[3 * (i - 1) + 2] if i > 0 else 0.0
+            angle_j = y[3 * (j - 1) + 2] if j > 0 else 0.0
+            branch[turn[k, 0]] = sign * (angle_j - angle_i)
+    else:
+        for f in range(1, s.n):
+            spatial_pose(X, V, f, y, 7 * (f - 1), s.n_q + 6 * (f - 1))
+    for k in range(s.n_s):
+        S[k, 0] = branch[k]
+    call_all(s, s.coordinate, 0.0)
+
+
+@equation
+def spatial_pose(X, V, f, y, q, v):
+    """Rotation matrix R(p) / |p|^2 of the quaternion and world-axes angular velocity R omega."""
+    e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
+    f2 = 2.0 / (e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3)
+    for c in range(3):
+        X[f, c] = y[q + c]
+        V[f, c] = y[v + c]
+    X[f, 3] = 1.0 - f2 * (e2 * e2 + e3 * e3)
+    X[f, 4] = f2 * (e1 * e2 - e0 * e3)
+    X[f, 5] = f2 * (e1 * e3 + e0 * e2)
+    X[f, 6] = f2 * (e1 * e2 + e0 * e3)
+    X[f, 7] = 1.0 - f2 * (e1 * e1 + e3 * e3)
+    X[f, 8] = f2 * (e2 * e3 - e0 * e1)
+    X[f, 9] = f2 * (e1 * e3 - e0 * e2)
+    X[f, 10] = f2 * (e2 * e3 + e0 * e1)
+    X[f, 11] = 1.0 - f2 * (e1 * e1 + e2 * e2)
+    o0, o1, o2 = y[v + 3], y[v + 4], y[v + 5]
+    V[f, 3] = X[f, 3] * o0 + X[f, 4] * o1 + X[f, 5] * o2
+    V[f, 4] = X[f, 6] * o0 + X[f, 7] * o1 + X[f, 8] * o2
+    V[f, 5] = X[f, 9] * o0 + X[f, 10] * o1 + X[f, 11] * o2
+
+
+@equation
+def forces(s, t):
+    """Sum the wrenches F and the powers and rates z'."""
+    s.F[:] = 0.0
+    s.zd[:] = 0.0
+    call_all(s, s.force, t)
+
+
+@equation
+def call_all(s, kernels, t):
+    """Call every kernel of a table."""
+    for k in range(kernels.shape[0]):
+        call_kernel(kernels[k, 0], t, s, kernels[k, 1], kernels[k, 2])
+
+
+@equation
+def constraints(s, t):
+    """Phi, Phi_t, J and gamma of all rows."""
+    call_all(s, s.constraint, t)
+
+
+@equation
+def free_accelerations(s):
+    """M^-1 (F - omega x I omega), in the axes of the solve."""
+    X, V, F, a = s.X, s.V, s.F, s.free
+    if s.d == 3:
+        for f in range(1, s.n):
+            a[f, 0] = F[f, 0] * s.mass_inverse[f]
+            a[f, 1] = F[f, 1] * s.mass_inverse[f]
+            a[f, 2] = F[f, 5] * s.inertia_inverse[f, 8]
+        return
+    for f in range(1, s.n):
+        for c in range(3):
+            a[f, c] = F[f, c] * s.mass_inverse[f]
+        # torque and angular velocity in body axes
+        o0 = X[f, 3] * V[f, 3] + X[f, 6] * V[f, 4] + X[f, 9] * V[f, 5]
+        o1 = X[f, 4] * V[f, 3] + X[f, 7] * V[f, 4] + X[f, 10] * V[f, 5]
+        o2 = X[f, 5] * V[f, 3] + X[f, 8] * V[f, 4] + X[f, 11] * V[f, 5]
+        I = s.inertia[f]  # noqa: E741
+        h0 = I[0] * o0 + I[1] * o1 + I[2] * o2
+        h1 = I[3] * o0 + I[4] * o1 + I[5] * o2
+        h2 = I[6] * o0 + I[7] * o1 + I[8] * o2
+        m0 = X[f, 3] * F[f, 3] + X[f, 6] * F[f, 4] + X[f, 9] * F[f, 5] - (o1 * h2 - o2 * h1)
+        m1 = X[f, 4] * F[f, 3] + X[f, 7] * F[f, 4] + X[f, 10] * F[f, 5] - (o2 * h0 - o0 * h2)
+        m2 = X[f, 5] * F[f, 3] + X[f, 8] * F[f, 4] + X[f, 11] * F[f, 5] - (o0 * h1 - o1 * h0)
+        K = s.inertia_inverse[f]
+        a[f, 3] = K[0] * m0 + K[1] * m1 + K[2] * m2
+        a[f, 4] = K[3] * m0 + K[4] * m1 + K[5] * m2
+        a[f, 5] = K[6] * m0 + K[7] * m1 + K[8] * m2
+
+
+@equation
+def rows(s):
+    """B: the rows of J in the axes of the solve, slot by slot; W = M^-1 B^T; then S = J W."""
+    if s.d == 3:
+        planar_slots(s)
+    else:
+        spatial_slots(s)
+    value, pair, B, W = s.value, s.pair, s.B, s.W
+    value[:] = 0.0
+    for p in range(pair.shape[0]):
+        i, j = pair[p, 0], pair[p, 1]
+        total = B[i, 0] * W[j, 0] + B[i, 1] * W[j, 1] + B[i, 2] * W[j, 2]
+        if s.d == 6:
+            total += B[i, 3] * W[j, 3] + B[i, 4] * W[j, 4] + B[i, 5] * W[j, 5]
+        value[pair[p, 2]] += total
+
+
+@equation
+def planar_slots(s):
+    """B and W of x', y' and omega_z."""
+    J, B, W, row_start = s.J, s.B, s.W, s.row_start
+    mass_inverse, inertia_inverse = s.mass_inverse, s.inertia_inverse
+    for k in range(s.m):
+        for p in range(row_start[k], row_start[k + 1]):
+            f, c = s.slot_frame[p], s.slot_column[p]
+            B[p, 0], B[p, 1], B[p, 2] = J[k, c], J[k, c + 1], J[k, c + 5]
+            W[p, 0] = B[p, 0] * mass_inverse[f]
+            W[p, 1] = B[p, 1] * mass_inverse[f]
+            W[p, 2] = B[p, 2] * inertia_inverse[f, 8]
+
+
+@equation
+def spatial_slots(s):
+    """B and W of the velocity and the body-axes angular velocity."""
+    J, B, W, X, K = s.J, s.B, s.W, s.X, s.inertia_inverse
+    for k in range(s.m):
+        for p in range(s.row_start[k], s.row_start[k + 1]):
+            f, c = s.slot_frame[p], s.slot_column[p]
+            w0, w1, w2 = J[k, c + 3], J[k, c + 4], J[k, c + 5]
+            for a in range(3):
+                B[p, a] = J[k, c + a]
+                B[p, 3 + a] = X[f, 3 + a] * w0 + X[f, 6 + a] * w1 + X[f, 9 + a] * w2
+                W[p, a] = B[p, a] * s.mass_inverse[f]
+            for a in range(3):
+                W[p, 3 + a] = (
+                    K[f, 3 * a] * B[p, 3] + K[f, 3 * a + 1] * B[p, 4] + K[f, 3 * a + 2] * B[p, 5]
+                )
+
+
+@equation
+def right_hand_side(s):
+    """x = J M^-1 F - gamma, with Baumgarte's terms where asked for."""
+    B, free, row_start, slot_frame = s.B, s.free, s.row_start, s.slot_frame
+    for k in range(s.m):
+        total = -s.gamma[k]
+        for p in range(row_start[k], row_start[k + 1]):
+            f = slot_frame[p]
+            for a in range(s.d):
+                total += B[p, a] * free[f, a]
+        if s.stabilisation == BAUMGARTE:
+            total += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
+        s.x[k] = total
+
+
+@equation
+def velocity_residual(s, k):
+    """Phi' = J V + Phi_t of row k."""
+    J, V = s.J, s.V
+    total = s.phi_t[k]
+    for p in range(s.row_start[k], s.row_start[k + 1]):
+        f, c = s.slot_frame[p], s.slot_column[p]
+        for a in range(6):
+            total += J[k, c + a] * V[f, a]
+    return total
+
+
+@equation
+def accelerations(s, y, yd):
+    """V' = M^-1 (F - J^T lam) into yd and, in world axes, into A; q' into yd."""
+    X, A, a, W, lam = s.X, s.A, s.free, s.W, s.lam
+    row_start, slot_frame = s.row_start, s.slot_frame
+    for k in range(s.m):
+        for p in range(row_start[k], row_start[k + 1]):
+            f = slot_frame[p]
+            for c in range(s.d):
+                a[f, c] -= W[p, c] * lam[k]
+    for k in range(s.n_z):
+        yd[s.n_q + s.n_v + k] = s.zd[k]
+    if s.d == 3:
+        for f in range(1, s.n):
+            q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
+            for c in range(3):
+                yd[q + c] = y[v + c]
+                yd[v + c] = a[f, c]
+            A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
+        return
+    for f in range(1, s.n):
+        q, v = 7 * (f - 1), s.n_q + 6 * (f - 1)
+        for c in range(3):
+            yd[q + c] = y[v + c]
+            yd[v + c] = a[f, c]
+            yd[v + 3 + c] = a[f, 3 + c]
+            A[f, c] = a[f, c]
+            A[f, 3 + c] = (
+                X[f, 3 + 3 * c] * a[f, 3] + X[f, 4 + 3 * c] * a[f, 4] + X[f, 5 + 3 * c] * a[f, 5]
+            )
+        # p' = p o (0, omega) / 2 with omega in body axes
+        e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
+        o0, o1, o2 = y[v + 3], y[v + 4], y[v + 5]
+        yd[q + 3] = 0.5 * (-e1 * o0 - e2 * o1 - e3 * o2)
+        yd[q + 4] = 0.5 * (e0 * o0 + e2 * o2 - e3 * o1)
+        yd[q + 5] = 0.5 * (e0 * o1 + e3 * o0 - e1 * o2)
+        yd[q + 6] = 0.5 * (e0 * o2 + e1 * o1 - e2 * o0)
+
+
+@equation
+def gaps(s, t):
+    """Penetration and its rate of every contact, at the poses of the last evaluation."""
+    call_all(s, s.gaps, t)
+
+
+@equation
+def kinetic(s, y):
+    """Kinetic energy, J."""
+    T = 0.0
+    for f in range(1, s.n):
+        v = s.n_q + s.d * (f - 1)
+        if s.d == 3:
+            T += 0.5 * s.mass[f] * (y[v] * y[v] + y[v + 1] * y[v + 1])
+            T += 0.5 * s.inertia[f, 8] * y[v + 2] * y[v + 2]
+        else:
+            T += 0.5 * s.mass[f] * (y[v] ** 2 + y[v + 1] ** 2 + y[v + 2] ** 2)
+            for a in range(3):
+                for b in range(3):
+                    T += 0.5 * y[v + 3 + a] * s.inertia[f, 3 * a + b] * y[v + 3 + b]
+    return T
+
+
+@equation
+def stored_energy(s, t):
+    """Fill E and return its sum, J; at the poses of the last evaluation."""
+    s.E[:] = 0.0
+    call_all(s, s.energy, t)
+    return s.E[0] + s.E[1] + s.E[2]
+
+
+@equation
+def move(s, y, f, dx):
+    """Move frame f by the small displacement dx (d) in the axes of the solve."""
+    if s.d == 3:
+        for a in range(3):
+            y[3 * (f - 1) + a] += dx[a]
+        return
+    q = 7 * (f - 1)
+    for a in range(3):
+        y[q + a] += dx[a]
+    e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
+    o0, o1, o2 = 0.5 * dx[3], 0.5 * dx[4], 0.5 * dx[5]
+    y[q + 3] = e0 - e1 * o0 - e2 * o1 - e3 * o2
+    y[q + 4] = e1 + e0 * o0 + e2 * o2 - e3 * o1
+    y[q + 5] = e2 + e0 * o1 + e3 * o0 - e1 * o2
+    y[q + 6] = e3 + e0 * o2 + e1 * o1 - e2 * o0
+    length = np.sqrt(y[q + 3] ** 2 + y[q + 4] ** 2 + y[q + 5] ** 2 + y[q + 6] ** 2)
+    for a in range(4):
+        y[q + 3 + a] /= length
+
+
+@equation
+def normalise(s, y):
+    """Quaternions back to length one."""
+    if s.d == 6:
+        for f in range(1, s.n):
+            q = 7 * (f - 1) + 3
+            length = np.sqrt(y[q] ** 2 + y[q + 1] ** 2 + y[q + 2] ** 2 + y[q + 3] ** 2)
+            for a in range(4):
+                y[q + a] /= length
+
+
+@equation
+def project_positions(s, t, y):
+    """One Newton step of Phi(q, t) = 0, nearest in the metric of M.  Returns the largest |Phi|.
+
+    dq = -M^-1 J^T S^-1 Phi.  Uses and refreshes J and S at the given y.
+    """
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    factorise(s)
+    worst = 0.0
+    for k in range(s.m):
+        s.x[k] = s.phi[k]
+        worst = max(worst, abs(s.phi[k]))
+    if worst == 0.0:
+        return worst
+    solve(s, s.x)
+    dx = s.free
+    dx[:] = 0.0
+    for k in range(s.m):
+        for p in range(s.row_start[k], s.row_start[k + 1]):
+            for a in range(s.d):
+                dx[s.slot_frame[p], a] -= s.W[p, a] * s.x[k]
+    for f in range(1, s.n):
+        move(s, y, f, dx[f])
+    return worst
+
+
+@equation
+def project_velocities(s, y):
+    """v -= M^-1 J^T S^-1 (J v + Phi_t), with J, S and V of the last evaluation.
+
+    Returns the largest |Phi'| found.  Call after `project_positions` or `derivative`; V is stale
+    afterwards.
+    """
+    worst = 0.0
+    for k in range(s.m):
+        s.x[k] = velocity_residual(s, k)
+        worst = max(worst, abs(s.x[k]))
+    solve(s, s.x)
+    for k in range(s.m):
+        for p in range(s.row_start[k], s.row_start[k + 1]):
+            v = s.n_q + s.d * (s.slot_frame[p] - 1)
+            for a in range(s.d):
+                y[v + a] -= s.W[p, a] * s.x[k]
+    return worst
+

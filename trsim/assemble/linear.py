@@ -1,0 +1,101 @@
+"""Numeric L D L^T of S = J M^-1 J^T on the pattern of assemble/pattern.py.
+
+A pivot that falls below TINY of its diagonal before elimination belongs to a row that depends on
+the others here and now: a dead centre, a parallelogram lying flat.  Then, and only then, S is
+shifted by a small multiple of its diagonal and the solution refined (the proximal point iteration),
+which converges to the minimum-norm multipliers of the consistent system.
+"""
+
+from numba import njit
+
+TINY = 1e-10  # of the diagonal: a smaller pivot is a dependent row
+SHIFT = 1e-9  # of the diagonal, added to a singular S
+REFINEMENTS = 6
+
+algebra = njit(cache=True, error_model="numpy")
+
+
+@algebra
+def factorise(s):
+    """Factorise s.value in place; s.status[0] counts the small pivots met.
+
+    S must have just been filled by `rows`; its entries are kept in `original` for refinement.
+    """
+    s.status[2] += 1
+    s.status[0] = 0
+    for k in range(s.m):
+        s.first[k] = s.value[s.diagonal[k]]
+    s.original[:] = s.value
+    if eliminate(s) > 0:
+        s.status[0] = 1
+        s.value[:] = s.original
+        for k in range(s.m):
+            s.value[s.diagonal[k]] += SHIFT * s.first[k]
+        eliminate(s)
+
+
+@algebra
+def eliminate(s):
+    """Right-looking elimination; returns the number of pivots below TINY."""
+    value, small = s.value, 0
+    diagonal, update, update_start = s.diagonal, s.update, s.update_start
+    below, below_start = s.below, s.below_start
+    for k in range(s.m):
+        D = value[diagonal[k]]
+        if D <= TINY * s.first[k]:
+            small += 1
+            D = TINY * s.first[k]
+            if D == 0.0:
+                D = 1.0
+            value[diagonal[k]] = D
+        inverse = 1.0 / D
+        for u in range(update_start[k], update_start[k + 1]):
+            value[update[u, 0]] -= value[update[u, 1]] * value[update[u, 2]] * inverse
+        for p in range(below_start[k], below_start[k + 1]):
+            value[below[p]] *= inverse
+    return small
+
+
+@algebra
+def substitute(s, value, x):
+    """x <- (L D L^T)^-1 x."""
+    order, diagonal = s.order, s.diagonal
+    below, below_row, below_start = s.below, s.below_row, s.below_start
+    for k in range(s.m):
+        x_k = x[order[k]]
+        for p in range(below_start[k], below_start[k + 1]):
+            x[below_row[p]] -= value[below[p]] * x_k
+    for k in range(s.m - 1, -1, -1):
+        total = x[order[k]] / value[diagonal[k]]
+        for p in range(below_start[k], below_start[k + 1]):
+            total -= value[below[p]] * x[below_row[p]]
+        x[order[k]] = total
+
+
+@algebra
+def solve(s, x):
+    """x <- S^-1 x with the last factorisation, refined where S was singular."""
+    if s.status[0] == 0:
+        substitute(s, s.value, x)
+        return
+    s.r[:] = x
+    b = s.r
+    substitute(s, s.value, x)
+    for _ in range(REFINEMENTS):
+        s.r2[:] = b
+        residual(s, x, s.r2)
+        substitute(s, s.value, s.r2)
+        for k in range(s.m):
+            x[k] += s.r2[k]
+
+
+@algebra
+def residual(s, x, r):
+    """r <- r - S x, with the entries of S before factorisation."""
+    for k in range(s.m):
+        row = s.order[k]
+        r[row] -= s.original[s.diagonal[k]] * x[row]
+        for p in range(s.below_start[k], s.below_start[k + 1]):
+            i, entry = s.below_row[p], s.original[s.below[p]]
+            r[i] -= entry * x[row]
+            r[row] -= entry * x[i]

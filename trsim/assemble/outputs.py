@@ -1,0 +1,62 @@
+"""One output row: every channel of the model at a state whose derivative was just evaluated.
+
+    [ channels of the elements | reaction, reaction_moment of the joints | energy book ]
+
+The reaction of a joint is what its rows put on body j, as force and moment about the joint:
+
+    f = -sum_k lam_k J_k[r_j],    m = -sum_k lam_k J_k[omega_j] - p_j x f
+
+In a planar scene the out-of-plane components are those of the planar problem: zero.
+"""
+
+from trsim.assemble.equations import call_all, equation, kinetic, stored_energy
+from trsim.elements.contract import BOOK, N_BOOK, STORED
+from trsim.elements.frames import arm
+from trsim.elements.scene import N_STORED
+
+ENERGY_COLUMNS = (
+    "kinetic",
+    *(f"stored.{name}" for name in STORED),
+    *(f"work.{name}" for name in BOOK),
+    "work.projection",
+    "residual",
+)
+
+
+@equation
+def measure(s, t, y, work_projection, energy_0):
+    """Fill s.out; uses the last evaluation, which was at (t, y)."""
+    call_all(s, s.measure, t)
+    for k in range(s.joint_out.shape[0]):
+        reaction(s, k)
+    out, o = s.out, s.column_energy
+    T = kinetic(s, y)
+    total = T + stored_energy(s, t) - energy_0 - work_projection
+    out[o] = T
+    for c in range(N_STORED):
+        out[o + 1 + c] = s.E[c]
+    o += 1 + N_STORED
+    for c in range(N_BOOK):
+        out[o + c] = s.z[c]
+        total -= s.z[c]
+    out[o + N_BOOK] = work_projection
+    out[o + N_BOOK + 1] = total
+
+
+@equation
+def reaction(s, k):
+    """Force and moment of one joint on its body j, at the joint."""
+    out, con, par, lam, J = s.out, s.con, s.par, s.lam, s.J
+    e, first, number, o = s.joint_out[k, 0], s.joint_out[k, 1], s.joint_out[k, 2], s.joint_out[k, 3]
+    for c in range(6):
+        out[o + c] = 0.0
+    for r in range(first, first + number):
+        row = con[e, r]
+        if row >= 0:
+            for c in range(6):
+                out[o + c] -= lam[row] * J[row, 6 + c]
+    p = arm(s.X, con[e, 1], par[e, 3], par[e, 4], par[e, 5])
+    f0, f1, f2 = out[o], out[o + 1], out[o + 2]
+    out[o + 3] -= p[1] * f2 - p[2] * f1
+    out[o + 4] -= p[2] * f0 - p[0] * f2
+    out[o + 5] -= p[0] * f1 - p[1] * f0

@@ -1,0 +1,182 @@
+"""What the scene does not need is not solved: planarity, redundant rows, mobility.
+
+Planarity is read off the numbers: a row whose derivatives against z', omega_x, omega_y vanish is in
+the plane; one whose derivatives against x', y', omega_z vanish is out of it.  Rows are judged
+redundant by rank, at several consistent positions near the drawn one: what is dependent only at
+the drawn position (a dead centre, a parallelogram lying flat) is singular, not redundant, and kept.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import constraints, move, poses
+from trsim.elements.scene import Model, scene
+
+Array = NDArray[np.float64]
+
+IN_PLANE, OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
+DEPENDENT = 1e-8  # of a row left after the rows before it are taken out
+SAMPLES = 4
+SPREAD = 0.03  # of the mechanism's size and rad: how far positions are perturbed
+
+
+@dataclass(frozen=True)
+class Dependence:
+    """One dependent row."""
+
+    row: int
+    everywhere: bool  # at all nearby positions: redundant; only as drawn: singular
+
+
+def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
+    """Phi (m), Phi_t (m) and J (m, 6 (n-1)) against the world-axes twists of the moving frames."""
+    w = scene(model)
+    w.branch[:] = np.nan_to_num(w.branch)
+    poses(w, y)
+    constraints(w, t)
+    J = np.zeros((model.m, 6 * model.n))
+    for k in range(model.m):
+        for s in range(model.row_start[k], model.row_start[k + 1]):
+            f, c = model.slot_frame[s], model.slot_column[s]
+            J[k, 6 * f : 6 * f + 6] += w.J[k, c : c + 6]
+    return w.phi.copy(), w.phi_t.copy(), J[:, 6:]
+
+
+def weights(model: Model) -> Array:
+    """sqrt(M^-1) of the world-axes twists, nearly: positions moved by it cost equal energy."""
+    trace = np.maximum(model.inertia[1:, 0] + model.inertia[1:, 4] + model.inertia[1:, 8], 1e-300)
+    arm = np.sqrt(trace / np.maximum(model.mass[1:], 1e-300))
+    return np.stack([np.ones_like(arm)] * 3 + [1.0 / np.maximum(arm, 1e-9)] * 3, axis=1).ravel()
+
+
+def displaced(model: Model, y: Array, dx: Array) -> Array:
+    """y after small world-axes displacements dx (6 (n-1)) of the moving frames."""
+    y = y.copy()
+    w = scene(model)
+    poses(w, y)
+    for f in range(1, model.n):
+        step = dx[6 * (f - 1) : 6 * f]
+        if model.d == 3:
+            move(w, y, f, np.ascontiguousarray(step[IN_PLANE]))
+        else:
+            R = w.X[f, 3:].reshape(3, 3)
+            move(w, y, f, np.concatenate([step[:3], R.T @ step[3:]]))
+    return y
+
+
+def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None = None,
+            columns: list[int] | None = None, steps: int = 30) -> tuple[Array, float]:  # fmt: skip
+    """Newton with least squares onto the constraints; works with redundant rows.
+
+    columns: twist components (0..5) that may move.  Returns y and the largest residual left.
+    """
+    scale = weights(model)
+    allowed = np.zeros((model.n - 1, 6), bool)
+    allowed[:, columns if columns is not None else range(6)] = True
+    free = allowed.ravel()
+    for _ in range(steps):
+        phi, _, J = jacobian(model, t, y)
+        if active is not None:
+            phi, J = phi[active], J[active]
+        worst = float(np.max(np.abs(phi), initial=0.0))
+        if worst < 1e-14 * model.size:
+            break
+        dx = np.zeros(free.size)
+        dx[free] = -scale[free] * np.linalg.lstsq(J[:, free] * scale[free], phi, rcond=1e-10)[0]
+        limit = 0.3 / max(float(np.max(np.abs(dx))), 0.3)  # a far start must not overshoot
+        y = displaced(model, y, dx * limit)
+    phi = jacobian(model, t, y)[0]
+    phi = phi if active is None else phi[active]
+    return y, float(np.max(np.abs(phi), initial=0.0))
+
+
+def dependent_rows(J: Array, scale: Array, order: list[int]) -> set[int]:
+    """Rows that depend on the rows before them in `order` (modified Gram-Schmidt, twice)."""
+    basis: list[Array] = []
+    found = set()
+    for k in order:
+        row = J[k] * scale
+        length = np.linalg.norm(row)
+        if length == 0.0:
+            found.add(k)
+            continue
+        row = row / length
+        for _ in range(2):
+            for b in basis:
+                row = row - (row @ b) * b
+        left = np.linalg.norm(row)
+        if left < DEPENDENT:
+            found.add(k)
+        else:
+            basis.append(row / left)
+    return found
+
+
+def dependences(model: Model, y: Array, columns: list[int], order: list[int],
+                geometric: list[int]) -> list[Dependence]:  # fmt: skip
+    """Dependent rows as drawn, and whether they stay so at nearby consistent positions.
+
+    order: priority of the rows; geometric: the rows positions must keep to when perturbed (all
+    but the drives).
+    """
+    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns])
+    scale = weights(model)[keep]
+    here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
+    if not here:
+        return []
+    rng = np.random.default_rng(0)
+    ranks, always = [], None
+    for _ in range(SAMPLES):
+        dx = np.zeros(6 * (model.n - 1))
+        dx[keep] = SPREAD * rng.normal(size=keep.size) * scale
+        dx.reshape(-1, 6)[:, :3] *= model.size
+        near, left = closest(
+            model, 0.0, displaced(model, y, dx), np.array(geometric, np.int64), columns
+        )
+        if left > 1e-9 * model.size:
+            continue
+        there = dependent_rows(jacobian(model, 0.0, near)[2][:, keep], scale, order)
+        ranks.append(len(there))
+        always = there if always is None else always & there
+    if always is None:
+        always = here
+    return [Dependence(k, k in always) for k in sorted(here | always)]
+
+
+def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
+    """(in one plane, held there by the joints): rows separate, loads stay in the plane.
+
+    sample(y) -> wrenches F (n, 6) of the force elements at a state.
+    """
+    rng = np.random.default_rng(1)
+    m = model.n - 1
+    for _ in range(2):
+        dx = np.zeros((m, 6))
+        dx[:, IN_PLANE] = 0.05 * rng.normal(size=(m, 3))
+        near = displaced(model, y, dx.ravel())
+        near[model.n_q : model.n_q + model.n_v].reshape(m, 6)[:, IN_PLANE] = rng.normal(size=(m, 3))
+        J = jacobian(model, 0.0, near)[2].reshape(model.m, m, 6)
+        inside = np.abs(J[:, :, IN_PLANE]).max(axis=(1, 2), initial=0.0)
+        outside = np.abs(J[:, :, OUT_OF_PLANE]).max(axis=(1, 2), initial=0.0)
+        if np.any((inside > 1e-9) & (outside > 1e-9 * np.maximum(1.0, model.size))):
+            return False, False
+        F = sample(near)[1:]
+        if np.abs(F[:, 2]).max(initial=0.0) > 1e-9 * max(1.0, np.abs(F).max(initial=0.0)):
+            return False, False
+    J = jacobian(model, 0.0, y)[2].reshape(model.m, m, 6)[:, :, OUT_OF_PLANE].reshape(model.m, -1)
+    held = np.linalg.matrix_rank(J, tol=1e-8) == 3 * m if m else True
+    return True, bool(held)
+
+
+def unique_reactions(J: Array, scale: Array) -> NDArray[np.bool_]:
+    """Which rows have a multiplier that the motion determines: no part in the null space of J^T."""
+    if len(J) == 0:
+        return np.zeros(0, bool)
+    length = np.linalg.norm(J * scale, axis=1)
+    rows = (J * scale) / np.where(length > 0, length, 1.0)[:, None]
+    u, s, _ = np.linalg.svd(rows, full_matrices=True)
+    rank = int(np.sum(s > DEPENDENT * max(1.0, s.max(initial=1.0))))
+    return np.linalg.norm(u[:, rank:], axis=1) < 1e-7

@@ -1,0 +1,33 @@
+"""The elements: one line each.  The word in a scenario file is the name of the module."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from trsim.errors import ScenarioError, known
+
+if TYPE_CHECKING:
+    from trsim.elements.contract import Element
+
+# word -> section of the scenario it may stand in
+ELEMENTS = {
+    "rigid_body": "bodies",
+    "revolute": "joints",
+    "spherical": "joints",
+    "prismatic": "joints",
+    "fixed": "joints",
+    "clearance_joint": "joints",  # a revolute with the key `clearance`
+    "drive": "drives",
+    "sensor": "sensors",
+    "gravity": "",  # the key `gravity` of the scenario
+    "applied_load": "forces",
+    "spring_damper": "forces",
+    "torsion_spring": "forces",
+    "limit_stop": "forces",
+}
+
+
+def load(word: str) -> "Element":
+    """Import one element.  Raises ScenarioError for a word that is none."""
+    if word not in ELEMENTS:
+        raise ScenarioError(f"unknown type '{word}'", known(word, [w for w in ELEMENTS if w]))
+    return import_module(f"trsim.elements.{word}").ELEMENT

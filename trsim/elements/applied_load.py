@@ -1,0 +1,93 @@
+"""Applied load: a force at a point, or a torque, of varying magnitude in a given direction.
+
+    F = f(t, sensors) R_f n          at the point p of the body; n constant in the axes of frame f
+
+f is a number, an expression or an Akima table of t or a sensor.  Frame: world (a fixed direction)
+or a body (a following load).
+"""
+
+from typing import ClassVar
+
+from pydantic import model_validator
+
+from trsim.elements.contract import LOADS, Channel, Element, Row, kernel
+from trsim.elements.frames import arm, dot, push, spin, twist, velocity
+from trsim.fields import Function, Spec, vector
+from trsim.laws.functions import value
+
+
+class AppliedLoad(Spec):
+    """A force at a point of a body (`at`, as drawn) or a torque on it."""
+
+    type: ClassVar[str] = "applied_load"
+    body: str
+    at: vector("m") | None = None  # the centre of mass unless given
+    frame: str = "world"
+    direction: vector("-")
+    force: Function("N") | None = None
+    torque: Function("N*m") | None = None
+
+    @model_validator(mode="after")
+    def one_load(self):
+        if (self.force is None) == (self.torque is None):
+            raise ValueError("give either `force` or `torque`")
+        if not any(self.direction):
+            raise ValueError("`direction` must not be zero")
+        return self
+
+
+def pack(name, spec, at):
+    i = at.body(spec.body)
+    frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame")
+    place = at.centre(i) if spec.at is None else spec.at
+    length = sum(c * c for c in spec.direction) ** 0.5
+    # the direction is drawn in world axes at t = 0 and then turns with its frame
+    n = at.axes(frame, tuple(c / length for c in spec.direction))
+    is_torque = spec.force is None
+    f = at.function(spec.torque if is_torque else spec.force, "torque" if is_torque else "force")
+    return Row((i, frame, f, int(is_torque)), (*at.local(i, place), *n))
+
+
+@kernel
+def force(t, scene, a, b):
+    X, V, S, con = scene.X, scene.V, scene.S, scene.con
+    par, tab, F, zd = scene.par, scene.tab, scene.F, scene.zd
+    for e in range(a, b):
+        i, frame = con[e, 0], con[e, 1]
+        f = value(tab, con[e, 2], t, S)
+        n = arm(X, frame, par[e, 3], par[e, 4], par[e, 5])
+        load = (f * n[0], f * n[1], f * n[2])
+        if con[e, 3] == 1:
+            twist(F, i, load)
+            zd[LOADS] += dot(load, spin(V, i))
+        else:
+            p = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+            push(F, i, p, load)
+            zd[LOADS] += dot(load, velocity(V, i, p))
+
+
+@kernel
+def measure(t, scene, a, b):
+    X, S, con = scene.X, scene.S, scene.con
+    par, tab, col, out = scene.par, scene.tab, scene.wanted, scene.out
+    for e in range(a, b):
+        if col[e] < 0:
+            continue
+        f = value(tab, con[e, 2], t, S)
+        n = arm(X, con[e, 1], par[e, 3], par[e, 4], par[e, 5])
+        out[col[e]] = f
+        for c in range(3):
+            out[col[e] + 1 + c] = f * n[c]
+
+
+ELEMENT = Element(
+    key="applied_load",
+    section="forces",
+    spec=AppliedLoad,
+    pack=pack,
+    channels=(
+        Channel("magnitude", "N", "the force or torque along its direction"),
+        Channel("load", "N", "its components, world axes", 3),
+    ),
+    kernels={"force": force, "measure": measure},
+)

@@ -1,0 +1,311 @@
+"""Revolute joint with clearance: a journal of body j moves freely in a bearing of body i.
+
+    e   = d - (a . d) a               eccentricity: journal centre from bearing centre, d = P_j - P_i
+    d   = |e| - c                     penetration; c is the radial clearance
+    F_n = f(d, d')                    normal force on the journal, along -e / |e|    laws/contact.py
+    F_t = -f_t(F_n, v_t)              friction on the journal, along t = a x n       laws/friction.py
+
+a is the axis, fixed in the bearing.  Both forces act at the contact point, R_B + d from the bearing's
+centre, on journal and bearing alike: friction turns both bodies and the pair adds no moment.
+Rows kept: axial (a . d = 0) and both tilts; the mobility grows by two.    [Flores2008]
+
+In flight the force is zero whatever the gap; the solver switches the phase at the located touch and
+latches the approach speed d'_0 there, never below `slowest_impact`.  Eccentricity is reported in the
+axes of the bearing's body.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar
+
+from annotated_types import Ge
+
+from trsim.elements.contract import (
+    CONTACTS,
+    FLIGHT,
+    FRICTION,
+    IMPACT_SPEED,
+    IMPACTS,
+    PHASE,
+    Channel,
+    Contact,
+    Element,
+    Row,
+    kernel,
+)
+from trsim.elements.frames import (
+    along_row,
+    arm,
+    cross,
+    dot,
+    helper,
+    perpendicular_row,
+    push,
+    separation,
+    velocity,
+)
+from trsim.elements.joint import triads
+from trsim.elements.revolute import Revolute, coordinate
+from trsim.errors import ScenarioError
+from trsim.fields import Unit
+from trsim.laws.contact import (
+    cylinder_stiffness,
+    damping_factor,
+    elastic,
+    hertz_stiffness,
+    normal_force,
+    stored,
+)
+from trsim.laws.friction import CODES, N_PARAMETERS, PARAMETERS, friction_force
+
+
+class ClearanceJoint(Revolute):
+    """A hinge with play: `clearance` is radial; `contact` names an entry of contact_laws."""
+
+    clearance: Annotated[float, Ge(0), Unit("m")]
+    contact: str | None = None
+
+    type: ClassVar[str] = "clearance_joint"
+
+
+# par, after the 22 of joint.py
+R_B, C, STIFFNESS, EXPONENT, FORM, CHI, SLOWEST, FRICTION_PAR = 22, 23, 24, 25, 26, 27, 28, 29
+AXIAL, TILT_1, TILT_2, STATE, FRICTION_LAW = 3, 4, 5, 6, 7  # con
+
+
+def normal_numbers(law, c):
+    """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch."""
+    E_j = law.journal_youngs_modulus or law.youngs_modulus
+    nu_j = law.poisson if law.journal_poisson is None else law.journal_poisson
+    chi = damping_factor(law.normal, law.restitution)
+    if isinstance(law.stiffness, float):
+        return law.stiffness, law.exponent, 0, chi, law.stiffness
+    if law.stiffness == "cylinder":
+        K = cylinder_stiffness(law.width, law.youngs_modulus, law.poisson, E_j, nu_j)
+        return K, 1.5, 1, chi, K / c**0.5
+    R_i = law.bearing_radius
+    K = hertz_stiffness(R_i, R_i - c, law.youngs_modulus, law.poisson, E_j, nu_j, law.stiffness)
+    return K, law.exponent, 0, chi, K
+
+
+def friction_numbers(friction):
+    """Code of the friction law and its N_PARAMETERS numbers."""
+    words = {
+        "mu": friction.coefficient,
+        "mu_k": friction.coefficient,
+        "mu_s": friction.static_coefficient or friction.coefficient,
+        "v0": friction.v0,
+        "v1": friction.v1,
+        "v_s": friction.stribeck_speed,
+        "sigma0": friction.bristle_stiffness,
+        "sigma1": friction.bristle_damping,
+    }
+    numbers = [float(words[name]) for name in PARAMETERS[friction.law]]
+    return CODES[friction.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies)
+    law = at.contact_law(spec.contact)
+    if spec.clearance >= law.bearing_radius:
+        raise ScenarioError(
+            f"a radial clearance of {spec.clearance:g} m leaves no journal in a bearing of radius "
+            f"{law.bearing_radius:g} m",
+            "did you mean mm?",
+            ("clearance",),
+        )
+    K, exponent, form, chi, light = normal_numbers(law, spec.clearance)
+    code, friction = friction_numbers(law.friction)
+    sticks = law.friction.law == "sticking"
+    # w settles at +-mu / sigma0: that is its size in the error norm
+    state = at.state(friction[1] / friction[3]) if sticks else -1
+    par = (
+        *at.local(i, spec.at),
+        *at.local(j, spec.at),
+        *triads(i, j, spec.axis, at),
+        law.bearing_radius,
+        spec.clearance,
+        K,
+        exponent,
+        float(form),
+        chi,
+        law.slowest_impact,
+        *friction,
+    )
+    contact = Contact(light, exponent, spec.clearance, law.slowest_impact)
+    return Row((i, j, -1, state, code), par, contact)
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, con, par = scene.X, scene.con, scene.par
+    for e in range(a, b):
+        k3, k4, k5 = con[e, AXIAL], con[e, TILT_1], con[e, TILT_2]
+        if k3 < 0 and k4 < 0 and k5 < 0:
+            continue
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
+        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
+        along_row(scene, i, p_i, axis, j, p_j, k3)
+        perpendicular_row(scene, i, u, j, a_j, k4)
+        perpendicular_row(scene, i, w, j, a_j, k5)
+
+
+@helper
+def play(X, V, con, par, e):
+    """Arms, separation, unit normal and tangent, penetration and its rate."""
+    i, j = con[e, 0], con[e, 1]
+    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
+    d = separation(X, i, p_i, j, p_j)
+    along = dot(axis, d)
+    e_r = (d[0] - along * axis[0], d[1] - along * axis[1], d[2] - along * axis[2])
+    size = sqrt(dot(e_r, e_r))
+    if size == 0.0:  # centred: the normal is arbitrary and nothing touches
+        n = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+    else:
+        n = (e_r[0] / size, e_r[1] / size, e_r[2] / size)
+    # against the bearing's body moving with the journal centre: n turns with it
+    v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
+    v_j = velocity(V, j, p_j)
+    rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    return p_i, p_j, d, n, cross(axis, n), size - par[e, C], rate
+
+
+@helper
+def contact_forces(scene, e):
+    """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
+    X, V, z, con, par, mem = scene.X, scene.V, scene.z, scene.con, scene.par, scene.mem
+    p_i, p_j, d, n, tangent, depth, rate = play(X, V, con, par, e)
+    i, j = con[e, 0], con[e, 1]
+    # the contact point, seen from both centres of mass; it lies a bearing radius outside the
+    # circle of the journal centre, at the end of the bearing's radius plus the penetration
+    reach = par[e, R_B] - par[e, C]
+    c_j = (p_j[0] + reach * n[0], p_j[1] + reach * n[1], p_j[2] + reach * n[2])
+    c_i = (
+        p_i[0] + d[0] + reach * n[0],
+        p_i[1] + d[1] + reach * n[1],
+        p_i[2] + d[2] + reach * n[2],
+    )
+    if mem[e, PHASE] == FLIGHT or depth <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, c_i, c_j, n, tangent, depth, rate
+    first = mem[e, IMPACT_SPEED]
+    if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
+        first = max(rate, par[e, SLOWEST])
+    F_n = normal_force(depth, rate, first, par[e, STIFFNESS], par[e, EXPONENT], par[e, C],
+                       int(par[e, FORM]), par[e, CHI])  # fmt: skip
+    v_i, v_j = velocity(V, i, c_i), velocity(V, j, c_j)
+    v_t = dot(tangent, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    state = con[e, STATE]
+    w = z[state] if state >= 0 else 0.0
+    F_t, w_dot = friction_force(con[e, FRICTION_LAW], F_n, v_t, w, par[e], FRICTION_PAR)
+    return F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate
+
+
+@kernel
+def force(t, scene, a, b):
+    X, V, z, con = scene.X, scene.V, scene.z, scene.con
+    par, mem, F, zd = scene.par, scene.mem, scene.F, scene.zd
+    for e in range(a, b):
+        if mem[e, PHASE] == FLIGHT:
+            continue
+        F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
+        if depth <= 0.0:
+            continue
+        f = (
+            -F_n * n[0] + F_t * tangent[0],
+            -F_n * n[1] + F_t * tangent[1],
+            -F_n * n[2] + F_t * tangent[2],
+        )
+        push(F, con[e, 1], c_j, f)
+        push(F, con[e, 0], c_i, (-f[0], -f[1], -f[2]))
+        spring = elastic(depth, par[e, STIFFNESS], par[e, EXPONENT], par[e, C], int(par[e, FORM]))
+        zd[IMPACTS] -= (F_n - spring) * rate
+        zd[FRICTION] += F_t * v_t
+        if con[e, STATE] >= 0:
+            zd[con[e, STATE]] = w_dot
+
+
+@kernel
+def gap(t, scene, a, b):
+    X, V, con, par, g = scene.X, scene.V, scene.con, scene.par, scene.gap
+    for e in range(a, b):
+        _, _, _, _, _, depth, rate = play(X, V, con, par, e)
+        g[e, 0] = depth
+        g[e, 1] = rate
+
+
+@kernel
+def energy(t, scene, a, b):
+    X, V, con, par, mem, E = scene.X, scene.V, scene.con, scene.par, scene.mem, scene.E
+    for e in range(a, b):
+        if mem[e, PHASE] == FLIGHT:
+            continue
+        # the penetration needs no velocity: X stands in for V, its rate is not used
+        _, _, _, _, _, depth, _ = play(X, X, con, par, e)
+        E[CONTACTS] += stored(depth, par[e, STIFFNESS], par[e, EXPONENT], par[e, C],
+                              int(par[e, FORM]))  # fmt: skip
+
+
+@kernel
+def measure(t, scene, a, b):
+    X, V, z, con = scene.X, scene.V, scene.z, scene.con
+    par, mem, col, out = scene.par, scene.mem, scene.wanted, scene.out
+    for e in range(a, b):
+        o = col[e]
+        if o < 0:
+            continue
+        F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        d = separation(X, i, p_i, j, p_j)
+        v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
+        v_j = velocity(V, j, p_j)
+        v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+        out[o], out[o + 1], out[o + 2] = F_n, F_t, sqrt(F_n * F_n + F_t * F_t)
+        out[o + 3], out[o + 4], out[o + 5] = depth, rate, v_t
+        out[o + 6], out[o + 7] = dot(u, d), dot(w, d)
+        out[o + 8], out[o + 9] = dot(u, v), dot(w, v)
+        for c in range(3):
+            out[o + 10 + c] = -F_n * n[c] + F_t * tangent[c]
+
+
+ELEMENT = Element(
+    key="clearance_joint",
+    section="joints",
+    spec=ClearanceJoint,
+    pack=pack,
+    rows=("axial", "tilt 1", "tilt 2"),
+    coordinate="angle",
+    channels=(
+        Channel("normal_force", "N", "normal contact force; never negative"),
+        Channel("friction_force", "N", "on the journal, along axis x normal"),
+        Channel("contact_force", "N", "resultant of normal force and friction"),
+        Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
+        Channel("penetration_rate", "m/s", "positive while approaching"),
+        Channel(
+            "sliding_speed", "m/s", "journal against bearing at the contact point; 0 in flight"
+        ),
+        Channel("eccentricity_x", "m", "journal centre in the bearing, axes of its body"),
+        Channel("eccentricity_y", "m", "journal centre in the bearing, axes of its body"),
+        Channel("eccentricity_x_rate", "m/s", "its rate in the axes of the bearing's body"),
+        Channel("eccentricity_y_rate", "m/s", "its rate in the axes of the bearing's body"),
+        Channel("force", "N", "contact force on the journal's body, world axes", 3),
+    ),
+    n_mem=2,
+    kernels={
+        "constraint": constraint,
+        "coordinate": coordinate,
+        "force": force,
+        "gaps": gap,
+        "energy": energy,
+        "measure": measure,
+    },
+)

@@ -1,0 +1,86 @@
+"""A contact law as the user writes it: an entry of `contact_laws`, named by joints and contacts.
+
+stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R_i R_j/(R_i - R_j))
+           paper       the same with R_i + R_j
+           cylinder    line contact over `width`
+           a number    K in N/m^1.5                 s = (1 - nu^2)/E
+"""
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from annotated_types import Ge, Gt, Interval
+from pydantic import model_validator
+
+from trsim.errors import ScenarioError
+from trsim.fields import Spec, Unit
+
+Modulus = Annotated[float, Gt(0), Unit("Pa")]
+Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
+Length = Annotated[float, Gt(0), Unit("m")]
+Speed = Annotated[float, Gt(0), Unit("m/s")]
+Coefficient = Annotated[float, Ge(0), Unit("-")]
+
+# what a word cannot do without
+FRICTION_NEEDS = {
+    "none": (),
+    "coulomb": ("coefficient",),
+    "modified_coulomb": ("coefficient", "v0", "v1"),
+    "sticking": ("coefficient", "stribeck_speed", "bristle_stiffness"),
+}
+STIFFNESS_NEEDS = {
+    "internal": ("bearing_radius", "youngs_modulus", "poisson"),
+    "paper": ("bearing_radius", "youngs_modulus", "poisson"),
+    "cylinder": ("bearing_radius", "width", "youngs_modulus", "poisson"),
+}
+
+
+def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
+    missing = [key for key in keys if getattr(spec, key) is None]
+    if missing:
+        raise ScenarioError(f"{what} needs {', '.join(missing)}")
+
+
+class Friction(Spec):
+    """Friction in a contact."""
+
+    type: ClassVar[str] = "friction"
+    law: Literal["none", "coulomb", "modified_coulomb", "sticking"] = "none"
+    coefficient: Coefficient | None = None
+    v0: Annotated[float, Ge(0), Unit("m/s")] | None = None
+    v1: Speed | None = None
+    static_coefficient: Coefficient | None = None  # the coefficient unless given
+    stribeck_speed: Speed | None = None
+    bristle_stiffness: Annotated[float, Gt(0), Unit("1/m")] | None = None
+    bristle_damping: Annotated[float, Ge(0), Unit("s/m")] = 0.0
+
+    @model_validator(mode="after")
+    def complete(self) -> "Friction":
+        _needs(self, f"friction law {self.law}", FRICTION_NEEDS[self.law])
+        if self.v0 is not None and self.v1 is not None and self.v0 >= self.v1:
+            raise ScenarioError(f"v0 must be < v1, got {self.v0:g} and {self.v1:g} m/s")
+        return self
+
+
+class ContactLaw(Spec):
+    """The law of a contact between two bodies of given material and size."""
+
+    type: ClassVar[str] = "contact_law"
+    normal: Literal["lankarani_nikravesh", "hunt_crossley", "flores", "identified"]
+    stiffness: Annotated[
+        Literal["internal", "paper", "cylinder"] | Annotated[float, Gt(0)], Unit("N/m^1.5")
+    ] = "internal"
+    exponent: Annotated[float, Interval(ge=1, le=3), Unit("-")] = 1.5
+    bearing_radius: Length | None = None
+    width: Length | None = None
+    youngs_modulus: Modulus | None = None  # of the bearing, and of the journal unless given
+    poisson: Poisson | None = None
+    journal_youngs_modulus: Modulus | None = None
+    journal_poisson: Poisson | None = None
+    restitution: Annotated[float, Interval(ge=0, le=1), Unit("-")]
+    slowest_impact: Speed = 0.01
+    friction: Friction = Friction()
+
+    @model_validator(mode="after")
+    def complete(self) -> "ContactLaw":
+        _needs(self, f"stiffness {self.stiffness}", STIFFNESS_NEEDS.get(str(self.stiffness), ()))
+        return self

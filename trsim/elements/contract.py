@@ -1,0 +1,126 @@
+"""What an element is: a spec, its kernels and its channels, exported as one `Element`.
+
+The user's words end in `pack`; from there on an element is rows of numbers.  Every instance of
+every element owns one row e of the three tables of a model,
+
+    con (N, n_con) int64     where: frames, joint coordinate, constraint rows, further indices
+    par (N, n_par) float64   how much: constants of the instance, SI
+    mem (N, n_mem) float64   what it remembers; frozen while a step is being tried
+
+and the instances of one element are neighbours: a kernel is called once, as kernel(t, scene, a, b),
+for its rows a <= e < b.  It reads poses and twists of the scene in world axes (X, V), joint
+coordinates and sensors (S, angles unwrapped), the states z, and writes what its kind may write:
+
+    force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
+    constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma
+    coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to
+    gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s)
+    energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
+    measure     out[wanted[e] + c] = channel c; wanted[e] < 0 when nobody asked.  May also read
+                the accelerations A = V' and the multipliers lam
+
+The fields are listed in scene.py.  Body 0 is the ground: X[0] the identity, V[0] zero.  No kernel
+has a branch for it.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from numba import njit, types
+
+from trsim.elements.packed import f8, i8
+from trsim.elements.scene import Scene
+
+SCENE = Scene.numba_type
+KERNEL = types.void(f8, SCENE, i8, i8)  # t, scene, first row, end row
+KINDS = ("force", "constraint", "coordinate", "gaps", "energy", "measure")
+
+# con: the first columns of every element that joins two frames
+I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3  # noqa: E741
+
+# mem: the first columns of every element with a gap
+PHASE, IMPACT_SPEED = 0, 1
+FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
+
+# z: the energy book, power flowing into the mechanism (W), in front of the elements' own states
+DRIVES, LOADS, DAMPERS, IMPACTS, FRICTION, N_BOOK = 0, 1, 2, 3, 4, 5
+BOOK = ("drives", "loads", "dampers", "impacts", "friction")
+
+# E: stored energy
+SPRINGS, CONTACTS, GRAVITY = 0, 1, 2
+STORED = ("springs", "contacts", "gravity")
+
+
+class Compiled:
+    """A function with a fixed signature that compiles (or loads from the cache) on first use."""
+
+    def __init__(self, python: Callable, signature: Any) -> None:
+        self.python, self.signature = python, signature
+        self.dispatcher: Any = None
+
+    def compiled(self) -> Any:
+        if self.dispatcher is None:
+            self.dispatcher = njit(self.signature, cache=True, error_model="numpy")(self.python)
+        return self.dispatcher
+
+    def address(self) -> int:
+        """Where the machine code starts, in numba's own calling convention."""
+        result = self.compiled().overloads[self.signature.args]
+        return result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.compiled()(*arguments)
+
+
+def compiled(signature: Any) -> Callable[[Callable], Compiled]:
+    """Decorator for functions called by address or from Python."""
+    return lambda python: Compiled(python, signature)
+
+
+def kernel(python: Callable) -> Compiled:
+    """Decorator of the kernels of elements."""
+    return Compiled(python, KERNEL)
+
+
+class Channel(NamedTuple):
+    """One recorded quantity per instance and output time."""
+
+    name: str
+    unit: str
+    meaning: str
+    size: int = 1
+
+
+class Contact(NamedTuple):
+    """What the solver must know of a contact to step through it (error norm, first step)."""
+
+    stiffness: float  # N/m^exponent
+    exponent: float
+    clearance: float  # m; inf where the contact has none
+    slowest_impact: float  # m/s
+
+
+@dataclass(frozen=True)
+class Row:
+    """One packed instance."""
+
+    con: tuple[int, ...]
+    par: tuple[float, ...]
+    contact: Contact | None = None
+
+
+@dataclass(frozen=True)
+class Element:
+    """One kind of element, as the rest of trsim sees it."""
+
+    key: str  # the word in the scenario file, and the name of the module
+    section: str  # where it stands in the scenario
+    spec: type
+    pack: Callable  # (name, spec, at) -> Row
+    rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
+    coordinate: str = ""  # name of the joint coordinate: angle, stroke
+    channels: tuple[Channel, ...] = ()
+    n_mem: int = 0
+    n_state: int = 0  # entries of z an instance owns
+    kernels: dict[str, Compiled] = field(default_factory=dict)

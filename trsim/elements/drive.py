@@ -1,0 +1,208 @@
+"""Drive: prescribed motion of a joint coordinate, rigid or through a spring and damper.
+
+    rigid        Phi = x - f(t) = 0,   F = -lambda
+    compliant    F = -k (x - f) - c (x' - f'),   c = 2 zeta sqrt(k m)
+
+x is the angle or stroke of the joint, f the prescribed position or, for a prescribed velocity, its
+integral from the starting value of x (a state of the element).  F acts on body j along the axis of
+the joint; the channel `force` is sign F.
+"""
+
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Ge, Gt
+from pydantic import model_validator
+
+from trsim.elements.contract import (
+    DAMPERS,
+    DRIVES,
+    N_BOOK,
+    SPRINGS,
+    Channel,
+    Element,
+    Row,
+    kernel,
+)
+from trsim.elements.frames import along_row, arm, cross, dot, helper, push, separation, spin, twist
+from trsim.fields import Function, Spec, Unit
+from trsim.laws.functions import motion
+
+
+class Compliance(Spec):
+    """A spring and a damper in parallel, in series with the prescribed motion."""
+
+    stiffness: Annotated[float, Gt(0), Unit("N/m", "N*m/rad")]
+    damping: Annotated[float, Ge(0), Unit("N*s/m", "N*m*s/rad")] | None = None
+    damping_ratio: Annotated[float, Ge(0), Unit("-")] | None = None
+    mass: Annotated[float, Gt(0), Unit("kg", "kg*m^2")] | None = None
+
+
+class Drive(Spec):
+    """A prescribed position or velocity of a joint coordinate; depends on t only."""
+
+    type: ClassVar[str] = "drive"
+    joint: str
+    position: Function("m", "rad") | None = None
+    velocity: Function("m/s", "rad/s") | None = None
+    sign: Literal[1, -1] = 1
+    compliance: Compliance | None = None
+
+    @model_validator(mode="after")
+    def one_motion(self):
+        if (self.position is None) == (self.velocity is None):
+            raise ValueError("give either `position` or `velocity`")
+        return self
+
+
+STATE, ROTATES, MOTION = 4, 5, 6  # con, after the row: state of z; angle or stroke; tab
+K, C, SIGN = 9, 10, 11  # par, after the arms and the axis in body i
+
+
+def pack(name, spec, at):
+    x = at.coordinate(spec.joint)
+    by_velocity = spec.position is None
+    f = at.function(spec.velocity if by_velocity else spec.position, "motion", time_only=True)
+    state = at.state(x.kind, follows=x.index) if by_velocity else -1
+    k = c = 0.0
+    if spec.compliance is not None:
+        k = spec.compliance.stiffness
+        m = spec.compliance.mass or (
+            at.inertia_about(x.j, x.axis) if x.kind == "angle" else at.mass(x.j)
+        )
+        zeta = spec.compliance.damping_ratio
+        c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
+    con = (x.i, x.j, x.index, state, int(x.kind == "angle"), f)
+    return Row(con, (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign)))
+
+
+@helper
+def prescribed(t, z, tab, state, offset):
+    """f, f', f''."""
+    f, f_dot, f_ddot = motion(tab, offset, t)
+    if state < 0:
+        return f, f_dot, f_ddot
+    return z[state], f, f_dot
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, V, S, z, con = scene.X, scene.V, scene.S, scene.z, scene.con
+    par, tab, phi, phi_t, J, gamma = (
+        scene.par,
+        scene.tab,
+        scene.phi,
+        scene.phi_t,
+        scene.J,
+        scene.gamma,
+    )
+    for e in range(a, b):
+        k = con[e, 3]
+        if k < 0:
+            continue
+        i, j = con[e, 0], con[e, 1]
+        f, f_dot, f_ddot = prescribed(t, z, tab, con[e, STATE], con[e, MOTION])
+        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        o_i, o_j = spin(V, i), spin(V, j)
+        if con[e, ROTATES] == 1:
+            for c in range(3):
+                J[k, c] = 0.0
+                J[k, 6 + c] = 0.0
+                J[k, 3 + c] = -axis[c]
+                J[k, 9 + c] = axis[c]
+            turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
+            gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
+        else:
+            p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+            p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+            along_row(scene, i, p_i, axis, j, p_j, k)
+            gamma[k] += f_ddot
+        phi[k] = S[con[e, 2], 0] - f
+        phi_t[k] = -f_dot
+
+
+@kernel
+def force(t, scene, a, b):
+    X, S, z, con = scene.X, scene.S, scene.z, scene.con
+    par, tab, F, zd = scene.par, scene.tab, scene.F, scene.zd
+    for e in range(a, b):
+        state, k = con[e, STATE], par[e, K]
+        if k == 0.0 and state < 0:
+            continue
+        f, f_dot, _ = prescribed(t, z, tab, state, con[e, MOTION])
+        if state >= 0:
+            zd[state] = f_dot
+        if k > 0.0:
+            i, j, s = con[e, 0], con[e, 1], con[e, 2]
+            slip = S[s, 1] - f_dot
+            damping = -par[e, C] * slip
+            pull = -k * (S[s, 0] - f) + damping
+            zd[DAMPERS] += damping * slip
+            zd[DRIVES] += pull * f_dot
+            axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+            act(X, F, i, j, con[e, ROTATES], par, e, axis, pull)
+
+
+@helper
+def act(X, F, i, j, rotates, par, e, axis, pull):
+    """Apply the drive's force or torque to both bodies."""
+    f = (pull * axis[0], pull * axis[1], pull * axis[2])
+    g = (-f[0], -f[1], -f[2])
+    if rotates == 1:
+        twist(F, j, f)
+        twist(F, i, g)
+    else:
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        d = separation(X, i, p_i, j, p_j)
+        push(F, j, p_j, f)
+        push(F, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]), g)
+
+
+@kernel
+def energy(t, scene, a, b):
+    S, z, con, par, tab, E = scene.S, scene.z, scene.con, scene.par, scene.tab, scene.E
+    for e in range(a, b):
+        if par[e, K] > 0.0:
+            f, _, _ = prescribed(t, z, tab, con[e, STATE], con[e, MOTION])
+            slip = S[con[e, 2], 0] - f
+            E[SPRINGS] += 0.5 * par[e, K] * slip * slip
+
+
+@kernel
+def measure(t, scene, a, b):
+    S, z, lam, con = scene.S, scene.z, scene.lam, scene.con
+    par, tab, col, out = scene.par, scene.tab, scene.wanted, scene.out
+    for e in range(a, b):
+        if col[e] < 0:
+            continue
+        f, f_dot, _ = prescribed(t, z, tab, con[e, STATE], con[e, MOTION])
+        s = con[e, 2]
+        if con[e, 3] >= 0:
+            pull = -lam[con[e, 3]]
+        else:
+            pull = -par[e, K] * (S[s, 0] - f) - par[e, C] * (S[s, 1] - f_dot)
+        out[col[e]] = par[e, SIGN] * pull
+        out[col[e] + 1] = f
+        out[col[e] + 2] = f_dot
+        out[col[e] + 3] = pull * f_dot
+
+
+ELEMENT = Element(
+    key="drive",
+    section="drives",
+    spec=Drive,
+    pack=pack,
+    rows=("motion",),
+    channels=(
+        Channel("force", "drive", "sign times the force or torque on the second body"),
+        Channel("position", "coordinate", "prescribed coordinate of the joint"),
+        Channel("velocity", "coordinate/s", "its rate"),
+        Channel("power", "W", "given to the mechanism"),
+    ),
+    kernels={
+        "constraint": constraint,
+        "force": force,
+        "energy": energy,
+        "measure": measure,
+    },
+)

@@ -1,0 +1,53 @@
+"""Fixed joint: two bodies move as one.
+
+    Phi_1..3 = r_j + p_j - r_i - p_i = 0
+    Phi_4..6 = u_i . a_j = 0,  w_i . a_j = 0,  w_i . u_j = 0
+
+reaction and reaction_moment act on body j at the point, world axes.
+"""
+
+from typing import ClassVar
+
+from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.frames import arm, perpendicular_row, point_rows
+from trsim.elements.joint import Joint, triads
+
+
+class Fixed(Joint):
+    """A weld between two bodies, cut at the point `at`."""
+
+    type: ClassVar[str] = "fixed"
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies)
+    axes = triads(i, j, (0.0, 0.0, 1.0), at)
+    return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *axes))
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, con, par = scene.X, scene.con, scene.par
+    for e in range(a, b):
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
+        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+        u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
+        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
+        perpendicular_row(scene, i, u, j, a_j, con[e, 6])
+        perpendicular_row(scene, i, w, j, a_j, con[e, 7])
+        perpendicular_row(scene, i, w, j, u_j, con[e, 8])
+
+
+ELEMENT = Element(
+    key="fixed",
+    section="joints",
+    spec=Fixed,
+    pack=pack,
+    rows=("x", "y", "z", "tilt 1", "tilt 2", "turn"),
+    kernels={"constraint": constraint},
+)

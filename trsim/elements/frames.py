@@ -1,0 +1,215 @@
+"""Vectors, arms and the three constraint rows every joint is made of.
+
+A frame i has position r_i, rotation R_i and twist (r_i', omega_i).  With s_i a vector in its axes,
+
+    p_i  = R_i s_i                     arm: a point seen from the centre of mass, world axes
+    p_i' = omega_i x p_i
+    v_i  = r_i' + omega_i x p_i        velocity of the point
+
+All joints are intersections of three rows [Nikravesh1988] [Haug1989]:
+
+    point          Phi = (r_j + p_j - r_i - p_i) . e      e a world axis
+    along          Phi = u . (r_j + p_j - r_i - p_i)      u fixed in frame i
+    perpendicular  Phi = u . w                            u fixed in frame i, w in frame j
+
+J holds the row against (r_i', omega_i, r_j', omega_j); gamma the terms without accelerations,
+J V' = gamma.  A row index below 0 means the row was dropped (planar scene, redundant).
+The multiplier of a row is minus the generalised force it puts on body j along its direction.
+"""
+
+from numba import njit
+
+helper = njit(cache=True, error_model="numpy", inline="never")
+
+
+@helper
+def arm(X, i, s0, s1, s2):
+    """R_i s, world axes."""
+    return (
+        X[i, 3] * s0 + X[i, 4] * s1 + X[i, 5] * s2,
+        X[i, 6] * s0 + X[i, 7] * s1 + X[i, 8] * s2,
+        X[i, 9] * s0 + X[i, 10] * s1 + X[i, 11] * s2,
+    )
+
+
+@helper
+def cross(a, b):
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
+
+
+@helper
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@helper
+def spin(V, i):
+    """omega_i."""
+    return (V[i, 3], V[i, 4], V[i, 5])
+
+
+@helper
+def point(X, i, p):
+    """World position of the end of the arm p."""
+    return (X[i, 0] + p[0], X[i, 1] + p[1], X[i, 2] + p[2])
+
+
+@helper
+def velocity(V, i, p):
+    """World velocity of the end of the arm p."""
+    o0, o1, o2 = V[i, 3], V[i, 4], V[i, 5]
+    return (
+        V[i, 0] + o1 * p[2] - o2 * p[1],
+        V[i, 1] + o2 * p[0] - o0 * p[2],
+        V[i, 2] + o0 * p[1] - o1 * p[0],
+    )
+
+
+@helper
+def centripetal(V, i, p):
+    """omega x (omega x p)."""
+    o = (V[i, 3], V[i, 4], V[i, 5])
+    w = dot(o, p)
+    o2 = dot(o, o)
+    return (o[0] * w - p[0] * o2, o[1] * w - p[1] * o2, o[2] * w - p[2] * o2)
+
+
+@helper
+def push(F, i, p, f):
+    """Apply the force f to body i at the end of the arm p."""
+    F[i, 0] += f[0]
+    F[i, 1] += f[1]
+    F[i, 2] += f[2]
+    F[i, 3] += p[1] * f[2] - p[2] * f[1]
+    F[i, 4] += p[2] * f[0] - p[0] * f[2]
+    F[i, 5] += p[0] * f[1] - p[1] * f[0]
+
+
+@helper
+def twist(F, i, m):
+    """Apply the moment m to body i."""
+    F[i, 3] += m[0]
+    F[i, 4] += m[1]
+    F[i, 5] += m[2]
+
+
+@helper
+def separation(X, i, p_i, j, p_j):
+    """From the point on i to the point on j, world axes."""
+    return (
+        X[j, 0] + p_j[0] - X[i, 0] - p_i[0],
+        X[j, 1] + p_j[1] - X[i, 1] - p_i[1],
+        X[j, 2] + p_j[2] - X[i, 2] - p_i[2],
+    )
+
+
+@helper
+def _fill(J, k, sign, f, p):
+    """Row k, columns of one frame: the force direction f at the arm p, times sign."""
+    o = 6 if sign > 0.0 else 0
+    J[k, o] = sign * f[0]
+    J[k, o + 1] = sign * f[1]
+    J[k, o + 2] = sign * f[2]
+    J[k, o + 3] = sign * (p[1] * f[2] - p[2] * f[1])
+    J[k, o + 4] = sign * (p[2] * f[0] - p[0] * f[2])
+    J[k, o + 5] = sign * (p[0] * f[1] - p[1] * f[0])
+
+
+@helper
+def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
+    """The points coincide along the world axes whose row index is not negative."""
+    X, V = scene.X, scene.V
+    phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
+    d = separation(X, i, p_i, j, p_j)
+    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
+    if kx >= 0:
+        phi[kx], phi_t[kx], gamma[kx] = d[0], 0.0, c_i[0] - c_j[0]
+        _fill(J, kx, -1.0, (1.0, 0.0, 0.0), p_i)
+        _fill(J, kx, 1.0, (1.0, 0.0, 0.0), p_j)
+    if ky >= 0:
+        phi[ky], phi_t[ky], gamma[ky] = d[1], 0.0, c_i[1] - c_j[1]
+        _fill(J, ky, -1.0, (0.0, 1.0, 0.0), p_i)
+        _fill(J, ky, 1.0, (0.0, 1.0, 0.0), p_j)
+    if kz >= 0:
+        phi[kz], phi_t[kz], gamma[kz] = d[2], 0.0, c_i[2] - c_j[2]
+        _fill(J, kz, -1.0, (0.0, 0.0, 1.0), p_i)
+        _fill(J, kz, 1.0, (0.0, 0.0, 1.0), p_j)
+
+
+@helper
+def along_row(scene, i, p_i, u, j, p_j, k):
+    """u . d with u an arm of body i (world axes) and d the separation of the two points."""
+    if k < 0:
+        return
+    X, V = scene.X, scene.V
+    phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
+    d = separation(X, i, p_i, j, p_j)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    u_dot = cross(spin(V, i), u)
+    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
+    phi[k] = dot(u, d)
+    phi_t[k] = 0.0
+    gamma[k] = dot(u, c_i) - dot(u, c_j) - 2.0 * dot(u_dot, d_dot) - dot(centripetal(V, i, u), d)
+    # the direction turns with body i, so its lever on i reaches to the point on j
+    reach = (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2])
+    _fill(J, k, -1.0, u, reach)
+    _fill(J, k, 1.0, u, p_j)
+
+
+@helper
+def perpendicular_row(scene, i, u, j, w, k):
+    """u . w with u an arm of body i and w an arm of body j, both in world axes."""
+    if k < 0:
+        return
+    V, phi, phi_t, J, gamma = scene.V, scene.phi, scene.phi_t, scene.J, scene.gamma
+    n = cross(u, w)
+    phi[k] = dot(u, w)
+    phi_t[k] = 0.0
+    gamma[k] = (
+        -2.0 * dot(cross(spin(V, i), u), cross(spin(V, j), w))
+        - dot(centripetal(V, i, u), w)
+        - dot(u, centripetal(V, j, w))
+    )
+    for c in range(3):
+        J[k, c] = 0.0
+        J[k, 6 + c] = 0.0
+        J[k, 3 + c] = n[c]
+        J[k, 9 + c] = -n[c]
+
+
+@helper
+def nearest_branch(angle, guess):
+    """The value of an angle known up to full turns that lies nearest to the guess."""
+    turns = (guess - angle) / 6.283185307179586
+    return angle + 6.283185307179586 * round(turns)
+
+
+@helper
+def turn_acceleration(V, A, i, j, axis):
+    """Second rate of the angle of body j against body i about an axis of body i."""
+    o_i, o_j = spin(V, i), spin(V, j)
+    turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
+    return dot(axis, (A[j, 3] - A[i, 3], A[j, 4] - A[i, 4], A[j, 5] - A[i, 5])) + dot(
+        cross(o_i, axis), turn
+    )
+
+
+@helper
+def stroke_acceleration(X, V, A, i, p_i, j, p_j, axis):
+    """Second rate of axis . d, with the axis fixed in body i and d the separation."""
+    d = separation(X, i, p_i, j, p_j)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
+    a_i, a_j = velocity(A, i, p_i), velocity(A, j, p_j)
+    d_ddot = (a_j[0] + c_j[0] - a_i[0] - c_i[0], a_j[1] + c_j[1] - a_i[1] - c_i[1],
+              a_j[2] + c_j[2] - a_i[2] - c_i[2])  # fmt: skip
+    turning = cross(spin(A, i), axis)
+    centre = centripetal(V, i, axis)
+    axis_ddot = (turning[0] + centre[0], turning[1] + centre[1], turning[2] + centre[2])
+    return dot(axis, d_ddot) + 2.0 * dot(cross(spin(V, i), axis), d_dot) + dot(axis_ddot, d)

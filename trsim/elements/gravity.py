@@ -1,0 +1,46 @@
+"""Gravity: a uniform field.
+
+F = m g at the centre of mass,     E = -m g . r
+"""
+
+from trsim.elements.contract import GRAVITY, Element, Row, kernel
+from trsim.fields import Spec
+
+
+class Gravity(Spec):
+    """Made from the key `gravity` of a scenario, one instance per body with mass."""
+
+    body: str
+    field: tuple[float, float, float]
+
+
+def pack(name, spec, at):
+    i = at.body(spec.body)
+    return Row((i,), tuple(at.mass(i) * c for c in spec.field))
+
+
+@kernel
+def force(t, scene, a, b):
+    con, par, F = scene.con, scene.par, scene.F
+    for e in range(a, b):
+        i = con[e, 0]
+        F[i, 0] += par[e, 0]
+        F[i, 1] += par[e, 1]
+        F[i, 2] += par[e, 2]
+
+
+@kernel
+def energy(t, scene, a, b):
+    X, con, par, E = scene.X, scene.con, scene.par, scene.E
+    for e in range(a, b):
+        i = con[e, 0]
+        E[GRAVITY] -= par[e, 0] * X[i, 0] + par[e, 1] * X[i, 1] + par[e, 2] * X[i, 2]
+
+
+ELEMENT = Element(
+    key="gravity",
+    section="",
+    spec=Gravity,
+    pack=pack,
+    kernels={"force": force, "energy": energy},
+)

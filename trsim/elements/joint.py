@@ -1,0 +1,50 @@
+"""What all joints share: two bodies, a point, an axis, and the layout of their constants.
+
+par[0:3], par[3:6]              the point in the axes of body i, of body j
+par[6:9], [9:12], [12:15]       triad u, w, a in the axes of body i (a = u x w, the axis)
+par[15:18], [18:21]             u and a in the axes of body j
+par[21]                         joint angle as drawn
+"""
+
+from trsim.fields import Spec, vector
+
+
+class Joint(Spec):
+    """Two bodies and the place they meet.  The bearing is on the first one."""
+
+    bodies: tuple[str, str]
+    at: vector("m")
+
+
+def perpendicular(axis):
+    """Unit vectors u, w, a with a along the axis; (x, y, z) for the z axis."""
+    length = sum(c * c for c in axis) ** 0.5
+    a = tuple(c / length for c in axis)
+    # project the world axis least aligned with a, cyclically after the largest component,
+    # so that a z axis gives u = x and w = y exactly
+    largest = max(range(3), key=lambda c: abs(a[c]))
+    u = [0.0, 0.0, 0.0]
+    u[(largest + 1) % 3] = 1.0
+    along = sum(p * q for p, q in zip(u, a, strict=True))
+    u = [p - along * q for p, q in zip(u, a, strict=True)]
+    length = sum(c * c for c in u) ** 0.5
+    u = tuple(c / length for c in u)
+    w = (
+        a[1] * u[2] - a[2] * u[1],
+        a[2] * u[0] - a[0] * u[2],
+        a[0] * u[1] - a[1] * u[0],
+    )
+    return u, w, a
+
+
+def triads(i, j, axis, at):
+    """par[6:22] of a joint between frames i and j about a world axis as drawn."""
+    u, w, a = perpendicular(axis)
+    return (
+        *at.axes(i, u),
+        *at.axes(i, w),
+        *at.axes(i, a),
+        *at.axes(j, u),
+        *at.axes(j, a),
+        at.drawn_angle(i, j, a),
+    )

@@ -1,0 +1,86 @@
+"""Prismatic joint: body j slides along an axis of body i and does not turn against it.
+
+    Phi_1, 2 = u_i . d = 0,  w_i . d = 0          d from the point on i to the point on j
+    Phi_3, 4 = u_i . a_j = 0,  w_i . a_j = 0
+    Phi_5    = w_i . u_j = 0                      [Nikravesh1988]
+
+The stroke is a_i . d, zero as drawn.  reaction acts on body j at its point.
+"""
+
+from typing import ClassVar
+
+from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.frames import (
+    along_row,
+    arm,
+    cross,
+    dot,
+    perpendicular_row,
+    separation,
+    spin,
+    velocity,
+)
+from trsim.elements.joint import triads
+from trsim.fields import Spec, vector
+
+
+class Prismatic(Spec):
+    """A slide of the second body along `axis` of the first."""
+
+    type: ClassVar[str] = "prismatic"
+    bodies: tuple[str, str]
+    axis: vector("-")
+    at: vector("m") | None = None  # the second body's centre of mass unless given
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies)
+    place = at.centre(j) if spec.at is None else spec.at
+    return Row((i, j, -1), (*at.local(i, place), *at.local(j, place), *triads(i, j, spec.axis, at)))
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, con, par = scene.X, scene.con, scene.par
+    for e in range(a, b):
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+        u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
+        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
+        along_row(scene, i, p_i, u, j, p_j, con[e, 3])
+        along_row(scene, i, p_i, w, j, p_j, con[e, 4])
+        perpendicular_row(scene, i, u, j, a_j, con[e, 5])
+        perpendicular_row(scene, i, w, j, a_j, con[e, 6])
+        perpendicular_row(scene, i, w, j, u_j, con[e, 7])
+
+
+@kernel
+def coordinate(t, scene, a, b):
+    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    for e in range(a, b):
+        s = con[e, 2]
+        if s < 0:
+            continue
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
+        d = separation(X, i, p_i, j, p_j)
+        v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+        d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+        S[s, 0] = dot(axis, d)
+        S[s, 1] = dot(axis, d_dot) + dot(cross(spin(V, i), axis), d)
+
+
+ELEMENT = Element(
+    key="prismatic",
+    section="joints",
+    spec=Prismatic,
+    pack=pack,
+    rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
+    coordinate="stroke",
+    kernels={"constraint": constraint, "coordinate": coordinate},
+)

@@ -1,0 +1,84 @@
+"""Revolute joint: two points coincide and two axes stay parallel.
+
+    Phi_1..3 = r_j + p_j - r_i - p_i = 0
+    Phi_4    = u_i . a_j = 0
+    Phi_5    = w_i . a_j = 0               [Nikravesh1988]
+
+(u, w, a) is a right-handed triad with a the axis.  The joint angle is that of body j's axes minus
+body i's about a, unwrapped.  reaction is the force on body j at the pin, world axes.
+"""
+
+from math import atan2
+from typing import ClassVar
+
+from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.frames import (
+    arm,
+    dot,
+    nearest_branch,
+    perpendicular_row,
+    point_rows,
+    spin,
+)
+from trsim.elements.joint import Joint, triads
+from trsim.fields import vector
+
+
+class Revolute(Joint):
+    """A hinge between two bodies: `at` a point, about `axis` (z unless given)."""
+
+    type: ClassVar[str] = "revolute"
+    axis: vector("-") = (0.0, 0.0, 1.0)
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies)
+    return Row(
+        (i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *triads(i, j, spec.axis, at))
+    )
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, con, par = scene.X, scene.con, scene.par
+    for e in range(a, b):
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        kx, ky, kz, k4, k5 = con[e, 3], con[e, 4], con[e, 5], con[e, 6], con[e, 7]
+        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        if k4 >= 0 or k5 >= 0:
+            u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+            w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+            axis = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
+            perpendicular_row(scene, i, u, j, axis, k4)
+            perpendicular_row(scene, i, w, j, axis, k5)
+
+
+@kernel
+def coordinate(t, scene, a, b):
+    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    for e in range(a, b):
+        s = con[e, 2]
+        if s < 0:
+            continue
+        i, j = con[e, 0], con[e, 1]
+        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
+        u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
+        o_i, o_j = spin(V, i), spin(V, j)
+        angle = atan2(dot(w, u_j), dot(u, u_j)) + par[e, 21]
+        S[s, 0] = nearest_branch(angle, S[s, 0])
+        S[s, 1] = dot(axis, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
+
+
+ELEMENT = Element(
+    key="revolute",
+    section="joints",
+    spec=Revolute,
+    pack=pack,
+    rows=("x", "y", "z", "tilt 1", "tilt 2"),
+    coordinate="angle",
+    kernels={"constraint": constraint, "coordinate": coordinate},
+)

@@ -1,0 +1,89 @@
+"""Rigid body: a mass with a frame at its centre.
+
+    m r'' = F,    I omega' + omega x I omega = M          omega and I in body axes
+
+Its axes are the world's at t = 0 unless `angle` turns them about z.  There is no force kernel: the
+equations of motion hold the masses (assemble/equations.py).
+"""
+
+from typing import Annotated, ClassVar
+
+from annotated_types import Ge
+from trsim.elements.contract import Channel, Element, Row, kernel
+from trsim.fields import Spec, Unit, vector
+
+KG_M2 = Unit("kg*m^2")
+INERTIA = Annotated[float, Ge(0), KG_M2]
+
+
+class RigidBody(Spec):
+    """A rigid body: mass, inertia about the centre of mass, and where that is as drawn.
+
+    A single inertia is about z.  Three are principal ones; six are
+    Ixx, Iyy, Izz, Ixy, Ixz, Iyz (products with the sign of the tensor's entries), in body axes.
+    """
+
+    type: ClassVar[str] = "rigid_body"
+    mass: Annotated[float, Ge(0), Unit("kg")]
+    inertia: (
+        INERTIA
+        | tuple[INERTIA, INERTIA, INERTIA]
+        | tuple[
+            INERTIA,
+            INERTIA,
+            INERTIA,
+            Annotated[float, KG_M2],
+            Annotated[float, KG_M2],
+            Annotated[float, KG_M2],
+        ]
+    )
+    at: vector("m") = (0.0, 0.0, 0.0)
+    angle: Annotated[float, Unit("rad")] = 0.0
+    velocity: vector("m/s") = (0.0, 0.0, 0.0)
+    angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
+
+
+def tensor(inertia):
+    """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
+    if isinstance(inertia, float):
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, inertia), False
+    xx, yy, zz, xy, xz, yz = (*inertia, 0.0, 0.0, 0.0)[:6]
+    return (xx, xy, xz, xy, yy, yz, xz, yz, zz), True
+
+
+def pack(name, spec, at):
+    return Row((at.body(name),), (spec.mass,))
+
+
+@kernel
+def measure(t, scene, a, b):
+    X, V, A, con, col, out = scene.X, scene.V, scene.A, scene.con, scene.wanted, scene.out
+    for e in range(a, b):
+        if col[e] < 0:
+            continue
+        i, o = con[e, 0], col[e]
+        for c in range(3):
+            out[o + c] = X[i, c]
+            out[o + 3 + c] = V[i, c]
+            out[o + 6 + c] = A[i, c]
+            out[o + 9 + c] = V[i, 3 + c]
+            out[o + 12 + c] = A[i, 3 + c]
+        for c in range(9):
+            out[o + 15 + c] = X[i, 3 + c]
+
+
+ELEMENT = Element(
+    key="rigid_body",
+    section="bodies",
+    spec=RigidBody,
+    pack=pack,
+    channels=(
+        Channel("position", "m", "centre of mass, world axes", 3),
+        Channel("velocity", "m/s", "of the centre of mass, world axes", 3),
+        Channel("acceleration", "m/s^2", "of the centre of mass, world axes", 3),
+        Channel("angular_velocity", "rad/s", "world axes", 3),
+        Channel("angular_acceleration", "rad/s^2", "world axes", 3),
+        Channel("rotation", "-", "rotation matrix, row by row", 9),
+    ),
+    kernels={"measure": measure},
+)

@@ -1,0 +1,152 @@
+"""Everything the compiled code sees of a mechanism: the model's constants and the workspace.
+
+Frames 0..n-1, 0 the ground.  State of the motion, one vector
+
+    y = [q (n_q) | v (n_v) | z (n_z)]
+
+planar (d = 3): q = x, y, angle and v = their rates of each moving body;
+spatial (d = 6): q = position and quaternion (7), v = velocity and body-axes angular velocity (6).
+Only `poses` in assemble/equations.py knows this; kernels see poses, twists and joint coordinates.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from trsim.elements.packed import A1, A2, I1, I2, Packed, f8, i8
+
+NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
+OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
+N_STORED = 3
+
+
+class Model(Packed):
+    """A mechanism as numbers.  Nothing in it changes during a run.
+
+    Its type is the same for every scenario, so the solver compiles once per installation.
+    """
+
+    d: i8  # unknowns of a moving body: 3 planar, 6 spatial
+    n: i8  # frames
+    n_q: i8
+    n_v: i8
+    n_z: i8
+    m: i8  # constraint rows in the solve
+    n_s: i8  # entries of S
+    n_out: i8  # output columns
+    size: f8  # m, the mechanism's
+    mass: A1  # (n)
+    inertia: A2  # (n, 9) body axes
+    mass_inverse: A1  # (n) 0 for the ground
+    inertia_inverse: A2  # (n, 9) body axes; planar: [8] is 1 / Izz
+    depth: A1  # (n) z of the centre of mass in a planar scene, m
+    con: I2  # (N, n_con) where               elements/contract.py
+    par: A2  # (N, n_par) how much
+    tab: A1  # everything of variable length   laws/functions.py
+    turn: I2  # (n_turn, 4) planar joint angles: s, i, j, sign of the axis
+    force: I2  # (kinds, 3) kernel address, first row, end row
+    constraint: I2
+    coordinate: I2
+    gaps: I2
+    energy: I2
+    measure: I2
+    row_start: I1  # (m+1) slots of a row: one per moving frame it touches   assemble/pattern.py
+    slot_frame: I1  # (slots) frame of a slot
+    slot_column: I1  # (slots) its first column of J: 0 for frame i, 6 for frame j
+    pair: I2  # (pairs, 3) two slots of one frame, and the entry of S they add to
+    n_value: i8  # entries of the lower triangle of J M^-1 J^T, fill included
+    order: I1  # (m) row eliminated k-th
+    diagonal: I1  # (m) place of D_k
+    below_start: I1  # (m+1)
+    below: I1  # place of L_ik
+    below_row: I1  # its row i
+    update_start: I1  # (m+1)
+    update: I2  # (updates, 3) target, place of L_ik, place of L_jk
+    stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
+    alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
+    beta: f8
+    scale_kind: I1  # (n_y) which unit weighs an entry of y in the error norm
+    scale: A1  # (n_y) lever or magnitude that goes with it
+    contact: I1  # (n_contacts) row e of each element with a gap
+    contact_par: A2  # (n_contacts, 5) K, exponent, effective mass, clearance, slowest impact
+    contact_state: I1  # (n_contacts) entry of z to reset at a touch, or -1
+    contact_width: I1  # (n_contacts) its output columns
+    wanted: I1  # (N) first output column of a row, or -1
+    joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
+    column_energy: i8  # first output column of the energy book
+
+    def replaced(self, **changes: Any) -> "Model":
+        """A copy with some fields replaced."""
+        values = {name: getattr(self, name) for name, _ in Model.numba_type.fields}
+        return Model(**{**values, **changes})
+
+
+class Scene(Model):
+    """A model and the workspace of its equations; holds the last evaluation."""
+
+    X: A2  # (n, 12) position of the centre of mass, rotation matrix row by row
+    V: A2  # (n, 6) velocity, angular velocity, world axes
+    A: A2  # (n, 6) their rates
+    S: A2  # (n_s, 2) joint coordinates and sensors: value and rate
+    branch: A1  # (n_s) value at the last accepted point: which turn an angle is on
+    z: A1  # (n_z) quadratures and element states
+    zd: A1  # (n_z) their rates
+    mem: A2  # (N, n_mem) what elements remember; part of the record of a run
+    F: A2  # (n, 6) force, moment about the centre of mass, world axes
+    phi: A1  # (m)
+    phi_t: A1  # (m)
+    J: A2  # (m, 12) against the twists of frames i and j
+    gamma: A1  # (m)
+    lam: A1  # (m) multipliers
+    B: A2  # (slots, 6) rows of J in the axes of the solve
+    W: A2  # (slots, 6) M^-1 B^T
+    value: A1  # (n_value) S = J M^-1 J^T, then its factors
+    original: A1  # (n_value) S
+    first: A1  # (m) its diagonal, in elimination order
+    x: A1  # (m) right-hand side, then solution
+    r: A1  # (m) refinement
+    r2: A1  # (m)
+    free: A2  # (n, 6) accelerations without constraints, axes of the solve
+    gap: A2  # (N, 2) penetration and its rate
+    E: A1  # (N_STORED) stored energy
+    out: A1  # (n_out) one output row
+    status: I1  # [0] the last factorisation met a small pivot, [1] evaluations, [2] factorisations
+
+
+def scene(model: Model) -> Scene:
+    """Fresh workspace for a model."""
+    n, m, slots = model.n, model.m, len(model.slot_frame)
+    X = np.zeros((n, 12))
+    X[:, [3, 7, 11]] = 1.0
+    X[:, 2] = model.depth
+    constants = {name: getattr(model, name) for name, _ in Model.numba_type.fields}
+    return Scene(
+        **constants,
+        X=X,
+        V=np.zeros((n, 6)),
+        A=np.zeros((n, 6)),
+        S=np.zeros((max(model.n_s, 1), 2)),
+        branch=np.zeros(max(model.n_s, 1)),
+        z=np.zeros(model.n_z),
+        zd=np.zeros(model.n_z),
+        mem=np.zeros((len(model.con), 2)),
+        F=np.zeros((n, 6)),
+        phi=np.zeros(m),
+        phi_t=np.zeros(m),
+        J=np.zeros((m, 12)),
+        gamma=np.zeros(m),
+        lam=np.zeros(m),
+        B=np.zeros((slots, 6)),
+        W=np.zeros((slots, 6)),
+        value=np.zeros(model.n_value),
+        original=np.zeros(model.n_value),
+        first=np.zeros(m),
+        x=np.zeros(m),
+        r=np.zeros(m),
+        r2=np.zeros(m),
+        free=np.zeros((n, 6)),
+        gap=np.zeros((len(model.con), 2)),
+        E=np.zeros(N_STORED),
+        out=np.zeros(max(model.n_out, 1)),
+        status=np.zeros(4, np.int64),
+    )

@@ -1,0 +1,44 @@
+"""Spherical joint: two points coincide.
+
+    Phi_1..3 = r_j + p_j - r_i - p_i = 0               [Nikravesh1988]
+
+reaction is the force on body j at the point, world axes.
+"""
+
+from typing import ClassVar
+
+from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.frames import arm, point_rows
+from trsim.elements.joint import Joint
+
+
+class Spherical(Joint):
+    """A ball joint between two bodies."""
+
+    type: ClassVar[str] = "spherical"
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies)
+    return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at)))
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, con, par = scene.X, scene.con, scene.par
+    for e in range(a, b):
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
+        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+
+
+ELEMENT = Element(
+    key="spherical",
+    section="joints",
+    spec=Spherical,
+    pack=pack,
+    rows=("x", "y", "z"),
+    kernels={"constraint": constraint},
+)

@@ -1,0 +1,108 @@
+"""Spring and damper between two points.
+
+    T = T_0 + k (l - l_0) + c l'        tension along the line, pulling body j toward body i
+
+l is the distance of the points, l_0 the length as drawn unless given.  At l = 0 the line has no
+direction and the force is zero.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar
+
+from annotated_types import Ge
+
+from trsim.elements.contract import (
+    DAMPERS,
+    SPRINGS,
+    Channel,
+    Element,
+    Row,
+    kernel,
+)
+from trsim.elements.frames import arm, dot, helper, push, separation, velocity
+from trsim.fields import Spec, Unit, vector
+
+
+class SpringDamper(Spec):
+    """A linear spring and damper between a point of each body."""
+
+    type: ClassVar[str] = "spring_damper"
+    bodies: tuple[str, str]
+    points: tuple[vector("m"), vector("m")]
+    stiffness: Annotated[float, Ge(0), Unit("N/m")]
+    damping: Annotated[float, Ge(0), Unit("N*s/m")] = 0.0
+    free_length: Annotated[float, Ge(0), Unit("m")] | None = None
+    preload: Annotated[float, Unit("N")] = 0.0  # tension at the free length
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies)
+    p, q = spec.points
+    drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
+    free = drawn if spec.free_length is None else spec.free_length
+    return Row(
+        (i, j, -1),
+        (*at.local(i, p), *at.local(j, q), spec.preload, spec.stiffness, spec.damping, free),
+    )
+
+
+@helper
+def line(X, V, con, par, e):
+    """Arms, unit vector from i to j, length and its rate."""
+    i, j = con[e, 0], con[e, 1]
+    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    d = separation(X, i, p_i, j, p_j)
+    length = sqrt(dot(d, d))
+    if length == 0.0:
+        return p_i, p_j, (0.0, 0.0, 0.0), 0.0, 0.0
+    n = (d[0] / length, d[1] / length, d[2] / length)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    return p_i, p_j, n, length, rate
+
+
+@kernel
+def force(t, scene, a, b):
+    X, V, con, par, F, zd = scene.X, scene.V, scene.con, scene.par, scene.F, scene.zd
+    for e in range(a, b):
+        p_i, p_j, n, length, rate = line(X, V, con, par, e)
+        damping = par[e, 8] * rate
+        T = par[e, 6] + par[e, 7] * (length - par[e, 9]) + damping
+        push(F, con[e, 0], p_i, (T * n[0], T * n[1], T * n[2]))
+        push(F, con[e, 1], p_j, (-T * n[0], -T * n[1], -T * n[2]))
+        zd[DAMPERS] -= damping * rate
+
+
+@kernel
+def energy(t, scene, a, b):
+    X, V, con, par, E = scene.X, scene.V, scene.con, scene.par, scene.E
+    for e in range(a, b):
+        # the length needs no velocity: X stands in for V, its rate is not used
+        _, _, _, length, _ = line(X, X, con, par, e)
+        x = length - par[e, 9]
+        E[SPRINGS] += 0.5 * par[e, 7] * x * x + par[e, 6] * x
+
+
+@kernel
+def measure(t, scene, a, b):
+    X, V, con, par, col, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
+    for e in range(a, b):
+        if col[e] < 0:
+            continue
+        _, _, _, length, rate = line(X, V, con, par, e)
+        out[col[e]] = par[e, 6] + par[e, 7] * (length - par[e, 9]) + par[e, 8] * rate
+        out[col[e] + 1] = length
+
+
+ELEMENT = Element(
+    key="spring_damper",
+    section="forces",
+    spec=SpringDamper,
+    pack=pack,
+    channels=(
+        Channel("force", "N", "tension"),
+        Channel("length", "m", "distance of the two points"),
+    ),
+    kernels={"force": force, "energy": energy, "measure": measure},
+)

@@ -1,0 +1,176 @@
+"""Errors a user can act on: where, what, and what to do next.
+
+Every class has the exit code of the command line.  An error knows its `path` in the scenario
+tree; whoever holds the tree adds the `place` in a file.
+"""
+
+import difflib
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+WIDTH = 90  # columns of an excerpt
+LISTED = 14  # words of a "Known:" list
+
+
+class Place(NamedTuple):
+    """A place in a text.  Line and column count from 1; line 0: a text without lines."""
+
+    file: str
+    line: int
+    column: int
+    excerpt: str  # the whole line
+
+    def show(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}" if self.line else self.file
+
+    def caret(self) -> str:
+        """The line and, under it, a caret at the column; a long line is cut around it."""
+        start = max(0, self.column - 1 - WIDTH * 2 // 3) if len(self.excerpt) > WIDTH else 0
+        shown = printable(self.excerpt[start : start + WIDTH].rstrip())
+        return f"    {shown}\n    {' ' * (self.column - 1 - start)}^"
+
+
+class TrsimError(Exception):
+    """What is wrong, a hint what to do, and where; shown without a traceback."""
+
+    exit_code: int = 1
+
+    def __init__(
+        self, what: str, hint: str = "", path: tuple = (), place: Place | None = None
+    ) -> None:
+        super().__init__(what)
+        self.what, self.hint, self.path, self.place = what, hint, tuple(path), place
+
+    @property
+    def problems(self) -> tuple["TrsimError", ...]:
+        return (self,)
+
+    def at(self, *path: str | int) -> "TrsimError":
+        """The same error, with its path seen from further out."""
+        return type(self)(self.what, self.hint, path + self.path, self.place)
+
+    def show(self) -> str:
+        """file:line:column: dotted.path: what, the line with a caret, the hint."""
+        where = [self.place.show()] if self.place else []
+        where += [".".join(printable(str(key), 60) for key in self.path)] if self.path else []
+        text = ": ".join([*where, self.what])
+        text += f"\n{self.place.caret()}" if self.place and self.place.excerpt.strip() else ""
+        return text + (f"\n  {self.hint}" if self.hint else "")
+
+    def __str__(self) -> str:
+        return self.show()
+
+
+class UsageError(TrsimError):
+    """The command line asks for something that makes no sense."""
+
+    exit_code = 2
+
+
+class ScenarioError(TrsimError, ValueError):
+    """Something in a scenario file.  A ValueError, so that pydantic collects it."""
+
+    exit_code = 3
+
+
+class ModelError(TrsimError):
+    """The scenario reads well, but the mechanism it describes cannot be solved."""
+
+    exit_code = 4
+
+
+class SolverError(TrsimError):
+    """The solver could not go on; what it had is kept."""
+
+    exit_code = 5
+
+
+class FileError(TrsimError):
+    """A file could not be read or written."""
+
+    exit_code = 7
+
+
+class Problems(TrsimError):
+    """Several errors at once, each shown."""
+
+    def __init__(self, problems: Iterable[TrsimError], unlisted: int = 0) -> None:
+        self._problems = tuple(problems)
+        self.unlisted = unlisted
+        count = len(self._problems) + unlisted
+        super().__init__(f"{count} problems")
+        self.exit_code = self._problems[0].exit_code
+
+    def __reduce__(self) -> tuple:
+        return Problems, (self._problems, self.unlisted)
+
+    @property
+    def problems(self) -> tuple[TrsimError, ...]:
+        return self._problems
+
+    def at(self, *path: str | int) -> "Problems":
+        return Problems([problem.at(*path) for problem in self._problems], self.unlisted)
+
+    def show(self) -> str:
+        more = [f"... and {self.unlisted} more problems"] if self.unlisted else []
+        return "\n".join([problem.show() for problem in self._problems] + more)
+
+
+def known(word: object, words: Iterable[str], close: str | None = None) -> str:
+    """The hint of every 'no such name' error; `close` is the guess, if there is a better one."""
+    words = list(dict.fromkeys(words))
+    if not words:
+        return "None is known."
+    close = close or closest(word, words)
+    guess = f"Did you mean '{close}'?  " if close else ""
+    more = f" ... ({len(words) - LISTED} more)" if len(words) > LISTED else ""
+    return f"{guess}Known: {', '.join(words[:LISTED])}{more or '.'}"
+
+
+def closest(word: object, words: Iterable[str]) -> str | None:
+    """The word that was probably meant: nearest by edits, then by likeness."""
+    wrong, words = str(word)[:60], list(words)[:500]
+    furthest = 1 if len(wrong) < 5 else 2
+    distance = {right: edits(wrong.casefold(), right.casefold()) for right in words}
+    near = [right for right in words if distance[right] <= min(furthest, len(right) - 1)]
+    if near:
+        return min(near, key=lambda right: (distance[right], -likeness(wrong, right)))
+    return next(iter(difflib.get_close_matches(wrong, words[:100], n=1)), None)
+
+
+def likeness(a: str, b: str) -> float:
+    return difflib.SequenceMatcher(None, a, b).ratio()
+
+
+def edits(a: str, b: str) -> int:
+    """Letters to insert, delete, replace or swap to turn a into b; 3 when it is 3 or more."""
+    if abs(len(a) - len(b)) > 2:
+        return 3
+    before, row = [], list(range(len(b) + 1))
+    for i, x in enumerate(a):
+        before, last, row = row, before, [i + 1]
+        for j, y in enumerate(b):
+            cost = min(before[j] + (x != y), before[j + 1] + 1, row[j] + 1)
+            if i and j and x == b[j - 1] and a[i - 1] == y:
+                cost = min(cost, last[j - 1] + 1)
+            row.append(cost)
+    return min(row[-1], 3)
+
+
+def printable(text: str, length: int = 1000) -> str:
+    """Text that is safe on a terminal, cut at a length."""
+    cut = text[: length - 3] + "..." if len(text) > length else text
+    return "".join(c if c.isprintable() else " " if c == "\t" else "?" for c in cut)
+
+
+def described(value: Any) -> str:
+    """A value as it is called in messages."""
+    if isinstance(value, str):
+        return f"'{printable(value, 60)}'"
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, list | tuple):
+        return f"a list of {len(value)}"
+    if value is None:
+        return "nothing"
+    return str(value).lower() if isinstance(value, bool) else repr(value)

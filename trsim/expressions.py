@@ -1,0 +1,259 @@
+"""Expressions a scenario may contain: parsed by Python's grammar, read by a whitelist.
+
+    + - * / **   < <= > >= == !=   numbers, names, dotted names of sensors, the functions below
+
+A parsed expression is nested tuples:
+
+    ("number", 2.0)   ("name", "B.angle")   ("call", "sin", (node, ...))
+    ("unary", "-", node)   ("binary", "+", left, right)
+
+Nothing is ever executed: `evaluate` walks the tuples.  A comparison is 1 or 0.
+
+    smoothstep(s)                3 s^2 - 2 s^3,               s clipped to 0..1
+    step(x, x0, h0, x1, h1)      h0 + (h1 - h0) smoothstep((x - x0)/(x1 - x0))
+    step5(x, x0, h0, x1, h1)     the same with 10 s^3 - 15 s^4 + 6 s^5
+"""
+
+import ast
+import math
+import operator
+import re
+import warnings
+from collections.abc import Callable, Mapping
+
+from trsim.errors import ScenarioError, described, known
+
+Node = tuple
+LONGEST = 1000  # characters
+DEEPEST = 40  # nested operations
+
+_CHARACTERS = re.compile(r"[A-Za-z0-9_.,()+\-*/<>=!\s]*")
+
+
+def _clipped(s: float) -> float:
+    return min(max(s, 0.0), 1.0)
+
+
+def _smoothstep(s: float) -> float:
+    s = _clipped(s)
+    return s * s * (3.0 - 2.0 * s)
+
+
+def _step(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    return h0 + (h1 - h0) * _smoothstep((x - x0) / (x1 - x0))
+
+
+def _step5(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    s = _clipped((x - x0) / (x1 - x0))
+    return h0 + (h1 - h0) * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
+# word -> function, fewest arguments, most arguments
+FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
+    "min": (min, 2, 50),
+    "max": (max, 2, 50),
+    "abs": (abs, 1, 1),
+    "sqrt": (math.sqrt, 1, 1),
+    "sin": (math.sin, 1, 1),
+    "cos": (math.cos, 1, 1),
+    "tan": (math.tan, 1, 1),
+    "atan2": (math.atan2, 2, 2),
+    "exp": (math.exp, 1, 1),
+    "log": (math.log, 1, 1),
+    "step": (_step, 5, 5),
+    "step5": (_step5, 5, 5),
+    "smoothstep": (_smoothstep, 1, 1),
+}
+
+OPERATORS: dict[str, Callable[[float, float], float]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+    "**": math.pow,  # float ** float would turn a negative base into a complex number
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+    "!=": operator.ne,
+}
+
+_SIGNS: dict[type, str] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.Mult: "*",
+    ast.Div: "/",
+    ast.Pow: "**",
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+}
+
+_REFUSED: dict[type, str] = {
+    ast.And: "'and': multiply comparisons, or use min",
+    ast.Or: "'or': add comparisons, or use max",
+    ast.Not: "'not': write 1 - x",
+    ast.IfExp: "'if': multiply by a comparison, or use step",
+    ast.Lambda: "'lambda'",
+    ast.Mod: "'%'",
+    ast.FloorDiv: "'//'",
+    ast.Tuple: "a comma outside a function (a decimal point is '.')",
+}
+
+ALLOWED = (
+    "Allowed: + - * / **, comparisons, numbers, pi, t, parameters, sensors, "
+    + ", ".join(FUNCTIONS)
+    + "."
+)
+
+
+def parse(text: str) -> Node:
+    """The expression as nested tuples.  Raises ScenarioError for anything not on the list."""
+    if len(text) > LONGEST:
+        raise ScenarioError(f"expression of {len(text)} characters; at most {LONGEST}")
+    end = _CHARACTERS.match(text).end()  # type: ignore[union-attr]
+    if end < len(text):
+        hint = "A power is written x**2." if text[end] == "^" else ALLOWED
+        raise ScenarioError(f"{text[end]!r} cannot stand in an expression", hint)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree = ast.parse(" ".join(text.split()), mode="eval")
+    except SyntaxError as error:
+        reason = (error.msg or "").split(". Perhaps")[0]
+        hint = "A decimal point is '.'" if re.search(r"[0-9],[0-9]", text) else ALLOWED
+        raise ScenarioError(f"not an expression: {described(text)} ({reason})", hint) from None
+    except (ValueError, MemoryError, RecursionError):
+        raise ScenarioError("expression nested too deeply", ALLOWED) from None
+    node = _read(tree.body, 0)
+    substitute(node, {})  # a constant part that has no value is refused here, 9**9**9 for one
+    return node
+
+
+def _read(tree: ast.AST, depth: int) -> Node:
+    if depth > DEEPEST:
+        raise ScenarioError(f"expression nested more than {DEEPEST} deep")
+    depth += 1
+    match tree:
+        case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
+            return ("number", _finite(value))
+        case ast.Name() | ast.Attribute():
+            return ("name", _name(tree))
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return ("unary", "-", _read(operand, depth))
+        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+            return _read(operand, depth)
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in _SIGNS:
+            return ("binary", _SIGNS[type(op)], _read(left, depth), _read(right, depth))
+        case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _SIGNS:
+            return ("binary", _SIGNS[type(op)], _read(left, depth), _read(right, depth))
+        case ast.Compare(ops=[_, _, *_]):
+            raise ScenarioError("comparison of three", "Write (a < b)*(b < c).")
+        case ast.Call(func=ast.Name(id=word), args=arguments, keywords=[]):
+            _check_call(word, len(arguments))
+            return ("call", word, tuple(_read(argument, depth) for argument in arguments))
+        case ast.Call():
+            raise ScenarioError("only the listed functions can be called, by position", ALLOWED)
+    kind = getattr(tree, "op", tree)
+    refused = _REFUSED.get(type(tree)) or _REFUSED.get(type(kind)) or f"'{ast.unparse(tree)}'"
+    raise ScenarioError(f"not allowed in an expression: {refused}", ALLOWED)
+
+
+def _check_call(word: str, n: int) -> None:
+    if word not in FUNCTIONS:
+        raise ScenarioError(f"no function named {described(word)}", known(word, FUNCTIONS))
+    _, fewest, most = FUNCTIONS[word]
+    if not fewest <= n <= most:
+        wanted = str(fewest) if fewest == most else f"{fewest} or more"
+        raise ScenarioError(f"{word} takes {wanted} argument{'s' * (wanted != '1')}, got {n}")
+
+
+def _name(tree: ast.AST) -> str:
+    """`B` or `B.angle`; a dot may follow a name only."""
+    parts = []
+    while isinstance(tree, ast.Attribute):
+        parts.append(tree.attr)
+        tree = tree.value
+    if not isinstance(tree, ast.Name):
+        raise ScenarioError("a dot may follow a name only", ALLOWED)
+    parts.append(tree.id)
+    name = ".".join(reversed(parts))
+    if any(part.startswith("__") for part in parts):
+        raise ScenarioError(f"not a name: {described(name)}", ALLOWED)
+    if name in FUNCTIONS:
+        raise ScenarioError(f"{name} is a function: write {name}(...)")
+    return name
+
+
+def names(node: Node) -> set[str]:
+    """All names in an expression, `t` and `pi` among them."""
+    match node:
+        case ("name", name):
+            return {name}
+        case ("call", _, arguments):
+            return set().union(*map(names, arguments))
+        case ("unary", _, operand):
+            return names(operand)
+        case ("binary", _, left, right):
+            return names(left) | names(right)
+    return set()
+
+
+def substitute(node: Node, values: Mapping[str, float]) -> Node:
+    """The expression with numbers for the names in `values` and for pi; constant parts folded."""
+    match node:
+        case ("name", name) if name in values or name == "pi":
+            return ("number", float(values.get(name, math.pi)))
+        case ("call", word, arguments):
+            new: Node = ("call", word, tuple(substitute(a, values) for a in arguments))
+            constant = all(a[0] == "number" for a in new[2])
+            if word in ("step", "step5") and new[2][1] == new[2][3]:
+                raise ScenarioError(f"{word} from x0 to x1 = x0", "A jump needs x1 other than x0.")
+        case ("unary", sign, operand):
+            new = ("unary", sign, substitute(operand, values))
+            constant = new[2][0] == "number"
+        case ("binary", sign, left, right):
+            new = ("binary", sign, substitute(left, values), substitute(right, values))
+            constant = new[2][0] == new[3][0] == "number"
+        case _:
+            return node
+    return ("number", evaluate(new, {})) if constant else new
+
+
+def evaluate(node: Node, values: Mapping[str, float]) -> float:
+    """The number an expression stands for.  No value, or none that is finite, is an error."""
+    match node:
+        case ("number", value):
+            return value
+        case ("name", name):
+            if name in values:
+                return float(values[name])
+            if name == "pi":
+                return math.pi
+            raise ScenarioError(f"no value for {described(name)}", known(name, values))
+        case ("unary", _, operand):
+            return -evaluate(operand, values)
+        case ("call", word, nodes):
+            function, arguments = FUNCTIONS[word][0], [evaluate(a, values) for a in nodes]
+            shown = f"{word}({', '.join(f'{a:g}' for a in arguments)})"
+        case ("binary", sign, left, right):
+            function, arguments = OPERATORS[sign], [evaluate(left, values), evaluate(right, values)]
+            shown = f"{arguments[0]:g} {sign} {arguments[1]:g}"
+    try:
+        return _finite(function(*arguments))
+    except (ArithmeticError, ValueError):
+        raise ScenarioError(f"{shown} has no finite value") from None
+
+
+def _finite(value: float) -> float:
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ScenarioError("a number in an expression is too large")
+    return number

@@ -1,0 +1,284 @@
+"""What a user-written number is made of: units, quantities, expressions of parameters.
+
+    stiffness: Annotated[float, Ge(0), Unit("N*m/rad")]     3, 3e0, 3 N*m/rad, 3000 N*mm/rad, k/2
+    at: vector("m")                                         [1, 2] or [1, 2, 0], each as above
+    force: Function("N")                                    a number, an expression, a table
+
+A plain number is SI.  The dimension of a quantity must be the field's.  Parameters come through
+pydantic's validation context: {"parameters": {"speed": 0.5}}.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic_core import core_schema
+
+from trsim import expressions
+from trsim.errors import ScenarioError, described, known
+from trsim.units import inside, kind, quantity, told, unit
+
+
+def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) -> float:
+    """The SI value of a YAML number, a quantity or an expression of parameters."""
+    parameters = parameters or {}
+    if isinstance(value, str):
+        found = quantity(value, parameters)
+        if found is None:
+            return _of_parameters(value, units, parameters)
+        if found[1]:
+            _check_dimension(found[1], units)
+        value = found[0]
+    if isinstance(value, bool):
+        raise ScenarioError(f"must be a number, got {described(value)}", told(units))
+    try:
+        result = float(value)
+    except OverflowError:
+        result = math.inf
+    if not math.isfinite(result):
+        raise ScenarioError("must be a finite number", told(units))
+    return result
+
+
+def _of_parameters(text: str, units: tuple[str, ...], parameters: Any) -> float:
+    try:
+        node = expressions.parse(text)
+    except ScenarioError as error:
+        raise ScenarioError(error.what, f"{told(units)}  {error.hint}".strip()) from None
+    for name in sorted(expressions.names(node) - {"pi"}):
+        if name not in parameters:
+            if name == "t":
+                raise ScenarioError("this number cannot depend on t", told(units))
+            hint = known(name, parameters) if parameters else told(units)
+            raise ScenarioError(f"no parameter named {described(name)}", hint)
+    return expressions.evaluate(node, parameters)
+
+
+def _check_dimension(written: str, units: tuple[str, ...]) -> None:
+    _, dimension = unit(written)
+    allowed = [unit(text)[1] for text in units]
+    if dimension in allowed or (not any(dimension) and unit("rad")[1] in allowed):
+        return
+    name = kind(dimension)
+    what = f"wrong unit: {described(written)}{f' is {name}' if name else ''}"
+    raise ScenarioError(f"{what}; {inside(units)}")
+
+
+class Unit:
+    """Marks a number, or a tuple or union of numbers, with its unit (or one of several)."""
+
+    def __init__(self, *units: str) -> None:
+        self.units = units
+        self.text = " or ".join(units)
+        for text in units:
+            unit(text)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        words = tuple(_words(source))
+
+        def convert(value: Any, info: Any) -> Any:
+            return self.convert(value, info.context or {}, words)
+
+        return core_schema.with_info_before_validator_function(convert, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
+        return _or_text(handler(schema))
+
+    def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
+        """Numbers for texts; what cannot be one is left to the field itself."""
+        if isinstance(value, list | tuple):
+            return tuple(_at(k, self.convert, item, context) for k, item in enumerate(value))
+        if value in words or not isinstance(value, str | int | float):
+            return value
+        try:
+            return number(value, self.units, context.get("parameters"))
+        except ScenarioError as error:
+            if words and error.what.startswith("no parameter"):
+                what = f"must be a number or one of the words, got {described(value)}"
+                raise ScenarioError(what, known(value, words)) from None
+            raise
+
+
+def _at(key: str | int, function: Any, *arguments: Any) -> Any:
+    """Call, and tell in an error which entry of a list it was."""
+    try:
+        return function(*arguments)
+    except ScenarioError as error:
+        raise error.at(key) from None
+
+
+def _words(source: Any) -> list[str]:
+    """The literal words a type allows."""
+    inner = get_args(source)
+    own = [word for word in inner if isinstance(word, str)]
+    return own + [word for part in inner for word in _words(part)]
+
+
+def _or_text(schema: Any) -> Any:
+    """A JSON schema that also takes a text wherever it takes a number."""
+    if isinstance(schema, list):
+        return [_or_text(part) for part in schema]
+    if not isinstance(schema, dict):
+        return schema
+    if schema.get("type") == "number":
+        return {"anyOf": [schema, {"type": "string"}]}
+    return {key: _or_text(part) for key, part in schema.items()}
+
+
+class _VectorUnit(Unit):
+    """Two or three numbers; z = 0 when omitted."""
+
+    def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
+        if not isinstance(value, list | tuple) or len(value) not in (2, 3):
+            raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
+        numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
+        return tuple([*numbers, 0.0][:3])
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
+        return {**super().__get_pydantic_json_schema__(schema, handler), "minItems": 2}
+
+
+def vector(*units: str) -> Any:
+    """The type of a vector: three floats, given as two or three numbers."""
+    return Annotated[tuple[float, float, float], _VectorUnit(*units)]
+
+
+@dataclass(frozen=True)
+class FunctionSpec:
+    """A number that may vary: a constant, an expression of t and sensors, or a table."""
+
+    kind: Literal["constant", "expression", "table"]
+    value: float = 0.0  # of a constant
+    node: tuple = ()  # of an expression, parameters replaced by their values
+    x: tuple[float, ...] = ()  # of a table
+    y: tuple[float, ...] = ()
+    of: str = "t"  # the variable of a table: t or a sensor
+    ends: Literal["hold", "extrapolate", "refuse"] = "hold"
+
+    @property
+    def names(self) -> set[str]:
+        """What it depends on: t, sensors."""
+        if self.kind == "table":
+            return {self.of}
+        return expressions.names(self.node) if self.kind == "expression" else set()
+
+
+ENDS = ("hold", "extrapolate", "refuse")
+TABLE_KEYS = ("table", "of", "ends", "units")
+VARIABLES = ("s", "m", "rad")  # units of what a table may be a function of
+
+
+class _FunctionUnit(Unit):
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        def convert(value: Any, info: Any) -> Any:
+            return self.convert(value, info.context or {})
+
+        return core_schema.with_info_plain_validator_function(convert)
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
+        return {"anyOf": [{"type": "number"}, {"type": "string"}, {"type": "object"}]}
+
+    def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
+        parameters = context.get("parameters") or {}
+        if isinstance(value, FunctionSpec):
+            return value
+        if isinstance(value, dict):
+            return self._table(value, parameters)
+        if isinstance(value, str) and quantity(value, {"t", *parameters}) is None:
+            node = expressions.substitute(expressions.parse(value), parameters)
+            if node[0] != "number":
+                return FunctionSpec("expression", node=node)
+            value = node[1]
+        if not isinstance(value, str | int | float):
+            what = "must be a number, an expression or a table"
+            raise ScenarioError(f"{what}, got {described(value)}")
+        return FunctionSpec("constant", number(value, self.units, parameters))
+
+    def _table(self, given: dict, parameters: dict) -> FunctionSpec:
+        """{table: [[x, y], ...], of: stroke, ends: hold, units: [mm, N]}"""
+        for key in given:
+            if key not in TABLE_KEYS:
+                hint = known(key, TABLE_KEYS)
+                raise ScenarioError(f"unknown key {described(key)}", hint, (key,))
+        if "table" not in given:
+            raise ScenarioError("field required: table", "A table is {table: [[x, y], ...]}.")
+        of, ends = given.get("of", "t"), given.get("ends", "hold")
+        if not isinstance(of, str):
+            raise ScenarioError("must be t or the name of a sensor", path=("of",))
+        if ends not in ENDS:
+            what = f"must be one of {', '.join(ENDS)}, got {described(ends)}"
+            raise ScenarioError(what, path=("ends",))
+        scale = _at("units", self._scale, given.get("units"))
+        x, y = _at("table", self._columns, given["table"], scale, parameters)
+        return FunctionSpec("table", x=x, y=y, of=of, ends=ends)
+
+    def _scale(self, units: Any) -> tuple[float, float]:
+        """The factors of the two columns to SI."""
+        if units is None:
+            return 1.0, 1.0
+        if not isinstance(units, list) or [type(text) for text in units] != [str, str]:
+            raise ScenarioError("must be two units, [of x, of y]")
+        _at(0, _check_dimension, units[0], VARIABLES)
+        _at(1, _check_dimension, units[1], self.units)
+        return float(unit(units[0])[0]), float(unit(units[1])[0])
+
+    def _columns(self, rows: Any, scale: tuple[float, float], parameters: dict) -> Any:
+        if not isinstance(rows, list | tuple) or len(rows) < 2:
+            raise ScenarioError(f"must be two or more rows [x, y], got {described(rows)}")
+        last = -math.inf
+        points = []
+        for k, row in enumerate(rows):
+            if not isinstance(row, list | tuple) or len(row) != 2:
+                raise ScenarioError(f"a row is [x, y], got {described(row)}", path=(k,))
+            if not all(isinstance(item, str | int | float) for item in row):
+                raise ScenarioError("a row is two numbers", path=(k,))
+            x = _at(k, number, row[0], VARIABLES, parameters) * scale[0]
+            y = _at(k, number, row[1], self.units, parameters) * scale[1]
+            if x <= last:
+                raise ScenarioError(f"x must rise, got {x:g} after {last:g}", path=(k,))
+            last = x
+            points.append((x, y))
+        return tuple(zip(*points, strict=True))
+
+
+def Function(*units: str) -> Any:
+    """The type of a number that may vary with t and with sensors: see FunctionSpec."""
+    return Annotated[FunctionSpec, _FunctionUnit(*units)]
+
+
+def _true_or_false(value: Any) -> Any:
+    if not isinstance(value, bool):
+        raise ScenarioError(f"must be true or false, got {described(value)}")
+    return value
+
+
+Flag = Annotated[bool, BeforeValidator(_true_or_false)]
+
+
+class SpecError(ValueError):
+    """What pydantic found wrong in a mapping, and the class that was to be made of it."""
+
+    def __init__(self, spec: type["Spec"], error: ValidationError) -> None:
+        super().__init__(spec, error)
+        self.spec, self.error = spec, error
+
+    def __str__(self) -> str:
+        return str(self.error)
+
+
+class Spec(BaseModel):
+    """What a user writes under one name: a closed set of keys, frozen once read."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True
+    )
+    type: ClassVar[str] = ""  # the word after `type:`
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_class(cls, data: Any, handler: Any) -> Any:
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise SpecError(cls, error) from None

@@ -1,0 +1,266 @@
+"""A number that varies: a constant, an Akima table or an expression, in one flat array.
+
+    constant     0, c
+    table        1, variable, n, then the table of `tables.akima_table`     variable -1: t, else
+                                                                            the sensor's index
+    expression   2, n_in, n_op, first slot, result slot, n_in sensors, n_op (code, a, b), slots
+
+An expression is straight-line code over slots of three numbers (f, f', f''): t, the sensors
+read, one for each operation, which takes slots a and b, and the constants.  Equal parts are
+computed once.  All addresses count from the offset o of the function, so functions may be
+joined in any order.
+
+The slots are scratch space of the evaluation inside `tab` itself, which spares an allocation
+per call: `tab` must be writable, and two threads must not evaluate the same array.  Processes may.
+"""
+
+import math
+
+import numpy as np
+
+from trsim.laws import law
+from trsim.laws.operations import (
+    ADD,
+    ATAN2,
+    BINARY,
+    DIV,
+    MAX,
+    MIN,
+    MUL,
+    NEG,
+    QUINTIC,
+    SMOOTHSTEP,
+    SUB,
+    UNARY,
+    operation,
+    operation_rates,
+)
+from trsim.laws.tables import akima, akima_table
+
+CONSTANT, TABLE, EXPRESSION = 0, 1, 2
+HEAD = 5  # numbers before the sensors of an expression
+
+
+def constant(c):
+    """A constant, as numbers for `tab`."""
+    return [float(CONSTANT), float(c)]
+
+
+def table(x, y, variable=-1, ends="hold"):
+    """An Akima table of t (variable -1) or of sensor number `variable`, as numbers for `tab`."""
+    return [float(TABLE), float(variable), float(len(x)), *akima_table(x, y, ends)]
+
+
+class _Code:
+    """Straight-line code of an expression while it is being written; a slot is a tuple."""
+
+    def __init__(self, sensors):
+        self.sensors = sensors
+        self.inputs, self.constants, self.steps = {}, {}, {}
+
+    def number(self, c):
+        slot = ("constant", c, math.copysign(1.0, c))  # the sign of zero matters to atan2
+        return self.constants.setdefault(slot, slot)
+
+    def name(self, name):
+        if name == "t":
+            return ("t", 0)
+        if name == "pi":
+            return self.number(math.pi)
+        if name not in self.sensors:
+            known = ", ".join(["t", "pi", *self.sensors])
+            raise ValueError(f"nothing here is called '{name}'.  Known: {known}.")
+        return self.inputs.setdefault(name, ("input", len(self.inputs)))
+
+    def step(self, code, a, b=None):
+        """The slot of an operation: folded if constant, shared if it was there before."""
+        b = a if b is None else b
+        if a[0] == b[0] == "constant":
+            with np.errstate(all="ignore"):  # what is wrong is said below
+                f = float(operation.py_func(code, np.float64(a[1]), np.float64(b[1])))
+            if not math.isfinite(f):
+                raise ValueError("a constant part of the expression is infinite or undefined")
+            return self.number(f)
+        if code == DIV and b[:2] == ("constant", 0.0):
+            raise ValueError("the expression divides by zero")
+        return self.steps.setdefault((code, a, b), ("step", len(self.steps)))
+
+    def slot(self, node):
+        """The slot of a node of the tree, after writing whatever it needs."""
+        kind, word = node[0], node[1]
+        if kind == "number":
+            return self.number(float(word))
+        if kind == "name":
+            return self.name(word)
+        if kind == "unary":
+            a = self.slot(node[2])
+            return a if word == "+" else self.step(NEG, a)
+        if kind == "binary":
+            a, b = self.slot(node[2]), self.slot(node[3])
+            if word == "**" and b[:2] == ("constant", 2.0):
+                return self.step(MUL, a, a)
+            return self.step(BINARY[word], a, b)
+        return self.call(word, [self.slot(argument) for argument in node[2]])
+
+    def call(self, name, args):
+        """The slot of a function's value; the steps are built from their cores."""
+        if name in UNARY and len(args) == 1:
+            return self.step(UNARY[name], args[0])
+        if name == "atan2" and len(args) == 2:
+            return self.step(ATAN2, *args)
+        if name in ("min", "max") and len(args) >= 2:
+            f = args[0]
+            for a in args[1:]:
+                f = self.step(MIN if name == "min" else MAX, f, a)
+            return f
+        if name in ("step", "step5") and len(args) == 5:
+            x, x0, h0, x1, h1 = args
+            x = self.step(DIV, self.step(SUB, x, x0), self.step(SUB, x1, x0))
+            f = self.step(SMOOTHSTEP if name == "step" else QUINTIC, x)
+            return self.step(ADD, h0, self.step(MUL, self.step(SUB, h1, h0), f))
+        raise ValueError(f"there is no function {name} of {len(args)} arguments")
+
+
+def expression(node, sensors):
+    """An expression, as numbers for `tab`.
+
+    Parameters
+    ----------
+    node : tuple             tree made by `trsim.expressions.parse`, parameters substituted
+    sensors : dict           name of a sensor -> its row of S
+
+    Returns
+    -------
+    list[float]              the function; a constant if nothing in it varies
+
+    Raises
+    ------
+    ValueError               unknown name or function, or a constant part such as 1/0
+    """
+    code = _Code(sensors)
+    result = code.slot(node)
+    if result[0] == "constant":
+        return constant(result[1])
+    first = HEAD + len(code.inputs) + 3 * len(code.steps)
+    place = {("t", 0): first}
+    for slots in (code.inputs, code.steps, code.constants):
+        for slot in slots.values():
+            place[slot] = first + 3 * len(place)
+    out = [EXPRESSION, len(code.inputs), len(code.steps), first, place[result]]
+    out += [sensors[name] for name in code.inputs]
+    for op, a, b in code.steps:
+        out += [op, place[a], place[b]]
+    for slot in place:
+        out += [slot[1] if slot[0] == "constant" else 0.0, 0.0, 0.0]
+    return [float(x) for x in out]
+
+
+@law
+def run(tab, o):
+    """Value of an expression whose inputs are in their slots."""
+    n_in, n_op = int(tab[o + 1]), int(tab[o + 2])
+    p = o + HEAD + n_in
+    out = o + int(tab[o + 3]) + 3 * (1 + n_in)
+    for _ in range(n_op):
+        tab[out] = operation(int(tab[p]), tab[o + int(tab[p + 1])], tab[o + int(tab[p + 2])])
+        p += 3
+        out += 3
+    return tab[o + int(tab[o + 4])]
+
+
+@law
+def run_rates(tab, o):
+    """Value and two derivatives of an expression whose inputs are in their slots."""
+    n_in, n_op = int(tab[o + 1]), int(tab[o + 2])
+    p = o + HEAD + n_in
+    out = o + int(tab[o + 3]) + 3 * (1 + n_in)
+    for _ in range(n_op):
+        a, b = o + int(tab[p + 1]), o + int(tab[p + 2])
+        tab[out], tab[out + 1], tab[out + 2] = operation_rates(
+            int(tab[p]), tab[a], tab[a + 1], tab[a + 2], tab[b], tab[b + 1], tab[b + 2]
+        )
+        p += 3
+        out += 3
+    out = o + int(tab[o + 4])
+    return tab[out], tab[out + 1], tab[out + 2]
+
+
+@law
+def value(tab, o, t, S):
+    """The number at time t.
+
+    Parameters
+    ----------
+    tab : (n_tab,)           flat array; the slots of an expression are overwritten
+    o : int                  offset of the function
+    t : float                time, s
+    S : (n_s, 2)             values and rates of the sensors; only values are read
+
+    Returns
+    -------
+    float
+    """
+    kind = tab[o]
+    if kind == CONSTANT:
+        return tab[o + 1]
+    if kind == TABLE:
+        k = int(tab[o + 1])
+        return akima(tab, o + 3, int(tab[o + 2]), t if k < 0 else S[k, 0])[0]
+    slot = o + int(tab[o + 3])
+    tab[slot] = t
+    for i in range(int(tab[o + 1])):
+        tab[slot + 3 * (i + 1)] = S[int(tab[o + HEAD + i]), 0]
+    return run(tab, o)
+
+
+@law
+def value_and_rate(tab, o, t, S):
+    """The number at time t and its total rate in time, through the rates of the sensors.
+
+    Parameters
+    ----------
+    tab, o, t, S             as in `value`
+
+    Returns
+    -------
+    (float, float)           f and df/dt
+    """
+    kind = tab[o]
+    if kind == CONSTANT:
+        return tab[o + 1], 0.0
+    if kind == TABLE:
+        k = int(tab[o + 1])
+        f, f_x, _ = akima(tab, o + 3, int(tab[o + 2]), t if k < 0 else S[k, 0])
+        return f, f_x if k < 0 else f_x * S[k, 1]
+    slot = o + int(tab[o + 3])
+    tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
+    for i in range(int(tab[o + 1])):
+        k, slot = int(tab[o + HEAD + i]), slot + 3
+        # the second derivative of a sensor is unknown and not asked for
+        tab[slot], tab[slot + 1], tab[slot + 2] = S[k, 0], S[k, 1], 0.0
+    f, f1, _ = run_rates(tab, o)
+    return f, f1
+
+
+@law
+def motion(tab, o, t):
+    """A prescribed motion and its first and second derivative in time.
+
+    Parameters
+    ----------
+    tab, o, t                as in `value`
+
+    Returns
+    -------
+    (float, float, float)    f, f', f''; all nan if the function reads a sensor
+    """
+    kind = tab[o]
+    if kind == CONSTANT:
+        return tab[o + 1], 0.0, 0.0
+    if kind == TABLE and tab[o + 1] < 0.0:
+        return akima(tab, o + 3, int(tab[o + 2]), t)
+    if kind == TABLE or tab[o + 1] > 0.0:
+        return np.nan, np.nan, np.nan
+    slot = o + int(tab[o + 3])
+    tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
+    return run_rates(tab, o)

@@ -1,0 +1,155 @@
+"""The operations an expression is made of, on numbers and on numbers with time derivatives.
+
+Derivatives go forward through every operation, (a b)'' = a'' b + 2 a' b' + a b'' and so on.  At
+a corner of min, max, abs or a comparison they belong to the branch taken; a comparison is 1 or 0
+and does not vary.
+"""
+
+import numpy as np
+
+from trsim.laws import law
+from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
+
+ADD, SUB, MUL, DIV, POW, MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE = range(14)
+NEG, ABS, SQRT, SIN, COS, TAN, EXP, LOG, SMOOTHSTEP, QUINTIC = range(14, 24)
+
+BINARY = {"+": ADD, "-": SUB, "*": MUL, "/": DIV, "**": POW}
+BINARY |= {"<": LT, "<=": LE, ">": GT, ">=": GE, "==": EQ, "!=": NE}
+UNARY = {"abs": ABS, "sqrt": SQRT, "sin": SIN, "cos": COS, "tan": TAN, "exp": EXP, "log": LOG}
+UNARY |= {"smoothstep": SMOOTHSTEP}
+
+
+@law
+def single(code, a):
+    """Value of an operation on one number."""
+    if code == NEG:
+        return -a
+    if code == SMOOTHSTEP:
+        return smoothstep(a)
+    if code == ABS:
+        return abs(a)
+    if code == SQRT:
+        return np.sqrt(a)
+    if code == SIN:
+        return np.sin(a)
+    if code == COS:
+        return np.cos(a)
+    if code == TAN:
+        return np.tan(a)
+    if code == EXP:
+        return np.exp(a)
+    if code == LOG:
+        return np.log(a)
+    return quintic(a)
+
+
+@law
+def operation(code, a, b):
+    """Value of an operation; operations on one number ignore b."""
+    if code == ADD:
+        return a + b
+    if code == SUB:
+        return a - b
+    if code == MUL:
+        return a * b
+    if code == DIV:
+        return a / b
+    if code == POW:
+        return a**b
+    if code == MIN:
+        return b if b < a else a
+    if code == MAX:
+        return b if b > a else a
+    if code == ATAN2:
+        return np.arctan2(a, b)
+    if code >= NEG:
+        return single(code, a)
+    if code == LT:
+        return 1.0 if a < b else 0.0
+    if code == LE:
+        return 1.0 if a <= b else 0.0
+    if code == GT:
+        return 1.0 if a > b else 0.0
+    if code == GE:
+        return 1.0 if a >= b else 0.0
+    if code == EQ:
+        return 1.0 if a == b else 0.0
+    return 1.0 if a != b else 0.0
+
+
+@law
+def single_rates(code, a):
+    """Value of an operation on one number, with first and second derivative in a."""
+    if code == NEG:
+        return -a, -1.0, 0.0
+    if code == SMOOTHSTEP:
+        return smoothstep_rates(a)
+    if code == ABS:
+        return abs(a), 1.0 if a >= 0.0 else -1.0, 0.0
+    if code == SQRT:
+        f = np.sqrt(a)
+        return f, 0.5 / f, -0.25 / (f * a)
+    if code == SIN:
+        return np.sin(a), np.cos(a), -np.sin(a)
+    if code == COS:
+        return np.cos(a), -np.sin(a), -np.cos(a)
+    if code == TAN:
+        f = np.tan(a)
+        return f, 1.0 + f * f, 2.0 * f * (1.0 + f * f)
+    if code == EXP:
+        f = np.exp(a)
+        return f, f, f
+    if code == LOG:
+        return np.log(a), 1.0 / a, -1.0 / (a * a)
+    return quintic_rates(a)
+
+
+@law
+def chain(f, f_a, f_aa, a1, a2):
+    """f(a) and its derivatives in time; f_a may be infinite where a does not move."""
+    if a1 == 0.0 and a2 == 0.0:
+        return f, 0.0, 0.0
+    return f, f_a * a1, f_aa * a1 * a1 + f_a * a2
+
+
+@law
+def power_rates(a, a1, a2, b, b1, b2):
+    """a**b and its derivatives."""
+    f = a**b
+    if b1 == 0.0 and b2 == 0.0:  # a fixed exponent allows a <= 0
+        f_a = b * a ** (b - 1.0) if b != 0.0 else 0.0
+        f_aa = b * (b - 1.0) * a ** (b - 2.0) if b != 0.0 and b != 1.0 else 0.0
+        return chain(f, f_a, f_aa, a1, a2)
+    # ln f = b ln a
+    u = b1 * np.log(a) + b * a1 / a
+    u1 = b2 * np.log(a) + (2.0 * b1 * a1 + b * a2) / a - b * a1 * a1 / (a * a)
+    return f, f * u, f * (u * u + u1)
+
+
+@law
+def operation_rates(code, a, a1, a2, b, b1, b2):
+    """An operation on (a, a', a'') and (b, b', b'')."""
+    if code == ADD:
+        return a + b, a1 + b1, a2 + b2
+    if code == SUB:
+        return a - b, a1 - b1, a2 - b2
+    if code == MUL:
+        return a * b, a1 * b + a * b1, a2 * b + 2.0 * a1 * b1 + a * b2
+    if code == DIV:
+        f = a / b
+        f1 = (a1 - f * b1) / b
+        return f, f1, (a2 - 2.0 * f1 * b1 - f * b2) / b
+    if code == POW:
+        return power_rates(a, a1, a2, b, b1, b2)
+    if code == MIN:
+        return (b, b1, b2) if b < a else (a, a1, a2)
+    if code == MAX:
+        return (b, b1, b2) if b > a else (a, a1, a2)
+    if code == ATAN2:
+        r, r1 = a * a + b * b, 2.0 * (a * a1 + b * b1)
+        f1 = (b * a1 - a * b1) / r
+        return np.arctan2(a, b), f1, (b * a2 - a * b2 - f1 * r1) / r
+    if code >= NEG:
+        f, f_a, f_aa = single_rates(code, a)
+        return chain(f, f_a, f_aa, a1, a2)
+    return operation(code, a, b), 0.0, 0.0

@@ -1,0 +1,207 @@
+"""Smooth steps and Akima tables.
+
+    smoothstep(x)          3 x^2 - 2 x^3             x clipped to 0..1
+    quintic(x)             10 x^3 - 15 x^4 + 6 x^5   x clipped to 0..1
+    step(x,x0,h0,x1,h1)    h0 + (h1 - h0) smoothstep((x - x0) / (x1 - x0))
+    step5                  h0 + (h1 - h0) quintic((x - x0) / (x1 - x0))
+
+    Akima   f = a + b s + c s^2 + d s^3,  s = x - x_k     on x_k .. x_k+1      [Akima1970]
+            slope at x_k:  (|m3 - m2| m1 + |m1 - m0| m2) / (|m3 - m2| + |m1 - m0|)
+
+with m0..m3 the slopes of the four intervals around x_k; beyond the ends slopes are extrapolated
+quadratically.  f' is continuous, f'' jumps at the points of the table.
+
+A table in a flat array is, from its offset,   ends, x (n), then a b c d of each interval.
+"""
+
+import numpy as np
+
+from trsim.laws import law
+
+ENDS = {"hold": 0, "extrapolate": 1, "refuse": 2}  # outside: end value, straight line, nan
+TIED = 1e-9  # two weights this small against the largest of the table are roundoff
+
+
+@law
+def smoothstep_rates(x):
+    """Cubic step from 0 to 1 and its first two derivatives in x."""
+    if x <= 0.0:
+        return 0.0, 0.0, 0.0
+    if x >= 1.0:
+        return 1.0, 0.0, 0.0
+    return x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x), 6.0 - 12.0 * x
+
+
+@law
+def quintic_rates(x):
+    """Quintic step from 0 to 1 and its first two derivatives in x."""
+    if x <= 0.0:
+        return 0.0, 0.0, 0.0
+    if x >= 1.0:
+        return 1.0, 0.0, 0.0
+    y = x * (1.0 - x)
+    return x**3 * (10.0 + x * (6.0 * x - 15.0)), 30.0 * y * y, 60.0 * y * (1.0 - 2.0 * x)
+
+
+@law
+def smoothstep(x):
+    """Cubic step from 0 at x <= 0 to 1 at x >= 1."""
+    return smoothstep_rates(x)[0]
+
+
+@law
+def quintic(x):
+    """Quintic step from 0 at x <= 0 to 1 at x >= 1."""
+    return quintic_rates(x)[0]
+
+
+@law
+def step_rates(x, x0, h0, x1, h1):
+    """Cubic step from h0 at x0 to h1 at x1, and its first two derivatives in x."""
+    f, f_x, f_xx = smoothstep_rates((x - x0) / (x1 - x0))
+    k = (h1 - h0) / (x1 - x0)
+    return h0 + (h1 - h0) * f, k * f_x, k / (x1 - x0) * f_xx
+
+
+@law
+def step5_rates(x, x0, h0, x1, h1):
+    """Quintic step from h0 at x0 to h1 at x1, and its first two derivatives in x."""
+    f, f_x, f_xx = quintic_rates((x - x0) / (x1 - x0))
+    k = (h1 - h0) / (x1 - x0)
+    return h0 + (h1 - h0) * f, k * f_x, k / (x1 - x0) * f_xx
+
+
+@law
+def step(x, x0, h0, x1, h1):
+    """Cubic step from h0 at x0 to h1 at x1."""
+    return h0 + (h1 - h0) * smoothstep((x - x0) / (x1 - x0))
+
+
+@law
+def step5(x, x0, h0, x1, h1):
+    """Quintic step from h0 at x0 to h1 at x1."""
+    return h0 + (h1 - h0) * quintic((x - x0) / (x1 - x0))
+
+
+def _checked(x, y):
+    """x and y as arrays; rows are counted from 1 in the messages."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    if x.ndim != 1 or x.shape != y.shape or x.size < 2:
+        raise ValueError("a table needs two columns of the same length, 2 rows or more")
+    for name, column in (("first", x), ("second", y)):
+        if not np.isfinite(column).all():
+            row = int(np.argmin(np.isfinite(column)))
+            raise ValueError(f"row {row + 1}: the {name} column is {column[row]}, not a number")
+    if not (np.diff(x) > 0.0).all():
+        row = int(np.argmin(np.diff(x) > 0.0)) + 1
+        raise ValueError(
+            f"row {row + 1}: {x[row]:g} does not exceed {x[row - 1]:g} of the row before.  "
+            "The first column must increase from row to row."
+        )
+    return x, y
+
+
+def _slopes(x, y):
+    """Akima's slope at every point, (n,)."""
+    m = np.diff(y) / np.diff(x)
+    if m.size == 1:
+        return np.repeat(m, 2)
+    left, right = 2 * m[0] - m[1], 2 * m[-1] - m[-2]
+    m = np.concatenate(([2 * left - m[0], left], m, [right, 2 * right - m[-1]]))
+    change = np.abs(np.diff(m))
+    w1, w2 = change[2:], change[:-2]
+    total = w1 + w2
+    slope = 0.5 * (m[:-3] + m[3:])  # no curvature on either side: the mean
+    free = total > TIED * total.max()
+    slope[free] = ((w1 * m[1:-2] + w2 * m[2:-1]) / np.where(free, total, 1.0))[free]
+    return slope
+
+
+def akima_coefficients(x, y):
+    """Cubics of an Akima interpolant.
+
+    Parameters
+    ----------
+    x : (n,)             abscissae, strictly increasing; n >= 2
+    y : (n,)             ordinates
+
+    Returns
+    -------
+    (n - 1, 4)           a, b, c, d of a + b s + c s^2 + d s^3 with s = x - x_k
+
+    Raises
+    ------
+    ValueError           with the number of the offending row, counted from 1
+
+    Notes
+    -----
+    Two points give a straight line, three a parabola.
+    """
+    x, y = _checked(x, y)
+    h, m, b = np.diff(x), np.diff(y) / np.diff(x), _slopes(x, y)
+    c = (3 * m - 2 * b[:-1] - b[1:]) / h
+    d = (b[:-1] + b[1:] - 2 * m) / h**2
+    return np.column_stack((y[:-1], b[:-1], c, d))
+
+
+def akima_table(x, y, ends="hold"):
+    """The numbers that `akima` reads: code of the ends, x, then a b c d of each interval.
+
+    Parameters
+    ----------
+    x, y : (n,)          the points
+    ends : str           outside the table: 'hold' the end value, 'extrapolate' along the end
+                         slope, or 'refuse' (nan)
+
+    Returns
+    -------
+    list[float]          5 n - 3 numbers
+    """
+    if ends not in ENDS:
+        raise ValueError(f"no end behaviour named '{ends}'.  Known: {', '.join(ENDS)}.")
+    coefficients = akima_coefficients(x, y)
+    return [float(ENDS[ends]), *map(float, x), *coefficients.ravel().tolist()]
+
+
+@law
+def outside(f, f_x, s, ends):
+    """Value and derivatives a distance s beyond an end with value f and slope f_x."""
+    if ends == 0.0:
+        return f, 0.0, 0.0
+    if ends == 1.0:
+        return f + f_x * s, f_x, 0.0
+    return np.nan, np.nan, np.nan
+
+
+@law
+def akima(tab, o, n, x):
+    """Value and first two derivatives in x of the table at tab[o:], of n points.
+
+    Parameters
+    ----------
+    tab : (n_tab,)       flat array
+    o : int              offset of the table, made by `akima_table`
+    n : int              number of points
+    x : float            where
+
+    Returns
+    -------
+    (float, float, float)    f, f', f''; the end points belong to the table
+    """
+    low, high = o + 1, o + n
+    first, last = tab[low], tab[high]
+    while high - low > 1:
+        mid = (low + high) // 2
+        if x < tab[mid]:
+            high = mid
+        else:
+            low = mid
+    p = o + 1 + n + 4 * (low - o - 1)
+    a, b, c, d = tab[p], tab[p + 1], tab[p + 2], tab[p + 3]
+    s = min(max(x, first), last) - tab[low]
+    f, f_x = a + s * (b + s * (c + s * d)), b + s * (2.0 * c + s * 3.0 * d)
+    if x < first:
+        return outside(f, f_x, x - first, tab[o])
+    if x > last:
+        return outside(f, f_x, x - last, tab[o])
+    return f, f_x, 2.0 * c + 6.0 * s * d

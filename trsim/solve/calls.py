@@ -1,0 +1,25 @@
+"""What an integrator is to the march: three functions, called by address like the elements.
+
+    STEP        y1 <- one step of size h from y, with K[0] = y'(t, y); returns the error, in units
+                of the tolerance (<= 1 is accepted; 0 where there is no estimate)
+    DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
+                is y'(t + h, y1) with y1 as finally accepted, projected
+    INTERPOLATE y <- solution at t + theta h
+"""
+
+from numba import types
+
+from trsim.elements.calls import caller
+from trsim.elements.contract import SCENE
+from trsim.elements.packed import A1, A2, f8
+
+#                    scene  K   t   y   h   y1  weight
+STEP = types.float64(SCENE, A2, f8, A1, f8, A1, A1)
+#                  scene  K   t   y   h   y1  P
+DENSE = types.void(SCENE, A2, f8, A1, f8, A1, A2)
+#                        P   y   theta out
+INTERPOLATE = types.void(A2, A1, f8, A1)
+
+call_step = caller(STEP)
+call_dense = caller(DENSE)
+call_interpolate = caller(INTERPOLATE)

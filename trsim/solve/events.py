@@ -1,0 +1,150 @@
+"""Contact events inside a step: which contact changes its phase first, and where.
+
+The phase (flight or contact) is a discrete state changed here and nowhere else; it is never read
+back from the sign of the gap.  A step is searched where the gap has the wrong sign at its end, or
+where its rate turns inside the step and the cubic through both ends may reach zero (a touch between
+two points in flight, a separation between two points in contact).
+"""
+
+from numba import njit
+
+from trsim.assemble.equations import gaps, poses
+from trsim.elements.contract import CONTACT, FLIGHT, PHASE
+from trsim.solve.calls import call_interpolate
+
+event = njit(cache=True, error_model="numpy")
+
+NONE = 2.0  # a root beyond the step
+SAME = 1e-12  # roots closer than this part of a step are one event
+MARGIN = 0.2  # of the gap's change over the step: how near to zero a cubic must come
+
+
+@event
+def suspicious(phase, d0, r0, d1, r1, h):
+    """Whether a contact may change its phase in a step from (d0, r0) to (d1, r1)."""
+    if phase == FLIGHT:
+        return d1 > 0.0 or (r0 > 0.0 > r1 and turning_value(d0, r0, d1, r1, h) > 0.0)
+    return d1 <= 0.0 or (r0 < 0.0 < r1 and -turning_value(-d0, -r0, -d1, -r1, h) < 0.0)
+
+
+@event
+def turning_value(d0, r0, d1, r1, h):
+    """An upper bound of the cubic Hermite's maximum between a rising and a falling end."""
+    theta = r0 / (r0 - r1)  # where the rate, taken linear, is zero
+    a, b = h * r0 - (d1 - d0), -h * r1 + (d1 - d0)
+    top = d0 + theta * (d1 - d0) + theta * (1.0 - theta) * ((1.0 - theta) * a + theta * b)
+    return top + MARGIN * (abs(top - d0) + abs(top - d1))
+
+
+@event
+def gap_inside(s, P, y, t, h, theta, c, scratch, interpolate):
+    """Penetration and rate of contact c at t + theta h."""
+    call_interpolate(interpolate, P, y, theta, scratch)
+    poses(s, scratch)
+    gaps(s, t + theta * h)
+    e = s.contact[c]
+    return s.gap[e, 0], s.gap[e, 1]
+
+
+@event
+def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, rising):
+    """Where gap (column 0) or rate (column 1) of contact c changes sign between low and high.
+
+    rising: the sign at `high` is positive.  Illinois steps, safeguarded by bisection.
+    """
+    f_low = gap_inside(s, P, y, t, h, low, c, scratch, interpolate)[column]
+    f_high = gap_inside(s, P, y, t, h, high, c, scratch, interpolate)[column]
+    side = 0
+    for k in range(200):
+        if high - low <= 4e-16 * max(1.0, high):
+            break
+        middle = 0.5 * (low + high)
+        if k % 4 != 3 and f_high != f_low:
+            middle = high - f_high * (high - low) / (f_high - f_low)
+            if not low < middle < high:
+                middle = 0.5 * (low + high)
+        f = gap_inside(s, P, y, t, h, middle, c, scratch, interpolate)[column]
+        if f == 0.0:
+            return middle
+        if (f > 0.0) == rising:
+            high, f_high = middle, f
+            if side == 1:
+                f_low *= 0.5
+            side = 1
+        else:
+            low, f_low = middle, f
+            if side == -1:
+                f_high *= 0.5
+            side = -1
+    return high
+
+
+@event
+def root(s, P, y, t, h, c, phase, d0, r0, d1, r1, scratch, interpolate):
+    """The first event of contact c in the step, as theta in (0, 1]; NONE if there is none."""
+    toward = phase == FLIGHT  # the gap rises through zero at a touch
+    sign = 1.0 if toward else -1.0
+    low, high = 0.0, 1.0
+    if sign * d1 <= 0.0 and not (d1 == 0.0 and not toward):
+        # no wrong sign at the end: look at the extremum inside
+        if not (sign * r0 > 0.0 > sign * r1):
+            return NONE
+        high = bracketed_root(s, P, y, t, h, c, scratch, interpolate, 0.0, 1.0, 1, r1 > 0.0)
+        top = gap_inside(s, P, y, t, h, high, c, scratch, interpolate)[0]
+        if sign * top <= 0.0:
+            return NONE
+    if sign * d0 >= 0.0:
+        # the step starts on the event just handled: the gap first moves away and comes back
+        if sign * r0 >= 0.0:
+            return 0.0
+        f = 1.0
+        for _ in range(60):  # from the end backwards to a point on the right side
+            f *= 0.5
+            if sign * gap_inside(s, P, y, t, h, f * high, c, scratch, interpolate)[0] < 0.0:
+                low = f * high
+                break
+        if low == 0.0:
+            return 0.0
+    return bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, 0, toward)
+
+
+@event
+def first_event(s, r, b, t, h, interpolate):
+    """Fill b.root for all contacts and return the earliest; needs b.P."""
+    first = NONE
+    for c in range(s.contact.size):
+        b.root[c] = NONE
+        phase = r.mem[s.contact[c], PHASE]
+        d0, r0, d1, r1 = r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1]
+        if suspicious(phase, d0, r0, d1, r1, h):
+            b.root[c] = root(
+                s, b.P, r.y, t, h, c, phase, d0, r0, d1, r1, b.y2, interpolate
+            )  # fmt: skip
+        first = min(first, b.root[c])
+    return first
+
+
+@event
+def any_suspicious(s, r, b, h):
+    """Whether the step must be searched at all."""
+    for c in range(s.contact.size):
+        phase = r.mem[s.contact[c], PHASE]
+        if suspicious(phase, r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1], h):
+            return True
+    return False
+
+
+@event
+def hertz_step(stiffness, exponent, mass, speed, tolerance):
+    """First step after a touch: 0.02 of the contact time times tolerance^(1/3)."""
+    # depth of a lossless impact: K d^(n+1) / (n+1) = m v^2 / 2
+    depth = ((exponent + 1.0) * mass * speed * speed / (2.0 * stiffness)) ** (1 / (exponent + 1.0))
+    return 0.02 * 2.94 * depth / speed * tolerance ** (1.0 / 3.0)
+
+
+@event
+def flip(phase):
+    """The other phase."""
+    return CONTACT if phase == FLIGHT else FLIGHT
+
+

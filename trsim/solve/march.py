@@ -1,0 +1,512 @@
+"""The only time loop: step, project, look for events, write what was asked for, accept.
+
+Everything the loop changes is in the Record; it returns to its caller when a buffer is full, when
+it is done, or when it cannot go on, and can be called again with the same record.
+"""
+
+import numpy as np
+from numba import njit, types
+
+from trsim.assemble.equations import (
+    call_all,
+    derivative,
+    gaps,
+    kinetic,
+    normalise,
+    poses,
+    project_positions,
+    project_velocities,
+)
+from trsim.assemble.outputs import measure
+from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
+from trsim.elements.packed import A1, I1, i8
+from trsim.elements.scene import ANGLE, MAGNITUDE, PROJECTION, RATE
+from trsim.elements.scene import LENGTH as LENGTH_SCALE
+from trsim.elements.scene import SPEED as SPEED_SCALE
+from trsim.solve.calls import call_dense, call_interpolate, call_step
+from trsim.solve.events import any_suspicious, first_event, flip, hertz_step
+from trsim.solve.events import NONE as NO_EVENT
+from trsim.solve.events import SAME
+from trsim.solve.record import (
+    AFTER_REJECTION,
+    BUFFERS,
+    CHATTER,
+    DENSE_BUILT,
+    DONE,
+    ENERGY_0,
+    EVENT_ANGLE,
+    EVENT_KIND,
+    EVENT_ROW,
+    EVENT_ROWS,
+    EVENT_SPEED,
+    EVENT_TIME,
+    EVENTS,
+    EVERY,
+    FIXED_STEP,
+    FULL,
+    H_MAX,
+    LARGEST_ENERGY,
+    LARGEST_RESIDUAL,
+    LAST_EVENT,
+    LENGTH,
+    LOCATE,
+    NEXT_ROW,
+    NOT_FINITE,
+    ONSET,
+    PAUSE,
+    PEAK_MAX,
+    PEAK_MAX_T,
+    PEAK_MIN,
+    PEAK_MIN_T,
+    PEAK_T1,
+    PEAK_T2,
+    PEAK_V1,
+    PEAK_V2,
+    RECORD,
+    REJECTED,
+    ROWS,
+    SAME_TIME,
+    SEPARATION,
+    SPEED,
+    STEP_ROWS,
+    STEP_TOO_SMALL,
+    STEPS,
+    T_END,
+    TOLERANCE,
+    WORK_PROJECTION,
+    WORST_PHI,
+    WORST_PHI_DOT,
+    H,
+    T,
+)
+
+part = njit(cache=True, error_model="numpy")
+
+MAX_SAME_TIME = 1000  # events without progress: chatter
+SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
+NEAR = 0.8  # of the largest contact force so far: the inside of such a step is searched
+INSIDE = 16  # parts a searched step is cut into
+SMALLEST = 16.0  # ulp of t: a smaller step is no step
+PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
+
+
+@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I1, i8))
+def march(s, r, b, setting, method, most):
+    """Advance the record until it is done, a buffer is full, or `most` steps were accepted.
+
+    method: addresses of step, dense, interpolate.  The stage array b.K has its last row at the end
+    of the step.  Returns one of DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE, CHATTER.
+    """
+    last = method[3]
+    accepted = 0
+    while r.clock[T] < setting[T_END]:
+        if full(s, r, b):
+            return FULL
+        if accepted >= most:
+            return PAUSE
+        t = r.clock[T]
+        h = next_step(r, b, setting)
+        if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
+            return STEP_TOO_SMALL
+        weights(s, r, b, setting)
+        b.K[0, :] = r.yd
+        error = call_step(method[0], s, b.K, t, r.y, h, b.y1, b.weight)
+        if not (error <= 1.0):
+            r.count[REJECTED] += 1
+            r.count[AFTER_REJECTION] = 1
+            if setting[FIXED_STEP] > 0.0:
+                return NOT_FINITE
+            r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if np.isfinite(error) else 0.1)
+            continue
+        t1 = setting[T_END] if t + h >= setting[T_END] else t + h
+        projected = land(s, r, b, t1, b.y1, b.K[last])
+        if not np.all(np.isfinite(b.y1)) or not np.all(np.isfinite(b.K[last])):
+            if setting[FIXED_STEP] > 0.0:
+                return NOT_FINITE
+            r.count[REJECTED] += 1
+            r.clock[H] = 0.1 * h
+            continue
+        built = False
+        event = False
+        if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
+            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
+            r.count[DENSE_BUILT] += 1
+            built = True
+            theta = first_event(s, r, b, t, h, method[2])
+            event = theta <= 1.0
+            if event and theta < 1.0:
+                call_interpolate(method[2], b.P, r.y, theta, b.y2)
+                b.y1[:] = b.y2
+                t1 = t + theta * h
+                projected = land(s, r, b, t1, b.y1, b.K[last])
+            else:
+                # the search left other poses in the workspace
+                derivative(s, t1, b.y1, b.K[last])
+        measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+        b.out[:] = s.out
+        near = near_peak(s, r, b)
+        if near or due(r, setting, t1):
+            if not built and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
+                call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
+                r.count[DENSE_BUILT] += 1
+                built = True
+            rows_until(s, r, b, setting, method[2], t, h, t1, projected)
+            if near:
+                peaks_inside(s, r, b, method[2], t, h, t1)
+        accept(s, r, b, t1, projected, last)
+        accepted += 1
+        if event:
+            change_phases(s, r, b, setting, t, t1)
+        elif setting[LOCATE] == 0.0:
+            latch(s, r)
+        control(r, setting, h, error, event)
+        if r.count[SAME_TIME] > MAX_SAME_TIME:
+            return CHATTER
+    return DONE
+
+
+@part
+def full(s, r, b):
+    """Hardly room for what the next step may add."""
+    contacts = s.contact.size
+    return (
+        r.count[ROWS] > b.rows.shape[0] // 2
+        or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
+        or r.count[EVENT_ROWS] + contacts >= b.events.shape[0]
+    )
+
+
+@part
+def next_step(r, b, setting):
+    """The step to try: as controlled, not beyond the end, the last two evened out.
+
+    It never spans more output times than the buffer has room for.
+    """
+    left = setting[T_END] - r.clock[T]
+    h = min(r.clock[H], setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
+    if setting[FIXED_STEP] > 0.0:
+        return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
+    if h >= left * (1.0 - 1e-12):
+        return left
+    return 0.5 * left if 2.0 * h > left else h
+
+
+@part
+def weights(s, r, b, setting):
+    """1 / (tolerance times unit) of every entry of y; zero outside the norm.
+
+    Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
+    the origin; rotations by that length over the body's arm; velocities by the matching speed.
+    """
+    length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
+    for c in range(b.weight.size):
+        kind, scale = s.scale_kind[c], s.scale[c]
+        if kind == LENGTH_SCALE:
+            b.weight[c] = 1.0 / (tolerance * length)
+        elif kind == ANGLE:
+            b.weight[c] = scale / (tolerance * length)
+        elif kind == SPEED_SCALE:
+            b.weight[c] = 1.0 / (tolerance * speed)
+        elif kind == RATE:
+            b.weight[c] = scale / (tolerance * speed)
+        elif kind == MAGNITUDE:
+            b.weight[c] = 1.0 / (tolerance * scale)
+        else:
+            b.weight[c] = 0.0
+
+
+@part
+def land(s, r, b, t, y, yd):
+    """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
+
+    Returns the work done by the projection (J): the change of kinetic energy, and minus the work
+    of the applied forces on the small displacement.
+    """
+    done = 0.0
+    normalise(s, y)
+    if s.stabilisation == PROJECTION and s.m > 0:
+        for k in range(s.n_q):
+            b.y2[k] = y[k]
+        for k in range(8):
+            worst = project_positions(s, t, y)
+            if k == 0:
+                r.clock[WORST_PHI] = max(r.clock[WORST_PHI], worst)
+            if not worst > PHI_SMALL * s.size:
+                break
+        T0 = kinetic(s, y)
+        poses(s, y)
+        worst = project_velocities(s, y)
+        r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
+        done += kinetic(s, y) - T0
+    derivative(s, t, y, yd)
+    if s.stabilisation == PROJECTION and s.m > 0:
+        done += position_work(s, b.y2, y)
+    if s.contact.size > 0:
+        gaps(s, t)
+        for c in range(s.contact.size):
+            b.gap1[c, 0] = s.gap[s.contact[c], 0]
+            b.gap1[c, 1] = s.gap[s.contact[c], 1]
+    for k in range(s.n_s):
+        b.branch1[k] = s.S[k, 0]
+    return done
+
+
+@part
+def position_work(s, before, after):
+    """- F . dx of the displacement from one q to another, with the forces of the second, J."""
+    work, F, X = 0.0, s.F, s.X
+    for f in range(1, s.n):
+        if s.d == 3:
+            q = 3 * (f - 1)
+            work -= F[f, 0] * (after[q] - before[q]) + F[f, 1] * (after[q + 1] - before[q + 1])
+            work -= F[f, 5] * (after[q + 2] - before[q + 2])
+            continue
+        q = 7 * (f - 1)
+        e0, e1, e2, e3 = after[q + 3], after[q + 4], after[q + 5], after[q + 6]
+        d0, d1 = e0 - before[q + 3], e1 - before[q + 4]
+        d2, d3 = e2 - before[q + 5], e3 - before[q + 6]
+        # small rotation in body axes: 2 conj(p) o dp
+        o0 = 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
+        o1 = 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
+        o2 = 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
+        for c in range(3):
+            turn = X[f, 3 + 3 * c] * o0 + X[f, 4 + 3 * c] * o1 + X[f, 5 + 3 * c] * o2
+            work -= F[f, c] * (after[q + c] - before[q + c]) + F[f, 3 + c] * turn
+    return work
+
+
+@part
+def due(r, setting, t1):
+    """Whether an output time lies at or before t1."""
+    return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
+
+
+@part
+def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
+    """Write the output rows of (t, t1]; the one at the end of the step is in b.out."""
+    while r.count[ROWS] < b.rows.shape[0]:
+        t_o = setting[EVERY] * r.count[NEXT_ROW]
+        if t_o > t1 * (1.0 + 1e-15):
+            break
+        row = b.rows[r.count[ROWS]]
+        if abs(t_o - (t + h)) <= 1e-15 * abs(t_o) and t1 >= t + h:
+            row[0] = t_o
+            row[1:] = b.out[: s.n_out]
+        else:
+            theta = (t_o - t) / h
+            call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+            derivative(s, t_o, b.y2, b.K[1])
+            row[0] = t_o
+            done = r.clock[WORK_PROJECTION] + theta * projected
+            measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
+            row[1:] = s.out[: s.n_out]
+        r.count[ROWS] += 1
+        r.count[NEXT_ROW] += 1
+
+
+@part
+def accept(s, r, b, t1, projected, last):
+    """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
+    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if t1 <= r.clock[T] else 0
+    r.clock[T] = t1
+    r.clock[WORK_PROJECTION] += projected
+    r.y[:] = b.y1
+    r.yd[:] = b.K[last]
+    r.gap[:] = b.gap1
+    r.branch[:] = b.branch1
+    r.count[STEPS] += 1
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        if r.mem[e, PHASE] != FLIGHT and r.gap[c, 0] > 0.0:
+            grow(s, r, c)
+            if s.wanted[e] >= 0 and b.steps.shape[1] > 2:
+                line = b.steps[r.count[STEP_ROWS]]
+                line[0], line[1] = t1, e
+                for k in range(line.size - 2):
+                    line[2 + k] = b.out[s.wanted[e] + k] if s.wanted[e] + k < s.n_out else 0.0
+                r.count[STEP_ROWS] += 1
+    if s.column_energy >= 0:
+        for c in range(s.column_energy, s.n_out - 1):
+            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], abs(b.out[c]))
+        residual = abs(b.out[s.n_out - 1])
+        r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
+    peaks(s, r, b, t1)
+
+
+@part
+def peaks(s, r, b, t):
+    """Largest and smallest value of every channel over the accepted points.
+
+    A local extremum between three accepted points that lie close together is refined by the
+    parabola through them.
+    """
+    for c in range(s.n_out):
+        p, v2 = r.peak[c], b.out[c]
+        t0, v0, t1, v1 = p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2]
+        extreme(p, t, v2)
+        turns = t0 < t1 < t and (v1 - v0) * (v2 - v1) < 0.0
+        if turns and abs(v1 - v0) + abs(v2 - v1) < SMOOTH * abs(v1):
+            slope = (v1 - v0) / (t1 - t0)
+            bend = ((v2 - v1) / (t - t1) - slope) / (t - t0)
+            turn = 0.5 * (t0 + t1) - 0.5 * slope / bend
+            value = v0 + (turn - t0) * (slope + bend * (turn - t1))
+            # a kink between unevenly spaced points is no parabola
+            if abs(value - v1) < 0.25 * max(abs(v1 - v0), abs(v2 - v1)):
+                extreme(p, turn, value)
+        p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2] = t1, v1, t, v2
+
+
+@part
+def extreme(p, t, value):
+    """Take a value into a channel's extremes."""
+    if value > p[PEAK_MAX]:
+        p[PEAK_MAX], p[PEAK_MAX_T] = value, t
+    if value < p[PEAK_MIN]:
+        p[PEAK_MIN], p[PEAK_MIN_T] = value, t
+
+
+@part
+def near_peak(s, r, b):
+    """Whether a contact's force may pass its largest value inside the step just made."""
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        k = s.wanted[e]
+        if s.mem[e, PHASE] != FLIGHT and k >= 0:
+            ends = max(b.out[k], r.peak[k, PEAK_V2])
+            if ends > NEAR * r.peak[k, PEAK_MAX] and ends > 0.0:
+                return True
+    return False
+
+
+@part
+def peaks_inside(s, r, b, interpolate, t, h, t1):
+    """Extremes of the contacts' channels inside the step, from its dense output."""
+    for k in range(1, INSIDE):
+        theta = (t1 - t) / h * k / INSIDE
+        call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+        poses(s, b.y2)
+        call_all(s, s.measure, t + theta * h)
+        for c in range(s.contact.size):
+            first = s.wanted[s.contact[c]]
+            if first < 0 or s.mem[s.contact[c], PHASE] == FLIGHT:
+                continue
+            for o in range(first, first + s.contact_width[c]):
+                extreme(r.peak[o], t + theta * h, s.out[o])
+
+
+@part
+def grow(s, r, c):
+    """Let the unit of the error norm follow the deepest penetration met."""
+    depth = r.gap[c, 0]
+    if depth > r.impact[c]:
+        r.impact[c] = depth
+        units(s, r)
+
+
+@part
+def units(s, r):
+    """Length and speed of the error norm from the penetrations met so far."""
+    length, speed = 1e300, 1e300
+    for c in range(s.contact.size):
+        K, n, mass = s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2]
+        depth = min(r.impact[c], s.contact_par[c, 3])
+        if depth <= 0.0:
+            continue
+        length = min(length, depth)
+        # the frequency of the contact at that depth turns the length into a speed
+        speed = min(speed, depth * np.sqrt(n * K * depth ** (n - 1.0) / mass))
+    if length < 1e300:
+        r.clock[LENGTH], r.clock[SPEED] = length, speed
+
+
+@part
+def change_phases(s, r, b, setting, t, t1):
+    """Switch every contact whose event is the one just stepped to; latch impact speeds."""
+    first = NO_EVENT
+    for c in range(s.contact.size):
+        first = min(first, b.root[c])
+    h = 1e300
+    for c in range(s.contact.size):
+        if b.root[c] > first + SAME:
+            continue
+        e = s.contact[c]
+        r.mem[e, PHASE] = flip(r.mem[e, PHASE])
+        r.count[EVENTS] += 1
+        line = b.events[r.count[EVENT_ROWS]]
+        r.count[EVENT_ROWS] += 1
+        onset = r.mem[e, PHASE] == CONTACT
+        line[EVENT_TIME], line[EVENT_ROW] = t1, e
+        line[EVENT_KIND] = ONSET if onset else SEPARATION
+        line[EVENT_SPEED] = r.gap[c, 1]
+        line[EVENT_ANGLE] = 0.0
+        if onset:
+            speed = max(r.gap[c, 1], s.contact_par[c, 4])
+            r.mem[e, IMPACT_SPEED] = speed
+            if s.contact_state[c] >= 0:
+                r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
+            speed = max(speed, 1e-12)
+            h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
+                                  speed, setting[TOLERANCE]))  # fmt: skip
+        else:
+            r.mem[e, IMPACT_SPEED] = 0.0
+    r.clock[LAST_EVENT] = t1
+    derivative(s, t1, r.y, r.yd)
+    r.peak[:, PEAK_T1] = t1  # no parabola across an event
+    if h < 1e300:
+        r.clock[H] = min(r.clock[H], h)
+
+
+@part
+def latch(s, r):
+    """Methods that locate nothing: remember the approach speed of a running contact."""
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        if r.gap[c, 0] <= 0.0:
+            r.mem[e, IMPACT_SPEED] = 0.0
+        elif r.mem[e, IMPACT_SPEED] == 0.0:
+            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])
+
+
+@part
+def control(r, setting, h, error, event):
+    """The next step from the error of this one."""
+    if setting[FIXED_STEP] > 0.0:
+        return
+    factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error ** (-1 / 8)))
+    if r.count[AFTER_REJECTION] == 1:
+        factor = min(factor, 1.0)
+    r.count[AFTER_REJECTION] = 0
+    if event:
+        # change_phases may have set a shorter first step after a touch
+        r.clock[H] = min(r.clock[H], h * factor)
+    elif h >= r.clock[H] or factor < 1.0:
+        r.clock[H] = h * factor
+    else:
+        r.clock[H] = max(r.clock[H], h * factor)
+
+
+
+@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+def begin(s, r, b, setting):
+    """First row, energy and gaps of a record whose y and mem were just set."""
+    derivative(s, 0.0, r.y, r.yd)
+    gaps(s, 0.0)
+    for c in range(s.contact.size):
+        r.gap[c, 0] = s.gap[s.contact[c], 0]
+        r.gap[c, 1] = s.gap[s.contact[c], 1]
+    for k in range(s.n_s):
+        r.branch[k] = s.S[k, 0]
+    units(s, r)
+    measure(s, 0.0, r.y, 0.0, 0.0)
+    b.out[:] = s.out
+    r.clock[ENERGY_0] = b.out[s.n_out - 1]
+    b.out[s.n_out - 1] = 0.0
+    b.rows[0, 0] = 0.0
+    b.rows[0, 1:] = b.out[: s.n_out]
+    r.count[ROWS] = 1
+    r.count[NEXT_ROW] = 1
+    r.peak[:] = 0.0
+    for c in range(s.n_out):
+        r.peak[c, PEAK_MAX] = b.out[c]
+        r.peak[c, PEAK_MIN] = b.out[c]
+        r.peak[c, PEAK_V2] = b.out[c]

@@ -1,0 +1,123 @@
+"""What changes during a run, in one record: a checkpoint is a copy of it."""
+
+import numpy as np
+
+from trsim.elements.packed import A1, A2, I1, Packed
+from trsim.elements.scene import Model
+
+# clock: floating-point state of the march
+(
+    T,  # s
+    H,  # s, the step to try next
+    LENGTH,  # m, unit of the error norm: the smallest gap or penetration that matters
+    SPEED,  # m/s, its unit for velocities
+    WORK_PROJECTION,  # J, given to the mechanism by projecting back to the constraints
+    ENERGY_0,  # J, total energy at the start
+    WORST_PHI,  # m or rad, largest constraint residual met at an accepted point
+    WORST_PHI_DOT,
+    LARGEST_ENERGY,  # J, largest entry of the energy book so far: the scale of its residual
+    LARGEST_RESIDUAL,  # J
+    LAST_EVENT,  # s
+    N_CLOCK,
+) = range(12)
+
+# count: integer state of the march
+(
+    STEPS,
+    REJECTED,
+    EVENTS,
+    NEXT_ROW,  # index of the next output time
+    ROWS,  # filled rows of the buffers
+    STEP_ROWS,
+    EVENT_ROWS,
+    DENSE_BUILT,
+    AFTER_REJECTION,
+    SAME_TIME,  # events in a row without time passing
+    N_COUNT,
+) = range(11)
+
+# settings: constants of the march
+(
+    T_END,
+    TOLERANCE,
+    H_MAX,
+    EVERY,  # s between output rows
+    FIXED_STEP,  # s, 0 where the method controls its step
+    LOCATE,  # 1: contact onset and separation are located
+    N_SETTINGS,
+) = range(7)
+
+# why the march returned
+DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
+
+# columns of the event buffer
+EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE = range(5)
+ONSET, SEPARATION = 1.0, 2.0
+EVENT_NAMES = {ONSET: "onset", SEPARATION: "separation"}
+
+
+class Record(Packed):
+    """The state of a run."""
+
+    y: A1  # (n_y)
+    yd: A1  # (n_y) derivative at y, the first stage of the next step
+    mem: A2  # (N, n_mem) the scene's own
+    branch: A1  # (n_s) turn every angle is on; the scene's own
+    gap: A2  # (n_contacts, 2) penetration and rate at y
+    clock: A1
+    count: I1
+    peak: A2  # (n_out, N_PEAK) extremes of every channel, and the last two values
+    impact: A1  # (n_contacts) largest penetration so far
+
+
+PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)
+
+
+class Buffers(Packed):
+    """Room for results between two visits of the caller, and scratch of the march."""
+
+    rows: A2  # (n, 1 + n_out) time, channels
+    steps: A2  # (n, 2 + n_contact_columns) time, row e, contact channels
+    events: A2  # (n, 5)
+    K: A2  # stages of the integrator
+    P: A2  # dense output
+    y1: A1
+    y2: A1
+    weight: A1
+    out: A1  # (n_out) channels at the end of the step
+    gap1: A2  # (n_contacts, 2)
+    root: A1  # (n_contacts) where in the step its event lies, 2 for none
+    branch1: A1
+
+
+RECORD, BUFFERS = Record.numba_type, Buffers.numba_type
+
+
+def fresh_buffers(model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int) -> Buffers:
+    """Buffers for a model and a method."""
+    contacts = len(model.contact)
+    return Buffers(
+        rows=np.zeros((256, 1 + model.n_out)),
+        steps=np.zeros((1024, n_steps)),
+        events=np.zeros((256, 5)),
+        K=np.zeros((stages, n_y)),
+        P=np.zeros((dense_rows, n_y)),
+        y1=np.zeros(n_y),
+        y2=np.zeros(n_y),
+        weight=np.zeros(n_y),
+        out=np.zeros(max(model.n_out, 1)),
+        gap1=np.zeros((contacts, 2)),
+        root=np.zeros(contacts),
+        branch1=np.zeros(max(model.n_s, 1)),
+    )
+
+
+def copy(record: Record) -> dict[str, np.ndarray]:
+    """A checkpoint."""
+    return {name: array.copy() for name, array in record.arrays().items()}
+
+
+def restore(record: Record, checkpoint: dict[str, np.ndarray]) -> None:
+    """Go back to a checkpoint."""
+    for name, array in checkpoint.items():
+        getattr(record, name)[:] = array

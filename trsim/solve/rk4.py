@@ -1,0 +1,51 @@
+"""Classical Runge-Kutta, order 4, fixed step: the method of the published reverser studies.
+
+    0   |
+    1/2 | 1/2
+    1/2 | 0    1/2
+    1   | 0    0    1
+    ----+---------------------
+        | 1/6  1/3  1/3  1/6                      [HairerNorsettWanner1993]
+
+Contact onset is not located: a contact acts in every stage in which the bodies overlap, and its
+impact speed is latched at the end of the first step that finds them overlapping.  Between the ends
+of a step the solution is the cubic Hermite polynomial (order 3).
+"""
+
+from trsim.assemble.equations import derivative
+from trsim.elements.contract import compiled
+from trsim.solve.calls import DENSE, INTERPOLATE, STEP
+
+ORDER = 4
+STAGES = 5
+LAST = 4
+DENSE_ROWS = 3
+ADAPTIVE = False
+
+
+@compiled(STEP)
+def step(scene, K, t, y, h, y1, weight):
+    for s in range(1, 4):
+        part = h if s == 3 else 0.5 * h
+        for c in range(y.size):
+            y1[c] = y[c] + part * K[s - 1, c]
+        derivative(scene, t + part, y1, K[s])
+    for c in range(y.size):
+        y1[c] = y[c] + h / 6.0 * (K[0, c] + 2.0 * K[1, c] + 2.0 * K[2, c] + K[3, c])
+    return 0.0
+
+
+@compiled(DENSE)
+def dense(scene, K, t, y, h, y1, P):
+    for c in range(y.size):
+        delta = y1[c] - y[c]
+        P[0, c] = delta
+        P[1, c] = h * K[0, c] - delta
+        P[2, c] = delta - h * K[4, c] - P[1, c]
+
+
+@compiled(INTERPOLATE)
+def interpolate(P, y, theta, out):
+    rest = 1.0 - theta
+    for c in range(y.size):
+        out[c] = y[c] + theta * (P[0, c] + rest * (P[1, c] + theta * P[2, c]))

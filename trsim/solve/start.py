@@ -1,0 +1,259 @@
+"""Where a run starts: consistent positions and velocities, contacts at rest where asked for.
+
+Positions: as drawn, moved to the joint values of `initial` in small steps, and to the static
+equilibrium of the joints named there.  Velocities: those of the mechanism with all clearances ideal
+and the drives at speed, nearest to the bodies' given ones; rates of the named joints zero.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.assemble import Mechanism, assemble
+from trsim.assemble.equations import derivative, gaps, poses
+from trsim.elements.scene import Model, scene
+from trsim.assemble.reduce import closest, jacobian, weights
+from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
+from trsim.errors import ModelError, known
+from trsim.solve.statics import equilibrium
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Start:
+    """A consistent start of a run."""
+
+    y: Array
+    mem: Array
+    moved: float  # m or rad: largest constraint residual the projection removed
+    residual: float  # N: static force left by the equilibrium, 0 where none was asked for
+    length: float  # m, first unit of the error norm
+    speed: float  # m/s
+    depth: Array  # (n_contacts) penetration expected at the forces of the start, m
+
+
+def start(scenario: Any, mechanism: Mechanism, located: bool) -> Start:
+    """The start of a run; raises ModelError where there is none."""
+    initial = scenario.initial
+    check_names(scenario, initial)
+    y, residual = positions(scenario, mechanism, initial)
+    model = mechanism.model
+    phi = jacobian(model, 0.0, follow(mechanism, y))[0]
+    moved = float(np.max(np.abs(phi), initial=0.0))
+    y, left = closest(model, 0.0, follow(mechanism, y))
+    if left > 1e-9 * model.size:
+        worst = int(np.argmax(np.abs(jacobian(model, 0.0, y)[0])))
+        raise ModelError(
+            f"the joints cannot be closed: {mechanism.rows[worst]} stays open by {left:.3g}",
+            "check the points of the joints and the drives' positions at t = 0",
+        )
+    y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
+    mem = phases(model, y, located)
+    length, speed, depth = units(model, y, mem, scenario)
+    return Start(y, mem, moved, residual, length, speed, depth)
+
+
+def check_names(scenario: Any, initial: Any) -> None:
+    """Joints named under `initial` exist and have a coordinate to set."""
+    for name in (*initial.equilibrium, *initial.values):
+        if name not in scenario.joints:
+            raise ModelError(f"no joint named '{name}'", known(name, scenario.joints), ("initial",))
+
+
+def follow(mechanism: Mechanism, y: Array) -> Array:
+    """y with the states that start at a joint coordinate set to its value."""
+    model = mechanism.model
+    y = y.copy()
+    w = scene(model)
+    poses(w, y)
+    for k, s in enumerate(mechanism.follows):
+        if s >= 0:
+            y[model.n_q + model.n_v + N_BOOK + k] = w.S[s, 0]
+    return y
+
+
+def positions(scenario: Any, mechanism: Mechanism, initial: Any) -> tuple[Array, float]:
+    """q as drawn, at the given joint values, in equilibrium; and the static force left, N."""
+    if not initial.equilibrium and not initial.values:
+        return mechanism.y0, 0.0
+    playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
+    ideal = frozenset(playing - set(initial.equilibrium))
+    held = assemble(scenario, ideal, holding_drives(scenario, initial))
+    y = follow(held, carried(mechanism, held))
+    residual = 0.0
+    targets = {held.coordinates[name].index: value for name, value in initial.values.items()}
+    settle = bool(initial.equilibrium)
+    if settle:
+        y, residual = equilibrium(held, y)
+    if targets:
+        y, residual = approach(held, y, targets, settle)
+    return back(mechanism, held, y), residual
+
+
+def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
+    """The scenario's drives, with those of the joints of `initial` replaced by rigid holds."""
+    from trsim.elements.drive import Drive
+
+    drives = {n: d for n, d in scenario.drives.items() if d.joint not in initial.values}
+    context = {"parameters": {}}
+    for name in initial.values:
+        hold = {"joint": name, "velocity": 0.0}
+        drives[f"hold {name}"] = Drive.model_validate(hold, context=context)
+    return drives
+
+
+def approach(
+    held: Mechanism, y: Array, targets: dict[int, float], settle: bool
+) -> tuple[Array, float]:
+    """Move joint coordinates to their targets by quasi-static steps that keep the branch."""
+    model = held.model
+    place = {s: model.n_q + model.n_v + N_BOOK + k for k, s in enumerate(held.follows) if s >= 0}
+    begin = {s: y[place[s]] for s in targets}
+    done, step, residual = 0.0, 1.0 / 64.0, 0.0
+    while done < 1.0:
+        ahead = min(1.0, done + step)
+        trial = y.copy()
+        for s, target in targets.items():
+            trial[place[s]] = begin[s] + ahead * (target - begin[s])
+        try:
+            trial, left = closest(model, 0.0, trial)
+            if left > 1e-9 * model.size:
+                raise ModelError("the joints cannot be closed")
+            if settle:
+                trial, residual = equilibrium(held, trial)
+        except ModelError as error:
+            step *= 0.5
+            if step < 1e-5:
+                raise ModelError(
+                    f"the mechanism cannot be moved to its initial position: {error.what} after "
+                    f"{100 * done:.1f} % of the way",
+                    "is the position within reach?",
+                    ("initial",),
+                ) from None
+            continue
+        y, done, step = trial, ahead, min(2.0 * step, 1.0 / 16.0)
+    return y, residual
+
+
+def carried(mechanism: Mechanism, other: Mechanism) -> Array:
+    """y of one assembly as y of another with the same bodies."""
+    n = mechanism.model.n_q + mechanism.model.n_v
+    y = np.zeros(n + other.model.n_z)
+    y[:n] = mechanism.y0[:n]
+    return y
+
+
+def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
+    n = mechanism.model.n_q
+    out = mechanism.y0.copy()
+    out[:n] = y[:n]
+    return follow(mechanism, out)
+
+
+def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
+    """v nearest to the given one (in the metric of M) that the ideal mechanism allows."""
+    playing = frozenset(n for n, s in scenario.joints.items() if s.type == "clearance_joint")
+    ideal = assemble(scenario, playing, None) if playing else mechanism
+    model = ideal.model
+    y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
+    n = model.n_q + model.n_v
+    y_ideal[:n] = y[:n]
+    y_ideal = follow(ideal, y_ideal)
+    _, phi_t, J = jacobian(model, 0.0, y_ideal)
+    v = world_velocities(model, y_ideal)
+    rows, target = [J], [-phi_t]
+    for name in named:
+        if name in ideal.coordinates:
+            rows.append(coordinate_gradient(model, y_ideal, ideal.coordinates[name].index)[None])
+            target.append(np.zeros(1))
+    J, rate = np.vstack(rows), np.concatenate(target)
+    scale = weights(model)
+    if len(J):
+        v = v + scale * np.linalg.lstsq(J * scale, rate - J @ v, rcond=1e-10)[0]
+    left = np.max(np.abs(J @ v - rate), initial=0.0)
+    if left > 1e-6 * max(1.0, np.max(np.abs(rate), initial=0.0)):
+        raise ModelError(
+            f"no velocities at t = 0 satisfy the joints and drives (off by {left:.3g})",
+            "two drives on one degree of freedom, or a start in a dead centre?",
+        )
+    return with_velocities(mechanism.model, y, v)
+
+
+def world_velocities(model: Model, y: Array) -> Array:
+    """World-axes twists of the moving frames, one vector."""
+    w = scene(model)
+    poses(w, y)
+    return w.V[1:].ravel().copy()
+
+
+def with_velocities(model: Model, y: Array, v: Array) -> Array:
+    """y with the given world-axes twists."""
+    w = scene(model)
+    poses(w, y)
+    y = y.copy()
+    for f in range(1, model.n):
+        twist = v[6 * (f - 1) : 6 * f]
+        o = model.n_q + model.d * (f - 1)
+        if model.d == 3:
+            y[o : o + 3] = twist[[0, 1, 5]]
+        else:
+            y[o : o + 3] = twist[:3]
+            y[o + 3 : o + 6] = w.X[f, 3:].reshape(3, 3).T @ twist[3:]
+    return y
+
+
+def coordinate_gradient(model: Model, y: Array, s: int) -> Array:
+    """Rate of a joint coordinate per unit of every twist component."""
+    gradient = np.zeros(6 * (model.n - 1))
+    still = with_velocities(model, y, gradient)
+    w = scene(model)
+    for k in range(gradient.size):
+        unit = np.zeros_like(gradient)
+        unit[k] = 1.0
+        moving = with_velocities(model, still, unit)
+        poses(w, moving)
+        gradient[k] = w.S[s, 1]
+    return gradient
+
+
+def phases(model: Model, y: Array, located: bool) -> Array:
+    """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
+    mem = np.zeros((len(model.con), 2))
+    w = scene(model)
+    poses(w, y)
+    gaps(w, 0.0)
+    for c, e in enumerate(model.contact):
+        closed = w.gap[e, 0] > 0.0
+        mem[e, PHASE] = (CONTACT if closed else FLIGHT) if located else UNLOCATED
+        mem[e, IMPACT_SPEED] = max(model.contact_par[c, 4], 0.0) if closed else 0.0
+    return mem
+
+
+def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, float, Array]:
+    """First units of the error norm, and the penetration each contact may expect.
+
+    With contacts: what the largest force at the start (or an impact at the slowest speed) would
+    press in.  Without: the size of the mechanism, and the largest of its speeds, of the speed its
+    accelerations give over its size, and of its size per run.
+    """
+    w = scene(model)
+    yd = np.zeros_like(y)
+    w.mem[:] = mem
+    derivative(w, 0.0, y, yd)
+    force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
+    reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
+    force = max(force, float(max(reaction, default=0.0)))
+    depth = []
+    for K, n, mass, c, slowest in model.contact_par:
+        touch = ((n + 1.0) * mass * max(slowest, 1e-3) ** 2 / (2.0 * K)) ** (1.0 / (n + 1.0))
+        depth.append(min(max((force / K) ** (1.0 / n), touch), c))
+    speed = float(np.linalg.norm(w.V[:, :3], axis=1).max(initial=0.0))
+    speed = max(speed, float(np.abs(w.V[:, 3:]).max(initial=0.0)) * model.size)
+    pull = float(np.linalg.norm(w.A[:, :3], axis=1).max(initial=0.0))
+    pull = max(pull, float(np.abs(w.A[:, 3:]).max(initial=0.0)) * model.size)
+    speed = max(speed, np.sqrt(pull * model.size), model.size / max(scenario.solver.end, 1e-300))
+    return model.size, speed, np.array(depth)
+

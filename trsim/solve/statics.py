@@ -1,0 +1,145 @@
+"""Static equilibrium: forces balance on the constraints, without friction, damping or inertia.
+
+    Z^T (F(q) - J^T lam) = 0,    Phi(q) = 0          Z spans the motions the constraints allow
+
+Pseudo-transient continuation [Kelley1998]: Newton steps on the reduced forces with a multiple of the
+mass matrix added to the stiffness, which fades as the forces balance.  A journal released in its
+bearing has no stiffness until it touches; the mass term carries it there, in steps well below the
+clearance.  A motion that stays without stiffness is indifferent, and refused.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.assemble import Mechanism
+from trsim.assemble.equations import forces, poses
+from trsim.elements.scene import Model, scene
+from trsim.assemble.reduce import closest, displaced, jacobian
+from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
+from trsim.errors import ModelError
+
+Array = NDArray[np.float64]
+
+BALANCED = 1e-11  # of the largest force
+ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from none
+STEPS = 400
+INDIFFERENT = 1e-6  # of the largest eigenvalue scale: see `equilibrium`
+
+
+def static_forces(model: Model, y: Array) -> Array:
+    """World-axes wrenches of the moving frames at rest, N and N*m, one vector."""
+    w = scene(model)
+    w.mem[:, PHASE], w.mem[:, IMPACT_SPEED] = UNLOCATED, 1.0
+    still = y.copy()
+    still[model.n_q : model.n_q + model.n_v] = 0.0
+    poses(w, still)
+    forces(w, 0.0)
+    return w.F[1:].ravel().copy()
+
+
+def mass_matrix(model: Model, y: Array) -> Array:
+    """Diagonal of M against world-axes twists (inertias by their largest moment)."""
+    blocks = []
+    for f in range(1, model.n):
+        I = model.inertia[f]  # noqa: E741
+        blocks.append([model.mass[f]] * 3 + [max(I[0], I[4], I[8])] * 3)
+    return np.array(blocks).ravel()
+
+
+def movable(model: Model) -> NDArray[np.bool_]:
+    """Twist components that exist in the scene."""
+    inside = np.zeros((model.n - 1, 6), bool)
+    inside[:, [0, 1, 5] if model.d == 3 else range(6)] = True
+    return inside.ravel()
+
+
+def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
+    """Columns: an M-orthonormal basis of the motions with J dx = 0."""
+    root = np.sqrt(mass[free])
+    if len(J) == 0:
+        basis = np.eye(int(free.sum()))
+    else:
+        _, s, vt = np.linalg.svd(J[:, free] / root, full_matrices=True)
+        rank = int(np.sum(s > 1e-10 * max(s.max(initial=0.0), 1e-300)))
+        basis = vt[rank:].T
+    Z = np.zeros((free.size, basis.shape[1]))
+    Z[free] = basis / root[:, None]
+    return Z
+
+
+def stiffness(model: Model, y: Array, Z: Array, lam: Array, J_of_lam: Array, step: float) -> Array:
+    """- d(F - J^T lam)/dq along the columns of Z, by central differences; Z^T K Z."""
+    K = np.empty((Z.shape[1], Z.shape[1]))
+    for k in range(Z.shape[1]):
+        size = step / max(float(np.max(np.abs(Z[:, k]))), 1e-300)
+        total = []
+        for sign in (1.0, -1.0):
+            near = displaced(model, y, sign * size * Z[:, k])
+            total.append(static_forces(model, near) - jacobian(model, 0.0, near)[2].T @ lam)
+        K[:, k] = -Z.T @ (total[0] - total[1]) / (2.0 * size)
+    return 0.5 * (K + K.T)
+
+
+def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
+    """The equilibrium reached from y, drives held at t = 0; and the force left, N."""
+    model = mechanism.model
+    y, _ = closest(model, 0.0, y)
+    free, mass = movable(model), mass_matrix(model, y)
+    gaps = [c for c in model.contact_par[:, 3] if np.isfinite(c)]
+    reach = min([0.2 * c for c in gaps], default=0.02 * model.size)
+    probe = 1e-9 * model.size if not gaps else min(1e-9 * model.size, 1e-5 * min(gaps))
+    push, scale = 0.0, 1e-300
+    for count in range(STEPS):
+        F, J = static_forces(model, y), jacobian(model, 0.0, y)[2]
+        Z = free_motions(J, free, mass)
+        if Z.shape[1] == 0:
+            return y, 0.0
+        lam = np.linalg.lstsq(J.T[free], F[free], rcond=1e-12)[0] if len(J) else np.zeros(0)
+        r = Z.T @ F
+        K = stiffness(model, y, Z, lam, J, probe)
+        values, vectors = np.linalg.eigh(K)
+        # bodies in balance have no net force left: the largest one met is the scale
+        scale = max(scale, float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
+        size = float(np.linalg.norm(r))
+        left = float(np.linalg.norm((Z @ r) * mass))
+        if count == 0:
+            push = max(abs(values[0]), size / reach)
+        # Newton where the stiffness is positive, downhill where it is not
+        curvature = np.maximum(np.abs(values), 1e-12 * np.abs(values).max()) + push
+        dx = Z @ (vectors @ ((vectors.T @ r) / curvature))
+        longest = float(np.max(np.abs(dx.reshape(-1, 6)[:, :3])))
+        turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
+        # a stiff contact turns the rounding of a position into a force: no step is left to take
+        at_rounding = max(longest, turned) < ROUNDING * model.size and left < 1e-6 * scale
+        if left <= BALANCED * scale or size == 0.0 or at_rounding:
+            check_stable(mechanism, values, Z @ vectors, scale, model)
+            return y, left
+        limit = min(1.0, reach / max(longest, turned, 1e-300))
+        y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
+        r_new = np.linalg.norm(Z.T @ static_forces(model, y_new))
+        push *= 0.3 if r_new < size else 4.0
+        push = max(push, 1e-14 * float(np.abs(values).max()))
+        if r_new < 20.0 * size or limit < 1.0:
+            y = y_new
+    raise ModelError(
+        f"no static equilibrium found: a force of {left:.3g} N stays unbalanced",
+        "is there a load that nothing holds? drop `equilibrium` to start as drawn",
+        ("initial", "equilibrium"),
+    )
+
+
+def check_stable(
+    mechanism: Mechanism, values: Array, motions: Array, scale: float, model: Model
+) -> None:
+    """Refuse an equilibrium in which some motion meets no stiffness at all."""
+    for value, motion in zip(values, motions.T, strict=True):
+        along = motion / np.max(np.abs(motion))
+        restoring = abs(value) / np.max(np.abs(motion)) ** 2  # N/m or N*m/rad of that motion
+        if restoring < INDIFFERENT * scale / model.size:
+            body = int(np.argmax(np.abs(along))) // 6 + 1
+            name = [n for n, f in mechanism.frames.items() if f == body][0]
+            raise ModelError(
+                f"the equilibrium is indifferent: nothing holds '{name}' where it is",
+                "add a spring or a stop, or drop `equilibrium` to start as drawn",
+                ("initial", "equilibrium"),
+            )

@@ -1,0 +1,303 @@
+"""A scenario file and all it extends, tables and --set included, as one tree.
+
+    extends: mechanism.yaml           or a list; a later one overrides an earlier one
+
+A file found this way, and a CSV table, lies in the folder of the scenario or below.  Where the
+scenario is in a project, a folder called `scenarios` or one that holds a file `trsim-root`, it
+may lie anywhere in the nearest such folder.  Links are followed before this is checked.
+
+Mappings are merged key by key.  Lists and scalars replace; so does a mapping whose `type` is
+another; `null` removes the key.  A CSV table is read where its file name stands, so that the
+tree is complete in itself.
+"""
+
+import csv
+import hashlib
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from trsim.errors import FileError, Place, ScenarioError, UsageError, described, known
+from trsim.fields import number, quantity
+from trsim.spec.text import LARGEST, Tree, decoded, read
+
+DEEPEST = 8  # levels of extends
+MOST = 40  # files
+NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws")  # sections by name
+
+
+def expand(path: str | os.PathLike, sets: Iterable[str] = ()) -> tuple[Tree, str]:
+    """The tree of a scenario file, and its text as given."""
+    try:
+        real = Path(path).resolve(strict=True)
+    except (OSError, RuntimeError, ValueError) as error:
+        raise FileError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+    if not real.is_file():
+        raise FileError(f"{path} is not a file")
+    files = _Files(_root(real.parent))
+    data = files.content(real, str(path))
+    tree = files.tree(real, str(path), data, ())
+    return _finished(tree, files, real.parent, sets), decoded(data, str(path))
+
+
+def expand_text(
+    text: str, sets: Iterable[str] = (), name: str = "<text>", folder: Path | None = None
+) -> Tree:
+    """The tree of a text; it extends files only where a folder is given."""
+    files = _Files(_root(folder.resolve()) if folder else None)
+    tree = read(text, name)
+    files.digests[name] = hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()
+    tree = files.extended(tree, folder.resolve() if folder else None, ())
+    return _finished(tree, files, folder, sets)
+
+
+def _finished(tree: Tree, files: "_Files", folder: Path | None, sets: Iterable[str]) -> Tree:
+    for text in sets:
+        override(tree, text)
+    files.inline_tables(tree, tree.data, folder, ())
+    tree.files = files.digests
+    return tree
+
+
+def _root(folder: Path) -> Path:
+    for ancestor in (folder, *folder.parents):
+        if ancestor.name == "scenarios" or (ancestor / "trsim-root").is_file():
+            return ancestor
+    return folder
+
+
+class _Files:
+    """The files one scenario is made of."""
+
+    def __init__(self, root: Path | None) -> None:
+        self.root = root
+        self.digests: dict[str, str] = {}
+        self.folders: dict[str, Path] = {}  # name of a YAML file -> where it lies
+        self.count = 0
+
+    def content(self, real: Path, name: str) -> bytes:
+        self.count += 1
+        if self.count > MOST:
+            raise ScenarioError(f"more than {MOST} files")
+        try:
+            with real.open("rb") as file:
+                data = file.read(LARGEST + 1)
+        except OSError as error:
+            raise FileError(f"{name}: {error.strerror}") from None
+        self.digests[name] = hashlib.sha256(data).hexdigest()
+        return data
+
+    def tree(self, real: Path, name: str, data: bytes, above: tuple[Path, ...]) -> Tree:
+        tree = read(decoded(data, name), name)
+        self.folders[name] = real.parent
+        return self.extended(tree, real.parent, (*above, real))
+
+    def extended(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> Tree:
+        """The tree merged over the files its key `extends` names."""
+        names = tree.data.pop("extends", None)
+        single = not isinstance(names, list)
+        base = Tree({})
+        for k, name in enumerate([names] if single and names is not None else names or []):
+            where = ("extends",) if single else ("extends", k)
+            place: Any = tree.place(where)
+            try:
+                real = self.inside(name, folder, (".yaml", ".yml"))
+                if any(os.path.samefile(real, other) for other in above):
+                    raise ScenarioError(f"{described(name)} extends itself")
+                if len(above) >= DEEPEST:
+                    raise ScenarioError(f"more than {DEEPEST} levels of extends")
+                shown = _beside(name, place)
+                content = self.content(real, shown)
+            except (ScenarioError, FileError) as error:
+                raise ScenarioError(error.what, error.hint, where, place) from None
+            merge(base, self.tree(real, shown, content, above))
+        merge(base, tree)
+        return base
+
+    def inside(self, name: Any, folder: Path | None, suffixes: tuple[str, ...]) -> Path:
+        """The regular file `name` says, refused outside the root."""
+        if not isinstance(name, str) or not name or "\0" in name:
+            raise ScenarioError(f"must be the name of a file, got {described(name)}")
+        if folder is None or self.root is None:
+            raise ScenarioError("a text without a folder cannot name files")
+        if os.path.isabs(name) or "\\" in name or ":" in name:
+            raise ScenarioError(f"{described(name)} is not relative to this file")
+        if not name.endswith(suffixes):
+            raise ScenarioError(f"{described(name)} does not end in {' or '.join(suffixes)}")
+        try:
+            real = (folder / name).resolve()
+            if not real.is_relative_to(self.root):
+                raise ScenarioError(
+                    f"{described(name)} lies outside {self.root.name}/",
+                    "An empty file `trsim-root` in a folder above marks the folder of a project.",
+                )
+            if real.is_file():
+                return real
+            if real.exists():
+                raise ScenarioError(f"{described(name)} is not a regular file")
+            found = [p.name for p in real.parent.iterdir() if p.suffix in suffixes][:200]
+        except (OSError, RuntimeError):
+            found = []
+        raise ScenarioError(f"there is no file {described(name)}", known(name, sorted(found)))
+
+    def inline_tables(self, tree: Tree, data: Any, folder: Path | None, path: tuple) -> None:
+        """Replace each `table: file.csv` by its rows."""
+        for key, value in list(data.items() if isinstance(data, dict) else enumerate(data)):
+            here = (*path, key)
+            if here == ("report",):
+                continue
+            if isinstance(value, dict | list):
+                self.inline_tables(tree, value, folder, here)
+            elif key == "table" and isinstance(value, str):
+                place: Any = tree.place(here)
+                try:
+                    real = self.inside(
+                        value, self.folders.get(place.file, folder), (".csv", ".CSV")
+                    )
+                    shown = _beside(value, place)
+                    data[key] = rows(self.content(real, shown), shown)
+                except (ScenarioError, FileError) as error:
+                    place = error.place or place
+                    raise ScenarioError(error.what, error.hint, here, place) from None
+
+
+def _beside(name: str, place: Place | None) -> str:
+    """A file name as seen from where the file that names it was seen from."""
+    return os.path.normpath(Path(place.file if place else ".").parent / name)
+
+
+def rows(content: bytes, file: str) -> list[list[float]]:
+    """The two columns of a CSV file; a first line of titles and lines after # are skipped."""
+    lines = decoded(content, file).splitlines()
+    table: list[list[float]] = []
+    for k, line in enumerate(lines):
+        if not line.strip() or line.startswith("#"):
+            continue
+        try:
+            cells = next(csv.reader([line], strict=True))
+            x, y = map(float, cells)
+            if not abs(x) < 1e300 or not abs(y) < 1e300:
+                raise ValueError
+        except (ValueError, csv.Error):
+            if not table and not re.match(r"\s*[\d.+-]", line):
+                continue  # titles
+            what = f"row {k + 1} of {file} is not two numbers"
+            place = Place(file, k + 1, 1, line)
+            raise ScenarioError(what, "Columns are separated by commas.", place=place) from None
+        table.append([x, y])
+    return table
+
+
+# --- merging ---------------------------------------------------------------------------------
+
+
+def merge(base: Tree, over: Tree) -> None:
+    """Change `base` into `base` overridden by `over`."""
+    _merge(base, base.data, over.data, ())
+    kept = set(_paths(base.data, ()))
+    base.marks.update((path, place) for path, place in over.marks.items() if path in kept)
+    base.keys.update((path, place) for path, place in over.keys.items() if path in kept)
+
+
+def _merge(base: Tree, old: Any, new: Any, path: tuple) -> None:
+    for key, value in new.items():
+        here, before = (*path, key), old.get(key)
+        if _same_kind(before, value):
+            _merge(base, before, value, here)
+            continue
+        if key in old:
+            for gone in _paths(before, here):
+                base.marks.pop(gone, None)
+                base.keys.pop(gone, None)
+        if value is None and key in old:
+            del old[key]
+        else:
+            old[key] = value
+
+
+def _same_kind(before: Any, value: Any) -> bool:
+    """Whether two values are mappings to be merged; not if they are of different `type`."""
+    if not (isinstance(before, dict) and isinstance(value, dict)):
+        return False
+    return before.get("type") in (None, value.get("type", before.get("type")))
+
+
+def _paths(data: Any, path: tuple) -> Iterable[tuple]:
+    """The path of everything in a tree."""
+    yield path
+    if isinstance(data, dict | list):
+        for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+            yield from _paths(value, (*path, key))
+
+
+def override(tree: Tree, text: str) -> None:
+    """Change one value of a tree: `joints.B.clearance=0.3mm`."""
+    dotted, equals, value = text.partition("=")
+    keys = dotted.strip().split(".")
+    if not equals or not all(keys):
+        raise UsageError(f"--set {described(text)}: write --set section.name.key=value")
+    key_place = Place("--set", 0, 1, text)
+    at = Place("--set", 0, len(dotted) + 2, text)
+    try:
+        new = read(value, "--set", mapping=False).data
+    except ScenarioError as error:
+        raise ScenarioError(error.what, error.hint, tuple(keys), at) from None
+    section = tree.data.get(keys[0])
+    named = section if isinstance(section, dict) else {}
+    if len(keys) > 1 and keys[0] in ("parameters", *NAMED) and keys[1] not in named:
+        what = f"nothing named {described(keys[1])} in {keys[0]}"
+        raise ScenarioError(what, known(keys[1], named), (keys[0],), key_place)
+    inner: Any = tree.data
+    path: tuple = ()
+    for k, word in enumerate(keys):
+        key = _key(inner, word, path, key_place)
+        path = (*path, key)
+        tree.marks.setdefault(path, key_place)
+        if k == len(keys) - 1:
+            inner[key] = new
+        elif isinstance(inner, dict) and inner.get(key) is None:
+            inner[key] = {}
+        inner = inner[key]
+    for here in _paths(new, path):
+        tree.marks[here], tree.keys[here] = at, key_place
+
+
+def _key(inner: Any, word: str, path: tuple, place: Place) -> str | int:
+    """A word of a dotted path as the key of a mapping or the index of a list."""
+    if isinstance(inner, dict):
+        return word
+    if isinstance(inner, list) and re.fullmatch("[0-9]{1,5}", word) and int(word) < len(inner):
+        return int(word)
+    what = f"has no entry {described(word)}: it is {described(inner)}"
+    raise ScenarioError(what, path=path, place=place)
+
+
+# --- parameters ------------------------------------------------------------------------------
+
+
+def parameters(tree: Tree) -> tuple[dict[str, float], list[ScenarioError]]:
+    """The value of each parameter, SI, and what is wrong with them."""
+    given = tree.data.get("parameters")
+    if given is None:
+        return {}, []
+    if not isinstance(given, dict):
+        what = f"must be a mapping of names to numbers, got {described(given)}"
+        return {}, [ScenarioError(what, path=("parameters",))]
+    values: dict[str, float] = {}
+    problems: list[ScenarioError] = []
+    for name, value in given.items():
+        if len(problems) == MOST:
+            break
+        try:
+            if not isinstance(value, str | int | float):
+                raise ScenarioError(f"must be a number, got {described(value)}")
+            found = quantity(value, values) if isinstance(value, str) else None
+            values[name] = number(found[0] if found else value, ("-",), values)
+        except ScenarioError as error:
+            later = [other for other in given if f"'{other}'" in error.what and other != name]
+            hint = f"{later[0]} is defined after {name}." if later else error.hint
+            problems.append(ScenarioError(error.what, hint, ("parameters", name)))
+            values[name] = 1.0  # so that what uses it is not reported as well
+    return values, problems

@@ -1,0 +1,255 @@
+"""What a scenario may contain, section by section.
+
+The elements bring their own specs: the word after `type:` says which, and only those that a
+scenario uses are imported.
+"""
+
+import keyword
+import re
+from collections.abc import Iterator
+from functools import partial
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+
+from annotated_types import Ge, Gt, Interval
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
+
+from trsim import elements
+from trsim.elements.contact_law import ContactLaw
+from trsim.errors import Place, ScenarioError, closest, described, edits, known
+from trsim.expressions import FUNCTIONS
+from trsim.fields import Flag, Spec, Unit, number, vector
+from trsim.spec.expand import NAMED
+from trsim.spec.text import Tree
+
+METHODS = ("dop853", "rk4", "scipy:BDF", "scipy:Radau", "scipy:RK45")
+DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
+RESERVED = {
+    *("ground", "world", "t", "pi", "time", "energy"),
+    *("steps", "events", "peaks", "summary", "solver", "phase", "poincare", "scenario"),
+    *("provenance", *FUNCTIONS, *keyword.kwlist),
+}
+
+Seconds = Annotated[float, Gt(0), Unit("s")]
+Rate = Annotated[float, Ge(0), Unit("1/s")]
+EMPTY: Any = Field(default_factory=dict)
+
+
+# --- elements --------------------------------------------------------------------------------
+
+
+def _Element(section: str) -> BeforeValidator:
+    """Makes an entry of a section a spec, of the class that its `type` names."""
+    return BeforeValidator(partial(_element, section))
+
+
+def _element(section: str, data: Any, info: Any) -> Any:
+    if not isinstance(data, dict):
+        raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
+    spec: Any = elements.load(word(section, data)).spec
+    rest = {key: value for key, value in data.items() if key != "type"}
+    return spec.model_validate(rest, context=info.context)
+
+
+def word(section: str, data: dict) -> str:
+    """Which element an entry of a section is."""
+    words = [name for name, of in elements.ELEMENTS.items() if of == section]
+    named = data.get("type", DEFAULT.get(section))
+    if named is None:
+        near = [key for key in data if edits(key, "type") == 1]
+        if near:
+            raise ScenarioError(
+                f"unknown key {described(near[0])}", "Did you mean 'type'?", (near[0],)
+            )
+        raise ScenarioError("field required: type", known("", words))
+    if not isinstance(named, str) or named not in words:
+        what = f"unknown type {described(named)}"
+        raise ScenarioError(what, known(named, words), ("type",))
+    if named == "revolute" and any(edits(key, "clearance") <= 1 for key in data):
+        return "clearance_joint"
+    return named
+
+
+# --- sections --------------------------------------------------------------------------------
+
+
+class Baumgarte(Spec):
+    """Constraint stabilisation: phi'' + 2 alpha phi' + beta^2 phi = 0."""
+
+    type: ClassVar[str] = "baumgarte"
+    alpha: Rate
+    beta: Rate
+
+
+class SolverSpec(Spec):
+    """How, how far and how exactly the motion is integrated."""
+
+    type: ClassVar[str] = "solver"
+    method: Literal[METHODS] = "dop853"  # type: ignore[valid-type]
+    end: Seconds | None = None  # needed by `run`, not by `check`
+    step: Seconds | None = None
+    tolerance: Annotated[float, Interval(ge=1e-14, le=1e-1), Unit("-")] = 1e-8
+    stabilisation: Literal["projection", "baumgarte", "none"] = "projection"
+    baumgarte: Baumgarte | None = None
+    first_step: Seconds | None = None
+    max_step: Seconds | None = None
+    max_steps: Annotated[int, Gt(0)] | None = None
+    force: Flag = False  # go on where a fixed step is known to be too large
+
+    @model_validator(mode="after")
+    def consistent(self) -> "SolverSpec":
+        if self.method == "rk4" and self.step is None:
+            raise ScenarioError("method rk4 needs a step", "Write for example `step: 1e-5`.")
+        if self.baumgarte is not None and self.stabilisation != "baumgarte":
+            hint = "Write `stabilisation: baumgarte` as well."
+            raise ScenarioError("baumgarte is not the stabilisation", hint, ("baumgarte",))
+        return self
+
+
+class OutputSpec(Spec):
+    """What is recorded, and how often."""
+
+    type: ClassVar[str] = "output"
+    every: Seconds | None = None  # end/1000 unless given
+    channels: tuple[str, ...] = ("*",)  # patterns of names
+
+
+class PhasePortrait(Spec):
+    """One channel against another."""
+
+    type: ClassVar[str] = "phase_portrait"
+    x: str
+    y: str
+
+
+class PoincareSection(Spec):
+    """Two channels at the times a third one crosses zero."""
+
+    type: ClassVar[str] = "poincare_section"
+    when: str
+    crosses: Literal["up", "down", "both"] = "up"
+    plot: tuple[str, str]
+
+
+class Initial(NamedTuple):
+    """How the mechanism starts where that is not as drawn and moving with its drives."""
+
+    equilibrium: tuple[str, ...] = ()  # joints free in the balance of forces
+    values: dict[str, float] = {}  # joint -> coordinate, rad or m  # noqa: RUF012
+
+
+def _initial(data: Any, info: Any) -> Initial:
+    if isinstance(data, Initial):
+        return data
+    if not isinstance(data, dict):
+        raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
+    names = data.get("equilibrium") or []
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        raise ScenarioError("must be a list of joints", path=("equilibrium",))
+    parameters, values = (info.context or {}).get("parameters"), {}
+    joints = [*info.data.get("joints", ()), "equilibrium"]
+    for key, value in data.items():
+        if key == "equilibrium":
+            continue
+        if key not in joints and "joints" in info.data:
+            raise ScenarioError(f"unknown key {described(key)}", known(key, joints), (key,))
+        if not isinstance(value, str | int | float):
+            raise ScenarioError(f"must be a number, got {described(value)}", path=(key,))
+        try:
+            values[key] = number(value, ("rad", "m"), parameters)
+        except ScenarioError as error:
+            raise error.at(key) from None
+    return Initial(tuple(names), values)
+
+
+class Source(NamedTuple):
+    """What a scenario was read from."""
+
+    text: str  # as given
+    files: dict[str, str]  # name -> sha256: the scenario, what it extends, tables
+
+
+class Scenario(Spec):
+    """A mechanism and a load case, checked and in SI units; nothing changes it any more."""
+
+    title: str = ""
+    planar: Flag | None = None
+    gravity: vector("m/s^2") = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
+    parameters: dict[str, float] = EMPTY
+    bodies: dict[str, Annotated[Any, _Element("bodies")]] = EMPTY
+    joints: dict[str, Annotated[Any, _Element("joints")]] = EMPTY
+    drives: dict[str, Annotated[Any, _Element("drives")]] = EMPTY
+    sensors: dict[str, Annotated[Any, _Element("sensors")]] = EMPTY
+    forces: dict[str, Annotated[Any, _Element("forces")]] = EMPTY
+    contact_laws: dict[str, ContactLaw] = EMPTY
+    initial: Annotated[Any, BeforeValidator(_initial)] = Initial()
+    solver: SolverSpec = SolverSpec()
+    output: OutputSpec = OutputSpec()
+    phase_portraits: dict[str, PhasePortrait] = EMPTY
+    poincare: dict[str, PoincareSection] = EMPTY
+    phases: Any = None
+    cases: dict[str, Any] = EMPTY
+    sweep: dict[str, Any] = EMPTY
+    report: dict[str, Any] = EMPTY
+
+    _tree: Tree = PrivateAttr()
+    _text: str = PrivateAttr()
+
+    @property
+    def source(self) -> Source:
+        return Source(self._text, self._tree.files)
+
+    @property
+    def resolved(self) -> dict[str, Any]:
+        """The plain data after extends, tables and --set: JSON and YAML can hold it."""
+        return self._tree.data
+
+    def place(self, path: tuple) -> Place | None:
+        """Where in the files a path of the scenario stands."""
+        return self._tree.place(path)
+
+
+# --- across sections -------------------------------------------------------------------------
+
+
+def name_faults(data: dict) -> Iterator[ScenarioError]:
+    """All names share one name space; each must be a word an expression can contain."""
+    taken: dict[str, str] = {}
+    for section in ("parameters", *NAMED):
+        entries = data.get(section)
+        for name in entries if isinstance(entries, dict) else ():
+            path = (section, name)
+            if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
+                hint = "A name is letters, digits and _, a letter first."
+                yield ScenarioError(f"not a name: {described(name)}", hint, path)
+            elif name in RESERVED:
+                yield ScenarioError(f"the name '{name}' is reserved", "Choose another.", path)
+            elif name in taken:
+                what = f"the name '{name}' is taken by {taken[name]}.{name}"
+                yield ScenarioError(what, "All names share one name space.", path)
+            taken.setdefault(name, section)
+
+
+def sweep_faults(data: dict) -> Iterator[ScenarioError]:
+    """A sweep varies what is there: its keys are dotted paths of the scenario."""
+    sweep = data.get("sweep")
+    for dotted in sweep if isinstance(sweep, dict) else ():
+        inner: Any = data
+        for key in dotted.split("."):
+            entries = inner if isinstance(inner, dict) else {}
+            if isinstance(inner, list):
+                entries = {str(k): item for k, item in enumerate(inner)}
+            if key not in entries:
+                what = f"nothing to vary at {described(dotted)}: no {described(key)}"
+                yield ScenarioError(what, known(key, entries), ("sweep", dotted))
+                break
+            inner = entries[key]
+
+
+def suggestion(name: str, spec: type[Spec], present: dict) -> tuple[str | None, str]:
+    """The key that was probably meant in a mapping of this spec, and the whole hint."""
+    keys = [*spec.model_fields]
+    keys += ["extends"] if spec is Scenario else []
+    keys += ["type"] if spec.type in elements.ELEMENTS else []
+    keys += ["clearance"] if spec.type == "revolute" else []
+    close = closest(name, [key for key in keys if key not in present]) or closest(name, keys)
+    return close, known(name, keys, close)

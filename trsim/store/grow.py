@@ -1,0 +1,103 @@
+"""Tables that grow while a run goes on: datasets of one length and one time scale."""
+
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+ROOM = 4 << 20  # bytes of rows that wait in memory
+AXES = {3: "component.xyz", 9: "component.rotation"}  # scale of the second dimension, by size
+LABELS = {
+    "component.xyz": ["x", "y", "z"],
+    "component.rotation": ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"],
+}
+
+
+class Field(NamedTuple):
+    """One dataset of a table, and the columns of the rows it takes."""
+
+    name: str
+    unit: str
+    meaning: str
+    start: int
+    size: int = 1
+    words: tuple[str, ...] = ()  # the column holds indices of these
+
+
+class Growing:
+    """Datasets that grow together.  Field 0 is the time scale of the others."""
+
+    def __init__(self, group: h5py.Group, fields: list[Field], width: int, expected: int) -> None:
+        """width: columns of the rows; expected: how many rows there may be."""
+        self.fields = fields
+        chunk = min(4096, max(64, 1 << (max(expected, 1) - 1).bit_length()))
+        self.datasets = [_dataset(group, field, chunk) for field in fields]
+        time = self.datasets[0]
+        time.make_scale(fields[0].name)
+        for field, dataset in zip(fields[1:], self.datasets[1:], strict=True):
+            dataset.dims[0].attach_scale(time)
+            if field.size > 1:
+                dataset.dims[1].attach_scale(group.file[AXES[field.size]])
+        room = max(256, min(4 * chunk, ROOM // (8 * width)))
+        self.waiting = np.empty((room, width))
+        self.n_waiting = 0
+        self.n = 0  # rows in the file
+
+    def append(self, rows: Array) -> None:
+        """Take rows; what does not fit in memory goes to the file."""
+        while len(rows):
+            taken = min(len(rows), len(self.waiting) - self.n_waiting)
+            self.waiting[self.n_waiting : self.n_waiting + taken] = rows[:taken]
+            self.n_waiting += taken
+            rows = rows[taken:]
+            if self.n_waiting == len(self.waiting):
+                self.flush()
+
+    def flush(self) -> None:
+        """Write what waits.  Broken off at any point, it can simply be called again."""
+        if not self.n_waiting:
+            return
+        rows, n = self.waiting[: self.n_waiting], self.n + self.n_waiting
+        for field, dataset in zip(self.fields, self.datasets, strict=True):
+            dataset.resize(n, axis=0)
+            dataset[self.n : n] = _values(field, rows)
+        self.n, self.n_waiting = n, 0
+
+
+def scales(file: h5py.File, sizes: set[int]) -> None:
+    """The scales of components, for the sizes of channels that are there."""
+    for size in sorted(sizes & set(AXES)):
+        name = AXES[size]
+        file[name] = np.array(LABELS[name], dtype=h5py.string_dtype())
+        file[name].attrs["long_name"] = "component"
+        file[name].make_scale(name)
+
+
+def _dataset(group: h5py.Group, field: Field, chunk: int) -> h5py.Dataset:
+    shape = () if field.size == 1 else (field.size,)
+    dtype: Any = "f8"
+    if field.words:
+        dtype = f"S{max(len(word) for word in field.words)}"
+    dataset = group.create_dataset(
+        field.name,
+        (0, *shape),
+        maxshape=(None, *shape),
+        chunks=(chunk, *shape),
+        dtype=dtype,
+        fletcher32=True,
+    )
+    if field.unit:
+        dataset.attrs["units"] = field.unit
+    dataset.attrs["long_name"] = field.meaning
+    return dataset
+
+
+def _values(field: Field, rows: Array) -> Any:
+    if field.words:
+        return np.array(field.words, "S")[rows[:, field.start].astype(int)]
+    if field.size == 1:
+        return rows[:, field.start]
+    return rows[:, field.start : field.start + field.size]

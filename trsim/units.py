@@ -1,0 +1,198 @@
+"""Units as mechanisms use them, and quantities such as `0.3 mm`.
+
+A unit is a product of powers: N*m/rad, m/s^2, N/m^1.5, 1/(m*s); "-" is none.  The angle is a
+dimension of its own, so that rpm and Hz, or N*m and N*m/rad, cannot be mixed up.
+"""
+
+import math
+import re
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from trsim.errors import ScenarioError, described, known
+
+Dimension = tuple[float, ...]  # exponents of m, kg, s, rad
+
+BASE = {"m": (1, 0, 0, 0), "kg": (0, 1, 0, 0), "s": (0, 0, 1, 0), "rad": (0, 0, 0, 1)}
+
+# word -> factor (exact where it is), unit.  The angle is a dimension: 1/s is no rad/s.
+DERIVED: dict[str, tuple[str | float, str]] = {
+    "km": ("1e3", "m"),
+    "cm": ("1e-2", "m"),
+    "mm": ("1e-3", "m"),
+    "um": ("1e-6", "m"),
+    "µm": ("1e-6", "m"),
+    "in": ("0.0254", "m"),
+    "ft": ("0.3048", "m"),
+    "g": ("1e-3", "kg"),
+    "t": ("1e3", "kg"),
+    "lb": ("0.45359237", "kg"),
+    "ms": ("1e-3", "s"),
+    "us": ("1e-6", "s"),
+    "µs": ("1e-6", "s"),
+    "min": ("60", "s"),
+    "h": ("3600", "s"),
+    "mrad": ("1e-3", "rad"),
+    "deg": (math.pi / 180, "rad"),
+    "°": (math.pi / 180, "rad"),
+    "rev": (2 * math.pi, "rad"),
+    "turn": (2 * math.pi, "rad"),
+    "rpm": (2 * math.pi / 60, "rad/s"),
+    "Hz": ("1", "1/s"),
+    "kHz": ("1e3", "1/s"),
+    "kt": (1852 / 3600, "m/s"),
+    "g0": ("9.80665", "m/s^2"),
+    "N": ("1", "kg*m/s^2"),
+    "mN": ("1e-3", "N"),
+    "kN": ("1e3", "N"),
+    "MN": ("1e6", "N"),
+    "lbf": ("4.4482216152605", "N"),
+    "Pa": ("1", "N/m^2"),
+    "kPa": ("1e3", "Pa"),
+    "MPa": ("1e6", "Pa"),
+    "GPa": ("1e9", "Pa"),
+    "bar": ("1e5", "Pa"),
+    "psi": (4.4482216152605 / 0.0254**2, "Pa"),
+    "J": ("1", "N*m"),
+    "kJ": ("1e3", "J"),
+    "W": ("1", "J/s"),
+    "kW": ("1e3", "W"),
+    "%": ("1e-2", "-"),
+}
+
+KINDS = {
+    "-": "a plain number",
+    "m": "a length",
+    "m^2": "an area",
+    "m^3": "a volume",
+    "m^4": "a second moment of area",
+    "kg": "a mass",
+    "kg*m^2": "a moment of inertia",
+    "kg/m^3": "a density",
+    "s": "a time",
+    "1/s": "a frequency",
+    "rad": "an angle",
+    "rad/s": "an angular velocity",
+    "rad/s^2": "an angular acceleration",
+    "m/s": "a speed",
+    "m/s^2": "an acceleration",
+    "N": "a force",
+    "N*m": "a torque or an energy",
+    "N*s": "an impulse",
+    "N/m": "a stiffness",
+    "N*m/rad": "a torsional stiffness",
+    "N*s/m": "a damping",
+    "N*m*s/rad": "a torsional damping",
+    "N/m^2": "a pressure",
+    "W": "a power",
+}
+
+_WORD = re.compile(r"\s*(?:([A-Za-zµ°%]+[0-9]*)|([0-9]+(?:\.[0-9]+)?)|(\*\*|[*/^()-]))")
+_PLAIN = str.maketrans({"μ": "µ", "·": "*", "²": "^2", "³": "^3"})
+
+
+@cache
+def unit(text: str) -> tuple[Fraction | float, Dimension]:
+    """The SI factor and the dimension of a unit such as N*m/rad, m/s^2, N/m^1.5, 1/(m*s)."""
+    if text in ("-", "1", ""):
+        return Fraction(1), (0, 0, 0, 0)
+    words, end = [], 0
+    plain = text.translate(_PLAIN).strip()
+    while end < len(plain):
+        match = _WORD.match(plain, end)
+        if not match or len(plain) > 60:
+            raise ScenarioError(f"not a unit: {described(text)}", "Write it like N*m/rad or m/s^2.")
+        words.append(match[0].strip())
+        end = match.end()
+    result = _product(words, text)
+    if words:
+        raise ScenarioError(f"not a unit: {described(text)}", "Write products with *: N*m.")
+    return result
+
+
+def _product(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
+    """Factors joined by * and /, from left to right; takes its words off the list."""
+    factor, dimension = _power(words, text)
+    while words and words[0] in ("*", "/"):
+        sign = 1 if words.pop(0) == "*" else -1
+        f, d = _power(words, text)
+        factor = factor * f if sign > 0 else factor / f
+        dimension = tuple(a + sign * b for a, b in zip(dimension, d, strict=True))
+    return factor, dimension
+
+
+def _power(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
+    word = words.pop(0) if words else ""
+    if word == "(":
+        factor, dimension = _product(words, text)
+        if not words or words.pop(0) != ")":
+            raise ScenarioError(f"not a unit: {described(text)}", "A bracket is not closed.")
+    elif word == "1":
+        factor, dimension = Fraction(1), (0, 0, 0, 0)
+    elif word in BASE:
+        factor, dimension = Fraction(1), BASE[word]
+    elif word in DERIVED:
+        number, of = DERIVED[word]
+        factor, dimension = unit(of)
+        factor = factor * (Fraction(number) if isinstance(number, str) else number)
+    elif not word or not word[0].isalpha():
+        raise ScenarioError(f"not a unit: {described(text)}", "Write it like N*m/rad or m/s^2.")
+    else:
+        raise ScenarioError(f"unknown unit {described(word)}", known(word, [*BASE, *DERIVED]))
+    if words and words[0] in ("^", "**"):
+        words.pop(0)
+        sign = -1 if words and words[0] == "-" and words.pop(0) else 1
+        if not words or not words[0][0].isdigit() or float(words[0]) > 9:
+            raise ScenarioError(f"not a unit: {described(text)}", "A power is a number up to 9.")
+        n = sign * Fraction(words.pop(0))
+        factor = factor ** (int(n) if n.denominator == 1 else float(n))
+        dimension = tuple(float(n * Fraction(d)) for d in dimension)
+    return factor, dimension
+
+
+_NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(.*)", re.DOTALL)
+
+
+def quantity(text: str, names: Any = ()) -> tuple[float, str] | None:
+    """The SI value of `0.3 mm` and the unit as written; None if it is no number with a unit.
+
+    "5/s" is a quantity unless `s` is one of the names an expression may use here.
+    """
+    match = _NUMBER.fullmatch(text)
+    if not match or len(text) > 200:
+        return None
+    number, rest = match[1], match[2].strip()
+    if rest.startswith("/"):
+        words = re.findall(r"[A-Za-z_]\w*", rest)
+        if any(word in names or word not in {**BASE, **DERIVED} for word in words) or not words:
+            return None
+        rest = f"1{rest}"
+    elif rest and not re.match(r"[A-Za-zµμ°%]|1\s*/", rest):
+        return None
+    value = float(number)
+    factor, _ = unit(rest)
+    # decimal fractions are exact: 0.7 mm is the same number as 0.0007
+    if isinstance(factor, Fraction) and 1e-99 < abs(value) < 1e99:
+        return float(Fraction(number) * factor), rest
+    return value * float(factor), rest
+
+
+@cache
+def kind(dimension: Dimension) -> str:
+    """What a number of this dimension is called; empty if nothing common."""
+    return next((name for text, name in KINDS.items() if unit(text)[1] == dimension), "")
+
+
+def inside(units: tuple[str, ...]) -> str:
+    """`this number is a length, in m`"""
+    parts = []
+    for text in units:
+        in_unit = f"in {text}" if text not in ("-", "1") else ""
+        parts.append(", ".join(part for part in (kind(unit(text)[1]), in_unit) if part))
+    return f"this number is {', or '.join(parts)}"
+
+
+def told(units: tuple[str, ...]) -> str:
+    """The same as a hint."""
+    return f"T{inside(units)[1:]}." if units != ("-",) else ""
