@@ -20,8 +20,9 @@ def _cache_folder() -> Path:
     kernels are reached through tables of addresses; whatever is called directly is hashed here.
     """
     here = Path(__file__).parent
-    direct = ["laws/*.py", "elements/contract.py", "elements/frames.py", "assemble/*.py"]
-    direct += ["solve/*.py"]
+    shared = ("calls", "contract", "frames", "packed", "scene", "vectors")
+    direct = [f"elements/{name}.py" for name in shared]
+    direct += ["laws/*.py", "assemble/*.py", "solve/*.py"]
     sources = sorted(path for pattern in direct for path in here.glob(pattern))
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")

@@ -14,7 +14,7 @@ from trsim.laws import functions
 class JointCoordinate(NamedTuple):
     """An angle or a stroke of a joint, ready for those who act along it."""
 
-    index: int  # in S
+    entry: int  # in S
     kind: str  # angle, stroke
     i: int
     j: int

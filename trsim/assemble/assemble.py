@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
+from trsim.assemble.equations import derivative
 from trsim.assemble.layout import Column, layout
 from trsim.assemble.pattern import pattern
 from trsim.assemble.reduce import (
@@ -21,16 +22,16 @@ from trsim.assemble.reduce import (
     unique_reactions,
     weights,
 )
+from trsim.elements import scene as scales
 from trsim.elements.contract import (
     FIRST_ROW,
+    KINDS,
     N_BOOK,
     PHASE,
-    KINDS,
     UNLOCATED,
     Element,
     Row,
 )
-from trsim.elements import scene as scales
 from trsim.elements.scene import BAUMGARTE, NONE, PROJECTION, Model, scene
 from trsim.errors import ModelError, ScenarioError
 
@@ -105,7 +106,7 @@ def assemble(
     inside = in_solve(J, planar)
     unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
     rows = all_rows(instances)
-    notes = ()
+    notes: tuple[str, ...] = ()
     if assumed:
         notes = ("planar motion assumed: nothing holds the bodies in their plane; "
                  "set `planar: false` for a spatial run",)  # fmt: skip
@@ -120,7 +121,7 @@ def assemble(
         redundant=tuple(names[f.row] for f in found if f.everywhere),
         singular=tuple(names[f.row] for f in found if not f.everywhere),
         not_unique=tuple(
-            names[k] for k, u in zip(np.flatnonzero(inside), unique, strict=True) if not u
+            names[k] for k, u in zip(np.flatnonzero(inside).tolist(), unique, strict=True) if not u
         ),
         rows=tuple(f"{r.element}.{r.axis}" for r in rows if r in kept),
         follows=tuple(follow for _, follow in at.states),
@@ -165,7 +166,7 @@ def pack(scenario: Any, ideal: frozenset[str], drives: Mapping[str, Any] | None)
     for n, instance in enumerate(instances):
         if instance.section == "joints" and instance.name in at.coordinates:
             row = instance.row
-            index = at.coordinates[instance.name].index
+            index = at.coordinates[instance.name].entry
             con = (*row.con[:2], index, *row.con[3:])
             row = Row(con, row.par, row.contact)
             instances[n] = Instance(instance.section, instance.name, instance.element, row)
@@ -218,6 +219,7 @@ def build(
         turn=turns(at, d),
         **kernels(instances),
         **pattern([r.frames for r in rows]),
+        derivative=derivative.address(),
         stabilisation=stabilisation[solver.stabilisation],
         alpha=baumgarte.alpha if baumgarte else 0.0,
         beta=baumgarte.beta if baumgarte else 0.0,
@@ -240,14 +242,14 @@ def build(
 def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.int64], Array]:
     """con and par of all instances; dropped constraint rows have the index -1."""
     number = {(r.instance, r.index): k for k, r in enumerate(rows)}
-    cons = []
+    cons: list[list[int]] = []
     for n, instance in enumerate(instances):
         c = instance.row.con
         own = [number.get((n, k), -1) for k in range(len(instance.element.rows))]
         cons.append([*c[:FIRST_ROW], *own, *c[FIRST_ROW:]] if own else list(c))
     con = np.full((max(len(cons), 1), max((len(c) for c in cons), default=1)), -1, np.int64)
-    for e, c in enumerate(cons):
-        con[e, : len(c)] = c
+    for e, numbers in enumerate(cons):
+        con[e, : len(numbers)] = numbers
     pars = [instance.row.par for instance in instances]
     par = np.zeros((max(len(pars), 1), max((len(p) for p in pars), default=1)))
     for e, p in enumerate(pars):
@@ -285,9 +287,12 @@ def masses(scenario: Any, d: int) -> tuple[Array, Array, Array, Array]:
             raise ModelError("a body without mass cannot be solved for", "give it a mass",
                              ("bodies", name, "mass"))  # fmt: skip
         mass_inverse[f] = 1.0 / spec.mass
-        if complete and np.linalg.eigvalsh(known).min() <= 0.0 or inertia[f, 8] <= 0.0:
-            raise ModelError("an inertia must be positive about every axis",
-                             "check the moments and products", ("bodies", name, "inertia"))  # fmt: skip
+        if (complete and np.linalg.eigvalsh(known).min() <= 0.0) or inertia[f, 8] <= 0.0:
+            raise ModelError(
+                "an inertia must be positive about every axis",
+                "check the moments and products",
+                ("bodies", name, "inertia"),
+            )
         if d == 3:
             inertia_inverse[f, 8] = 1.0 / inertia[f, 8]
         elif complete:
@@ -392,7 +397,7 @@ def turns(at: Addresses, d: int) -> NDArray[np.int64]:
     if d == 6:
         return np.zeros((0, 4), np.int64)
     rows = [
-        (x.index, x.i, x.j, 1 if x.axis[2] > 0 else -1)
+        (x.entry, x.i, x.j, 1 if x.axis[2] > 0 else -1)
         for x in at.coordinates.values()
         if x.kind == "angle"
     ]
@@ -425,10 +430,12 @@ def norm(at: Addresses, d: int, size: float) -> tuple[NDArray[np.int64], Array]:
     kind += [scales.OUTSIDE] * N_BOOK
     lever += [1.0] * N_BOOK
     for scale, _ in at.states:
-        named = {"angle": (scales.ANGLE, size), "stroke": (scales.LENGTH, 1.0)}
-        k, s = named.get(str(scale), (scales.MAGNITUDE if scale else scales.OUTSIDE, scale or 1.0))
-        kind.append(k)
-        lever.append(float(s))
+        if isinstance(scale, str):
+            kind.append(scales.ANGLE if scale == "angle" else scales.LENGTH)
+            lever.append(size if scale == "angle" else 1.0)
+        else:
+            kind.append(scales.MAGNITUDE if scale else scales.OUTSIDE)
+            lever.append(scale or 1.0)
     return np.array(kind, np.int64), np.array(lever)
 
 
@@ -455,4 +462,3 @@ def contact_states(instances: list[Instance], contacts: list[int]) -> NDArray[np
         for e in contacts
     ]
     return np.array(states, np.int64)
-

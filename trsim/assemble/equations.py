@@ -13,17 +13,23 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 from math import cos, sin
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 
 from trsim.assemble.linear import factorise, solve
-from trsim.elements.calls import call_kernel
-from trsim.elements.contract import DRIVES
+from trsim.elements.calls import call_kernel, caller
+from trsim.elements.contract import DRIVES, SCENE, compiled
+from trsim.elements.packed import A1, f8
 from trsim.elements.scene import BAUMGARTE
+from trsim.elements.vectors import clear, clear_table
 
 equation = njit(cache=True, error_model="numpy")
 
+#                        scene  t   y   y'
+DERIVATIVE = types.void(SCENE, f8, A1, A1)
+call_derivative = caller(DERIVATIVE)
 
-@equation
+
+@compiled(DERIVATIVE)
 def derivative(s, t, y, yd):
     """Fill yd = y' at (t, y)."""
     s.status[1] += 1
@@ -41,6 +47,12 @@ def derivative(s, t, y, yd):
             # a moving constraint is a drive: the power it gives to the mechanism
             s.zd[DRIVES] += s.lam[k] * s.phi_t[k]
     accelerations(s, y, yd)
+
+
+@equation
+def evaluate(s, t, y, yd):
+    """`derivative` called by its address: compiled once, not into every caller."""
+    call_derivative(s.derivative, s, t, y, yd)
 
 
 @equation
@@ -96,8 +108,8 @@ def spatial_pose(X, V, f, y, q, v):
 @equation
 def forces(s, t):
     """Sum the wrenches F and the powers and rates z'."""
-    s.F[:] = 0.0
-    s.zd[:] = 0.0
+    clear_table(s.F)
+    clear(s.zd)
     call_all(s, s.force, t)
 
 
@@ -131,7 +143,7 @@ def free_accelerations(s):
         o0 = X[f, 3] * V[f, 3] + X[f, 6] * V[f, 4] + X[f, 9] * V[f, 5]
         o1 = X[f, 4] * V[f, 3] + X[f, 7] * V[f, 4] + X[f, 10] * V[f, 5]
         o2 = X[f, 5] * V[f, 3] + X[f, 8] * V[f, 4] + X[f, 11] * V[f, 5]
-        I = s.inertia[f]  # noqa: E741
+        I = s.inertia[f]
         h0 = I[0] * o0 + I[1] * o1 + I[2] * o2
         h1 = I[3] * o0 + I[4] * o1 + I[5] * o2
         h2 = I[6] * o0 + I[7] * o1 + I[8] * o2
@@ -152,7 +164,7 @@ def rows(s):
     else:
         spatial_slots(s)
     value, pair, B, W = s.value, s.pair, s.B, s.W
-    value[:] = 0.0
+    clear(value)
     for p in range(pair.shape[0]):
         i, j = pair[p, 0], pair[p, 1]
         total = B[i, 0] * W[j, 0] + B[i, 1] * W[j, 1] + B[i, 2] * W[j, 2]
@@ -285,7 +297,7 @@ def kinetic(s, y):
 @equation
 def stored_energy(s, t):
     """Fill E and return its sum, J; at the poses of the last evaluation."""
-    s.E[:] = 0.0
+    clear(s.E)
     call_all(s, s.energy, t)
     return s.E[0] + s.E[1] + s.E[2]
 
@@ -340,7 +352,7 @@ def project_positions(s, t, y):
         return worst
     solve(s, s.x)
     dx = s.free
-    dx[:] = 0.0
+    clear_table(dx)
     for k in range(s.m):
         for p in range(s.row_start[k], s.row_start[k + 1]):
             for a in range(s.d):
@@ -368,4 +380,3 @@ def project_velocities(s, y):
             for a in range(s.d):
                 y[v + a] -= s.W[p, a] * s.x[k]
     return worst
-

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from trsim.elements.scene import Model
 from trsim.assemble.outputs import ENERGY_COLUMNS
 from trsim.elements.contract import FIRST_ROW
+from trsim.elements.scene import Model
 from trsim.errors import ScenarioError, known
 
 if TYPE_CHECKING:

@@ -6,16 +6,14 @@ shifted by a small multiple of its diagonal and the solution refined (the proxim
 which converges to the minimum-norm multipliers of the consistent system.
 """
 
-from numba import njit
+from trsim.elements.vectors import copy_to, internal
 
 TINY = 1e-10  # of the diagonal: a smaller pivot is a dependent row
 SHIFT = 1e-9  # of the diagonal, added to a singular S
 REFINEMENTS = 6
 
-algebra = njit(cache=True, error_model="numpy")
 
-
-@algebra
+@internal
 def factorise(s):
     """Factorise s.value in place; s.status[0] counts the small pivots met.
 
@@ -25,16 +23,16 @@ def factorise(s):
     s.status[0] = 0
     for k in range(s.m):
         s.first[k] = s.value[s.diagonal[k]]
-    s.original[:] = s.value
+    copy_to(s.original, s.value)
     if eliminate(s) > 0:
         s.status[0] = 1
-        s.value[:] = s.original
+        copy_to(s.value, s.original)
         for k in range(s.m):
             s.value[s.diagonal[k]] += SHIFT * s.first[k]
         eliminate(s)
 
 
-@algebra
+@internal
 def eliminate(s):
     """Right-looking elimination; returns the number of pivots below TINY."""
     value, small = s.value, 0
@@ -42,7 +40,7 @@ def eliminate(s):
     below, below_start = s.below, s.below_start
     for k in range(s.m):
         D = value[diagonal[k]]
-        if D <= TINY * s.first[k]:
+        if TINY * s.first[k] >= D:
             small += 1
             D = TINY * s.first[k]
             if D == 0.0:
@@ -56,7 +54,7 @@ def eliminate(s):
     return small
 
 
-@algebra
+@internal
 def substitute(s, value, x):
     """x <- (L D L^T)^-1 x."""
     order, diagonal = s.order, s.diagonal
@@ -72,24 +70,24 @@ def substitute(s, value, x):
         x[order[k]] = total
 
 
-@algebra
+@internal
 def solve(s, x):
     """x <- S^-1 x with the last factorisation, refined where S was singular."""
     if s.status[0] == 0:
         substitute(s, s.value, x)
         return
-    s.r[:] = x
+    copy_to(s.r, x)
     b = s.r
     substitute(s, s.value, x)
     for _ in range(REFINEMENTS):
-        s.r2[:] = b
+        copy_to(s.r2, b)
         residual(s, x, s.r2)
         substitute(s, s.value, s.r2)
         for k in range(s.m):
             x[k] += s.r2[k]
 
 
-@algebra
+@internal
 def residual(s, x, r):
     """r <- r - S x, with the entries of S before factorisation."""
     for k in range(s.m):

@@ -77,12 +77,13 @@ def pattern(row_frames: list[tuple[int, int]]) -> dict[str, Any]:
 
     diagonal = [at(k, k) for k in order]
     below_start, below_place, below_row = [0], [], []
-    update_start, update = [0], []
-    for k, rows in zip(order, below, strict=True):
-        for a_index, a in enumerate(rows):
+    update_start = [0]
+    update: list[tuple[int, int, int]] = []
+    for k, under in zip(order, below, strict=True):
+        for a_index, a in enumerate(under):
             below_place.append(at(a, k))
             below_row.append(a)
-            update += [(at(a, b), at(a, k), at(b, k)) for b in rows[: a_index + 1]]
+            update += [(at(a, b), at(a, k), at(b, k)) for b in under[: a_index + 1]]
         below_start.append(len(below_place))
         update_start.append(len(update))
     pair = [

@@ -166,8 +166,8 @@ def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
         F = sample(near)[1:]
         if np.abs(F[:, 2]).max(initial=0.0) > 1e-9 * max(1.0, np.abs(F).max(initial=0.0)):
             return False, False
-    J = jacobian(model, 0.0, y)[2].reshape(model.m, m, 6)[:, :, OUT_OF_PLANE].reshape(model.m, -1)
-    held = np.linalg.matrix_rank(J, tol=1e-8) == 3 * m if m else True
+    outside_rows = jacobian(model, 0.0, y)[2].reshape(model.m, m, 6)[:, :, OUT_OF_PLANE]
+    held = np.linalg.matrix_rank(outside_rows.reshape(model.m, -1), tol=1e-8) == 3 * m
     return True, bool(held)
 
 

@@ -1,17 +1,17 @@
 """Revolute joint with clearance: a journal of body j moves freely in a bearing of body i.
 
-    e   = d - (a . d) a               eccentricity: journal centre from bearing centre, d = P_j - P_i
-    d   = |e| - c                     penetration; c is the radial clearance
-    F_n = f(d, d')                    normal force on the journal, along -e / |e|    laws/contact.py
-    F_t = -f_t(F_n, v_t)              friction on the journal, along t = a x n       laws/friction.py
+    e   = D - (a . D) a          eccentricity: journal centre from bearing centre, D = P_j - P_i
+    d   = |e| - c                penetration; c is the radial clearance
+    F_n = f(d, d')               normal force on the journal, along -e / |e|     laws/contact.py
+    F_t = -f_t(F_n, v_t)         friction on the journal, along t = a x n        laws/friction.py
 
-a is the axis, fixed in the bearing.  Both forces act at the contact point, R_B + d from the bearing's
-centre, on journal and bearing alike: friction turns both bodies and the pair adds no moment.
-Rows kept: axial (a . d = 0) and both tilts; the mobility grows by two.    [Flores2008]
+a is the axis, fixed in the bearing.  Both forces act at the contact point, R_B + d from the
+bearing's centre, on journal and bearing alike: friction turns both bodies and the pair adds no
+moment.  Rows kept: axial (a . D = 0) and both tilts; the mobility grows by two.    [Flores2008]
 
-In flight the force is zero whatever the gap; the solver switches the phase at the located touch and
-latches the approach speed d'_0 there, never below `slowest_impact`.  Eccentricity is reported in the
-axes of the bearing's body.
+In flight the force is zero whatever the gap; the solver switches the phase at the located touch
+and latches the approach speed d'_0 there, never below `slowest_impact`.  Eccentricity is reported
+in the axes of the bearing's body.
 """
 
 from math import sqrt
@@ -208,8 +208,7 @@ def contact_forces(scene, e):
 
 @kernel
 def force(t, scene, a, b):
-    X, V, z, con = scene.X, scene.V, scene.z, scene.con
-    par, mem, F, zd = scene.par, scene.mem, scene.F, scene.zd
+    con, par, mem, F, zd = scene.con, scene.par, scene.mem, scene.F, scene.zd
     for e in range(a, b):
         if mem[e, PHASE] == FLIGHT:
             continue
@@ -241,7 +240,7 @@ def gap(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, V, con, par, mem, E = scene.X, scene.V, scene.con, scene.par, scene.mem, scene.E
+    X, con, par, mem, E = scene.X, scene.con, scene.par, scene.mem, scene.E
     for e in range(a, b):
         if mem[e, PHASE] == FLIGHT:
             continue
@@ -253,8 +252,7 @@ def energy(t, scene, a, b):
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, z, con = scene.X, scene.V, scene.z, scene.con
-    par, mem, col, out = scene.par, scene.mem, scene.wanted, scene.out
+    X, V, con, par, col, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
     for e in range(a, b):
         o = col[e]
         if o < 0:

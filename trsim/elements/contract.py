@@ -37,7 +37,7 @@ KERNEL = types.void(f8, SCENE, i8, i8)  # t, scene, first row, end row
 KINDS = ("force", "constraint", "coordinate", "gaps", "energy", "measure")
 
 # con: the first columns of every element that joins two frames
-I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3  # noqa: E741
+I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
 # mem: the first columns of every element with a gap
 PHASE, IMPACT_SPEED = 0, 1

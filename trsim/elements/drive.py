@@ -16,7 +16,6 @@ from pydantic import model_validator
 from trsim.elements.contract import (
     DAMPERS,
     DRIVES,
-    N_BOOK,
     SPRINGS,
     Channel,
     Element,
@@ -62,7 +61,7 @@ def pack(name, spec, at):
     x = at.coordinate(spec.joint)
     by_velocity = spec.position is None
     f = at.function(spec.velocity if by_velocity else spec.position, "motion", time_only=True)
-    state = at.state(x.kind, follows=x.index) if by_velocity else -1
+    state = at.state(x.kind, follows=x.entry) if by_velocity else -1
     k = c = 0.0
     if spec.compliance is not None:
         k = spec.compliance.stiffness
@@ -71,7 +70,7 @@ def pack(name, spec, at):
         )
         zeta = spec.compliance.damping_ratio
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
-    con = (x.i, x.j, x.index, state, int(x.kind == "angle"), f)
+    con = (x.i, x.j, x.entry, state, int(x.kind == "angle"), f)
     return Row(con, (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign)))
 
 

@@ -17,9 +17,7 @@ J V' = gamma.  A row index below 0 means the row was dropped (planar scene, redu
 The multiplier of a row is minus the generalised force it puts on body j along its direction.
 """
 
-from numba import njit
-
-helper = njit(cache=True, error_model="numpy", inline="never")
+from trsim.elements.vectors import internal as helper
 
 
 @helper

@@ -61,7 +61,7 @@ class LimitStop(Spec):
     def one_kind(self):
         on_wall = self.point is not None and self.wall is not None
         on_joint = self.joint is not None
-        if on_wall == on_joint or on_joint and (self.point or self.wall):
+        if on_wall == on_joint or (on_joint and (self.point or self.wall)):
             raise ValueError("give `point` and `wall`, or `joint` with `lower` and/or `upper`")
         if on_joint and self.lower is None and self.upper is None:
             raise ValueError("give `lower`, `upper` or both")
@@ -88,7 +88,7 @@ def pack(name, spec, at):
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
     par = (*x.s_i, *x.s_j, *x.axis_i, *law, low, high)
-    return Row((x.i, x.j, x.index, kind), par, contact)
+    return Row((x.i, x.j, x.entry, kind), par, contact)
 
 
 @helper
@@ -148,7 +148,7 @@ def gap(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, V, S, con, par, mem, E = scene.X, scene.V, scene.S, scene.con, scene.par, scene.mem, scene.E
+    X, S, con, par, mem, E = scene.X, scene.S, scene.con, scene.par, scene.mem, scene.E
     for e in range(a, b):
         if mem[e, PHASE] == FLIGHT:
             continue

@@ -8,7 +8,7 @@ In memory: three words per field, (address, rows, columns) of an array, or the n
 The addresses never change, which the loads say to the optimiser ("invariant").
 """
 
-from typing import Any, get_type_hints
+from typing import TYPE_CHECKING, Any, get_type_hints
 
 import numpy as np
 from llvmlite import ir
@@ -26,9 +26,19 @@ from numba.extending import (
 )
 from numba.np.arrayobj import populate_array
 
-f8, i8 = types.float64, types.int64
-A1, A2 = types.Array(f8, 1, "C"), types.Array(f8, 2, "C")
-I1, I2 = types.Array(i8, 1, "C"), types.Array(i8, 2, "C")
+if TYPE_CHECKING:  # what the annotations mean to Python
+    from numpy.typing import NDArray
+
+    f8 = float
+    i8 = int
+    A1 = NDArray[np.float64]
+    A2 = NDArray[np.float64]
+    I1 = NDArray[np.int64]
+    I2 = NDArray[np.int64]
+else:  # and to the compiler
+    f8, i8 = types.float64, types.int64
+    A1, A2 = types.Array(f8, 1, "C"), types.Array(f8, 2, "C")
+    I1, I2 = types.Array(i8, 1, "C"), types.Array(i8, 2, "C")
 
 WORDS = 3  # per field
 

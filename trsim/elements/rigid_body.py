@@ -9,6 +9,7 @@ equations of motion hold the masses (assemble/equations.py).
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
+
 from trsim.elements.contract import Channel, Element, Row, kernel
 from trsim.fields import Spec, Unit, vector
 

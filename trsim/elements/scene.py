@@ -62,6 +62,7 @@ class Model(Packed):
     below_row: I1  # its row i
     update_start: I1  # (m+1)
     update: I2  # (updates, 3) target, place of L_ik, place of L_jk
+    derivative: i8  # address of the equations of motion
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
     beta: f8

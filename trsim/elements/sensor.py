@@ -24,7 +24,7 @@ class Sensor(Spec):
 def pack(name, spec, at):
     source = at.coordinate(spec.joint)
     return Row(
-        (source.i, source.j, at.sensor(name), source.index, int(source.kind == "angle")),
+        (source.i, source.j, at.sensor(name), source.entry, int(source.kind == "angle")),
         (
             *source.s_i,
             *source.s_j,

@@ -76,7 +76,7 @@ def force(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, V, con, par, E = scene.X, scene.V, scene.con, scene.par, scene.E
+    X, con, par, E = scene.X, scene.con, scene.par, scene.E
     for e in range(a, b):
         # the length needs no velocity: X stands in for V, its rate is not used
         _, _, _, length, _ = line(X, X, con, par, e)

@@ -34,7 +34,7 @@ class TorsionSpring(Spec):
 def pack(name, spec, at):
     x = at.coordinate(spec.joint, "angle")
     return Row(
-        (x.i, x.j, x.index),
+        (x.i, x.j, x.entry),
         (*x.axis_i, spec.preload, spec.stiffness, spec.damping, x.drawn),
     )
 

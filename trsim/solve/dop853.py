@@ -5,7 +5,8 @@ stages, built only when asked for.    [HairerNorsettWanner1993]
 """
 
 import numpy as np
-from trsim.assemble.equations import derivative, equation
+
+from trsim.assemble.equations import equation, evaluate
 from trsim.elements.contract import compiled
 from trsim.solve import dop853_tableau as tableau
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
@@ -38,7 +39,7 @@ def stage(K, y, h, s, out):
 def step(scene, K, t, y, h, y1, weight):
     for s in range(1, 12):
         stage(K, y, h, s, y1)
-        derivative(scene, t + C[s] * h, y1, K[s])
+        evaluate(scene, t + C[s] * h, y1, K[s])
     error5 = error3 = 0.0
     counted = 0
     for c in range(y.size):
@@ -63,7 +64,7 @@ def dense(scene, K, t, y, h, y1, P):
     scratch = P[0]
     for s in range(13, 16):
         stage(K, y, h, s, scratch)
-        derivative(scene, t + C[s] * h, scratch, K[s])
+        evaluate(scene, t + C[s] * h, scratch, K[s])
     for c in range(y.size):
         delta = y1[c] - y[c]
         P[0, c] = delta

@@ -6,20 +6,17 @@ where its rate turns inside the step and the cubic through both ends may reach z
 two points in flight, a separation between two points in contact).
 """
 
-from numba import njit
-
 from trsim.assemble.equations import gaps, poses
 from trsim.elements.contract import CONTACT, FLIGHT, PHASE
+from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
-
-event = njit(cache=True, error_model="numpy")
 
 NONE = 2.0  # a root beyond the step
 SAME = 1e-12  # roots closer than this part of a step are one event
 MARGIN = 0.2  # of the gap's change over the step: how near to zero a cubic must come
 
 
-@event
+@internal
 def suspicious(phase, d0, r0, d1, r1, h):
     """Whether a contact may change its phase in a step from (d0, r0) to (d1, r1)."""
     if phase == FLIGHT:
@@ -27,7 +24,7 @@ def suspicious(phase, d0, r0, d1, r1, h):
     return d1 <= 0.0 or (r0 < 0.0 < r1 and -turning_value(-d0, -r0, -d1, -r1, h) < 0.0)
 
 
-@event
+@internal
 def turning_value(d0, r0, d1, r1, h):
     """An upper bound of the cubic Hermite's maximum between a rising and a falling end."""
     theta = r0 / (r0 - r1)  # where the rate, taken linear, is zero
@@ -36,7 +33,7 @@ def turning_value(d0, r0, d1, r1, h):
     return top + MARGIN * (abs(top - d0) + abs(top - d1))
 
 
-@event
+@internal
 def gap_inside(s, P, y, t, h, theta, c, scratch, interpolate):
     """Penetration and rate of contact c at t + theta h."""
     call_interpolate(interpolate, P, y, theta, scratch)
@@ -46,7 +43,7 @@ def gap_inside(s, P, y, t, h, theta, c, scratch, interpolate):
     return s.gap[e, 0], s.gap[e, 1]
 
 
-@event
+@internal
 def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, rising):
     """Where gap (column 0) or rate (column 1) of contact c changes sign between low and high.
 
@@ -79,7 +76,7 @@ def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, ri
     return high
 
 
-@event
+@internal
 def root(s, P, y, t, h, c, phase, d0, r0, d1, r1, scratch, interpolate):
     """The first event of contact c in the step, as theta in (0, 1]; NONE if there is none."""
     toward = phase == FLIGHT  # the gap rises through zero at a touch
@@ -108,7 +105,7 @@ def root(s, P, y, t, h, c, phase, d0, r0, d1, r1, scratch, interpolate):
     return bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, 0, toward)
 
 
-@event
+@internal
 def first_event(s, r, b, t, h, interpolate):
     """Fill b.root for all contacts and return the earliest; needs b.P."""
     first = NONE
@@ -124,7 +121,7 @@ def first_event(s, r, b, t, h, interpolate):
     return first
 
 
-@event
+@internal
 def any_suspicious(s, r, b, h):
     """Whether the step must be searched at all."""
     for c in range(s.contact.size):
@@ -134,7 +131,7 @@ def any_suspicious(s, r, b, h):
     return False
 
 
-@event
+@internal
 def hertz_step(stiffness, exponent, mass, speed, tolerance):
     """First step after a touch: 0.02 of the contact time times tolerance^(1/3)."""
     # depth of a lossless impact: K d^(n+1) / (n+1) = m v^2 / 2
@@ -142,9 +139,7 @@ def hertz_step(stiffness, exponent, mass, speed, tolerance):
     return 0.02 * 2.94 * depth / speed * tolerance ** (1.0 / 3.0)
 
 
-@event
+@internal
 def flip(phase):
     """The other phase."""
     return CONTACT if phase == FLIGHT else FLIGHT
-
-

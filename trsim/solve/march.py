@@ -4,12 +4,14 @@ Everything the loop changes is in the Record; it returns to its caller when a bu
 it is done, or when it cannot go on, and can be called again with the same record.
 """
 
+from math import isfinite
+
 import numpy as np
-from numba import njit, types
+from numba import types
 
 from trsim.assemble.equations import (
     call_all,
-    derivative,
+    evaluate,
     gaps,
     kinetic,
     normalise,
@@ -19,14 +21,14 @@ from trsim.assemble.equations import (
 )
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
-from trsim.elements.packed import A1, I1, i8
+from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.scene import ANGLE, MAGNITUDE, PROJECTION, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
+from trsim.elements.vectors import all_finite, clear_table, copy_table, copy_to, internal
 from trsim.solve.calls import call_dense, call_interpolate, call_step
-from trsim.solve.events import any_suspicious, first_event, flip, hertz_step
 from trsim.solve.events import NONE as NO_EVENT
-from trsim.solve.events import SAME
+from trsim.solve.events import SAME, any_suspicious, first_event, flip, hertz_step
 from trsim.solve.record import (
     AFTER_REJECTION,
     BUFFERS,
@@ -80,11 +82,10 @@ from trsim.solve.record import (
     T,
 )
 
-part = njit(cache=True, error_model="numpy")
-
+SMOOTH_STEP, WITH_EVENT, WORTHLESS = 0, 1, 2  # what `complete` made of a trial step
 MAX_SAME_TIME = 1000  # events without progress: chatter
 SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
-NEAR = 0.8  # of the largest contact force so far: the inside of such a step is searched
+NEAR = 0.5  # of the largest contact force so far: a maximum above this is searched for
 INSIDE = 16  # parts a searched step is cut into
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
@@ -97,7 +98,6 @@ def march(s, r, b, setting, method, most):
     method: addresses of step, dense, interpolate.  The stage array b.K has its last row at the end
     of the step.  Returns one of DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE, CHATTER.
     """
-    last = method[3]
     accepted = 0
     while r.clock[T] < setting[T_END]:
         if full(s, r, b):
@@ -109,63 +109,82 @@ def march(s, r, b, setting, method, most):
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
             return STEP_TOO_SMALL
         weights(s, r, b, setting)
-        b.K[0, :] = r.yd
+        copy_to(b.K[0], r.yd)
         error = call_step(method[0], s, b.K, t, r.y, h, b.y1, b.weight)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
             r.count[AFTER_REJECTION] = 1
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
-            r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if np.isfinite(error) else 0.1)
+            r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if isfinite(error) else 0.1)
             continue
-        t1 = setting[T_END] if t + h >= setting[T_END] else t + h
-        projected = land(s, r, b, t1, b.y1, b.K[last])
-        if not np.all(np.isfinite(b.y1)) or not np.all(np.isfinite(b.K[last])):
+        outcome = complete(s, r, b, setting, method, h, False)
+        if outcome == WORTHLESS:
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
             r.count[REJECTED] += 1
             r.clock[H] = 0.1 * h
             continue
-        built = False
-        event = False
-        if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
-            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
-            r.count[DENSE_BUILT] += 1
-            built = True
-            theta = first_event(s, r, b, t, h, method[2])
-            event = theta <= 1.0
-            if event and theta < 1.0:
-                call_interpolate(method[2], b.P, r.y, theta, b.y2)
-                b.y1[:] = b.y2
-                t1 = t + theta * h
-                projected = land(s, r, b, t1, b.y1, b.K[last])
-            else:
-                # the search left other poses in the workspace
-                derivative(s, t1, b.y1, b.K[last])
-        measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
-        b.out[:] = s.out
-        near = near_peak(s, r, b)
-        if near or due(r, setting, t1):
-            if not built and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
-                call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
-                r.count[DENSE_BUILT] += 1
-                built = True
-            rows_until(s, r, b, setting, method[2], t, h, t1, projected)
-            if near:
-                peaks_inside(s, r, b, method[2], t, h, t1)
-        accept(s, r, b, t1, projected, last)
         accepted += 1
-        if event:
-            change_phases(s, r, b, setting, t, t1)
-        elif setting[LOCATE] == 0.0:
-            latch(s, r)
-        control(r, setting, h, error, event)
+        control(r, setting, h, error, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
     return DONE
 
 
-@part
+@internal
+def complete(s, r, b, setting, method, h, built):
+    """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
+
+    built: b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the step was cut at
+    a contact event) or WORTHLESS (values that are not finite; nothing was changed).
+    """
+    last, t = method[3], r.clock[T]
+    t1 = setting[T_END] if t + h >= setting[T_END] else t + h
+    projected = land(s, r, b, t1, b.y1, b.K[last])
+    if not all_finite(b.y1) or not all_finite(b.K[last]):
+        return WORTHLESS
+    event = False
+    if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
+        if not built:
+            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
+            r.count[DENSE_BUILT] += 1
+            built = True
+        theta = first_event(s, r, b, t, h, method[2])
+        event = theta <= 1.0
+        if event and theta < 1.0:
+            call_interpolate(method[2], b.P, r.y, theta, b.y2)
+            copy_to(b.y1, b.y2)
+            t1 = t + theta * h
+            projected = land(s, r, b, t1, b.y1, b.K[last])
+        else:
+            # the search left other poses in the workspace
+            evaluate(s, t1, b.y1, b.K[last])
+    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+    copy_to(b.out, s.out)
+    near = near_peak(s, r, b, t1, t1 - t, last)
+    if near or due(r, setting, t1):
+        if not built and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
+            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
+            r.count[DENSE_BUILT] += 1
+        rows_until(s, r, b, setting, method[2], t, h, t1, projected)
+        if near:
+            peaks_inside(s, r, b, method[2], t, h, t1)
+    accept(s, r, b, t1, projected, last)
+    if event:
+        change_phases(s, r, b, setting, t, t1)
+    elif setting[LOCATE] == 0.0:
+        latch(s, r)
+    return WITH_EVENT if event else SMOOTH_STEP
+
+
+@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8))
+def complete_given(s, r, b, setting, method, h):
+    """`complete` for a step and a dense output made elsewhere (solve/scipy_ivp.py)."""
+    return complete(s, r, b, setting, method, h, True)
+
+
+@internal
 def full(s, r, b):
     """Hardly room for what the next step may add."""
     contacts = s.contact.size
@@ -176,7 +195,7 @@ def full(s, r, b):
     )
 
 
-@part
+@internal
 def next_step(r, b, setting):
     """The step to try: as controlled, not beyond the end, the last two evened out.
 
@@ -191,7 +210,7 @@ def next_step(r, b, setting):
     return 0.5 * left if 2.0 * h > left else h
 
 
-@part
+@internal
 def weights(s, r, b, setting):
     """1 / (tolerance times unit) of every entry of y; zero outside the norm.
 
@@ -215,7 +234,7 @@ def weights(s, r, b, setting):
             b.weight[c] = 0.0
 
 
-@part
+@internal
 def land(s, r, b, t, y, yd):
     """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
 
@@ -238,7 +257,7 @@ def land(s, r, b, t, y, yd):
         worst = project_velocities(s, y)
         r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
         done += kinetic(s, y) - T0
-    derivative(s, t, y, yd)
+    evaluate(s, t, y, yd)
     if s.stabilisation == PROJECTION and s.m > 0:
         done += position_work(s, b.y2, y)
     if s.contact.size > 0:
@@ -251,7 +270,7 @@ def land(s, r, b, t, y, yd):
     return done
 
 
-@part
+@internal
 def position_work(s, before, after):
     """- F . dx of the displacement from one q to another, with the forces of the second, J."""
     work, F, X = 0.0, s.F, s.X
@@ -275,13 +294,13 @@ def position_work(s, before, after):
     return work
 
 
-@part
+@internal
 def due(r, setting, t1):
     """Whether an output time lies at or before t1."""
     return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
 
 
-@part
+@internal
 def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
     """Write the output rows of (t, t1]; the one at the end of the step is in b.out."""
     while r.count[ROWS] < b.rows.shape[0]:
@@ -291,29 +310,29 @@ def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
         row = b.rows[r.count[ROWS]]
         if abs(t_o - (t + h)) <= 1e-15 * abs(t_o) and t1 >= t + h:
             row[0] = t_o
-            row[1:] = b.out[: s.n_out]
+            copy_to(row[1:], b.out)
         else:
             theta = (t_o - t) / h
             call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-            derivative(s, t_o, b.y2, b.K[1])
+            evaluate(s, t_o, b.y2, b.K[1])
             row[0] = t_o
             done = r.clock[WORK_PROJECTION] + theta * projected
             measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
-            row[1:] = s.out[: s.n_out]
+            copy_to(row[1:], s.out)
         r.count[ROWS] += 1
         r.count[NEXT_ROW] += 1
 
 
-@part
+@internal
 def accept(s, r, b, t1, projected, last):
     """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
     r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if t1 <= r.clock[T] else 0
     r.clock[T] = t1
     r.clock[WORK_PROJECTION] += projected
-    r.y[:] = b.y1
-    r.yd[:] = b.K[last]
-    r.gap[:] = b.gap1
-    r.branch[:] = b.branch1
+    copy_to(r.y, b.y1)
+    copy_to(r.yd, b.K[last])
+    copy_table(r.gap, b.gap1)
+    copy_to(r.branch, b.branch1)
     r.count[STEPS] += 1
     for c in range(s.contact.size):
         e = s.contact[c]
@@ -330,18 +349,19 @@ def accept(s, r, b, t1, projected, last):
             r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], abs(b.out[c]))
         residual = abs(b.out[s.n_out - 1])
         r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
-    peaks(s, r, b, t1)
+    refine(s, r, b.out, t1)
+    copy_to(r.slope, b.slope1)
 
 
-@part
-def peaks(s, r, b, t):
-    """Largest and smallest value of every channel over the accepted points.
+@internal
+def refine(s, r, values, t):
+    """Take the channels at t into their extremes.
 
-    A local extremum between three accepted points that lie close together is refined by the
+    A local extremum between the last three points, if they lie close together, is refined by the
     parabola through them.
     """
     for c in range(s.n_out):
-        p, v2 = r.peak[c], b.out[c]
+        p, v2 = r.peak[c], values[c]
         t0, v0, t1, v1 = p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2]
         extreme(p, t, v2)
         turns = t0 < t1 < t and (v1 - v0) * (v2 - v1) < 0.0
@@ -356,7 +376,7 @@ def peaks(s, r, b, t):
         p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2] = t1, v1, t, v2
 
 
-@part
+@internal
 def extreme(p, t, value):
     """Take a value into a channel's extremes."""
     if value > p[PEAK_MAX]:
@@ -365,36 +385,50 @@ def extreme(p, t, value):
         p[PEAK_MIN], p[PEAK_MIN_T] = value, t
 
 
-@part
-def near_peak(s, r, b):
-    """Whether a contact's force may pass its largest value inside the step just made."""
+@internal
+def near_peak(s, r, b, t, h, last):
+    """Whether a contact force passes a maximum, one of its largest, inside the step just made.
+
+    Fills b.slope1 with the rate of every contact force at the end of the step, from the channels a
+    little further on along y'.
+    """
+    ahead = 1e-4 * h
+    touching = False
     for c in range(s.contact.size):
-        e = s.contact[c]
-        k = s.wanted[e]
-        if s.mem[e, PHASE] != FLIGHT and k >= 0:
-            ends = max(b.out[k], r.peak[k, PEAK_V2])
-            if ends > NEAR * r.peak[k, PEAK_MAX] and ends > 0.0:
-                return True
-    return False
+        b.slope1[c] = 0.0
+        touching = touching or s.mem[s.contact[c], PHASE] != FLIGHT
+    if not touching:
+        return False
+    for k in range(b.y2.size):
+        b.y2[k] = b.y1[k] + ahead * b.K[last, k]
+    poses(s, b.y2)
+    call_all(s, s.measure, t + ahead)
+    near = False
+    for c in range(s.contact.size):
+        o = s.wanted[s.contact[c]]
+        if s.mem[s.contact[c], PHASE] == FLIGHT or o < 0:
+            continue
+        b.slope1[c] = (s.out[o] - b.out[o]) / ahead
+        large = max(b.out[o], r.peak[o, PEAK_V2]) > NEAR * r.peak[o, PEAK_MAX]
+        near = near or (large and r.slope[c] > 0.0 and b.slope1[c] < 0.0)
+    return near
 
 
-@part
+@internal
 def peaks_inside(s, r, b, interpolate, t, h, t1):
-    """Extremes of the contacts' channels inside the step, from its dense output."""
+    """Extremes of all channels inside the step, from its dense output.
+
+    The step is cut into parts; a part's value that tops its neighbours is refined by a parabola.
+    """
     for k in range(1, INSIDE):
         theta = (t1 - t) / h * k / INSIDE
         call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-        poses(s, b.y2)
-        call_all(s, s.measure, t + theta * h)
-        for c in range(s.contact.size):
-            first = s.wanted[s.contact[c]]
-            if first < 0 or s.mem[s.contact[c], PHASE] == FLIGHT:
-                continue
-            for o in range(first, first + s.contact_width[c]):
-                extreme(r.peak[o], t + theta * h, s.out[o])
+        evaluate(s, t + theta * h, b.y2, b.K[1])
+        measure(s, t + theta * h, b.y2, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+        refine(s, r, s.out, t + theta * h)
 
 
-@part
+@internal
 def grow(s, r, c):
     """Let the unit of the error norm follow the deepest penetration met."""
     depth = r.gap[c, 0]
@@ -403,7 +437,7 @@ def grow(s, r, c):
         units(s, r)
 
 
-@part
+@internal
 def units(s, r):
     """Length and speed of the error norm from the penetrations met so far."""
     length, speed = 1e300, 1e300
@@ -419,7 +453,7 @@ def units(s, r):
         r.clock[LENGTH], r.clock[SPEED] = length, speed
 
 
-@part
+@internal
 def change_phases(s, r, b, setting, t, t1):
     """Switch every contact whose event is the one just stepped to; latch impact speeds."""
     first = NO_EVENT
@@ -450,13 +484,19 @@ def change_phases(s, r, b, setting, t, t1):
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
     r.clock[LAST_EVENT] = t1
-    derivative(s, t1, r.y, r.yd)
-    r.peak[:, PEAK_T1] = t1  # no parabola across an event
+    evaluate(s, t1, r.y, r.yd)
+    for k in range(s.n_out):
+        r.peak[k, PEAK_T1] = t1  # no parabola across an event
+    for c in range(s.contact.size):
+        if s.mem[s.contact[c], PHASE] == FLIGHT:
+            r.slope[c] = 0.0
+        elif b.root[c] <= first + SAME:
+            r.slope[c] = 1.0  # a touch: the force grows from here
     if h < 1e300:
         r.clock[H] = min(r.clock[H], h)
 
 
-@part
+@internal
 def latch(s, r):
     """Methods that locate nothing: remember the approach speed of a running contact."""
     for c in range(s.contact.size):
@@ -467,7 +507,7 @@ def latch(s, r):
             r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])
 
 
-@part
+@internal
 def control(r, setting, h, error, event):
     """The next step from the error of this one."""
     if setting[FIXED_STEP] > 0.0:
@@ -485,11 +525,16 @@ def control(r, setting, h, error, event):
         r.clock[H] = max(r.clock[H], h * factor)
 
 
+@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+def weigh(s, r, b, setting):
+    """`weights`, for solvers outside."""
+    weights(s, r, b, setting)
+
 
 @compiled(types.void(SCENE, RECORD, BUFFERS, A1))
 def begin(s, r, b, setting):
     """First row, energy and gaps of a record whose y and mem were just set."""
-    derivative(s, 0.0, r.y, r.yd)
+    evaluate(s, 0.0, r.y, r.yd)
     gaps(s, 0.0)
     for c in range(s.contact.size):
         r.gap[c, 0] = s.gap[s.contact[c], 0]
@@ -498,14 +543,14 @@ def begin(s, r, b, setting):
         r.branch[k] = s.S[k, 0]
     units(s, r)
     measure(s, 0.0, r.y, 0.0, 0.0)
-    b.out[:] = s.out
+    copy_to(b.out, s.out)
     r.clock[ENERGY_0] = b.out[s.n_out - 1]
     b.out[s.n_out - 1] = 0.0
     b.rows[0, 0] = 0.0
-    b.rows[0, 1:] = b.out[: s.n_out]
+    copy_to(b.rows[0, 1:], b.out)
     r.count[ROWS] = 1
     r.count[NEXT_ROW] = 1
-    r.peak[:] = 0.0
+    clear_table(r.peak)
     for c in range(s.n_out):
         r.peak[c, PEAK_MAX] = b.out[c]
         r.peak[c, PEAK_MIN] = b.out[c]

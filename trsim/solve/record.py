@@ -68,6 +68,7 @@ class Record(Packed):
     count: I1
     peak: A2  # (n_out, N_PEAK) extremes of every channel, and the last two values
     impact: A1  # (n_contacts) largest penetration so far
+    slope: A1  # (n_contacts) rate of the first contact channel (the normal force) at y
 
 
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)
@@ -86,6 +87,7 @@ class Buffers(Packed):
     weight: A1
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts, 2)
+    slope1: A1  # (n_contacts)
     root: A1  # (n_contacts) where in the step its event lies, 2 for none
     branch1: A1
 
@@ -107,6 +109,7 @@ def fresh_buffers(model: Model, n_y: int, stages: int, dense_rows: int, n_steps:
         weight=np.zeros(n_y),
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts, 2)),
+        slope1=np.zeros(contacts),
         root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
     )

@@ -12,7 +12,7 @@ impact speed is latched at the end of the first step that finds them overlapping
 of a step the solution is the cubic Hermite polynomial (order 3).
 """
 
-from trsim.assemble.equations import derivative
+from trsim.assemble.equations import evaluate
 from trsim.elements.contract import compiled
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 
@@ -29,7 +29,7 @@ def step(scene, K, t, y, h, y1, weight):
         part = h if s == 3 else 0.5 * h
         for c in range(y.size):
             y1[c] = y[c] + part * K[s - 1, c]
-        derivative(scene, t + part, y1, K[s])
+        evaluate(scene, t + part, y1, K[s])
     for c in range(y.size):
         y1[c] = y[c] + h / 6.0 * (K[0, c] + 2.0 * K[1, c] + 2.0 * K[2, c] + K[3, c])
     return 0.0

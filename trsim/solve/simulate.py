@@ -104,6 +104,7 @@ def new_record(model: Scene, begun: Start) -> Record:
         count=np.zeros(rec.N_COUNT, np.int64),
         peak=np.zeros((model.n_out, rec.N_PEAK)),
         impact=begun.depth.copy(),
+        slope=np.zeros(len(model.contact)),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
     return record

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from trsim.assemble.assemble import Mechanism, assemble
 from trsim.assemble.equations import derivative, gaps, poses
-from trsim.elements.scene import Model, scene
 from trsim.assemble.reduce import closest, jacobian, weights
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
+from trsim.elements.scene import Model, scene
 from trsim.errors import ModelError, known
 from trsim.solve.statics import equilibrium
 
@@ -84,7 +84,7 @@ def positions(scenario: Any, mechanism: Mechanism, initial: Any) -> tuple[Array,
     held = assemble(scenario, ideal, holding_drives(scenario, initial))
     y = follow(held, carried(mechanism, held))
     residual = 0.0
-    targets = {held.coordinates[name].index: value for name, value in initial.values.items()}
+    targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
     settle = bool(initial.equilibrium)
     if settle:
         y, residual = equilibrium(held, y)
@@ -98,7 +98,7 @@ def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     from trsim.elements.drive import Drive
 
     drives = {n: d for n, d in scenario.drives.items() if d.joint not in initial.values}
-    context = {"parameters": {}}
+    context: dict[str, Any] = {"parameters": {}}
     for name in initial.values:
         hold = {"joint": name, "velocity": 0.0}
         drives[f"hold {name}"] = Drive.model_validate(hold, context=context)
@@ -167,7 +167,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     rows, target = [J], [-phi_t]
     for name in named:
         if name in ideal.coordinates:
-            rows.append(coordinate_gradient(model, y_ideal, ideal.coordinates[name].index)[None])
+            rows.append(coordinate_gradient(model, y_ideal, ideal.coordinates[name].entry)[None])
             target.append(np.zeros(1))
     J, rate = np.vstack(rows), np.concatenate(target)
     scale = weights(model)
@@ -256,4 +256,3 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     pull = max(pull, float(np.abs(w.A[:, 3:]).max(initial=0.0)) * model.size)
     speed = max(speed, np.sqrt(pull * model.size), model.size / max(scenario.solver.end, 1e-300))
     return model.size, speed, np.array(depth)
-

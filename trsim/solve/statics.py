@@ -2,10 +2,10 @@
 
     Z^T (F(q) - J^T lam) = 0,    Phi(q) = 0          Z spans the motions the constraints allow
 
-Pseudo-transient continuation [Kelley1998]: Newton steps on the reduced forces with a multiple of the
-mass matrix added to the stiffness, which fades as the forces balance.  A journal released in its
-bearing has no stiffness until it touches; the mass term carries it there, in steps well below the
-clearance.  A motion that stays without stiffness is indifferent, and refused.
+Pseudo-transient continuation [Kelley1998]: Newton steps on the reduced forces with a multiple of
+the mass matrix added to the stiffness, which fades as the forces balance.  A journal released in
+its bearing has no stiffness until it touches; the mass term carries it there, in steps well below
+the clearance.  A motion that stays without stiffness is indifferent, and refused.
 """
 
 import numpy as np
@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from trsim.assemble.assemble import Mechanism
 from trsim.assemble.equations import forces, poses
-from trsim.elements.scene import Model, scene
 from trsim.assemble.reduce import closest, displaced, jacobian
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
+from trsim.elements.scene import Model, scene
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -41,7 +41,7 @@ def mass_matrix(model: Model, y: Array) -> Array:
     """Diagonal of M against world-axes twists (inertias by their largest moment)."""
     blocks = []
     for f in range(1, model.n):
-        I = model.inertia[f]  # noqa: E741
+        I = model.inertia[f]
         blocks.append([model.mass[f]] * 3 + [max(I[0], I[4], I[8])] * 3)
     return np.array(blocks).ravel()
 
@@ -94,7 +94,9 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         Z = free_motions(J, free, mass)
         if Z.shape[1] == 0:
             return y, 0.0
-        lam = np.linalg.lstsq(J.T[free], F[free], rcond=1e-12)[0] if len(J) else np.zeros(0)
+        lam: Array = np.zeros(0)
+        if len(J):
+            lam = np.asarray(np.linalg.lstsq(J.T[free], F[free], rcond=1e-12)[0])
         r = Z.T @ F
         K = stiffness(model, y, Z, lam, J, probe)
         values, vectors = np.linalg.eigh(K)
@@ -137,7 +139,7 @@ def check_stable(
         restoring = abs(value) / np.max(np.abs(motion)) ** 2  # N/m or N*m/rad of that motion
         if restoring < INDIFFERENT * scale / model.size:
             body = int(np.argmax(np.abs(along))) // 6 + 1
-            name = [n for n, f in mechanism.frames.items() if f == body][0]
+            name = next(n for n, f in mechanism.frames.items() if f == body)
             raise ModelError(
                 f"the equilibrium is indifferent: nothing holds '{name}' where it is",
                 "add a spring or a stop, or drop `equilibrium` to start as drawn",

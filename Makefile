@@ -1,0 +1,36 @@
+# `make demo` and `make test` need Python 3.11 or newer and nothing else.
+PYTHON ?= python3
+BIN := .venv/bin
+SOURCES := trsim tests benchmarks
+
+.PHONY: demo test lint bench clean
+
+demo: .venv/installed
+	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
+	$(BIN)/trsim report runs/demo.h5 -o runs/demo
+
+test: .venv/developer lint
+	$(BIN)/python -m pytest
+
+lint: .venv/developer
+	$(BIN)/ruff format --check $(SOURCES)
+	$(BIN)/ruff check $(SOURCES)
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: .venv/developer
+	$(BIN)/python -m benchmarks
+
+.venv/bin/python:
+	$(PYTHON) -m venv .venv
+
+.venv/installed: .venv/bin/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+.venv/developer: .venv/bin/python pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable ".[dev]"
+	touch $@ .venv/installed
+
+clean:
+	rm -rf .venv build dist *.egg-info

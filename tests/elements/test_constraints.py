@@ -1,0 +1,81 @@
+"""Every constraint: J, Phi_t and gamma are the derivatives of Phi, checked by differences.
+
+    Phi' = J V + Phi_t     along any motion,        J V' = gamma
+
+At constant twists V' = 0, so gamma is minus the rate of J V + Phi_t.  And the rows are forces: what
+they put on the bodies and the ground adds up to no force and no moment.
+"""
+
+import numpy as np
+import pytest
+
+from .bench import bench, check_action_is_reaction, now, put_right
+
+AXIS, PLACE = np.array([0.48, 0.6, 0.64]), np.array([0.2, 0.1, 0.0])
+AT, ALONG = "at: [0.2, 0.1, 0]", "axis: [0.48, 0.6, 0.64]"
+JOINTS = {
+    "revolute": f"type: revolute, {AT}, {ALONG}",
+    "spherical": f"type: spherical, {AT}",
+    "prismatic": f"type: prismatic, {AT}, {ALONG}",
+    "fixed": f"type: fixed, {AT}",
+    "clearance_joint": f"type: revolute, {AT}, {ALONG}, clearance: 0.03, contact: law",
+}
+LAW = """
+contact_laws: {law: {normal: hunt_crossley, stiffness: 1e6, bearing_radius: 0.2, restitution: 0.9}}
+"""
+DRIVES = {
+    "position": "position: 0.2 + 0.5*sin(3*t)",
+    "velocity": "velocity: 2*cos(3*t) + t**2",
+    "table": "velocity: {table: [[0, 1], [0.2, 2], [0.5, 1], [1, 0]]}",
+    "constant": "velocity: 0.7",
+}
+CASES = {name: (name, "") for name in JOINTS}
+CASES |= {f"{d} of {j}": (j, d) for j in ("revolute", "prismatic") for d in DRIVES}
+ROWS = {"revolute": 5, "spherical": 3, "prismatic": 5, "fixed": 6, "clearance_joint": 3}
+
+
+def thrown(case, seed):
+    """The joint in a random pose; with a turning drive in one that the joint allows."""
+    joint, drive = CASES[case]
+    rng = np.random.default_rng(seed)
+    text = f"joints: {{joint: {{bodies: [left, right], {JOINTS[joint]}}}}}\n"
+    text += LAW if joint == "clearance_joint" else ""
+    text += f"drives: {{drive: {{joint: joint, {DRIVES[drive]}}}}}\n" if drive else ""
+    b = bench(text, rng)
+    assert b.mechanism.model.m == ROWS[joint] + bool(drive)
+    if drive and joint == "revolute":
+        # an angle is one only while the axes are parallel, and its rate while they stay so
+        put_right(b, PLACE, rng.uniform(-2, 2) * AXIS, np.zeros(3))
+        b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS)
+    return b
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("seed", range(3))
+def test_derivatives(case, seed):
+    b, h = thrown(case, seed), 1e-5
+    w, ahead, behind = b.rows(), b.later(h).rows(), b.later(-h).rows()
+    V = np.hstack([b.V[1], b.V[2]])
+    phi_dot, later, before = (s.J @ V + s.phi_t for s in (w, ahead, behind))
+    assert phi_dot == pytest.approx((ahead.phi - behind.phi) / (2 * h), abs=1e-7)
+    assert w.gamma == pytest.approx(-(later - before) / (2 * h), abs=1e-7)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_rows_against_every_twist(case):
+    """Each column of J by moving one body at a time (a turning drive: from where it is allowed)."""
+    b, h = thrown(case, 7), 1e-5
+    columns = []
+    for k in range(6, 18):
+        twist = np.zeros(18)
+        twist[k] = 1.0
+        twist = twist.reshape(3, 6)
+        columns.append((b.moved(twist, h).rows().phi - b.moved(twist, -h).rows().phi) / (2 * h))
+    assert b.rows().J == pytest.approx(np.array(columns).T, abs=1e-8)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_reactions_add_no_force_and_no_moment(case):
+    b = thrown(case, 9)
+    for row in b.rows().J:
+        check_action_is_reaction(b, np.vstack([np.zeros(6), row.reshape(2, 6)]))

@@ -1,0 +1,79 @@
+"""Running a scenario in a test: one call, and the channels by name."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from trsim.assemble.assemble import Mechanism, assemble
+from trsim.solve.simulate import Outcome, simulate
+from trsim.spec.load import loads
+
+
+@dataclass(frozen=True)
+class Run:
+    """All that a run left behind."""
+
+    scenario: Any
+    mechanism: Mechanism
+    outcome: Outcome
+    rows: np.ndarray  # (n, 1 + n_out) time, channels
+    steps: np.ndarray
+    events: np.ndarray  # (n, 5) time, kind, row, speed, angle
+
+    @property
+    def t(self) -> np.ndarray:
+        return self.rows[:, 0]
+
+    @cached_property
+    def place(self) -> dict[str, tuple[int, int]]:
+        return {c.name: (c.start, c.size) for c in self.mechanism.columns}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A channel at the output times: (n) or (n, size)."""
+        start, size = self.place[name]
+        return self.rows[:, 1 + start] if size == 1 else self.rows[:, 1 + start : 1 + start + size]
+
+    def largest(self, name: str) -> tuple[float, float]:
+        """Largest value of a channel and its time, from the peaks."""
+        return tuple(self.outcome.peaks[self.place[name][0], :2])
+
+    def at(self, name: str, t: float) -> np.ndarray:
+        """A channel at one output time."""
+        (k,) = np.flatnonzero(np.abs(self.t - t) < 1e-9)
+        return self[name][k]
+
+
+def scenario(text_or_scenario: Any, *sets: str) -> Any:
+    """A scenario from its text; one that is made already is passed on."""
+    if isinstance(text_or_scenario, str):
+        return loads(text_or_scenario, sets)
+    return text_or_scenario
+
+
+def built(text: str, *sets: str) -> Mechanism:
+    """The mechanism of a text."""
+    return assemble(scenario(text, *sets))
+
+
+def run(text: Any, *sets: str, fails: bool = False) -> Run:
+    """Run to the end; `fails` says whether the run is expected to end early."""
+    read = scenario(text, *sets)
+    mechanism = assemble(read)
+    march = simulate(read, mechanism)
+    blocks: list[tuple[np.ndarray, ...]] = []
+    while True:
+        try:
+            block = next(march)
+        except StopIteration as stop:
+            outcome = stop.value
+            break
+        blocks.append((block.rows.copy(), block.steps.copy(), block.events.copy()))
+    assert (outcome.status == "failed") == fails, outcome.reason
+    return Run(read, mechanism, outcome, *(np.vstack(part) for part in zip(*blocks, strict=True)))
+
+
+def energy_error(r: Run) -> float:
+    """Largest residual of the energy book over the largest energy exchanged."""
+    return r.outcome.statistics["energy_residual_relative"]

@@ -1,0 +1,107 @@
+"""How far a run is: a bar on a terminal, otherwise a line every ten seconds."""
+
+import os
+import sys
+import time
+from collections.abc import Generator
+from pathlib import Path
+from typing import Any
+
+from trsim.cli.frame import Answer
+
+PATIENCE = 1.0  # s: a shorter run shows nothing
+LINE = 10.0  # s between two lines where there is no terminal
+DRAWN = 0.2  # s between two looks at the bar
+
+
+def compiling(answer: Answer, method: str) -> None:
+    """Say so where the kernels of the solver were never compiled on this machine."""
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])
+    if not method.startswith("scipy:") and not any(folder.glob("*/march.march-*.nbi")):
+        answer.say("compiling (once per installation, about half a minute)")
+
+
+def watched(
+    blocks: Generator[Any, None, Any], answer: Answer, name: str, end: float
+) -> Generator[Any, None, Any]:
+    """The same blocks and the same outcome, with progress shown in passing."""
+    if answer.quiet:
+        return (yield from blocks)
+    show = Bar(name, end) if sys.stderr.isatty() else Lines(answer, name, end)
+    try:
+        while True:
+            try:
+                block = next(blocks)
+            except StopIteration as stop:
+                return stop.value
+            show.update(block)
+            yield block
+    finally:
+        show.close()
+
+
+def left(elapsed: float, share: float) -> str:
+    """The time left at the pace so far."""
+    if share <= 0.0:
+        return "?"
+    seconds = elapsed * (1.0 - share) / share
+    return f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
+
+
+def told(block: Any) -> str:
+    return f"t = {block.time:.4g} s, step {block.step:.1e} s, {block.n_events} contact events"
+
+
+class Lines:
+    """One plain line every ten seconds."""
+
+    def __init__(self, answer: Answer, name: str, end: float) -> None:
+        self.answer, self.name, self.end = answer, name, end
+        self.began = self.last = time.monotonic()
+
+    def update(self, block: Any) -> None:
+        now = time.monotonic()
+        if now - self.last < LINE:
+            return
+        self.last = now
+        share = block.time / self.end
+        to_go = left(now - self.began, share)
+        self.answer.say(f"{self.name}: {100 * share:.0f} %, {told(block)}, {to_go} left")
+
+    def close(self) -> None:
+        pass
+
+
+class Bar:
+    """A bar of rich, once the run has taken more than a second."""
+
+    def __init__(self, name: str, end: float) -> None:
+        self.name, self.end = name, end
+        self.began = self.last = time.monotonic()
+        self.bar: Any = None
+
+    def update(self, block: Any) -> None:
+        now = time.monotonic()
+        if now - self.began < PATIENCE or now - self.last < DRAWN:
+            return
+        self.last = now
+        if self.bar is None:
+            self.bar = self._started()
+            self.task = self.bar.add_task(Path(self.name).stem, total=self.end, told="", left="")
+        to_go = left(now - self.began, block.time / self.end)
+        self.bar.update(self.task, completed=block.time, told=told(block), left=to_go)
+
+    def _started(self) -> Any:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn
+
+        columns = [TextColumn("{task.description}"), BarColumn(bar_width=24)]
+        columns += [TextColumn("{task.percentage:>3.0f}%"), TextColumn("{task.fields[told]}")]
+        columns += [TextColumn("{task.fields[left]} left")]
+        bar = Progress(*columns, console=Console(stderr=True), transient=True)
+        bar.start()
+        return bar
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.stop()

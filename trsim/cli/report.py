@@ -1,0 +1,27 @@
+"""trsim report: figures and tables of result files."""
+
+from pathlib import Path
+
+import click
+
+from trsim.cli.frame import Answer, framed
+
+
+@click.command("report")
+@click.argument("runs", nargs=-1, required=True, type=click.Path())
+@click.option("-o", "--output", type=click.Path(), help="Folder of the figures.")
+@framed
+def command(answer: Answer, runs: tuple[str, ...], output: str | None) -> None:
+    """Draw the figures and tables of result files RUN.
+
+    Several runs are compared in the same figures.  Default output: the folder of the first result
+    file, named after it.
+    """
+    from trsim.report import report
+
+    first = Path(runs[0])
+    folder = Path(output) if output else first.with_suffix("")
+    written = report(runs, folder)
+    answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
+    for path in written:
+        answer.put(str(path))

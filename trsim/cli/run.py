@@ -1,0 +1,91 @@
+"""trsim run: simulate scenarios, each into its result file."""
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from trsim.cli.frame import Answer, framed
+from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
+
+
+@click.command("run")
+@click.argument("scenarios", nargs=-1, required=True, type=click.Path())
+@click.option("-o", "--output", type=click.Path(), help="Result file; a folder for several.")
+@click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
+@framed
+def command(
+    answer: Answer, scenarios: tuple[str, ...], output: str | None, sets: tuple[str, ...]
+) -> None:
+    """Simulate SCENARIO files and write result files (HDF5).
+
+    Default output: runs/NAME.h5.
+    """
+    answer.data["runs"] = []
+    for source, target in targets(scenarios, output):
+        try:
+            summary = one(answer, source, target, sets)
+        except TrsimError as error:
+            answer.fail(error)
+            continue
+        answer.data["runs"].append(summary)
+        answer.put(summary["file"])
+        if summary["status"] == "failed":
+            at = f"{source}: the solver failed at t = {summary['time']:.6g} s"
+            kept = f"What was computed is in {summary['file']}."
+            answer.fail(SolverError(f"{at}: {summary['reason']}", kept))
+
+
+def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, Path]]:
+    """Each scenario with the file its results go to."""
+    folder = Path(output or "runs")
+    single = output and len(scenarios) == 1 and not (output.endswith("/") or folder.is_dir())
+    if single:
+        return [(scenarios[0], folder)]
+    found: dict[Path, str] = {}
+    for source in scenarios:
+        target = folder / f"{Path(source).stem}.h5"
+        if target in found:
+            what = f"{found[target]} and {source} would both be written to {target}"
+            raise UsageError(what, "Run them one by one with -o.")
+        found[target] = source
+    return [(source, target) for target, source in found.items()]
+
+
+def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dict[str, Any]:
+    """Run one scenario; the summary of its result."""
+    from trsim.cli.progress import compiling, watched
+    from trsim.spec.load import load, locate
+
+    scenario = load(source, sets)
+    if scenario.solver.end is None:
+        error = ScenarioError(
+            "field required: end (s)", "Write for example `end: 1 s`.", ("solver",)
+        )
+        raise locate(error, scenario)
+    compiling(answer, scenario.solver.method)
+    from trsim.assemble.assemble import assemble
+    from trsim.solve.simulate import simulate
+    from trsim.store.hdf5 import write
+
+    try:
+        mechanism = assemble(scenario)
+        for note in mechanism.notes:
+            answer.say(f"{source}: {note}")
+        blocks = watched(simulate(scenario, mechanism), answer, source, scenario.solver.end)
+        summary = write(target, scenario, mechanism, blocks, shlex.join(["trsim", *sys.argv[1:]]))
+    except TrsimError as error:
+        raise locate(error, scenario) from None
+    answer.say(line(summary))
+    return summary
+
+
+def line(summary: dict[str, Any]) -> str:
+    """The result in one line."""
+    steps = summary["statistics"].get("steps", 0)
+    return (
+        f"{summary['file']}: {summary['status']} at t = {summary['time']:.6g} s, "
+        f"{summary['rows']} rows, {steps} steps, {summary['events']} contact events"
+    )

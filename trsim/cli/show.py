@@ -1,0 +1,61 @@
+"""trsim show: what is in a result file."""
+
+from typing import Any
+
+import click
+
+from trsim.cli.frame import Answer, framed
+
+
+@click.command("show")
+@click.argument("run", type=click.Path())
+@framed
+def command(answer: Answer, run: str) -> None:
+    """Print what is in the result file RUN."""
+    from trsim.store.read import read
+
+    found = read(run)
+    answer.data |= {
+        "file": str(found.path),
+        **found.attributes,
+        "rows": found.rows,
+        "channels": {name: found.units[name] for name in found.names},
+        "summary": found.summary,
+        "solver": found.group("solver"),
+        "provenance": found.group("provenance"),
+        "phase": list(found.phase),
+        "poincare": {name: len(points.x) for name, points in found.poincare.items()},
+    }
+    for text in lines(found, answer.data):
+        answer.put(text)
+
+
+def lines(run: Any, data: dict[str, Any]) -> list[str]:
+    """The same for a reader."""
+    a = run.attributes
+    out = [f"{run.path}: {a['title']}" if a["title"] else str(run.path)]
+    out.append(f"  status    {a['status']}" + (f": {a['reason']}" if a["reason"] else ""))
+    out.append(f"  rows      {run.rows} of {len(run.names)} channels")
+    if run.rows:
+        time = run.time
+        out[-1] += f", t = {time[0]:g} .. {time[-1]:g} s"
+    out.append(f"  content   {a.get('content_sha256', '- (not complete)')}")
+    solver = data["solver"]
+    if "steps" in solver:
+        out.append(
+            f"  solver    {solver['method']}, tolerance {solver['tolerance']:g}, "
+            f"{solver['steps']} steps, energy book closed to "
+            f"{solver['energy_residual_relative']:.1e}"
+        )
+    for name, contact in data["summary"]["contacts"].items():
+        out.append(
+            f"  contact   {name}: {contact['impacts']} impacts, peak {contact['peak_force']:.5g} "
+            f"at {contact['peak_time']:.5g} s"
+        )
+    sections = [f"{name} ({count} points)" for name, count in data["poincare"].items()]
+    out.append(f"  phase     {', '.join(data['phase']) or '-'}")
+    out.append(f"  poincare  {', '.join(sections) or '-'}")
+    out.append("  channels")
+    width = max((len(name) for name in run.names), default=0)
+    out += [f"    {name:<{width}}  {run.units[name]}" for name in run.names]
+    return out

@@ -1,0 +1,123 @@
+"""How numbers and runs are called in figures: display units, labels, what differs between runs."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from trsim.store.grow import Array
+from trsim.store.read import Run
+from trsim.units import unit
+
+DEFAULT = {"angle": "deg", "length": "mm"}
+OF = {"angle": "rad", "length": "m", "force": "N", "torque": "N*m"}  # what a choice replaces
+COMPARED = (
+    "parameters",
+    "bodies",
+    "joints",
+    "drives",
+    "forces",
+    "contact_laws",
+    "gravity",
+    "solver",
+)
+MINOR = ("contact", "type")  # keys that say nothing where another one differs
+MOST = 3  # parameters in a label
+
+
+class Shown(NamedTuple):
+    """A run among others: with the label and the units of its figures."""
+
+    run: Run
+    label: str
+    units: Mapping[str, tuple[float, str]]  # SI unit -> factor, display unit
+
+    def unit(self, channel: str) -> str:
+        return self.display(self.run.unit(channel))[1]
+
+    def display(self, si: str) -> tuple[float, str]:
+        """Factor and text of the display unit of an SI unit."""
+        return self.units.get(si, (1.0, written(si)))
+
+    def values(self, channel: str) -> Array:
+        """The rows of a channel in its display unit."""
+        return self.scaled(self.run.channel(channel), self.run.unit(channel))
+
+    def scaled(self, values: Any, si: str) -> Any:
+        return values * self.display(si)[0]
+
+    def has(self, *channels: str) -> bool:
+        return self.run.rows > 0 and all(channel in self.run.units for channel in channels)
+
+
+def compared(runs: list[Run]) -> list[Shown]:
+    """The runs with labels that tell them apart, all in the units of the first."""
+    scenarios = [run.scenario for run in runs]
+    units = display_units((scenarios[0].get("report") or {}).get("units") or {})
+    labels = differences(scenarios) if len(runs) > 1 else [""]
+    if len(set(labels)) < len(labels):
+        labels = [run.attributes["title"] or run.path.stem for run in runs]
+    if len(set(labels)) < len(labels):
+        labels = [str(run.path) for run in runs]
+    return [Shown(run, label, units) for run, label in zip(runs, labels, strict=True)]
+
+
+# --- units -----------------------------------------------------------------------------------
+
+
+def display_units(chosen: Mapping[str, str]) -> dict[str, tuple[float, str]]:
+    """SI unit -> factor and text, for the units chosen in `report: {units: ...}`.
+
+    The unit of length is for sizes and clearances: velocities and accelerations of bodies stay in
+    m/s and m/s^2, angles take their unit along to their rates.
+    """
+    units = {}
+    for kind, text in {**DEFAULT, **chosen}.items():
+        si = OF.get(kind)
+        if si is None or unit(text)[1] != unit(si)[1]:
+            continue
+        factor = 1.0 / float(unit(text)[0])
+        units[si] = factor, written(text)
+        if kind == "angle":
+            for rate in ("/s", "/s^2"):
+                units[si + rate] = factor, written(text + rate)
+    return units
+
+
+def written(text: str) -> str:
+    """A unit as it is printed."""
+    return text.replace("^2", "²").replace("*", "\u00b7").replace("^1.5", "$^{1.5}$")
+
+
+# --- what differs ----------------------------------------------------------------------------
+
+
+def differences(scenarios: list[dict[str, Any]]) -> list[str]:
+    """One label per scenario: the entries in which they differ, with their values."""
+    flat = [dict(_flat({k: s[k] for k in COMPARED if k in s})) for s in scenarios]
+    keys = dict.fromkeys(key for one in flat for key in one)
+    differing = [key for key in keys if len({repr(one.get(key)) for one in flat}) > 1]
+    major = [key for key in differing if key[-1] not in MINOR] or differing
+    return [_label(one, major) for one in flat]
+
+
+def _flat(data: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield from _flat(value, (*path, key))
+    else:
+        yield path, data
+
+
+def _label(one: dict[tuple[str, ...], Any], keys: list[tuple[str, ...]]) -> str:
+    """A, B: clearance 0.3 mm; the same value of the same key is told once."""
+    same: dict[tuple[str, Any], list[str]] = {}
+    for key in keys:
+        value = one.get(key, 0 if key[-1] == "clearance" else "-")
+        owner = key[-2] if len(key) > 2 else ""
+        same.setdefault((key[-1], str(value)), []).append(owner)
+    parts = []
+    for (name, value), owners in same.items():
+        who = ", ".join(owner for owner in owners if owner)
+        parts.append(f"{name}{f' at {who}' if who else ''} {value}")
+    if len(parts) > MOST:
+        return ""
+    return "; ".join(parts)

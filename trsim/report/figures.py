@@ -1,0 +1,255 @@
+"""The figures of a run, of whatever it contains; of several runs, overlaid or side by side."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trsim.report import style
+from trsim.report.display import Shown
+from trsim.report.orbits import orbit, section
+from trsim.report.style import colour, legend, panels, save, thinned, titled
+from trsim.store.grow import Array
+
+TIME = "time (s)"
+
+
+def draw(runs: list[Shown], folder: Path) -> list[Path]:
+    """All figures, as PNG."""
+    return [save(figure, folder / f"{name}.png") for name, figure in everything(runs)]
+
+
+def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
+    """File names and figures."""
+    for sensor in parts(runs, "sensors"):
+        yield f"motion_{sensor}", motion(runs, sensor)
+    if not parts(runs, "sensors"):
+        for body in parts(runs, "bodies"):
+            yield from body_motion(runs, body)
+    for drive in parts(runs, "drives"):
+        if some(runs, f"{drive}.force"):
+            yield f"drive_{drive}", drive_force(runs, drive)
+    for name in contacts(runs):
+        yield f"contact_{name}", contact_force(runs, name)
+        if some(runs, f"{name}.eccentricity_x", f"{name}.eccentricity_y"):
+            yield f"orbit_{name}", orbit(runs, name)
+    for name in dict.fromkeys(n for shown in runs for n in shown.run.phase):
+        yield f"phase_{name}", portrait(runs, name)
+    for name in dict.fromkeys(n for shown in runs for n in shown.run.poincare):
+        yield f"poincare_{name}", section(runs, name)
+    if some(runs, "energy.kinetic", "energy.residual"):
+        yield "energy", energy(runs)
+
+
+def some(runs: list[Shown], *channels: str) -> list[Shown]:
+    """The runs that have these channels."""
+    return [shown for shown in runs if shown.has(*channels)]
+
+
+def parts(runs: list[Shown], section: str) -> list[str]:
+    """Names of the elements of a section, in any of the runs."""
+    found = [n for s in runs for n, part in s.run.parts.items() if part.section == section]
+    return list(dict.fromkeys(found))
+
+
+def contacts(runs: list[Shown]) -> list[str]:
+    return list(dict.fromkeys(name for shown in runs for name in shown.run.contacts))
+
+
+def curve(axes: Any, shown: Shown, k: int, x: Array, y: Array) -> None:
+    """One run's curve."""
+    axes.plot(*thinned(x, y), color=colour(k), ls=style.DASHES[k // len(style.COLOURS) % 4],
+              label=shown.label)  # fmt: skip
+
+
+# --- over time -------------------------------------------------------------------------------
+
+
+def motion(runs: list[Shown], sensor: str) -> Any:
+    """A sensor, its rate and its acceleration."""
+    suffixes = {"": "", ".rate": "rate", ".acceleration": "acceleration"}
+    there = [suffix for suffix in suffixes if some(runs, sensor + suffix)]
+    figure, axes = panels(max(len(there), 1), height=1.7, sharex=True)
+    for row, suffix in enumerate(there):
+        channel = sensor + suffix
+        a = axes[row, 0]
+        for k, shown in enumerate(runs):
+            if shown.has(channel):
+                curve(a, shown, k, shown.run.time, shown.values(channel))
+        unit = some(runs, channel)[0].unit(channel)
+        a.set_ylabel(f"{suffixes[suffix] or spaced(sensor)} ({unit})")
+        a.margins(x=0.01)
+        style.apart(a)
+    axes[-1, 0].set_xlabel(TIME)
+    figure.align_ylabels()
+    titled(figure, runs, spaced(sensor).capitalize())
+    legend(figure, axes[0, 0], runs)
+    return figure
+
+
+def body_motion(runs: list[Shown], body: str) -> Iterator[tuple[str, Any]]:
+    """Position and velocity of a body, the components that change; for runs without sensors."""
+    channels = [c for c in (f"{body}.position", f"{body}.velocity") if some(runs, c)]
+    if not channels:
+        return
+    figure, axes = panels(len(channels), height=1.9, sharex=True)
+    for row, channel in enumerate(channels):
+        a = axes[row, 0]
+        for k, shown in enumerate(some(runs, channel)):
+            values = shown.values(channel)
+            for c in np.flatnonzero(np.ptp(values, axis=0) > 0.0):
+                label = f"{'xyz'[c]}  {shown.label}".strip()
+                a.plot(*thinned(shown.run.time, values[:, c]), color=colour(3 * k + c), label=label)
+        a.set_ylabel(f"{channel.split('.')[1]} ({some(runs, channel)[0].unit(channel)})")
+        a.margins(x=0.01)
+    axes[-1, 0].set_xlabel(TIME)
+    axes[0, 0].legend(loc="best")
+    figure.align_ylabels()
+    titled(figure, runs, spaced(body).capitalize())
+    yield f"body_{body}", figure
+
+
+def drive_force(runs: list[Shown], drive: str) -> Any:
+    """The force of a drive, its largest value marked."""
+    channel = f"{drive}.force"
+    figure, axes = panels(1, height=2.9)
+    a = axes[0, 0]
+    for k, shown in enumerate(runs):
+        if not shown.has(channel):
+            continue
+        curve(a, shown, k, shown.run.time, shown.values(channel))
+        largest = [p for p in shown.run.peaks if p[:2] == (channel, "largest")]
+        for peak in largest:
+            mark(a, peak.time, shown.scaled(peak.value, peak.unit), shown.unit(channel), k)
+    a.axhline(0.0, color="0.5", lw=0.6)
+    a.set(xlabel=TIME, ylabel=f"force of {spaced(drive)} ({some(runs, channel)[0].unit(channel)})")
+    a.margins(x=0.01, y=0.12)
+    style.apart(a)
+    titled(figure, runs, f"Drive {spaced(drive)}")
+    legend(figure, a, runs)
+    return figure
+
+
+def mark(axes: Any, time: float, value: float, unit: str, k: int) -> None:
+    """A peak: a dot with its value and time, beside it where there is room."""
+    axes.plot([time], [value], "o", ms=3.5, color=colour(k), mec="white", mew=0.5, zorder=5)
+    low, high = axes.get_xlim()
+    right = time > 0.5 * (low + high)
+    axes.annotate(
+        f"{value:.4g} {unit} at {time:.4g} s",
+        (time, value),
+        xytext=(-6 if right else 6, 3),
+        textcoords="offset points",
+        ha="right" if right else "left",
+        va="bottom",
+        fontsize=8,
+        color=colour(k),
+    )
+
+
+def contact_force(runs: list[Shown], name: str) -> Any:
+    """The force in a contact at every accepted step, zero in flight; a panel per run."""
+    there = [shown for shown in runs if name in shown.run.contacts]
+    figure, axes = panels(len(there), height=2.9 if len(there) == 1 else 1.8,
+                          sharex=True, sharey=True)  # fmt: skip
+    unit = there[0].display("N")[1]
+    for a, shown in zip(axes[:, 0], there, strict=True):
+        time, force = contact_history(shown, name)
+        force = shown.scaled(force, "N")
+        k = runs.index(shown)
+        a.plot(*thinned(time, force), color=colour(k), lw=0.8)
+        a.set_ylabel(f"contact force ({unit})" if len(there) < 3 else f"force ({unit})")
+        a.margins(x=0.01, y=0.12)
+        if shown.label:
+            a.set_title(shown.label, loc="left")
+    for a, shown in zip(axes[:, 0], there, strict=True):  # once the limits are known
+        time, force = contact_history(shown, name)
+        if len(force):
+            peak = int(np.argmax(force))
+            mark(a, time[peak], shown.scaled(force[peak], "N"), unit, runs.index(shown))
+    axes[-1, 0].set_xlabel(TIME)
+    axes[0, 0].set_ylim(bottom=0.0)
+    figure.align_ylabels()
+    titled(figure, runs, f"Contact force at {name}")
+    return figure
+
+
+def contact_history(shown: Shown, name: str) -> tuple[Array, Array]:
+    """Times and force (N) of a contact, from its steps and its events."""
+    steps, events = shown.run.steps(name), shown.run.events
+    force = steps["contact_force" if "contact_force" in steps else "normal_force"]
+    at = events.time[events.element == name]
+    ends = shown.run.time[[0, -1]] if shown.run.rows else np.zeros(0)
+    times = np.concatenate([steps["time"], at, ends])
+    values = np.concatenate([force, np.zeros(len(at) + len(ends))])
+    # a closed contact at the start or at the end has no zero there
+    order = np.argsort(times, kind="stable")
+    times, values = times[order], values[order]
+    first = np.append(True, np.diff(times) > 0.0)
+    group = np.cumsum(first) - 1
+    largest = np.zeros(int(group[-1]) + 1 if len(group) else 0)
+    np.maximum.at(largest, group, values)
+    return times[first], largest
+
+
+# --- the energy book -------------------------------------------------------------------------
+
+
+def energy(runs: list[Shown]) -> Any:
+    """Where the energy is and where it came from; what the book misses."""
+    figure, axes = panels(2, len(runs), height=2.3, sharex=True, sharey="row",
+                          height_ratios=(2, 1))  # fmt: skip
+    for column, shown in enumerate(runs):
+        if not shown.has("energy.kinetic", "energy.residual"):
+            continue
+        upper, lower = axes[:, column]
+        time = shown.run.time
+        names = [n for n in shown.run.names if n.startswith("energy.") and n != "energy.residual"]
+        curves = {n: shown.values(n) for n in names}
+        largest = max(float(np.max(np.abs(v))) for v in curves.values())
+        moving = [n for n in names if np.max(np.abs(curves[n])) > 1e-6 * largest]
+        for k, n in enumerate(moving):
+            label = n.removeprefix("energy.").replace(".", ": ")
+            upper.plot(*thinned(time, curves[n]), color=colour(k), ls=style.DASHES[k // 7],
+                       label=label)  # fmt: skip
+        lower.plot(*thinned(time, shown.values("energy.residual")), color="black", lw=0.8)
+        lower.set_xlabel(TIME)
+        if shown.label:
+            upper.set_title(shown.label, loc="left")
+        upper.margins(x=0.01)
+    axes[0, 0].set_ylabel("energy, work (J)")
+    axes[1, 0].set_ylabel("residual (J)")
+    figure.align_ylabels()
+    titled(figure, runs, "Energy book")
+    lines = {n: h for a in axes[0] for h, n in zip(*a.get_legend_handles_labels(), strict=True)}
+    figure.legend(lines.values(), lines.keys(), loc="outside lower center", ncols=4)
+    return figure
+
+
+# --- phase plane -----------------------------------------------------------------------------
+
+
+def portrait(runs: list[Shown], name: str) -> Any:
+    """A phase portrait of every run that has it."""
+    figure, axes = panels(1, height=3.6, width=4.8)
+    a = axes[0, 0]
+    for k, shown in enumerate(runs):
+        points = shown.run.phase.get(name)
+        if points is None or not len(points.x):
+            continue
+        x = shown.scaled(points.x, points.x_unit)
+        y = shown.scaled(points.y, points.y_unit)
+        a.plot(x, y, color=colour(k), lw=0.6, alpha=0.9 if len(runs) == 1 else 0.7,
+               label=shown.label, rasterized=True)  # fmt: skip
+        a.plot(x[:1], y[:1], "o", ms=4, color=colour(k), mec="white", mew=0.6, zorder=5)
+        a.set_xlabel(f"{spaced(points.definition['x'])} ({shown.display(points.x_unit)[1]})")
+        a.set_ylabel(f"{spaced(points.definition['y'])} ({shown.display(points.y_unit)[1]})")
+    titled(figure, runs, f"Phase portrait {name}, dot: start")
+    legend(figure, a, runs)
+    return figure
+
+
+def spaced(name: str) -> str:
+    """A channel as words: door_angle.rate -> door angle, rate."""
+    return name.replace(".", ", ").replace("_", " ")

@@ -1,0 +1,131 @@
+"""Journals in their bearings: orbits with the clearance circle, Poincare sections."""
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from trsim.report.display import Shown
+from trsim.report.style import WIDTH, colour, panels, titled
+from trsim.store.grow import Array
+
+SPARE = 1.12  # half width of the panel over the radius of the circle
+PARTS = 200  # stretches of the orbit, each of one colour
+MOST = 200_000  # points drawn
+
+
+def orbit(runs: list[Shown], name: str) -> Any:
+    """The path of the journal centre; side by side on one scale."""
+    there = [shown for shown in runs if name in shown.run.contacts]
+    clearances = [shown.run.parts[name].clearance for shown in there]
+    unit = there[0].display("m")[1]
+    figure, axes = side_by_side(len(there))
+    for a, shown, c in zip(axes, there, clearances, strict=True):
+        time, x, y = path(shown, name)
+        x, y = shown.scaled(x, "m"), shown.scaled(y, "m")
+        shade = coloured(a, time, x, y)
+        circle(a, shown.scaled(c, "m"))
+        a.plot(x[:1], y[:1], "o", ms=4, color="black", mec="white", mew=0.6, zorder=5)
+        a.set_xlabel(f"eccentricity x ({unit})")
+        note = deepest(shown, name)
+        a.set_title(f"{shown.label}\n{note}" if shown.label else note, fontsize=8)
+    square(axes, there[0].scaled(max(clearances), "m"))
+    axes[0].set_ylabel(f"eccentricity y ({unit})")
+    figure.colorbar(shade, ax=list(axes), label="time (s)", shrink=0.8, aspect=30)
+    titled(figure, there, f"Orbit of the journal at {name}, dot: start; dashed: clearance")
+    return figure
+
+
+def section(runs: list[Shown], name: str) -> Any:
+    """The points of a Poincare section; with the clearance circle where they are in a bearing."""
+    there = [shown for shown in runs if name in shown.run.poincare]
+    figure, axes = side_by_side(len(there))
+    radii = []
+    for a, shown in zip(axes, there, strict=True):
+        points = shown.run.poincare[name]
+        x = shown.scaled(points.x, points.x_unit)
+        y = shown.scaled(points.y, points.y_unit)
+        a.plot(x, y, ".", ms=4, mew=0, color=colour(runs.index(shown)), alpha=0.8)
+        definition = points.definition
+        a.set_xlabel(words(definition["x"], shown, points.x_unit))
+        a.set_ylabel(words(definition["y"], shown, points.y_unit))
+        a.set_title(f"{shown.label}\n{len(x)} points".strip(), fontsize=8)
+        joint = bearing(shown, definition)
+        if joint:
+            c = shown.scaled(shown.run.parts[joint].clearance, "m")
+            circle(a, c)
+            radii.append(c)
+    if len(radii) == len(there):
+        square(axes, max(radii))
+    definition = there[0].run.poincare[name].definition
+    direction = {"up": "upwards", "down": "downwards"}.get(definition["crosses"], "zero")
+    titled(figure, there, f"Section {name}: {definition['when']} crosses {direction}")
+    return figure
+
+
+def side_by_side(n: int) -> tuple[Any, Any]:
+    """n square panels in a row."""
+    width = {1: 4.4, 2: WIDTH}.get(n, 2.6 * n)
+    figure, axes = panels(1, n, height=3.7 if n < 3 else 3.2, width=width, sharey=True)
+    return figure, axes[0]
+
+
+def path(shown: Shown, name: str) -> tuple[Array, Array, Array]:
+    """Time and eccentricity of the journal (m): the rows, and the steps in touch between them."""
+    run, channels = shown.run, [f"{name}.eccentricity_x", f"{name}.eccentricity_y"]
+    rows = [run.time, *map(run.channel, channels)] if shown.has(*channels) else []
+    steps = run.steps(name)
+    inner = [steps["time"], steps["eccentricity_x"], steps["eccentricity_y"]]
+    merged = [np.concatenate(pair) for pair in zip(rows, inner, strict=True)] if rows else inner
+    order = np.argsort(merged[0], kind="stable")
+    order = order[:: max(1, -(-len(order) // MOST))]
+    time, x, y = (column[order] for column in merged)
+    return time, x, y
+
+
+def coloured(axes: Any, time: Array, x: Array, y: Array) -> Any:
+    """A path whose colour tells the time."""
+    from matplotlib.collections import LineCollection
+
+    cuts = np.unique(np.linspace(0, max(len(x) - 1, 1), PARTS + 1).astype(int))
+    points = np.stack([x, y], axis=1)
+    pieces = [points[a : b + 1] for a, b in pairwise(cuts)]
+    lines = LineCollection(pieces, cmap="viridis", linewidths=0.5, rasterized=True)
+    lines.set_array(time[np.minimum(cuts[:-1], len(time) - 1)])
+    axes.add_collection(lines)
+    return lines
+
+
+def circle(axes: Any, radius: float) -> None:
+    """How far the journal can move before it touches."""
+    from matplotlib.patches import Circle
+
+    axes.add_patch(Circle((0.0, 0.0), radius, fill=False, ls="--", lw=0.9, ec="#D55E00", zorder=4))
+
+
+def square(axes: Any, radius: float) -> None:
+    for a in axes:
+        a.set_aspect("equal")
+        a.set_xlim(-SPARE * radius, SPARE * radius)
+        a.set_ylim(-SPARE * radius, SPARE * radius)
+
+
+def deepest(shown: Shown, name: str) -> str:
+    """The scale of the penetration, which is drawn as it is."""
+    depth = shown.run.steps(name)["penetration"]
+    if not len(depth):
+        return "never in contact"
+    return f"penetration to scale, at most {1e6 * float(np.max(depth)):.3g} \u00b5m"
+
+
+def bearing(shown: Shown, definition: Any) -> str:
+    """The joint whose eccentricity a section shows, or nothing."""
+    for joint, part in shown.run.parts.items():
+        channels = (f"{joint}.eccentricity_x", f"{joint}.eccentricity_y")
+        if part.clearance > 0.0 and (definition["x"], definition["y"]) == channels:
+            return joint
+    return ""
+
+
+def words(channel: str, shown: Shown, unit: str) -> str:
+    return f"{channel.replace('.', ', ').replace('_', ' ')} ({shown.display(unit)[1]})"

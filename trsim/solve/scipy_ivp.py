@@ -1,0 +1,137 @@
+"""scipy's integrators as independent checks: the same equations, other steps.
+
+`OdeSolver.step()` is driven directly, because `solve_ivp` has no hook after an accepted step: that
+is where positions and velocities are projected, contacts change their phase and rows are written,
+by the code of the march.  scipy's dense output is handed over as values at Chebyshev nodes.
+Slow, 50 to 100 us of overhead per step, and worth it: step, error estimate and interpolation share
+nothing with the compiled methods.
+"""
+
+import time
+from collections.abc import Generator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.assemble import Mechanism
+from trsim.assemble.equations import derivative
+from trsim.elements.contract import compiled
+from trsim.elements.scene import Scene, scene
+from trsim.solve import record as rec
+from trsim.solve.calls import INTERPOLATE
+from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete_given, weigh
+from trsim.solve.record import Buffers, Record, fresh_buffers
+from trsim.solve.start import start
+
+Array = NDArray[np.float64]
+
+NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 8)  # Chebyshev-Lobatto on 0..1
+SIGNS = np.array([0.5, -1, 1, -1, 1, -1, 1, -1, 0.5])  # their barycentric weights
+RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
+
+
+@compiled(INTERPOLATE)
+def interpolate(P, y, theta, out):
+    """The polynomial through the values P at the nodes, barycentric form."""
+    for k in range(NODES.size):
+        if theta == NODES[k]:
+            for c in range(out.size):
+                out[c] = P[k, c]
+            return
+    bottom = 0.0
+    for c in range(out.size):
+        out[c] = 0.0
+    for k in range(NODES.size):
+        part = SIGNS[k] / (theta - NODES[k])
+        bottom += part
+        for c in range(out.size):
+            out[c] += part * P[k, c]
+    for c in range(out.size):
+        out[c] /= bottom
+
+
+def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
+    """As solve/simulate.py's, with scipy's solver making the steps."""
+    from trsim.solve.simulate import Outcome, block, first_step, new_record, settings, statistics
+
+    s, setting = scene(mechanism.model), settings(scenario, mechanism, True)
+    begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
+    r = new_record(s, begun)
+    b = fresh_buffers(s, r.y.size, 2, NODES.size, 2 + int(np.max(s.contact_width, initial=0)))
+    method = np.array([0, 0, interpolate.address(), 1])
+    clock0 = time.process_time()
+    begin(s, r, b, setting)
+    r.clock[rec.H] = first_step(scenario, r)
+    status, reason = "done", ""
+    solver = restarted(scenario, s, r, b, setting)
+    while r.clock[rec.T] < setting[rec.T_END]:
+        message = solver.step()
+        if solver.status == "failed":
+            status, reason = "failed", f"scipy stopped: {message}"
+            break
+        hand_over(solver, b)
+        outcome = complete_given(s, r, b, setting, method, solver.t - solver.t_old)
+        if outcome == WORTHLESS:
+            status, reason = "failed", "a value is not finite"
+            break
+        if outcome == SMOOTH_STEP:
+            nudge(solver, r)
+            r.clock[rec.H] = solver.t - solver.t_old
+        elif r.clock[rec.T] < setting[rec.T_END]:
+            solver = restarted(scenario, s, r, b, setting)
+        if (
+            r.count[rec.ROWS] > b.rows.shape[0] // 2
+            or r.count[rec.STEPS] % 2000 == 0
+            or (r.count[rec.STEP_ROWS] > b.steps.shape[0] // 2)
+        ):
+            yield emptied(r, b, block)
+    yield emptied(r, b, block)
+    cpu = time.process_time() - clock0
+    numbers = statistics(r, s, begun, cpu)
+    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
+
+
+def emptied(r: Record, b: Buffers, block: Any) -> Any:
+    """The buffers as a block; they count as empty afterwards."""
+    full = block(r, b)
+    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
+        r.count[counter] = 0
+    return full
+
+
+def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) -> Any:
+    """A scipy solver at the state of the record, with the error units in force there."""
+    import scipy.integrate
+
+    weigh(s, r, b, setting)
+    outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
+
+    def right_hand_side(t: float, y: Array) -> Array:
+        yd = np.empty_like(y)
+        derivative(s, t, np.ascontiguousarray(y), yd)
+        return yd
+
+    make = getattr(scipy.integrate, scenario.solver.method.split(":", 1)[1])
+    t = float(r.clock[rec.T])
+    first = min(float(r.clock[rec.H]), setting[rec.T_END] - t)
+    longest = min(setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
+    return make(right_hand_side, t, r.y.copy(), setting[rec.T_END], first_step=first or None,
+                max_step=longest, rtol=RELATIVE, atol=absolute)  # fmt: skip
+
+
+def hand_over(solver: Any, b: Buffers) -> None:
+    """End of the step into b.y1, values at the nodes into b.P."""
+    h = solver.t - solver.t_old
+    b.y1[:] = solver.y
+    b.P[:] = solver.dense_output()(solver.t_old + NODES * h).T
+
+
+def nudge(solver: Any, r: Record) -> None:
+    """Let scipy go on from the projected state; the change is below its tolerance."""
+    solver.y = r.y.copy()
+    if hasattr(solver, "f"):
+        solver.f = r.yd.copy()
+    if hasattr(solver, "D"):
+        solver.D[0] = r.y

@@ -1,0 +1,186 @@
+"""What a result file says about itself: scenario, mechanism, summary, provenance."""
+
+import hashlib
+import json
+import os
+import platform
+import re
+import time
+from pathlib import PurePath
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+
+from trsim.store.peaks import Peak
+from trsim.store.read import FORMAT, VERSION
+from trsim.version import __version__
+
+CPU = "integration_cpu"  # differs from run to run: kept apart from the statistics
+GROUPS = ("steps", "events", "peaks", "summary", "solver", "scenario", "mechanism", "provenance")
+TEXT = h5py.string_dtype()
+
+
+class Clock(NamedTuple):
+    """When a run began."""
+
+    date: float
+    wall: float
+    cpu: float
+
+    @classmethod
+    def now(cls) -> "Clock":
+        return cls(time.time(), time.perf_counter(), time.process_time())
+
+
+class Impacts:
+    """Counts of contact onsets and the fastest one, per instance, kept while events pass by."""
+
+    def __init__(self) -> None:
+        self.count: dict[int, int] = {}
+        self.fastest: dict[int, float] = {}
+        self.events = 0
+
+    def update(self, events: Any) -> None:
+        self.events += len(events)
+        for _, kind, e, speed, _ in events.tolist():
+            if kind == 1.0:
+                e = int(e)
+                self.count[e] = self.count.get(e, 0) + 1
+                self.fastest[e] = max(self.fastest.get(e, 0.0), speed)
+
+
+# --- before the first row --------------------------------------------------------------------
+
+
+def begin(file: h5py.File, scenario: Any, mechanism: Any) -> None:
+    """Attributes and groups of a file whose run is about to start."""
+    file.attrs["format"], file.attrs["format_version"] = FORMAT, VERSION
+    file.attrs["title"] = getattr(scenario, "title", "") or ""
+    file.attrs["status"], file.attrs["reason"] = "running", ""
+    for name in GROUPS:
+        file.create_group(name)
+    _scenario(file["scenario"], scenario)
+    _mechanism(file["mechanism"], scenario, mechanism)
+
+
+def _scenario(group: h5py.Group, scenario: Any) -> None:
+    """The text as given, its resolved form as JSON (which is YAML), and what it was read from."""
+    source = getattr(scenario, "source", None)
+    text = source.text if source else ""
+    files = {PurePath(name).name: digest for name, digest in source.files.items()} if source else {}
+    group["text"] = text
+    resolved = getattr(scenario, "resolved", {})
+    group["resolved"] = json.dumps(resolved, indent=1, ensure_ascii=False)
+    group["sha256"] = hashlib.sha256(text.encode()).hexdigest()
+    group["files"] = np.array(list(files), dtype=TEXT)
+    group["files_sha256"] = np.array(list(files.values()), dtype=TEXT)
+
+
+def _mechanism(group: h5py.Group, scenario: Any, mechanism: Any) -> None:
+    """What was assembled: instances, and what the motion does not determine."""
+    group.attrs["planar"] = bool(mechanism.planar)
+    group.attrs["mobility"] = int(mechanism.mobility)
+    for name in ("redundant", "singular", "not_unique", "notes"):
+        group[name] = np.array(list(getattr(mechanism, name)), dtype=TEXT)
+    shown = [i for i in mechanism.instances if i.section]
+    specs = [getattr(scenario, i.section).get(i.name) for i in shown]
+    group["name"] = np.array([i.name for i in shown], dtype=TEXT)
+    group["section"] = np.array([i.section for i in shown], dtype=TEXT)
+    group["type"] = np.array([i.element.key for i in shown], dtype=TEXT)
+    joints = [str(getattr(spec, "joint", None) or "") for spec in specs]
+    group["joint"] = np.array(joints, dtype=TEXT)
+    bodies = [" ".join(getattr(spec, "bodies", None) or ()) for spec in specs]
+    group["bodies"] = np.array(bodies, dtype=TEXT)
+    clearance = [float(getattr(spec, "clearance", None) or 0.0) for spec in specs]
+    group["clearance"] = np.array(clearance)
+    group["clearance"].attrs.update({"units": "m", "long_name": "radial clearance"})
+
+
+def flag(file: h5py.File, mechanism: Any) -> None:
+    """Mark the reactions that the motion does not determine."""
+    for name in {row.split(".")[0] for row in mechanism.not_unique}:
+        for channel in (f"{name}.reaction", f"{name}.reaction_moment"):
+            if channel in file:
+                rows = [row for row in mechanism.not_unique if row.split(".")[0] == name]
+                file[channel].attrs["not_unique"] = ", ".join(rows)
+
+
+# --- after the last row ----------------------------------------------------------------------
+
+
+def summary(
+    run: Any, file: h5py.File, status: str, reason: str, outcome: Any, found: list[Peak]
+) -> dict[str, Any]:
+    """The run in a few numbers."""
+    names = [instance.name for instance in run.mechanism.instances]
+    largest = {p.channel: p for p in found if p.extreme == "largest"}
+    contacts = {}
+    for e in run.contacts:
+        force = largest.get(f"{names[e]}.contact_force") or largest.get(f"{names[e]}.normal_force")
+        contacts[names[e]] = {
+            "impacts": run.impacts.count.get(e, 0),
+            "fastest_impact": run.impacts.fastest.get(e, 0.0),
+            "peak_force": force.value if force else float("nan"),
+            "peak_time": force.time if force else float("nan"),
+            "steps": run.contacts[e].n,
+        }
+    return {
+        "status": status,
+        "reason": reason,
+        "title": str(file.attrs["title"]),
+        "time": float(outcome.time if outcome else run.time),
+        "rows": run.rows.n,
+        "events": run.impacts.events,
+        "contacts": contacts,
+        "statistics": dict(outcome.statistics) if outcome else {},
+    }
+
+
+def end(
+    file: h5py.File, told: dict[str, Any], scenario: Any, outcome: Any, provenance: dict
+) -> None:
+    """Status, summary, solver and provenance."""
+    file.attrs["status"], file.attrs["reason"] = told["status"], told["reason"]
+    for name in ("time", "rows", "events"):
+        file["summary"].attrs[name] = told[name]
+    for joint, numbers in told["contacts"].items():
+        file["summary"].create_group(joint).attrs.update(numbers)
+    solver = file["solver"]
+    for name, value in vars(scenario.solver).items():
+        if isinstance(value, str | int | float | bool):
+            solver.attrs[name] = value
+    for name, value in told["statistics"].items():
+        if name != CPU:
+            solver.attrs[name] = value
+    file["provenance"].attrs.update(provenance)
+
+
+def provenance(command: str, clock: Clock, outcome: Any) -> dict[str, Any]:
+    """Where, when, by what and how long."""
+    from importlib.metadata import version
+
+    told = {
+        "command": command,
+        "machine": platform.node(),
+        "platform": platform.platform(),
+        "processors": os.cpu_count() or 0,
+        "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(clock.date)),
+        "wall_time": time.perf_counter() - clock.wall,
+        "cpu_time": time.process_time() - clock.cpu,
+        "trsim": __version__,
+        "python": platform.python_version(),
+        "hdf5": h5py.version.hdf5_version,
+    }
+    for package in ("numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic"):
+        told[package] = version(package)
+    if outcome is not None and CPU in outcome.statistics:
+        told[CPU] = outcome.statistics[CPU]
+    return told
+
+
+def cause(error: BaseException) -> str:
+    """The part of an HDF5 message that names what the system said."""
+    text = str(error)
+    found = re.search(r"error message = '([^']*)'", text)
+    return found[1] if found else text.splitlines()[0][:200] if text else type(error).__name__

@@ -1,0 +1,94 @@
+"""The table of peaks: extremes of forces and motions, exact where the solver kept them.
+
+Extremes of scalars and components come from the solver, at its accepted steps.  Magnitudes of
+vectors that have no channel of their own come from the output rows.
+"""
+
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.store.grow import Array
+
+SECTIONS = ("joints", "drives", "forces", "sensors")
+LETTERS = "xyz"
+ROWS = 1 << 16
+
+
+class Peak(NamedTuple):
+    """One extreme of one channel."""
+
+    channel: str
+    extreme: str  # largest, smallest, magnitude
+    value: float
+    time: float  # s
+    stroke: float  # m or rad: the sensor named `stroke` at that time; nan without one
+    unit: str
+
+
+class Magnitudes:
+    """Largest magnitudes of vectors so far, kept while rows pass by."""
+
+    def __init__(self, columns: tuple[Any, ...]) -> None:
+        self.columns = [c for c in columns if c.size == 3 and "reaction" in c.name and c.wanted]
+        self.largest = {c.name: (0.0, 0.0) for c in self.columns}  # name -> value, time
+
+    def update(self, rows: Array) -> None:
+        for c in self.columns:
+            vector = rows[:, 1 + c.start : 4 + c.start]
+            square = np.einsum("ij,ij->i", vector, vector)
+            k = int(np.argmax(square))
+            if square[k] > self.largest[c.name][0] ** 2:
+                self.largest[c.name] = float(np.sqrt(square[k])), float(rows[k, 0])
+
+
+def table(
+    mechanism: Any, extremes: NDArray[np.float64] | None, magnitudes: Magnitudes
+) -> list[Peak]:
+    """The peaks of a run, without their strokes; `extremes` is what the solver kept."""
+    names = {i.name for i in mechanism.instances if i.section in SECTIONS}
+    peaks = []
+    for column in mechanism.columns:
+        if column.name.split(".")[0] not in names:
+            continue
+        if column.name in magnitudes.largest:
+            value, time = magnitudes.largest[column.name]
+            peaks.append(Peak(column.name, "magnitude", value, time, np.nan, column.unit))
+        if extremes is None or column.size not in (1, 3):
+            continue
+        for k in range(column.size):
+            name = column.name + (f".{LETTERS[k]}" if column.size == 3 else "")
+            high, high_time, low, low_time = extremes[column.start + k].tolist()
+            peaks.append(Peak(name, "largest", high, high_time, np.nan, column.unit))
+            peaks.append(Peak(name, "smallest", low, low_time, np.nan, column.unit))
+    return peaks
+
+
+def with_strokes(peaks: list[Peak], file: h5py.File) -> list[Peak]:
+    """The peaks with the stroke at their times, by linear interpolation of the rows."""
+    if "stroke" not in file:
+        return peaks
+    wanted = np.array([peak.time for peak in peaks])
+    strokes = np.full(len(peaks), np.nan)
+    time, stroke = file["time"], file["stroke"]
+    for k in range(0, len(time), ROWS):
+        t, s = time[k : k + ROWS + 1], stroke[k : k + ROWS + 1]
+        inside = (wanted >= t[0]) & (wanted <= t[-1])
+        strokes[inside] = np.interp(wanted[inside], t, s)
+    return [peak._replace(stroke=float(s)) for peak, s in zip(peaks, strokes, strict=True)]
+
+
+def store(file: h5py.File, peaks: list[Peak]) -> None:
+    """The group /peaks: one dataset per column of the table."""
+    group = file["peaks"]
+    text = h5py.string_dtype()
+    for name in Peak._fields:
+        values = [getattr(peak, name) for peak in peaks]
+        dtype: Any = text if name in ("channel", "extreme", "unit") else "f8"
+        group.create_dataset(name, data=np.array(values, dtype=dtype))
+    group["time"].attrs["units"] = "s"
+    if "stroke" in file:
+        group["stroke"].attrs["units"] = file["stroke"].attrs["units"]
+    group.attrs["extremes"] = "at accepted steps, magnitudes at output rows"

@@ -1,0 +1,250 @@
+"""The reader of result files, complete or partial."""
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.errors import FileError, UsageError, known
+from trsim.store.content import content_hash
+from trsim.store.grow import Array
+from trsim.store.peaks import Peak
+from trsim.store.points import split
+
+FORMAT, VERSION = "trsim run", 1
+
+
+class Part(NamedTuple):
+    """One element of the mechanism of a run."""
+
+    section: str
+    type: str
+    joint: str  # of a drive or a sensor
+    bodies: tuple[str, ...]
+    clearance: float  # m, radial; 0 for an ideal joint
+
+
+class Events(NamedTuple):
+    """Onsets and separations of contacts."""
+
+    time: Array  # s
+    kind: NDArray[Any]  # onset, separation
+    element: NDArray[Any]
+    speed: Array  # m/s
+    angle: Array  # rad
+
+
+class Points(NamedTuple):
+    """A phase portrait or a Poincare section."""
+
+    definition: Mapping[str, Any]
+    time: Array
+    x: Array
+    y: Array
+    x_unit: str
+    y_unit: str
+
+
+@dataclass(frozen=True)
+class Run:
+    """The contents of a result file; the numbers are read when they are asked for."""
+
+    path: Path
+    attributes: Mapping[str, Any]  # title, status, reason, content_sha256 ...
+    units: Mapping[str, str]  # channel -> SI unit
+    sizes: Mapping[str, int]  # channel -> components
+    parts: Mapping[str, Part]  # name -> element
+    contacts: tuple[str, ...]  # names with a table of steps
+    rows: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The channels."""
+        return tuple(self.units)
+
+    @property
+    def time(self) -> Array:
+        return self.channel("time")
+
+    def channel(self, name: str) -> Array:
+        """The rows of a channel, (n) or (n, size); `B.force.x` is one component."""
+        stored, component = split(name, self.sizes)
+        if stored != "time" and stored not in self.units:
+            raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
+        with opened(self.path) as file:
+            rows = file[stored][: self.rows]
+        return rows if component is None else rows[:, component]
+
+    def unit(self, name: str) -> str:
+        return self.units[split(name, self.sizes)[0]]
+
+    def meaning(self, name: str) -> str:
+        with opened(self.path) as file:
+            return str(file[split(name, self.sizes)[0]].attrs["long_name"])
+
+    def steps(self, joint: str) -> dict[str, Array]:
+        """`time` and the channels of a contact at every accepted step in touch."""
+        if joint not in self.contacts:
+            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
+        with opened(self.path) as file:
+            return _table(file["steps"][joint])
+
+    @property
+    def events(self) -> Events:
+        with opened(self.path) as file:
+            table = _table(file["events"])
+        words = {name: table[name].astype(str) for name in ("kind", "element")}
+        return Events(**{**table, **words})
+
+    @property
+    def peaks(self) -> tuple[Peak, ...]:
+        with opened(self.path) as file:
+            if "channel" not in file["peaks"]:
+                return ()
+            columns = {name: file["peaks"][name] for name in Peak._fields}
+            read = [c.asstr()[:] if c.dtype == object else c[:].tolist() for c in columns.values()]
+        return tuple(Peak(*row) for row in zip(*read, strict=True))
+
+    @property
+    def phase(self) -> dict[str, Points]:
+        return self._points("phase")
+
+    @property
+    def poincare(self) -> dict[str, Points]:
+        return self._points("poincare")
+
+    def _points(self, section: str) -> dict[str, Points]:
+        with opened(self.path) as file:
+            return {n: _points(g) for n, g in file[section].items() if "x" in g and "y" in g}
+
+    def group(self, name: str) -> dict[str, Any]:
+        """The attributes of a group: summary, solver, provenance, mechanism."""
+        with opened(self.path) as file:
+            return _plain(file[name].attrs)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        with opened(self.path) as file:
+            group = file["summary"]
+            found = {name: _plain(inner.attrs) for name, inner in group.items()}
+            return {**_plain(group.attrs), "contacts": found}
+
+    def text(self, name: str) -> Any:
+        """A dataset of words by its path: scenario/text, mechanism/redundant."""
+        with opened(self.path) as file:
+            found = file[name].asstr()[()]
+        return found if isinstance(found, str) else tuple(found)
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        """The scenario as plain data, after extends, tables and --set."""
+        return json.loads(self.text("scenario/resolved"))
+
+
+def read(path: str | os.PathLike) -> Run:
+    """Open a result file.  Raises FileError where there is none that can be read."""
+    path = Path(path)
+    with opened(path) as file:
+        _check(file, path)
+        channels = {n: d for n, d in file.items() if isinstance(d, h5py.Dataset) and d.shape}
+        channels = {n: d for n, d in channels.items() if not n.startswith("component.")}
+        time = channels.pop("time")
+        return Run(
+            path=path,
+            attributes=_plain(file.attrs),
+            units={name: str(d.attrs.get("units", "-")) for name, d in channels.items()},
+            sizes={name: d.shape[1] if d.ndim == 2 else 1 for name, d in channels.items()},
+            parts=_parts(file["mechanism"]),
+            contacts=tuple(file["steps"]),
+            # a killed writer may have left the last columns behind
+            rows=min(len(d) for d in [time, *channels.values()]),
+        )
+
+
+def verify(path: str | os.PathLike) -> bool:
+    """Whether the contents of a complete file still are what its hash says."""
+    with opened(Path(path)) as file:
+        _check(file, Path(path))
+        return content_hash(file) == file.attrs.get("content_sha256")
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[h5py.File]:
+    """An HDF5 file for reading, also while it is written or after its writer was killed."""
+    if not path.is_file():
+        hint = ""
+        part = path.with_name(path.name + ".part")
+        if part.exists():
+            hint = f"{part} exists: the run is going on, or was broken off."
+        raise FileError(f"{path}: no such file", hint)
+    try:
+        with _file(path) as file:
+            yield file
+    except (OSError, KeyError, RuntimeError, ValueError) as error:
+        if isinstance(error, FileError):
+            raise
+        raise FileError(*_unreadable(path, error)) from None
+
+
+def _file(path: Path) -> h5py.File:
+    try:
+        return h5py.File(path, "r")
+    except OSError:
+        if not h5py.is_hdf5(path):
+            raise
+        return h5py.File(path, "r", libver="latest", swmr=True)
+
+
+def _unreadable(path: Path, error: Exception) -> tuple[str, str]:
+    if not os.access(path, os.R_OK):
+        return f"{path}: permission denied", ""
+    with path.open("rb") as file:
+        signature = file.read(8)
+    if signature != b"\x89HDF\r\n\x1a\n":
+        return f"{path} is not a result file", "A result file is written by `trsim run`."
+    text = str(error).splitlines()[0] if str(error) else type(error).__name__
+    what = "is truncated" if "truncated" in text else "is damaged"
+    return f"{path} {what}: {text[:200]}", "Run the scenario again."
+
+
+def _check(file: h5py.File, path: Path) -> None:
+    if file.attrs.get("format") != FORMAT:
+        hint = "A result file is written by `trsim run`."
+        raise FileError(f"{path} is an HDF5 file, but not a result of trsim", hint)
+    version = int(file.attrs["format_version"])
+    if version > VERSION:
+        what = f"{path} has format {version}; this trsim reads up to {VERSION}"
+        raise FileError(what, "Use a newer trsim.")
+
+
+def _parts(group: h5py.Group) -> dict[str, Part]:
+    words = [group[n].asstr()[:] for n in ("name", "section", "type", "joint", "bodies")]
+    clearance = group["clearance"][:].tolist()
+    return {
+        name: Part(section, kind, joint, tuple(bodies.split()), c)
+        for name, section, kind, joint, bodies, c in zip(*words, clearance, strict=True)
+    }
+
+
+def _table(group: h5py.Group) -> dict[str, Any]:
+    n = min(len(dataset) for dataset in group.values())
+    return {name: dataset[:n] for name, dataset in group.items()}
+
+
+def _points(group: h5py.Group) -> Points:
+    n = min(len(group[axis]) for axis in ("time", "x", "y"))
+    x, y = group["x"], group["y"]
+    units = str(x.attrs["units"]), str(y.attrs["units"])
+    return Points(_plain(group.attrs), group["time"][:n], x[:n], y[:n], *units)
+
+
+def _plain(attributes: Any) -> dict[str, Any]:
+    """Attributes as Python's own numbers and texts."""
+    return {n: v.item() if isinstance(v, np.generic) else v for n, v in attributes.items()}
