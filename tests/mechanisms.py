@@ -1,11 +1,20 @@
 """Mechanisms with a known answer.  Each returns (scenario text, exact solution)."""
 
-from math import cos, sqrt
+from math import atan, cos, sqrt
+from pathlib import Path
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+DATA = Path(__file__).parent / "data"
 TIGHT = "tolerance: 1e-12"
+SPEED = 0.5  # m/s, of central_impact
+
+
+def table(name):
+    """The rows of a CSV file of tests/data."""
+    lines = (DATA / name).read_text().splitlines()
+    return np.array([[float(x) for x in line.split(",")] for line in lines if line[0].isdigit()])
 
 
 def torsion_pendulum(theta0=0.3, k=2.0, J=5e-3, solver="end: 0.4"):
@@ -88,3 +97,92 @@ def _spin(theta, phi_dot):
     """omega = r x v / r^2: no turn about the rod."""
     r = np.array([np.sin(theta), 0.0, -np.cos(theta)])
     return list(map(float, np.cross(r, [0.0, np.sin(theta) * phi_dot, 0.0])))
+
+
+def driven_slide(motion="position", compliance=""):
+    """A body on a slide driven along x = 0.2 sin^2 3t (from rest); also x' and x''."""
+    law = {"position": "0.1*(1 - cos(6*t))", "velocity": "0.6*sin(6*t)"}[motion]
+    text = f"""
+bodies: {{slider: {{mass: 3, inertia: 1}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}}}
+drives: {{drive: {{joint: slide, {motion}: "{law}", sign: -1{compliance}}}}}
+solver: {{end: 0.5, tolerance: 1e-10}}
+output: {{every: 0.01}}
+"""
+
+    def exact(t):
+        return 0.1 * (1 - np.cos(6 * t)), 0.6 * np.sin(6 * t), 3.6 * np.cos(6 * t)
+
+    return text, exact
+
+
+def p1_slider_crank(friction=False, tolerance=1e-8, clearance="0.5 mm", end=0.003, more=""):
+    """A slider-crank at 5000 rpm with play in the pin of rod and slider.
+
+    The journal starts centred, with the velocities of the ideal mechanism.
+    """
+    law = "law: modified_coulomb, coefficient: 0.01, v0: 1e-4, v1: 1e-3"
+    text = f"""
+bodies:
+  crank: {{mass: 0.30, inertia: 1.0e-4, at: [0.025, 0]}}
+  rod: {{mass: 0.21, inertia: 2.5e-4, at: [0.11, 0]}}
+  slider: {{mass: 0.14, inertia: 1e-4, at: [0.17, 0]}}
+joints:
+  A: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  B: {{type: revolute, bodies: [crank, rod], at: [0.05, 0]}}
+  C: {{type: revolute, bodies: [rod, slider], at: [0.17, 0], clearance: {clearance}, contact: pin}}
+  track: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}
+drives: {{motor: {{joint: A, velocity: 5000 rpm}}}}
+contact_laws:
+  pin: {{normal: lankarani_nikravesh, stiffness: internal, bearing_radius: 10 mm, restitution: 0.9,
+        youngs_modulus: 207 GPa, poisson: 0.3, slowest_impact: 1e-6,
+        friction: {{{law if friction else "law: none"}}}}}
+solver: {{end: {end}, tolerance: {tolerance}}}
+output: {{every: 40 us}}
+{more}
+"""
+    return text
+
+
+def central_impact(law="lankarani_nikravesh", restitution=1.0, K=1e9, mass=1.0, exponent=1.5,
+                   planar="true"):  # fmt: skip
+    """A body on a slide, thrown by a pulse at the wall of its bearing: it hits at SPEED.
+
+    The pulse A (1 - step(t / T)) has the impulse A T / 2; it is over before the touch.
+    """
+    pulse = 2 * mass * SPEED / 1e-3
+    return f"""
+planar: {planar}
+bodies: {{slider: {{mass: {mass}, inertia: [1, 1, 1]}}}}
+joints:
+  slide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}
+  pin: {{type: revolute, bodies: [ground, slider], at: [0, 0], clearance: 1 mm, contact: law}}
+contact_laws:
+  law: {{normal: {law}, restitution: {restitution}, stiffness: {K}, exponent: {exponent},
+        bearing_radius: 0.1}}
+forces:
+  pulse: {{type: applied_load, body: slider, direction: [1, 0],
+          force: "{pulse}*(1 - step(t, 0, 0, 0.001, 1))"}}
+solver: {{end: 6 ms, tolerance: 1e-10}}
+"""
+
+
+def bouncing_ball(height=0.1, k=1e5, damping=0.0, tolerance=1e-8, bounces=5):
+    """A ball of 1 kg falls on a spring: first touch, contact time and period.
+
+    In touch x'' = g - (k/m) x; the time is that between the zeros of the solution.
+    """
+    g, omega = 9.81, sqrt(k)
+    v = sqrt(2 * g * height)
+    contact = 2 / omega * (np.pi / 2 + atan(g / (omega * v)))
+    period = 2 * v / g + contact
+    text = f"""
+planar: true
+gravity: [0, {-g}]
+bodies: {{ball: {{mass: 1, inertia: 1, at: [0, {height}]}}}}
+forces:
+  floor: {{type: limit_stop, point: {{body: ball, at: [0, {height}]}},
+          wall: {{body: ground, at: [0, 0], normal: [0, 1]}}, stiffness: {k}, damping: {damping}}}
+solver: {{end: {bounces * period!r}, tolerance: {tolerance}}}
+"""
+    return text, (v / g, contact, period)

@@ -60,6 +60,7 @@ def test_elastic_force_is_minus_the_gradient_of_the_energy(seed, stiffness):
 def test_action_is_reaction_and_the_book_closes(seed, friction):
     b = pressed(seed, friction=friction)
     b.z[-1] = 1e-4 if friction == "sticking" else 0.0
+    b.V *= 0.1  # slow enough for the bodies to part without the force being cut
     check_action_is_reaction(b)
     check_power(b, h=1e-6)
     assert b.book[3] <= 0.0
@@ -97,6 +98,7 @@ def test_friction_opposes_either_way_of_sliding():
         b = pressed(5, friction="coulomb")
         b.V[:] = 0.0
         b.V[2, 3:] = spin * now(b, AXIS)
+        b.V[2, :3] = -np.cross(b.V[2, 3:], offset(b)[1][1] - b.r[2])
         assert b.book[4] < 0.0
 
 
@@ -126,7 +128,7 @@ def test_centred_journal_is_finite():
 @pytest.mark.parametrize(
     "old, new, what",
     [
-        ("clearance: 0.03", "clearance: -0.03", "greater than or equal to 0"),
+        ("clearance: 0.03", "clearance: -0.03", "must be >= 0"),
         ("clearance: 0.03", "clearance: 0.3", "leaves no journal"),
         ("contact: law", "contact: lw", "no contact law named 'lw'"),
         ("bearing_radius: 0.2, ", "", "bearing_radius"),

@@ -82,14 +82,17 @@ class Mechanism:
 
 
 def assemble(
-    scenario: Any, ideal: frozenset[str] = frozenset(), drives: Mapping[str, Any] | None = None
+    scenario: Any,
+    ideal: frozenset[str] = frozenset(),
+    drives: Mapping[str, Any] | None = None,
+    coordinates: tuple[str, ...] = (),
 ) -> Mechanism:
-    """Build the model.
+    """Build the model.  Raises ScenarioError, ModelError.
 
-    ideal: clearance joints to take as ideal ones; drives: drives instead of the scenario's (both
-    for the start of a run).  Raises ScenarioError, ModelError.
+    For the start of a run - ideal: clearance joints to take as ideal ones; drives: drives instead
+    of the scenario's; coordinates: joints whose coordinate is needed though nobody asks for it.
     """
-    at, instances = pack(scenario, ideal, drives)
+    at, instances = pack(scenario, ideal, drives, coordinates)
     full = build(scenario, at, instances, all_rows(instances), 6)
     y6 = drawn(scenario, at, 6)
     planar, assumed = planarity(scenario, full, y6)
@@ -131,7 +134,12 @@ def assemble(
     )
 
 
-def pack(scenario: Any, ideal: frozenset[str], drives: Mapping[str, Any] | None):  # type: ignore[no-untyped-def]
+def pack(  # type: ignore[no-untyped-def]
+    scenario: Any,
+    ideal: frozenset[str],
+    drives: Mapping[str, Any] | None,
+    coordinates: tuple[str, ...],
+):
     """Every element of the scenario as an Instance, neighbours of one kind together."""
     wanted: list[tuple[str, str, str, Any]] = []
     sections = {s: getattr(scenario, s) for s in ("bodies", "joints", "drives", "sensors")}
@@ -162,6 +170,9 @@ def pack(scenario: Any, ideal: frozenset[str], drives: Mapping[str, Any] | None)
             raise error.at(section, name) from None
         except ValueError as error:
             raise ScenarioError(str(error), path=(section, name)) from None
+    for name in coordinates:
+        if at.elements["joints", name].coordinate:
+            at.coordinate(name)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
         if instance.section == "joints" and instance.name in at.coordinates:
@@ -363,7 +374,7 @@ def in_solve(J: Array, planar: bool) -> NDArray[np.bool_]:
     """Rows with a part in the plane; all of them in space."""
     if not planar:
         return np.ones(len(J), bool)
-    blocks = J.reshape(len(J), -1, 6)[:, :, IN_PLANE]
+    blocks = J.reshape(len(J), J.shape[1] // 6, 6)[:, :, IN_PLANE]
     return np.abs(blocks).max(axis=(1, 2), initial=0.0) > 1e-9
 
 

@@ -122,7 +122,7 @@ def dependences(model: Model, y: Array, columns: list[int], order: list[int],
     order: priority of the rows; geometric: the rows positions must keep to when perturbed (all
     but the drives).
     """
-    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns])
+    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns], int)
     scale = weights(model)[keep]
     here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
     if not here:
@@ -153,6 +153,7 @@ def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
     """
     rng = np.random.default_rng(1)
     m = model.n - 1
+    tilted = False  # moments that turn bodies out of the plane, unless something holds them
     for _ in range(2):
         dx = np.zeros((m, 6))
         dx[:, IN_PLANE] = 0.05 * rng.normal(size=(m, 3))
@@ -166,8 +167,13 @@ def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
         F = sample(near)[1:]
         if np.abs(F[:, 2]).max(initial=0.0) > 1e-9 * max(1.0, np.abs(F).max(initial=0.0)):
             return False, False
+        tilt = np.abs(F[:, 3:5]).max(initial=0.0)
+        tilted = tilted or tilt > 1e-9 * max(1.0, np.abs(F).max(initial=0.0))
     outside_rows = jacobian(model, 0.0, y)[2].reshape(model.m, m, 6)[:, :, OUT_OF_PLANE]
-    held = np.linalg.matrix_rank(outside_rows.reshape(model.m, -1), tol=1e-8) == 3 * m
+    outside_rows = outside_rows.reshape(model.m, 3 * m)
+    held = np.linalg.matrix_rank(outside_rows, tol=1e-8) == 3 * m if model.m else m == 0
+    if tilted and not held:
+        return False, False
     return True, bool(held)
 
 

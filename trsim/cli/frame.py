@@ -6,8 +6,10 @@ import math
 import os
 import signal
 import sys
-from collections.abc import Callable
-from typing import Any, NoReturn
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
 
 import click
 
@@ -16,12 +18,12 @@ from trsim.errors import TrsimError
 INTERRUPTED = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
-class Stopped(KeyboardInterrupt):
-    """A signal asks the command to end."""
+class Stop:
+    """What a signal asked for.  Compiled code must not be broken off by an exception of ours: while
+    `patient`, whoever can stop safely looks here."""
 
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.number = number
+    number: int | None = None
+    patient = False
 
 
 class Answer:
@@ -56,6 +58,11 @@ class Answer:
         self.exit_code = 1
         self.data["errors"].append({"what": kind, "hint": hint, "exit_code": 1})
 
+    def interrupted(self) -> None:
+        """Tell that a signal ended the command."""
+        click.echo("interrupted", err=True)
+        self.exit_code = INTERRUPTED.get(Stop.number or signal.SIGINT, 130)
+
     def close(self) -> int:
         """Print the document; the exit code."""
         self.data["exit_code"] = self.exit_code
@@ -70,23 +77,23 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
     @functools.wraps(function)
     def command(as_json: bool = False, quiet: bool = False, **options: Any) -> int:
         answer = Answer(function.__module__.rsplit(".", 1)[-1], as_json, quiet)
-        for number in INTERRUPTED:
-            signal.signal(number, _stop)
         try:
-            function(answer, **options)
+            with listening():
+                function(answer, **options)
         except TrsimError as error:
             answer.fail(error)
-        except KeyboardInterrupt as error:
-            number = getattr(error, "number", signal.SIGINT)
-            click.echo("interrupted", err=True)
-            answer.exit_code = INTERRUPTED[number]
+        except KeyboardInterrupt:
+            answer.interrupted()
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
         except Exception as error:
-            if os.environ.get("TRSIM_DEBUG"):
+            if Stop.number:  # numba's own way of telling that an exception passed through
+                answer.interrupted()
+            elif os.environ.get("TRSIM_DEBUG"):
                 raise
-            answer.broken(error)
+            else:
+                answer.broken(error)
         return answer.close()
 
     options = [
@@ -96,10 +103,27 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
     return functools.reduce(lambda inner, option: option(inner), options, command)
 
 
-def _stop(number: int, _: Any) -> NoReturn:
+@contextmanager
+def listening() -> Iterator[None]:
+    """Signals are told to Stop; afterwards everything is as it was."""
+    Stop.number, Stop.patient = None, False
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, _stop) for number in INTERRUPTED}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _stop(number: int, _: Any) -> None:
     for each in INTERRUPTED:  # the second one ends the process at once
         signal.signal(each, signal.SIG_DFL)
-    raise Stopped(number)
+    Stop.number = number
+    if not Stop.patient:
+        raise KeyboardInterrupt
 
 
 def told(error: TrsimError) -> dict[str, Any]:

@@ -7,26 +7,27 @@ from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
-from trsim.cli.frame import Answer
+from trsim.cli.frame import Answer, Stop
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
 LINE = 10.0  # s between two lines where there is no terminal
 DRAWN = 0.2  # s between two looks at the bar
 
 
-def compiling(answer: Answer, method: str) -> None:
-    """Say so where the kernels of the solver were never compiled on this machine."""
+def compiling(answer: Answer, kernel: str) -> None:
+    """Say so where a kernel was never compiled on this machine, and with it most others."""
     folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    if not method.startswith("scipy:") and not any(folder.glob("*/march.march-*.nbi")):
+    if not any(folder.glob(f"*/{kernel}-*.nbi")):
         answer.say("compiling (once per installation, about half a minute)")
 
 
 def watched(
     blocks: Generator[Any, None, Any], answer: Answer, name: str, end: float
 ) -> Generator[Any, None, Any]:
-    """The same blocks and the same outcome, with progress shown in passing."""
-    if answer.quiet:
-        return (yield from blocks)
+    """The same blocks and the same outcome, with progress shown in passing.
+
+    Also the place where a run stops when a signal asked for it.
+    """
     show = Bar(name, end) if sys.stderr.isatty() else Lines(answer, name, end)
     try:
         while True:
@@ -34,8 +35,12 @@ def watched(
                 block = next(blocks)
             except StopIteration as stop:
                 return stop.value
-            show.update(block)
+            Stop.patient = True
+            if not answer.quiet:
+                show.update(block)
             yield block
+            if Stop.number:
+                raise KeyboardInterrupt
     finally:
         show.close()
 
@@ -57,10 +62,11 @@ class Lines:
 
     def __init__(self, answer: Answer, name: str, end: float) -> None:
         self.answer, self.name, self.end = answer, name, end
-        self.began = self.last = time.monotonic()
+        self.began = self.last = 0.0
 
     def update(self, block: Any) -> None:
         now = time.monotonic()
+        self.began, self.last = self.began or now, self.last or now
         if now - self.last < LINE:
             return
         self.last = now
@@ -77,11 +83,12 @@ class Bar:
 
     def __init__(self, name: str, end: float) -> None:
         self.name, self.end = name, end
-        self.began = self.last = time.monotonic()
+        self.began = self.last = 0.0
         self.bar: Any = None
 
     def update(self, block: Any) -> None:
         now = time.monotonic()
+        self.began = self.began or now
         if now - self.began < PATIENCE or now - self.last < DRAWN:
             return
         self.last = now

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from trsim.cli.frame import Answer, framed
+from trsim.cli.frame import Answer, Stop, framed
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
 
 
@@ -57,15 +57,16 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
 def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dict[str, Any]:
     """Run one scenario; the summary of its result."""
     from trsim.cli.progress import compiling, watched
-    from trsim.spec.load import load, locate
+    from trsim.spec.load import load
 
     scenario = load(source, sets)
     if scenario.solver.end is None:
         error = ScenarioError(
             "field required: end (s)", "Write for example `end: 1 s`.", ("solver",)
         )
-        raise locate(error, scenario)
-    compiling(answer, scenario.solver.method)
+        raise placed(error, scenario)
+    by_scipy = scenario.solver.method.startswith("scipy:")
+    compiling(answer, "equations.derivative" if by_scipy else "march.march")
     from trsim.assemble.assemble import assemble
     from trsim.solve.simulate import simulate
     from trsim.store.hdf5 import write
@@ -77,9 +78,20 @@ def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dic
         blocks = watched(simulate(scenario, mechanism), answer, source, scenario.solver.end)
         summary = write(target, scenario, mechanism, blocks, shlex.join(["trsim", *sys.argv[1:]]))
     except TrsimError as error:
-        raise locate(error, scenario) from None
+        raise placed(error, scenario) from None
+    finally:
+        Stop.patient = False
+    if Stop.number:
+        raise KeyboardInterrupt
     answer.say(line(summary))
     return summary
+
+
+def placed(error: TrsimError, scenario: Any) -> TrsimError:
+    """The error with its place in the scenario's files, if it is about something in them."""
+    from trsim.spec.load import locate
+
+    return locate(error, scenario) if any(one.path for one in error.problems) else error
 
 
 def line(summary: dict[str, Any]) -> str:

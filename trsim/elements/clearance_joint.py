@@ -106,6 +106,12 @@ def friction_numbers(friction):
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies)
     law = at.contact_law(spec.contact)
+    if law.bearing_radius is None:
+        raise ScenarioError(
+            "the contact law of a clearance joint needs `bearing_radius`",
+            "friction acts at that radius",
+            ("contact",),
+        )
     if spec.clearance >= law.bearing_radius:
         raise ScenarioError(
             f"a radial clearance of {spec.clearance:g} m leaves no journal in a bearing of radius "

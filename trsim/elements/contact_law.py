@@ -56,6 +56,8 @@ class Friction(Spec):
     @model_validator(mode="after")
     def complete(self) -> "Friction":
         _needs(self, f"friction law {self.law}", FRICTION_NEEDS[self.law])
+        if self.law == "sticking" and self.coefficient == 0.0:
+            raise ScenarioError("friction law sticking needs a coefficient > 0")
         if self.v0 is not None and self.v1 is not None and self.v0 >= self.v1:
             raise ScenarioError(f"v0 must be < v1, got {self.v0:g} and {self.v1:g} m/s")
         return self

@@ -65,8 +65,9 @@ def pack(name, spec, at):
     k = c = 0.0
     if spec.compliance is not None:
         k = spec.compliance.stiffness
+        driven = x.j or x.i  # the ground is not driven
         m = spec.compliance.mass or (
-            at.inertia_about(x.j, x.axis) if x.kind == "angle" else at.mass(x.j)
+            at.inertia_about(driven, x.axis) if x.kind == "angle" else at.mass(driven)
         )
         zeta = spec.compliance.damping_ratio
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0

@@ -25,6 +25,7 @@ from trsim.elements.contract import (
     kernel,
 )
 from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
+from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, vector
 from trsim.laws.contact import ramped_damping
 
@@ -65,6 +66,8 @@ class LimitStop(Spec):
             raise ValueError("give `point` and `wall`, or `joint` with `lower` and/or `upper`")
         if on_joint and self.lower is None and self.upper is None:
             raise ValueError("give `lower`, `upper` or both")
+        if self.lower is not None and self.upper is not None and self.lower >= self.upper:
+            raise ValueError(f"lower must be < upper, got {self.lower:g} and {self.upper:g}")
         if self.wall is not None and not any(self.wall.normal):
             raise ValueError("`normal` must not be zero")
         return self
@@ -79,6 +82,12 @@ def pack(name, spec, at):
     contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0)
     if spec.joint is None:
         i, j = at.body(spec.wall.body, "wall", "body"), at.body(spec.point.body, "point", "body")
+        if i == j:
+            raise ScenarioError(
+                f"point and wall are both on '{spec.wall.body}'",
+                "name two different bodies",
+                ("point", "body"),
+            )
         length = sum(c * c for c in spec.wall.normal) ** 0.5
         n = at.axes(i, tuple(c / length for c in spec.wall.normal))
         places = (*at.local(i, spec.wall.at), *at.local(j, spec.point.at))

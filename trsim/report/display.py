@@ -20,6 +20,7 @@ COMPARED = (
     "solver",
 )
 MINOR = ("contact", "type")  # keys that say nothing where another one differs
+SHORT = 0.05  # s: a shorter run is told in ms
 MOST = 3  # parameters in a label
 
 
@@ -37,6 +38,14 @@ class Shown(NamedTuple):
         """Factor and text of the display unit of an SI unit."""
         return self.units.get(si, (1.0, written(si)))
 
+    @property
+    def time(self) -> Array:
+        return self.scaled(self.run.time, "s")
+
+    @property
+    def time_label(self) -> str:
+        return f"time ({self.display('s')[1]})"
+
     def values(self, channel: str) -> Array:
         """The rows of a channel in its display unit."""
         return self.scaled(self.run.channel(channel), self.run.unit(channel))
@@ -52,6 +61,8 @@ def compared(runs: list[Run]) -> list[Shown]:
     """The runs with labels that tell them apart, all in the units of the first."""
     scenarios = [run.scenario for run in runs]
     units = display_units((scenarios[0].get("report") or {}).get("units") or {})
+    if max(run.summary.get("time", 1.0) for run in runs) < SHORT:
+        units["s"] = (1e3, "ms")
     labels = differences(scenarios) if len(runs) > 1 else [""]
     if len(set(labels)) < len(labels):
         labels = [run.attributes["title"] or run.path.stem for run in runs]
@@ -85,6 +96,12 @@ def display_units(chosen: Mapping[str, str]) -> dict[str, tuple[float, str]]:
 def written(text: str) -> str:
     """A unit as it is printed."""
     return text.replace("^2", "²").replace("*", "\u00b7").replace("^1.5", "$^{1.5}$")
+
+
+def short(value: float, digits: int = 4) -> str:
+    """A number for a reader: never 4.587e+04, a real minus sign."""
+    text = f"{value:.0f}" if 10**digits <= abs(value) < 1e7 else f"{value:.{digits}g}"
+    return text.replace("-", "\u2212")
 
 
 # --- what differs ----------------------------------------------------------------------------

@@ -7,17 +7,24 @@ from typing import Any
 import numpy as np
 
 from trsim.report import style
-from trsim.report.display import Shown
+from trsim.report.display import Shown, short
 from trsim.report.orbits import orbit, section
-from trsim.report.style import colour, legend, panels, save, thinned, titled
+from trsim.report.style import colour, legend, look, panels, save, thinned, titled
 from trsim.store.grow import Array
+from trsim.store.peaks import Peak
 
-TIME = "time (s)"
+QUANTITY = {
+    "rad/s": "angular velocity",
+    "rad/s^2": "angular acceleration",
+    "m/s": "velocity",
+    "m/s^2": "acceleration",
+}
 
 
 def draw(runs: list[Shown], folder: Path) -> list[Path]:
     """All figures, as PNG."""
-    return [save(figure, folder / f"{name}.png") for name, figure in everything(runs)]
+    with look():
+        return [save(figure, folder / f"{name}.png") for name, figure in everything(runs)]
 
 
 def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
@@ -68,20 +75,24 @@ def curve(axes: Any, shown: Shown, k: int, x: Array, y: Array) -> None:
 
 def motion(runs: list[Shown], sensor: str) -> Any:
     """A sensor, its rate and its acceleration."""
-    suffixes = {"": "", ".rate": "rate", ".acceleration": "acceleration"}
-    there = [suffix for suffix in suffixes if some(runs, sensor + suffix)]
+    there = [s for s in ("", ".rate", ".acceleration") if some(runs, sensor + s)]
     figure, axes = panels(max(len(there), 1), height=1.7, sharex=True)
+    noise = 0.0
     for row, suffix in enumerate(there):
         channel = sensor + suffix
         a = axes[row, 0]
         for k, shown in enumerate(runs):
             if shown.has(channel):
-                curve(a, shown, k, shown.run.time, shown.values(channel))
-        unit = some(runs, channel)[0].unit(channel)
-        a.set_ylabel(f"{suffixes[suffix] or spaced(sensor)} ({unit})")
+                curve(a, shown, k, shown.time, shown.values(channel))
+        one = some(runs, channel)[0]
+        quantity = QUANTITY.get(one.run.unit(channel), "") if suffix else ""
+        a.set_ylabel(f"{quantity or spaced(channel)}\n({one.unit(channel)})")
         a.margins(x=0.01)
-        style.apart(a)
-    axes[-1, 0].set_xlabel(TIME)
+        largest = max(float(np.max(np.abs(s.values(channel)))) for s in some(runs, channel))
+        style.apart(a, noise)
+        # what rounding of this value over the length of the run may look like in its rate
+        noise = 1e-9 * largest / max(float(one.run.time[-1]), 1e-300)
+    axes[-1, 0].set_xlabel(runs[0].time_label)
     figure.align_ylabels()
     titled(figure, runs, spaced(sensor).capitalize())
     legend(figure, axes[0, 0], runs)
@@ -100,10 +111,10 @@ def body_motion(runs: list[Shown], body: str) -> Iterator[tuple[str, Any]]:
             values = shown.values(channel)
             for c in np.flatnonzero(np.ptp(values, axis=0) > 0.0):
                 label = f"{'xyz'[c]}  {shown.label}".strip()
-                a.plot(*thinned(shown.run.time, values[:, c]), color=colour(3 * k + c), label=label)
+                a.plot(*thinned(shown.time, values[:, c]), color=colour(3 * k + c), label=label)
         a.set_ylabel(f"{channel.split('.')[1]} ({some(runs, channel)[0].unit(channel)})")
         a.margins(x=0.01)
-    axes[-1, 0].set_xlabel(TIME)
+    axes[-1, 0].set_xlabel(runs[0].time_label)
     axes[0, 0].legend(loc="best")
     figure.align_ylabels()
     titled(figure, runs, spaced(body).capitalize())
@@ -118,12 +129,15 @@ def drive_force(runs: list[Shown], drive: str) -> Any:
     for k, shown in enumerate(runs):
         if not shown.has(channel):
             continue
-        curve(a, shown, k, shown.run.time, shown.values(channel))
-        largest = [p for p in shown.run.peaks if p[:2] == (channel, "largest")]
-        for peak in largest:
-            mark(a, peak.time, shown.scaled(peak.value, peak.unit), shown.unit(channel), k)
+        curve(a, shown, k, shown.time, shown.values(channel))
+        for peak in shown.run.peaks:
+            if peak.channel == channel:
+                mark(a, shown, peak, k, told=len(runs) == 1)
     a.axhline(0.0, color="0.5", lw=0.6)
-    a.set(xlabel=TIME, ylabel=f"force of {spaced(drive)} ({some(runs, channel)[0].unit(channel)})")
+    one = some(runs, channel)[0]
+    word = "torque" if one.run.unit(channel) == "N*m" else "force"
+    a.set_ylabel(f"{word} of {spaced(drive)} ({one.unit(channel)})")
+    a.set_xlabel(one.time_label)
     a.margins(x=0.01, y=0.12)
     style.apart(a)
     titled(figure, runs, f"Drive {spaced(drive)}")
@@ -131,18 +145,22 @@ def drive_force(runs: list[Shown], drive: str) -> Any:
     return figure
 
 
-def mark(axes: Any, time: float, value: float, unit: str, k: int) -> None:
-    """A peak: a dot with its value and time, beside it where there is room."""
+def mark(axes: Any, shown: Shown, peak: Peak, k: int, told: bool = True) -> None:
+    """A peak: a dot, and its value and time beside it where there is room."""
+    time, value = shown.scaled(peak.time, "s"), shown.scaled(peak.value, peak.unit)
     axes.plot([time], [value], "o", ms=3.5, color=colour(k), mec="white", mew=0.5, zorder=5)
+    if not told:
+        return
     low, high = axes.get_xlim()
     right = time > 0.5 * (low + high)
+    unit, second = shown.display(peak.unit)[1], shown.display("s")[1]
     axes.annotate(
-        f"{value:.4g} {unit} at {time:.4g} s",
+        f"{short(value)} {unit} at {short(time)} {second}",
         (time, value),
-        xytext=(-6 if right else 6, 3),
+        xytext=(-6 if right else 6, 3 if peak.extreme == "largest" else -3),
         textcoords="offset points",
         ha="right" if right else "left",
-        va="bottom",
+        va="bottom" if peak.extreme == "largest" else "top",
         fontsize=8,
         color=colour(k),
     )
@@ -156,19 +174,19 @@ def contact_force(runs: list[Shown], name: str) -> Any:
     unit = there[0].display("N")[1]
     for a, shown in zip(axes[:, 0], there, strict=True):
         time, force = contact_history(shown, name)
-        force = shown.scaled(force, "N")
         k = runs.index(shown)
-        a.plot(*thinned(time, force), color=colour(k), lw=0.8)
+        force = shown.scaled(force, "N")
+        a.plot(*thinned(shown.scaled(time, "s"), force), color=colour(k))
         a.set_ylabel(f"contact force ({unit})" if len(there) < 3 else f"force ({unit})")
         a.margins(x=0.01, y=0.12)
         if shown.label:
             a.set_title(shown.label, loc="left")
     for a, shown in zip(axes[:, 0], there, strict=True):  # once the limits are known
-        time, force = contact_history(shown, name)
-        if len(force):
-            peak = int(np.argmax(force))
-            mark(a, time[peak], shown.scaled(force[peak], "N"), unit, runs.index(shown))
-    axes[-1, 0].set_xlabel(TIME)
+        channels = (f"{name}.contact_force", f"{name}.normal_force")
+        found = [p for p in shown.run.peaks if p.channel in channels and p.extreme == "largest"]
+        for peak in sorted(found, key=lambda p: channels.index(p.channel))[:1]:
+            mark(a, shown, peak, runs.index(shown))
+    axes[-1, 0].set_xlabel(runs[0].time_label)
     axes[0, 0].set_ylim(bottom=0.0)
     figure.align_ylabels()
     titled(figure, runs, f"Contact force at {name}")
@@ -200,21 +218,20 @@ def energy(runs: list[Shown]) -> Any:
     """Where the energy is and where it came from; what the book misses."""
     figure, axes = panels(2, len(runs), height=2.3, sharex=True, sharey="row",
                           height_ratios=(2, 1))  # fmt: skip
+    names = entries(runs)
     for column, shown in enumerate(runs):
         if not shown.has("energy.kinetic", "energy.residual"):
             continue
         upper, lower = axes[:, column]
-        time = shown.run.time
-        names = [n for n in shown.run.names if n.startswith("energy.") and n != "energy.residual"]
-        curves = {n: shown.values(n) for n in names}
-        largest = max(float(np.max(np.abs(v))) for v in curves.values())
-        moving = [n for n in names if np.max(np.abs(curves[n])) > 1e-6 * largest]
-        for k, n in enumerate(moving):
+        time = shown.time
+        for k, n in enumerate(names):
+            if not shown.has(n):
+                continue
             label = n.removeprefix("energy.").replace(".", ": ")
-            upper.plot(*thinned(time, curves[n]), color=colour(k), ls=style.DASHES[k // 7],
+            upper.plot(*thinned(time, shown.values(n)), color=colour(k), ls=style.DASHES[k // 7],
                        label=label)  # fmt: skip
-        lower.plot(*thinned(time, shown.values("energy.residual")), color="black", lw=0.8)
-        lower.set_xlabel(TIME)
+        lower.plot(*thinned(time, shown.values("energy.residual")), color="black")
+        lower.set_xlabel(runs[0].time_label)
         if shown.label:
             upper.set_title(shown.label, loc="left")
         upper.margins(x=0.01)
@@ -225,6 +242,16 @@ def energy(runs: list[Shown]) -> Any:
     lines = {n: h for a in axes[0] for h, n in zip(*a.get_legend_handles_labels(), strict=True)}
     figure.legend(lines.values(), lines.keys(), loc="outside lower center", ncols=4)
     return figure
+
+
+def entries(runs: list[Shown]) -> list[str]:
+    """The entries of the energy book that matter in any of the runs."""
+    size: dict[str, float] = {}
+    for shown in runs:
+        for n in shown.run.names:
+            if n.startswith("energy.") and n != "energy.residual" and shown.has(n):
+                size[n] = max(size.get(n, 0.0), float(np.max(np.abs(shown.values(n)))))
+    return [n for n in size if size[n] > 1e-6 * max(size.values())]
 
 
 # --- phase plane -----------------------------------------------------------------------------

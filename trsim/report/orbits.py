@@ -22,17 +22,21 @@ def orbit(runs: list[Shown], name: str) -> Any:
     figure, axes = side_by_side(len(there))
     for a, shown, c in zip(axes, there, clearances, strict=True):
         time, x, y = path(shown, name)
-        x, y = shown.scaled(x, "m"), shown.scaled(y, "m")
+        time, x, y = shown.scaled(time, "s"), shown.scaled(x, "m"), shown.scaled(y, "m")
         shade = coloured(a, time, x, y)
         circle(a, shown.scaled(c, "m"))
         a.plot(x[:1], y[:1], "o", ms=4, color="black", mec="white", mew=0.6, zorder=5)
         a.set_xlabel(f"eccentricity x ({unit})")
         note = deepest(shown, name)
         a.set_title(f"{shown.label}\n{note}" if shown.label else note, fontsize=8)
-    square(axes, there[0].scaled(max(clearances), "m"))
+    reach = [
+        c * SPARE + max(0.0, depth(s, name) - 0.05 * c)
+        for s, c in zip(there, clearances, strict=True)
+    ]
+    square(axes, there[0].scaled(max(reach), "m"))
     axes[0].set_ylabel(f"eccentricity y ({unit})")
-    figure.colorbar(shade, ax=list(axes), label="time (s)", shrink=0.8, aspect=30)
-    titled(figure, there, f"Orbit of the journal at {name}, dot: start; dashed: clearance")
+    figure.colorbar(shade, ax=list(axes), label=there[0].time_label, shrink=0.8, aspect=30)
+    titled(figure, there, f"Journal at {name} (dot: start; dashed: clearance)")
     return figure
 
 
@@ -45,10 +49,11 @@ def section(runs: list[Shown], name: str) -> Any:
         points = shown.run.poincare[name]
         x = shown.scaled(points.x, points.x_unit)
         y = shown.scaled(points.y, points.y_unit)
-        a.plot(x, y, ".", ms=4, mew=0, color=colour(runs.index(shown)), alpha=0.8)
+        a.plot(x, y, ".", ms=5, mew=0, color=colour(runs.index(shown)), alpha=0.8)
         definition = points.definition
         a.set_xlabel(words(definition["x"], shown, points.x_unit))
-        a.set_ylabel(words(definition["y"], shown, points.y_unit))
+        if a is axes[0]:
+            a.set_ylabel(words(definition["y"], shown, points.y_unit))
         a.set_title(f"{shown.label}\n{len(x)} points".strip(), fontsize=8)
         joint = bearing(shown, definition)
         if joint:
@@ -56,17 +61,19 @@ def section(runs: list[Shown], name: str) -> Any:
             circle(a, c)
             radii.append(c)
     if len(radii) == len(there):
-        square(axes, max(radii))
+        square(axes, SPARE * max(radii))
     definition = there[0].run.poincare[name].definition
-    direction = {"up": "upwards", "down": "downwards"}.get(definition["crosses"], "zero")
-    titled(figure, there, f"Section {name}: {definition['when']} crosses {direction}")
+    direction = {"up": " upwards", "down": " downwards"}.get(definition["crosses"], "")
+    text = f"Poincar\u00e9 section {name}: {definition['when']} crosses zero{direction}"
+    titled(figure, there, text)
     return figure
 
 
 def side_by_side(n: int) -> tuple[Any, Any]:
     """n square panels in a row."""
     width = {1: 4.4, 2: WIDTH}.get(n, 2.6 * n)
-    figure, axes = panels(1, n, height=3.7 if n < 3 else 3.2, width=width, sharey=True)
+    height = (width - 1.1) / n + 0.9
+    figure, axes = panels(1, n, height=height, width=width, sharey=True)
     return figure, axes[0]
 
 
@@ -100,22 +107,27 @@ def circle(axes: Any, radius: float) -> None:
     """How far the journal can move before it touches."""
     from matplotlib.patches import Circle
 
-    axes.add_patch(Circle((0.0, 0.0), radius, fill=False, ls="--", lw=0.9, ec="#D55E00", zorder=4))
+    axes.add_patch(Circle((0.0, 0.0), radius, fill=False, ls="--", lw=0.8, ec="0.25", zorder=4))
 
 
-def square(axes: Any, radius: float) -> None:
+def square(axes: Any, reach: float) -> None:
     for a in axes:
         a.set_aspect("equal")
-        a.set_xlim(-SPARE * radius, SPARE * radius)
-        a.set_ylim(-SPARE * radius, SPARE * radius)
+        a.set_xlim(-reach, reach)
+        a.set_ylim(-reach, reach)
 
 
 def deepest(shown: Shown, name: str) -> str:
     """The scale of the penetration, which is drawn as it is."""
-    depth = shown.run.steps(name)["penetration"]
-    if not len(depth):
+    largest = depth(shown, name)
+    if largest <= 0.0:
         return "never in contact"
-    return f"penetration to scale, at most {1e6 * float(np.max(depth)):.3g} \u00b5m"
+    return f"penetration to scale, at most {1e6 * largest:.3g} \u00b5m"
+
+
+def depth(shown: Shown, name: str) -> float:
+    """The largest penetration, m."""
+    return float(np.max(shown.run.steps(name)["penetration"], initial=0.0))
 
 
 def bearing(shown: Shown, definition: Any) -> str:

@@ -1,5 +1,6 @@
 """The look of all figures: sizes for print, light grid, colours that survive a photocopier."""
 
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +12,12 @@ from matplotlib.figure import Figure
 from trsim.report.display import Shown
 from trsim.store.grow import Array
 
+CHARACTER = 0.085  # inch: a letter of a title
 WIDTH = 6.3  # inch: the text width of an A4 page
 DPI = 150
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", ":")
-MOST = 4000  # points of a curve; more than the pixels can show
+STRETCHES = 1500  # of a curve: more than the pixels can show
 RC: dict[str, Any] = {
     "font.size": 9,
     "axes.titlesize": 9,
@@ -29,7 +31,7 @@ RC: dict[str, Any] = {
     "axes.formatter.limits": (-4, 5),
     "grid.color": "#dddddd",
     "grid.linewidth": 0.5,
-    "lines.linewidth": 1.0,
+    "lines.linewidth": 0.8,
     "legend.fontsize": 8,
     "legend.frameon": False,
     "xtick.labelsize": 8,
@@ -37,6 +39,11 @@ RC: dict[str, Any] = {
     "figure.constrained_layout.h_pad": 0.06,
     "agg.path.chunksize": 10000,
 }
+
+
+def look() -> Any:
+    """A context in which figures are made and saved."""
+    return matplotlib.rc_context(RC)
 
 
 def colour(k: int) -> str:
@@ -47,17 +54,14 @@ def panels(
     rows: int, columns: int = 1, height: float = 2.0, width: float = WIDTH, **options: Any
 ) -> tuple[Figure, Any]:
     """A figure and its axes, (rows, columns)."""
-    with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(width, rows * height + 0.4), dpi=DPI, layout="constrained")
-        FigureCanvasAgg(figure)
-        axes = figure.subplots(rows, columns, squeeze=False, **options)
-    return figure, axes
+    figure = Figure(figsize=(width, rows * height + 0.4), dpi=DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure, figure.subplots(rows, columns, squeeze=False, **options)
 
 
 def save(figure: Figure, path: Path) -> Path:
     """Write the PNG, without anything that changes from day to day."""
-    with matplotlib.rc_context(RC):
-        figure.savefig(path, metadata={"Software": None})
+    figure.savefig(path, metadata={"Software": None})
     return path
 
 
@@ -67,7 +71,9 @@ def titled(figure: Figure, runs: list[Shown], text: str) -> None:
     name = (run.attributes["title"] or run.path.stem) if len(runs) == 1 else ""
     status = run.attributes["status"] if len(runs) == 1 else "done"
     end = "" if status == "done" else f" ({status})"
-    figure.suptitle(f"{text}\n{name}{end}" if name else text, fontsize=10)
+    wide = int(figure.get_figwidth() / CHARACTER)
+    lines = [textwrap.fill(text, wide)] + ([textwrap.fill(name + end, wide)] if name else [])
+    figure.suptitle("\n".join(lines), fontsize=10)
 
 
 def legend(figure: Figure, axes: Any, runs: list[Shown]) -> None:
@@ -80,22 +86,26 @@ def legend(figure: Figure, axes: Any, runs: list[Shown]) -> None:
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:
-    """At most MOST points that look the same: the lowest and highest of every stretch."""
-    if len(x) <= MOST:
+    """Fewer points that look the same: first, lowest, highest and last of every stretch of x."""
+    if len(x) <= 4 * STRETCHES:
         return x, y
-    size = -(-len(x) // (MOST // 2))
-    n = len(x) // size * size
-    blocks = np.nan_to_num(y[:n]).reshape(-1, size)
-    ends = np.sort(np.stack([blocks.argmin(axis=1), blocks.argmax(axis=1)], axis=1), axis=1)
-    kept = (ends + size * np.arange(len(blocks))[:, None]).ravel()
-    kept = np.unique(np.concatenate([[0], kept, np.arange(n, len(x)), [len(x) - 1]]))
+    of = ((x - x[0]) * (STRETCHES / (x[-1] - x[0]))).astype(int)
+    first = np.flatnonzero(np.diff(of, prepend=-1))
+    last = np.append(first[1:], len(x)) - 1
+    order = np.lexsort((y, of))  # by value within each stretch; the stretches stay in place
+    kept = np.unique(np.concatenate([first, last, order[first], order[last]]))
     return x[kept], y[kept]
 
 
-def apart(axes: Any) -> None:
-    """Room above and below a curve that hardly changes, so that rounding is not shown as signal."""
+def apart(axes: Any, noise: float = 0.0) -> None:
+    """Room above and below a curve that hardly changes: rounding is not shown as a signal.
+
+    noise: what in the units of the axis is no more than rounding.
+    """
     low, high = axes.get_ylim()
-    largest = max(abs(low), abs(high), 1e-300)
-    if high - low < 1e-6 * largest:
+    largest = max(abs(low), abs(high))
+    if largest <= noise:
+        axes.set_ylim(-1.0, 1.0)
+    elif high - low < 1e-6 * largest:
         middle = 0.5 * (low + high)
         axes.set_ylim(middle - 0.05 * largest, middle + 0.05 * largest)

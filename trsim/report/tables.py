@@ -1,14 +1,16 @@
 """Tables: the peak load of every pin, drive and stop, with time and stroke."""
 
 import csv
+import textwrap
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from trsim.report.display import Shown
-from trsim.report.style import WIDTH, panels, save, titled
+from trsim.report.display import Shown, short
+from trsim.report.style import WIDTH, look, panels, save, titled
 
+NOISE = 1e-9  # of the largest load of the same unit: rounding
 SECTIONS = ("joints", "drives", "forces")
 
 
@@ -30,7 +32,9 @@ def draw(runs: list[Shown], folder: Path) -> list[Path]:
     loads = [load for shown in runs for load in peak_loads(shown)]
     if not loads:
         return []
-    return [write(loads, folder / "peaks.csv"), save(picture(runs, loads), folder / "peaks.png")]
+    table = write(loads, folder / "peaks.csv")
+    with look():
+        return [table, save(picture(runs, loads), folder / "peaks.png")]
 
 
 def peak_loads(shown: Shown) -> list[Load]:
@@ -39,17 +43,21 @@ def peak_loads(shown: Shown) -> list[Load]:
     for peak in shown.run.peaks:
         element, _, channel = peak.channel.partition(".")
         kind = load_name(shown, element, channel, peak.extreme)
-        if not kind:
+        if not kind or not np.isfinite(peak.value):
             continue
         key = (element, kind)
         if key not in best or abs(peak.value) > abs(best[key].value):
             best[key] = peak
-    order = list(shown.run.parts)
+    scenario = shown.run.scenario
+    order = [name for s in SECTIONS for name in scenario.get(s) or {}] + list(shown.run.parts)
+    largest: dict[str, float] = {}
+    for peak in best.values():
+        largest[peak.unit] = max(largest.get(peak.unit, 0.0), abs(peak.value))
     lines = []
     for (element, kind), peak in sorted(best.items(), key=lambda item: order.index(item[0][0])):
         factor, unit = shown.display(peak.unit)
         length, length_unit = stroke_unit(shown)
-        if abs(peak.value) > 0.0:
+        if abs(peak.value) > NOISE * largest[peak.unit]:
             lines.append(Load(shown.label, element, kind, peak.value * factor, unit, peak.time,
                               peak.stroke * length, length_unit))  # fmt: skip
     return lines
@@ -61,7 +69,9 @@ def load_name(shown: Shown, element: str, channel: str, extreme: str) -> str:
     if part is None or part.section not in SECTIONS:
         return ""
     if extreme == "magnitude":  # the rows a joint with clearance keeps carry no load in the plane
-        return {"reaction": "reaction", "reaction_moment": "moment"}.get(channel, "")
+        loose = any(row.startswith(f"{element}.") for row in shown.run.text("mechanism/not_unique"))
+        name = {"reaction": "reaction", "reaction_moment": "moment"}.get(channel, "")
+        return f"{name} (not unique)" if name and loose else name
     names = {"contact_force": "contact force", "torque": "torque", "magnitude": "load"}
     if part.section == "drives" or part.type == "spring_damper":
         names["force"] = "force"
@@ -87,33 +97,65 @@ def write(loads: list[Load], path: Path) -> Path:
 
 
 def picture(runs: list[Shown], loads: list[Load]) -> Any:
-    """The table as a figure."""
-    several = len(runs) > 1
-    head = ["pin", "load", "peak", "time (s)"]
-    head = (["run", *head] if several else head) + stroke_head(loads)
-    cells = []
-    for load in loads:
-        line = [load.element, load.load, f"{load.value:.5g} {load.unit}", f"{load.time:.4f}"]
-        line = [load.run, *line] if several else line
-        cells.append(line + ([f"{load.stroke:.4g}"] if stroke_head(loads) else []))
-    figure, axes = panels(1, height=0.22 * (len(cells) + 1) + 0.25, width=WIDTH)
+    """The table as a figure; of several runs, one column each."""
+    second = runs[0].display("s")
+    head, cells = columns(runs, loads, second) if len(runs) > 1 else lines(loads, second)
+    width = max(WIDTH, 2.6 + 1.6 * len(runs))
+    figure, axes = panels(1, height=0.22 * (len(cells) + 1) + 0.4, width=width)
     a = axes[0, 0]
     a.axis("off")
-    widths = [max(len(row[k]) for row in [head, *cells]) + 3 for k in range(len(head))]
+    a.set_title("reactions and moments at output rows, all others at accepted steps", fontsize=8)
+    widths = [max(longest(row[k]) for row in [head, *cells]) + 3 for k in range(len(head))]
     table = a.table(cells, colLabels=head, loc="center", cellLoc="left", edges="horizontal",
                     colWidths=[w / sum(widths) for w in widths])  # fmt: skip
     table.auto_set_font_size(False)
     table.set_fontsize(8)
+    high = 1 + max(name.count("\n") for name in head)
     for (row, _), cell in table.get_celld().items():
         cell.set_linewidth(0.9 if row == 0 else 0.3)
-        cell.set_height(1.0 / (len(cells) + 1))
+        cell.set_height((high if row == 0 else 1.0) / (len(cells) + high))
         if row == 0:
-            cell.set_text_props(weight="bold")
+            cell.set_text_props(ha="left", weight="bold")
     titled(figure, runs, "Peak loads")
     return figure
 
 
-def stroke_head(loads: list[Load]) -> list[str]:
-    """The column of strokes, where there is a sensor of that name."""
-    known = [load for load in loads if np.isfinite(load.stroke)]
-    return [f"stroke ({known[0].stroke_unit})"] if known else []
+def lines(loads: list[Load], second: tuple[float, str]) -> tuple[list[str], list[list[str]]]:
+    """Head and cells of one run."""
+    stroke = next((load.stroke_unit for load in loads if np.isfinite(load.stroke)), "")
+    head = ["pin", "load", "peak", f"time ({second[1]})"] + (
+        [f"stroke ({stroke})"] if stroke else []
+    )
+    cells = [
+        [load.element, load.load, number(load), f"{load.time * second[0]:.4f}"]
+        + ([short(load.stroke)] if stroke else [])
+        for load in loads
+    ]
+    return head, cells
+
+
+def columns(
+    runs: list[Shown], loads: list[Load], second: tuple[float, str]
+) -> tuple[list[str], list[list[str]]]:
+    """Head and cells of several runs: value and time of each."""
+    of = {(load.run, load.element, load.load): load for load in loads}
+    head = ["pin", "load", *(textwrap.fill(shown.label, 26) for shown in runs)]
+    cells = []
+    elements = list(dict.fromkeys(load.element for load in loads))
+    pairs = dict.fromkeys((load.element, load.load) for load in loads)
+    for element, kind in sorted(pairs, key=lambda pair: elements.index(pair[0])):
+        found = [of.get((shown.label, element, kind)) for shown in runs]
+        told = [
+            f"{number(load)} at {load.time * second[0]:.4f} {second[1]}" if load else "\u2013"
+            for load in found
+        ]
+        cells.append([element, kind, *told])
+    return head, cells
+
+
+def number(load: Load) -> str:
+    return f"{short(load.value, 5)} {load.unit}"
+
+
+def longest(text: str) -> int:
+    return max(map(len, text.split("\n")))

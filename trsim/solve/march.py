@@ -20,6 +20,7 @@ from trsim.assemble.equations import (
     project_velocities,
 )
 from trsim.assemble.outputs import measure
+from trsim.elements.calls import caller
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.scene import ANGLE, MAGNITUDE, PROJECTION, RATE
@@ -83,6 +84,7 @@ from trsim.solve.record import (
 )
 
 SMOOTH_STEP, WITH_EVENT, WORTHLESS = 0, 1, 2  # what `complete` made of a trial step
+LAST_AT, COMPLETE_AT = 3, 4  # in `method`, after the addresses of step, dense, interpolate
 MAX_SAME_TIME = 1000  # events without progress: chatter
 SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
 NEAR = 0.5  # of the largest contact force so far: a maximum above this is searched for
@@ -91,12 +93,24 @@ SMALLEST = 16.0  # ulp of t: a smaller step is no step
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
 
 
+#                       scene   record  buffers  settings method h built
+COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+call_complete = caller(COMPLETE)
+
+
+def method_table(step, dense, interpolate, last):
+    """What the march must know of a method: addresses of its functions, the last row of its K.
+
+    `complete` stands there too: called by its address it is compiled once, not into the march.
+    """
+    return np.array([step, dense, interpolate, last, complete.address()], np.int64)
+
+
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I1, i8))
 def march(s, r, b, setting, method, most):
     """Advance the record until it is done, a buffer is full, or `most` steps were accepted.
 
-    method: addresses of step, dense, interpolate.  The stage array b.K has its last row at the end
-    of the step.  Returns one of DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE, CHATTER.
+    method: see `method_table`.  Returns DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE or CHATTER.
     """
     accepted = 0
     while r.clock[T] < setting[T_END]:
@@ -118,7 +132,7 @@ def march(s, r, b, setting, method, most):
                 return NOT_FINITE
             r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if isfinite(error) else 0.1)
             continue
-        outcome = complete(s, r, b, setting, method, h, False)
+        outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
         if outcome == WORTHLESS:
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
@@ -132,24 +146,24 @@ def march(s, r, b, setting, method, most):
     return DONE
 
 
-@internal
+@compiled(COMPLETE)
 def complete(s, r, b, setting, method, h, built):
     """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
 
-    built: b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the step was cut at
-    a contact event) or WORTHLESS (values that are not finite; nothing was changed).
+    built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
+    step was cut at a contact event) or WORTHLESS (values not finite; nothing was changed).
     """
-    last, t = method[3], r.clock[T]
+    last, t = method[LAST_AT], r.clock[T]
     t1 = setting[T_END] if t + h >= setting[T_END] else t + h
     projected = land(s, r, b, t1, b.y1, b.K[last])
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
     event = False
     if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
-        if not built:
+        if built == 0:
             call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
             r.count[DENSE_BUILT] += 1
-            built = True
+            built = 1
         theta = first_event(s, r, b, t, h, method[2])
         event = theta <= 1.0
         if event and theta < 1.0:
@@ -164,7 +178,7 @@ def complete(s, r, b, setting, method, h, built):
     copy_to(b.out, s.out)
     near = near_peak(s, r, b, t1, t1 - t, last)
     if near or due(r, setting, t1):
-        if not built and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
+        if built == 0 and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
             call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
             r.count[DENSE_BUILT] += 1
         rows_until(s, r, b, setting, method[2], t, h, t1, projected)
@@ -176,12 +190,6 @@ def complete(s, r, b, setting, method, h, built):
     elif setting[LOCATE] == 0.0:
         latch(s, r)
     return WITH_EVENT if event else SMOOTH_STEP
-
-
-@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8))
-def complete_given(s, r, b, setting, method, h):
-    """`complete` for a step and a dense output made elsewhere (solve/scipy_ivp.py)."""
-    return complete(s, r, b, setting, method, h, True)
 
 
 @internal

@@ -20,7 +20,7 @@ from trsim.elements.contract import compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.calls import INTERPOLATE
-from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete_given, weigh
+from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete, method_table, weigh
 from trsim.solve.record import Buffers, Record, fresh_buffers
 from trsim.solve.start import start
 
@@ -59,7 +59,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     r = new_record(s, begun)
     b = fresh_buffers(s, r.y.size, 2, NODES.size, 2 + int(np.max(s.contact_width, initial=0)))
-    method = np.array([0, 0, interpolate.address(), 1])
+    method = method_table(0, 0, interpolate.address(), 1)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)
@@ -71,7 +71,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             status, reason = "failed", f"scipy stopped: {message}"
             break
         hand_over(solver, b)
-        outcome = complete_given(s, r, b, setting, method, solver.t - solver.t_old)
+        outcome = complete(s, r, b, setting, method, solver.t - solver.t_old, 1)
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break

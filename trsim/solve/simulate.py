@@ -12,7 +12,7 @@ from trsim.assemble.assemble import Mechanism
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
-from trsim.solve.march import begin, march
+from trsim.solve.march import begin, march, method_table
 from trsim.solve.record import Record, fresh_buffers
 from trsim.solve.start import Start, start
 
@@ -118,8 +118,8 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
     width = int(np.max(work.contact_width, initial=0))
     r = new_record(work, begun)
     b = fresh_buffers(work, r.y.size, method.STAGES, method.DENSE_ROWS, 2 + width)
-    addresses = np.array(
-        [k.address() for k in (method.step, method.dense, method.interpolate)] + [method.LAST]
+    addresses = method_table(
+        method.step.address(), method.dense.address(), method.interpolate.address(), method.LAST
     )
     clock0 = time.process_time()
     begin(work, r, b, setting)

@@ -2,15 +2,18 @@
 
 Positions: as drawn, moved to the joint values of `initial` in small steps, and to the static
 equilibrium of the joints named there.  Velocities: those of the mechanism with all clearances ideal
-and the drives at speed, nearest to the bodies' given ones; rates of the named joints zero.
+and the drives at speed, nearest to the bodies' given ones; closed stops stay closed, and what is
+then still free of the named joints has zero rate.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
 from trsim.assemble.assemble import Mechanism, assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.reduce import closest, jacobian, weights
@@ -50,6 +53,7 @@ def start(scenario: Any, mechanism: Mechanism, located: bool) -> Start:
             f"the joints cannot be closed: {mechanism.rows[worst]} stays open by {left:.3g}",
             "check the points of the joints and the drives' positions at t = 0",
         )
+    check_values(mechanism, initial, y)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
     length, speed, depth = units(model, y, mem, scenario)
@@ -61,6 +65,33 @@ def check_names(scenario: Any, initial: Any) -> None:
     for name in (*initial.equilibrium, *initial.values):
         if name not in scenario.joints:
             raise ModelError(f"no joint named '{name}'", known(name, scenario.joints), ("initial",))
+    for name in initial.values:
+        if not elements.load(scenario.joints[name].type).coordinate:
+            raise ModelError(
+                f"joint '{name}' has no coordinate to set",
+                "name a revolute or a prismatic joint",
+                ("initial", name),
+            )
+
+
+def check_values(mechanism: Mechanism, initial: Any, y: Array) -> None:
+    """No drive moved a joint away from where `initial` put it."""
+    w = scene(mechanism.model)
+    poses(w, y)
+    for name, value in initial.values.items():
+        if name not in mechanism.coordinates:
+            continue
+        x = mechanism.coordinates[name]
+        off = float(w.S[x.entry, 0]) - value
+        if x.kind == "angle":
+            off = (off + np.pi) % (2.0 * np.pi) - np.pi
+        if abs(off) > 1e-6 * (mechanism.model.size if x.kind == "stroke" else 1.0):
+            raise ModelError(
+                f"a drive puts the joint {abs(off):.3g} {'rad' if x.kind == 'angle' else 'm'} "
+                "away from this value",
+                "drop the value, or prescribe the velocity of the drive",
+                ("initial", name),
+            )
 
 
 def follow(mechanism: Mechanism, y: Array) -> Array:
@@ -81,7 +112,17 @@ def positions(scenario: Any, mechanism: Mechanism, initial: Any) -> tuple[Array,
         return mechanism.y0, 0.0
     playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
     ideal = frozenset(playing - set(initial.equilibrium))
-    held = assemble(scenario, ideal, holding_drives(scenario, initial))
+    try:
+        held = assemble(scenario, ideal, holding_drives(scenario, initial))
+    except ModelError as error:
+        name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
+        if name not in initial.values:
+            raise
+        raise ModelError(
+            "a drive, or another value of `initial`, fixes this joint already",
+            "give one value for each degree of freedom",
+            ("initial", name),
+        ) from None
     y = follow(held, carried(mechanism, held))
     residual = 0.0
     targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
@@ -154,23 +195,29 @@ def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
 
 
 def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
-    """v nearest to the given one (in the metric of M) that the ideal mechanism allows."""
+    """v nearest to the given one (in the metric of M) that the ideal mechanism allows.
+
+    After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
+    their rates are zero.
+    """
     playing = frozenset(n for n, s in scenario.joints.items() if s.type == "clearance_joint")
-    ideal = assemble(scenario, playing, None) if playing else mechanism
+    ideal = assemble(scenario, playing, coordinates=named)
     model = ideal.model
     y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
     n = model.n_q + model.n_v
     y_ideal[:n] = y[:n]
     y_ideal = follow(ideal, y_ideal)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
-    v = world_velocities(model, y_ideal)
-    rows, target = [J], [-phi_t]
-    for name in named:
-        if name in ideal.coordinates:
-            rows.append(coordinate_gradient(model, y_ideal, ideal.coordinates[name].entry)[None])
-            target.append(np.zeros(1))
-    J, rate = np.vstack(rows), np.concatenate(target)
+    rate = -phi_t
+    wishes = closed_stops(model, y_ideal) if named else []
+    wishes += [coordinate_gradient(model, y_ideal, ideal.coordinates[n].entry)
+               for n in named if n in ideal.coordinates]  # fmt: skip
     scale = weights(model)
+    for wish in wishes:  # a wish that contradicts what is fixed already is dropped
+        more = np.vstack([J, wish])
+        if np.linalg.matrix_rank(more * scale, 1e-8) > np.linalg.matrix_rank(J * scale, 1e-8):
+            J, rate = more, np.append(rate, 0.0)
+    v = world_velocities(model, y_ideal)
     if len(J):
         v = v + scale * np.linalg.lstsq(J * scale, rate - J @ v, rcond=1e-10)[0]
     left = np.max(np.abs(J @ v - rate), initial=0.0)
@@ -180,6 +227,21 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
     return with_velocities(mechanism.model, y, v)
+
+
+def closed_stops(model: Model, y: Array) -> list[Array]:
+    """Gradients of the gap rates of contacts that are closed at y."""
+    w = scene(model)
+    poses(w, y)
+    gaps(w, 0.0)
+    closed = [e for e in model.contact.tolist() if w.gap[e, 0] > 0.0]
+
+    def rate(moving: Array, e: int) -> float:
+        poses(w, moving)
+        gaps(w, 0.0)
+        return float(w.gap[e, 1])
+
+    return [twist_gradient(model, y, lambda moving, e=e: rate(moving, e)) for e in closed]
 
 
 def world_velocities(model: Model, y: Array) -> Array:
@@ -207,15 +269,22 @@ def with_velocities(model: Model, y: Array, v: Array) -> Array:
 
 def coordinate_gradient(model: Model, y: Array, s: int) -> Array:
     """Rate of a joint coordinate per unit of every twist component."""
-    gradient = np.zeros(6 * (model.n - 1))
-    still = with_velocities(model, y, gradient)
     w = scene(model)
+
+    def rate(moving: Array) -> float:
+        poses(w, moving)
+        return float(w.S[s, 1])
+
+    return twist_gradient(model, y, rate)
+
+
+def twist_gradient(model: Model, y: Array, rate: Callable[[Array], float]) -> Array:
+    """A rate, linear in the velocities, per unit of every twist component."""
+    gradient = np.zeros(6 * (model.n - 1))
     for k in range(gradient.size):
         unit = np.zeros_like(gradient)
         unit[k] = 1.0
-        moving = with_velocities(model, still, unit)
-        poses(w, moving)
-        gradient[k] = w.S[s, 1]
+        gradient[k] = rate(with_velocities(model, y, unit))
     return gradient
 
 

@@ -118,7 +118,9 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
-        r_new = np.linalg.norm(Z.T @ static_forces(model, y_new))
+        # against the motions allowed there: the old ones would see the constraints' forces
+        Z_new = free_motions(jacobian(model, 0.0, y_new)[2], free, mass)
+        r_new = np.linalg.norm(Z_new.T @ static_forces(model, y_new))
         push *= 0.3 if r_new < size else 4.0
         push = max(push, 1e-14 * float(np.abs(values).max()))
         if r_new < 20.0 * size or limit < 1.0:

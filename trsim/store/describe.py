@@ -34,12 +34,19 @@ class Clock(NamedTuple):
 
 
 class Impacts:
-    """Counts of contact onsets and the fastest one, per instance, kept while events pass by."""
+    """Onsets, fastest onset and largest force of every contact, kept while blocks pass by."""
 
     def __init__(self) -> None:
         self.count: dict[int, int] = {}
         self.fastest: dict[int, float] = {}
         self.events = 0
+        self.peak: dict[int, tuple[float, float]] = {}  # force, time
+
+    def press(self, e: int, lines: Any, column: int) -> None:
+        """Keep the largest force of a contact."""
+        if len(lines):
+            k = int(np.argmax(lines[:, column]))
+            self.peak[e] = max(self.peak.get(e, (0.0, 0.0)), (lines[k, column], lines[k, 0]))
 
     def update(self, events: Any) -> None:
         self.events += len(events)
@@ -118,11 +125,12 @@ def summary(
     contacts = {}
     for e in run.contacts:
         force = largest.get(f"{names[e]}.contact_force") or largest.get(f"{names[e]}.normal_force")
+        peak, when = run.impacts.peak.get(e, (0.0, 0.0))
         contacts[names[e]] = {
             "impacts": run.impacts.count.get(e, 0),
             "fastest_impact": run.impacts.fastest.get(e, 0.0),
-            "peak_force": force.value if force else float("nan"),
-            "peak_time": force.time if force else float("nan"),
+            "peak_force": force.value if force else float(peak),
+            "peak_time": force.time if force else float(when),
             "steps": run.contacts[e].n,
         }
     return {
@@ -183,4 +191,5 @@ def cause(error: BaseException) -> str:
     """The part of an HDF5 message that names what the system said."""
     text = str(error)
     found = re.search(r"error message = '([^']*)'", text)
-    return found[1] if found else text.splitlines()[0][:200] if text else type(error).__name__
+    reason = found[1] if found else getattr(error, "strerror", None) or text
+    return reason.splitlines()[0][:200] if reason else type(error).__name__

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory
 AXES = {3: "component.xyz", 9: "component.rotation"}  # scale of the second dimension, by size
 LABELS = {
@@ -33,7 +34,7 @@ class Growing:
     def __init__(self, group: h5py.Group, fields: list[Field], width: int, expected: int) -> None:
         """width: columns of the rows; expected: how many rows there may be."""
         self.fields = fields
-        chunk = min(4096, max(64, 1 << (max(expected, 1) - 1).bit_length()))
+        chunk = min(LONGEST, max(64, 1 << (max(expected, 1) - 1).bit_length()))
         self.datasets = [_dataset(group, field, chunk) for field in fields]
         time = self.datasets[0]
         time.make_scale(fields[0].name)
@@ -41,19 +42,21 @@ class Growing:
             dataset.dims[0].attach_scale(time)
             if field.size > 1:
                 dataset.dims[1].attach_scale(group.file[AXES[field.size]])
-        room = max(256, min(4 * chunk, ROOM // (8 * width)))
-        self.waiting = np.empty((room, width))
+        self.room = chunk * max(1, min(LONGEST // chunk, ROOM // (8 * width * chunk)))
+        self.waiting = np.empty((self.room, width))
         self.n_waiting = 0
         self.n = 0  # rows in the file
 
     def append(self, rows: Array) -> None:
         """Take rows; what does not fit in memory goes to the file."""
         while len(rows):
-            taken = min(len(rows), len(self.waiting) - self.n_waiting)
+            # whole chunks are written fastest, also after a flush at any other moment
+            room = self.room - self.n % self.room
+            taken = min(len(rows), room - self.n_waiting)
             self.waiting[self.n_waiting : self.n_waiting + taken] = rows[:taken]
             self.n_waiting += taken
             rows = rows[taken:]
-            if self.n_waiting == len(self.waiting):
+            if self.n_waiting == room:
                 self.flush()
 
     def flush(self) -> None:

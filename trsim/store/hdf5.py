@@ -23,8 +23,8 @@ from trsim.store.read import Run, read
 __all__ = ["Run", "read", "write"]
 
 LIBVER = ("v110", "v110")  # the first with SWMR: every HDF5 since 1.10 reads it
-FLUSHED = 1.0  # s of wall time between two flushes
-CACHE = 64 << 10  # bytes of chunks kept per dataset
+FLUSHED = 0.5  # s of wall time between two flushes
+CACHE = 128 << 10  # bytes of chunks kept per dataset
 EXPECTED = 256  # rows of the tables whose length nobody knows
 KINDS = ("", "onset", "separation")  # of events, by number
 
@@ -78,7 +78,7 @@ class Running:
         self.file: h5py.File | None = None
         self.magnitudes = peaks.Magnitudes(mechanism.columns)
         self.impacts = describe.Impacts()
-        self.time, self.flushed = 0.0, 0.0
+        self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
         with self.told():
             final.parent.mkdir(parents=True, exist_ok=True)
             if not os.access(final.parent, os.W_OK) or final.is_dir():
@@ -90,11 +90,12 @@ class Running:
         try:
             yield
         except (OSError, RuntimeError) as error:
+            reason = describe.cause(error)
+            if self.file is None:
+                raise FileError(f"{self.final}: {reason}") from None
             size = self.part.stat().st_size if self.part.exists() else 0
-            kept = f"what was computed until t = {self.time:g} s is in it" if size else ""
-            reason = getattr(error, "strerror", None) or describe.cause(error)
             what = f"{self.part}: cannot be written beyond {size} bytes: {reason}"
-            raise FileError(what if size else f"{self.final}: {reason}", kept) from None
+            raise FileError(what, f"It holds the run until t = {self.kept:g} s.") from None
 
     def take_all(self, blocks: Generator[Any, None, Any]) -> Any:
         """Store all blocks; the outcome."""
@@ -131,6 +132,7 @@ class Running:
             for e, instance in enumerate(self.mechanism.instances)
             if instance.row.contact is not None
         }
+        self.force = {e: _force_column(self.mechanism.instances[e]) for e in self.contacts}
         self.events = _events(file, self.mechanism, time_field)
         points.declare(file, self.planned)
         file.swmr_mode = True
@@ -144,7 +146,9 @@ class Running:
         if len(block.steps):
             of = block.steps[:, 1]
             for e, table in self.contacts.items():
-                table.append(block.steps[of == e][:, : table.waiting.shape[1]])
+                lines = block.steps[of == e][:, : table.waiting.shape[1]]
+                table.append(lines)
+                self.impacts.press(e, lines, self.force[e])
         self.events.append(block.events)
         self.impacts.update(block.events)
         self.time = block.time
@@ -156,7 +160,7 @@ class Running:
         for table in (self.rows, self.events, *self.contacts.values()):
             table.flush()
         self.file.flush()
-        self.flushed = time.monotonic()
+        self.kept, self.flushed = self.time, time.monotonic()
 
     # --- at the end --------------------------------------------------------------------------
 
@@ -167,27 +171,39 @@ class Running:
             self.flush()
             self.file.close()
             with h5py.File(self.part, "r+", libver=LIBVER) as file:
-                points.complete(file, self.planned)
+                complete = status != "interrupted"  # otherwise there are only two seconds
+                if complete:
+                    points.complete(file, self.planned)
                 extremes = None if outcome is None else outcome.peaks
                 found = peaks.table(self.mechanism, extremes, self.magnitudes)
-                found = peaks.with_strokes(found, file)
+                if complete:
+                    found = peaks.with_strokes(found, file)
                 peaks.store(file, found)
                 summary = describe.summary(self, file, status, reason, outcome, found)
                 describe.end(file, summary, self.scenario, outcome, provenance)
-                file.attrs["content_sha256"] = content_hash(file)
-                summary["content_sha256"] = file.attrs["content_sha256"]
+                if complete:
+                    summary["content_sha256"] = content_hash(file)
+                    file.attrs["content_sha256"] = summary["content_sha256"]
             _synced(self.part)
-            if status != "interrupted":
+            if complete:
                 os.replace(self.part, self.final)
                 _synced(self.final.parent)
-        summary["file"] = str(self.part if status == "interrupted" else self.final)
+        summary["file"] = str(self.final if complete else self.part)
         return summary
 
     def abandon(self) -> None:
-        """Let go of a file that cannot be written: readers find what was flushed."""
-        if self.file is not None:
-            with contextlib.suppress(OSError, RuntimeError):
-                self.file.close()
+        """Let go of a file that cannot be written: readers find what was flushed.
+
+        HDF5 would go on trying to write what it holds, and fail again when it is unloaded; all it
+        still has to say goes to nowhere instead.
+        """
+        if self.file is None or not self.file.id.valid:
+            return
+        with contextlib.suppress(OSError, RuntimeError):
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            os.dup2(nowhere, self.file.id.get_vfd_handle())
+            os.close(nowhere)
+            self.file.close()
 
 
 def _steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
@@ -197,6 +213,15 @@ def _steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
         fields.append(Field(c.name, c.unit, c.meaning, start, c.size))
         start += c.size
     return Growing(file["steps"].create_group(instance.name), fields, start, EXPECTED)
+
+
+def _force_column(instance: Any) -> int:
+    """The column of a line of steps that holds the contact force."""
+    start = {}
+    column = 2
+    for c in instance.element.channels:
+        start[c.name], column = column, column + c.size
+    return start.get("contact_force", start.get("normal_force", 1))
 
 
 def _events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:

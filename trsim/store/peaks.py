@@ -88,6 +88,10 @@ def store(file: h5py.File, peaks: list[Peak]) -> None:
         values = [getattr(peak, name) for peak in peaks]
         dtype: Any = text if name in ("channel", "extreme", "unit") else "f8"
         group.create_dataset(name, data=np.array(values, dtype=dtype))
+        if name == "channel":
+            group[name].make_scale(name)
+        else:
+            group[name].dims[0].attach_scale(group["channel"])
     group["time"].attrs["units"] = "s"
     if "stroke" in file:
         group["stroke"].attrs["units"] = file["stroke"].attrs["units"]

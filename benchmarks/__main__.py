@@ -1,0 +1,17 @@
+"""python -m benchmarks [NAME ...]: run the measurements and print their tables."""
+
+import sys
+from importlib import import_module
+
+NAMES = ("startup", "slider_crank", "reverser")
+
+
+def main() -> None:
+    for name in sys.argv[1:] or NAMES:
+        module = import_module(f"benchmarks.{name}")
+        print(f"\n{module.__doc__.splitlines()[0]}\n")
+        module.main()
+
+
+if __name__ == "__main__":
+    main()

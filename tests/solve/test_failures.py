@@ -1,0 +1,47 @@
+"""A law that leaves the finite numbers ends the run with a reason; no row is ever NaN."""
+
+import numpy as np
+import pytest
+
+from ..runs import run
+
+PUSHED = """
+gravity: [0, -9.81]
+bodies: {{rod: {{mass: 2, inertia: 0.05, at: [0.4, 0]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, rod], at: [0, 0]}}}}
+{}
+solver: {{end: 0.2, {}}}
+"""
+FORCE = 'forces: {{f: {{type: applied_load, body: rod, direction: [0, 1], force: "{}"}}}}'
+LAWS = {
+    "log": FORCE.format("log(0.1 - t)"),
+    "overflow": FORCE.format("1e300*exp(1000*t)"),
+    "pole": FORCE.format("1/(0.1 - t)**2"),
+    "from the start": FORCE.format("log(-1 - t)"),
+    "table": FORCE.replace('"{}"', "{}").format(
+        "{table: [[0, 0], [0.05, 1], [0.1, 2]], ends: refuse}"),
+    "drive": 'drives: {d: {joint: hinge, velocity: "sqrt(0.1 - t)"}}',
+}  # fmt: skip
+METHODS = {"dop853": "method: dop853", "rk4": "method: rk4, step: 1e-4"}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.filterwarnings("ignore:overflow:RuntimeWarning")
+def test_ends_failed_with_a_reason_and_without_nan(law, method):
+    r = run(PUSHED.format(LAWS[law], METHODS[method]), fails=True)
+    assert r.outcome.status == "failed" and r.outcome.reason
+    assert np.isfinite(r.rows).all()
+    assert np.all(np.diff(r.t) > 0.0)
+    if law in ("log", "pole", "table", "drive"):
+        assert r.outcome.time == pytest.approx(0.1, abs=2e-4)
+
+
+def test_reason_says_that_a_value_is_not_finite():
+    r = run(PUSHED.format(LAWS["log"], METHODS["dop853"]), fails=True)
+    assert "not finite" in r.outcome.reason
+
+
+def test_step_limit():
+    r = run(PUSHED.format("", "max_steps: 3, max_step: 1e-6"), fails=True)
+    assert "3 steps" in r.outcome.reason

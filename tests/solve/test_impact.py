@@ -1,0 +1,109 @@
+"""Impacts with a known answer: contact time, peak force, delivered restitution, bouncing."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from trsim.laws.contact import hertz_contact_time, hertz_peak
+from trsim.solve.record import EVENT_KIND, EVENT_SPEED, EVENT_TIME, ONSET, SEPARATION
+
+from ..linkages import slider_crank
+from ..mechanisms import DATA, SPEED, bouncing_ball, central_impact, p1_slider_crank, table
+from ..runs import energy_error, run
+
+
+def first_impact(r):
+    """Time, approach speed, duration, separation speed of the first impact."""
+    onset, separation = r.events[:2]
+    assert (onset[EVENT_KIND], separation[EVENT_KIND]) == (ONSET, SEPARATION)
+    return (onset[EVENT_TIME], onset[EVENT_SPEED], separation[EVENT_TIME] - onset[EVENT_TIME],
+            -separation[EVENT_SPEED])  # fmt: skip
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("exponent", [1.5, 1.2, 2.0])
+def test_hertz_contact_time_and_peak_force(exponent, planar):
+    K, m = 1e9, 0.7
+    r = run(central_impact(K=K, mass=m, exponent=exponent, planar=planar))
+    _, speed, duration, rebound = first_impact(r)
+    assert speed == pytest.approx(SPEED, rel=1e-8)
+    assert rebound == pytest.approx(SPEED, rel=1e-6)
+    assert duration == pytest.approx(hertz_contact_time(m, K, exponent, SPEED), rel=1e-6)
+    depth, force = hertz_peak(m, K, exponent, SPEED)
+    assert r.largest("pin.normal_force")[0] == pytest.approx(force, rel=1e-6)
+    assert r.largest("pin.penetration")[0] == pytest.approx(depth, rel=1e-6)
+    assert energy_error(r) < 1e-6
+
+
+def restitutions():
+    rows = (DATA / "effective_restitution.csv").read_text().splitlines()
+    for row in csv.DictReader(line for line in rows if line[0] != "#"):
+        e = float(row.pop("nominal"))
+        if e in (0.9, 0.5, 0.2):
+            yield from ((law, e, float(delivered)) for law, delivered in row.items())
+            yield "identified", e, e
+
+
+@pytest.mark.parametrize("law, nominal, delivered", list(restitutions()))
+def test_delivered_restitution(law, nominal, delivered):
+    r = run(central_impact(law=law, restitution=nominal))
+    _, speed, _, rebound = first_impact(r)
+    assert rebound / speed == pytest.approx(delivered, abs=1e-4)
+    lost = 0.5 * speed**2 * (1 - delivered**2)
+    assert r["energy.work.impacts"][-1] == pytest.approx(-lost, rel=1e-3)
+    assert energy_error(r) < 1e-4
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_bouncing_ball(tolerance):
+    """A ball on a spring without damping: it comes back to its height, again and again."""
+    text, (touch, contact, period) = bouncing_ball(tolerance=tolerance)
+    r = run(text)
+    times = r.events[:, EVENT_TIME]
+    expected = np.array([(touch + k * period, touch + contact + k * period) for k in range(5)])
+    assert times == pytest.approx(expected.ravel(), abs=20 * tolerance)
+    assert r["ball.position"][-1, 1] == pytest.approx(r["ball.position"][0, 1], abs=20 * tolerance)
+    assert energy_error(r) < 1e-4
+
+
+def test_damped_stop_comes_to_rest():
+    text, _ = bouncing_ball(damping=2000.0)
+    r = run(text)
+    assert abs(r["ball.velocity"][-1, 1]) < 1e-6
+    assert r["floor.normal_force"][-1] == pytest.approx(9.81, rel=1e-4)
+    assert r["floor.normal_force"].min() >= 0.0
+    assert energy_error(r) < 1e-4
+
+
+LAW = """
+drives: {motor: {joint: A, velocity: 5}}
+gravity: [0, -9.81]
+contact_laws: {pin: {normal: hunt_crossley, stiffness: 1e10, bearing_radius: 0.01, restitution: 0.5}}
+"""
+
+
+def test_small_clearance_tends_to_the_ideal_joint():
+    ideal = run(slider_crank("true", LAW, end=0.2))
+    worst = {}
+    for c in (100e-6, 10e-6, 1e-6):
+        r = run(slider_crank("true", LAW, end=0.2).replace("1e-10", "1e-6"),
+                f"joints.C.clearance={c}")  # fmt: skip
+        assert len(r.events) > 0
+        worst[c] = np.abs(r["slider.position"] - ideal["slider.position"]).max()
+        assert 0.1 * c < worst[c] < 3 * c
+
+
+@pytest.mark.parametrize("friction", [False, True])
+def test_slider_crank_with_clearance_against_the_reference(friction):
+    reference = table(f"p1_{'friction' if friction else 'frictionless'}.csv")
+    errors = []
+    for tolerance in (1e-5, 1e-6, 1e-8):
+        r = run(p1_slider_crank(friction, tolerance))
+        assert r.t == pytest.approx(reference[:, 0], abs=1e-12)
+        errors.append(np.abs(r["slider.velocity"][:, 0] - reference[:, 1]).max() / 30)
+        assert energy_error(r) < 1e-4
+    assert errors[0] > 3 * errors[1] > 9 * errors[2]
+    assert errors[2] < 1e-6
+    force = np.abs(r["C.normal_force"] - reference[:, 2]).max()
+    assert force < 1e-4 * reference[:, 2].max()

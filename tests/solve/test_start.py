@@ -1,0 +1,111 @@
+"""Starts: static equilibrium, places away from the drawing, consistent velocities."""
+
+import numpy as np
+import pytest
+
+from trsim.errors import ModelError
+from trsim.solve.start import start
+from trsim.solve.statics import static_forces
+from trsim.spec.load import load
+
+from ..linkages import REVERSER, four_bar, slider_crank
+from ..runs import assemble, run
+
+HANGING = """
+planar: {}
+gravity: [0, -9.81, 0]
+bodies: {{rod: {{mass: 2, inertia: [0.1, 0.1, 0.05], at: [0.4, 0.1]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, rod], at: [0, 0]}}}}
+{}
+initial: {{equilibrium: [hinge]}}
+solver: {{end: 0.1}}
+"""
+
+
+def begun(name, *sets):
+    scenario = load(REVERSER / f"{name}.yaml", sets)
+    mechanism = assemble(scenario)
+    return mechanism, start(scenario, mechanism, located=True)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_pendulum_finds_its_way_down(planar):
+    r = run(HANGING.format(planar, ""))
+    down = [0, -np.hypot(0.4, 0.1), 0]
+    assert r["rod.position"] == pytest.approx(np.tile(down, (len(r.t), 1)), abs=1e-9)
+    assert r["hinge.reaction"][0] == pytest.approx([0, 2 * 9.81, 0], abs=1e-9)
+
+
+def test_sagging_spring():
+    """k x = m g R on a drum: the angle of the equilibrium is exact."""
+    spring = "forces: {coil: {type: torsion_spring, joint: hinge, stiffness: 40}}"
+    r = run(HANGING.format("true", spring) + "sensors: {sag: {joint: hinge}}\n")
+    angle = r["sag"][0]
+    moment = 2 * 9.81 * (0.4 * np.cos(angle) - 0.1 * np.sin(angle))
+    assert -40 * angle == pytest.approx(moment, rel=1e-9)
+    assert r["sag"][-1] == pytest.approx(angle, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["ideal", "clearance_b_0.3mm"])
+def test_door_rests_on_its_seat(name):
+    r = run(load(REVERSER / f"{name}.yaml", ["solver.end=1 ms"]))
+    assert r["seat.penetration"][0] == pytest.approx(2.56e-5, rel=5e-3)
+    # preload over the arm of the seat
+    assert r["seat.normal_force"][0] == pytest.approx(5 / 0.195, rel=2e-3)
+
+
+def test_stow_starts_open():
+    mechanism, s = begun("stow")
+    assert s.residual < 1e-6
+    r = run(load(REVERSER / "stow.yaml", ["solver.end=1 ms"]))
+    assert np.degrees(r["door_angle"][0]) == pytest.approx(92.8, abs=0.1)
+    assert r["stroke"][0] == pytest.approx(0.5, abs=1e-12)
+    assert r["stroke.rate"][0] == pytest.approx(-0.5, abs=1e-12)
+    # 775 N hold the gas back at 0.5 m of stroke; slowly moving it is nearly static
+    assert r["actuator.force"][0] == pytest.approx(775, rel=0.05)
+
+
+def test_forces_balance_on_the_joints():
+    """The static wrenches of the start do no work on any motion the joints allow."""
+    from trsim.assemble.reduce import jacobian
+
+    mechanism, s = begun("ideal")
+    J = jacobian(mechanism.model, 0.0, s.y)[2]
+    F = static_forces(mechanism.model, s.y)
+    inside = np.tile([True, True, False, False, False, True], mechanism.model.n - 1)
+    lam = np.linalg.lstsq(J.T[inside], F[inside], rcond=None)[0]
+    assert np.abs(F[inside] - J.T[inside] @ lam).max() < 1e-9 * np.abs(F).max()
+    assert np.abs(F).max() > 20
+
+
+def test_indifferent_equilibrium_is_refused():
+    text = HANGING.replace("gravity: [0, -9.81, 0]", "").format("true", "")
+    with pytest.raises(ModelError) as caught:
+        run(text)
+    assert caught.value.exit_code == 4
+    assert caught.value.path == ("initial", "equilibrium")
+    assert "'rod'" in str(caught.value)
+
+
+def test_initial_value_moves_the_linkage_on_its_branch():
+    r = run(four_bar("true", "initial: {A: 100 deg}\nsensors: {turn: {joint: A}}"))
+    assert r["turn"][0] == pytest.approx(np.radians(100), abs=1e-9)
+    pin = [-np.sin(np.radians(100)), np.cos(np.radians(100)), 0]
+    assert r["crank.position"][0] == pytest.approx(np.multiply(pin, 0.5), abs=1e-9)
+    assert r["rocker.position"][0, 1] > -1  # not the other assembly of the loop
+
+
+def test_more_than_a_turn():
+    r = run(HANGING.replace("initial: {{equilibrium: [hinge]}}", "initial: {{hinge: 400 deg}}")
+            .format("true", "sensors: {turn: {joint: hinge}}"))  # fmt: skip
+    assert r["turn"][0] == pytest.approx(np.radians(400), abs=1e-9)
+
+
+def test_velocities_are_those_of_the_ideal_mechanism():
+    """The journals of a slider-crank move with their bearings at the start."""
+    more = """drives: {motor: {joint: A, velocity: 5}}
+contact_laws: {law: {normal: flores, stiffness: 1e9, bearing_radius: 0.1, restitution: 0.9}}"""
+    playing = run(slider_crank("true", more, end=1e-4), "joints.B.clearance=1mm", "joints.C.clearance=1mm")
+    ideal = run(slider_crank("true", more, end=1e-4))
+    for name in ("rod.velocity", "slider.velocity", "rod.angular_velocity"):
+        assert playing[name][0] == pytest.approx(ideal[name][0], abs=1e-9)

@@ -1,0 +1,24 @@
+import pytest
+
+from tests import small
+from trsim.assemble.assemble import assemble
+from trsim.spec.load import loads
+from trsim.store.read import read
+
+
+@pytest.fixture(scope="session")
+def result(tmp_path_factory):
+    """A complete result file, opened."""
+    path = tmp_path_factory.mktemp("store") / "run.h5"
+    small.run(path)
+    return read(path)
+
+
+@pytest.fixture(scope="session")
+def scenario():
+    return loads(small.SLIDER_CRANK)
+
+
+@pytest.fixture(scope="session")
+def mechanism(scenario):
+    return assemble(scenario)

@@ -1,0 +1,67 @@
+import h5py
+import numpy as np
+import pytest
+
+from trsim.errors import FileError, UsageError
+from trsim.store import describe
+from trsim.store.read import read, verify
+
+
+def test_what_cannot_be_read_is_told(result, tmp_path):
+    whole = result.path.read_bytes()
+    cases = {
+        "text.h5": (b"title: x", "is not a result file"),
+        "empty.h5": (b"", "is not a result file"),
+        "short.h5": (whole[: len(whole) // 2], "is truncated"),
+    }
+    for name, (content, message) in cases.items():
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(FileError, match=message):
+            read(tmp_path / name)
+    with pytest.raises(FileError, match="no such file"):
+        read(tmp_path / "none.h5")
+    with h5py.File(tmp_path / "other.h5", "w") as file:
+        file["x"] = 1
+    with pytest.raises(FileError, match="not a result of trsim"):
+        read(tmp_path / "other.h5")
+
+
+def test_newer_format_is_refused(result, tmp_path):
+    (tmp_path / "new.h5").write_bytes(result.path.read_bytes())
+    with h5py.File(tmp_path / "new.h5", "r+") as file:
+        file.attrs["format_version"] = 99
+    with pytest.raises(FileError, match="format 99"):
+        read(tmp_path / "new.h5")
+
+
+def test_flipped_bytes_are_noticed(result, tmp_path):
+    """Never a crash, never another number unnoticed."""
+    whole = bytearray(result.path.read_bytes())
+    rng = np.random.default_rng(1)
+    missed = 0
+    for k in rng.integers(8, len(whole), 40):
+        flipped = whole.copy()
+        flipped[k] ^= 0x40
+        (tmp_path / "f.h5").write_bytes(flipped)
+        try:
+            noticed = not verify(tmp_path / "f.h5")
+        except FileError:
+            noticed = True
+        if not noticed:  # in space that no number uses
+            found = read(tmp_path / "f.h5")
+            for name in result.names:
+                np.testing.assert_array_equal(found.channel(name), result.channel(name))
+            missed += 1
+    assert missed < 40
+
+
+def test_unknown_channel_and_contact(result):
+    with pytest.raises(UsageError, match=r"(?s)'strke'.*Did you mean 'stroke'"):
+        result.channel("strke")
+    with pytest.raises(UsageError, match="no contact 'A'"):
+        result.steps("A")
+
+
+def test_cause_names_what_the_system_said():
+    text = "Can't write (errno = 28, error message = 'No space left on device', buf = 0x5)"
+    assert describe.cause(OSError(text)) == "No space left on device"

@@ -1,0 +1,1 @@
+"""Analyses of stored runs, each one file: arrays in, numbers out."""

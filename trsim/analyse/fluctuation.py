@@ -1,0 +1,33 @@
+"""Fluctuation: what is left of a curve when its slow part is taken out.
+
+    x_hp = x - m(m(x)),     fluctuation = rms of x_hp over a window
+
+m is a moving average over `width`; applied twice its kernel is a triangle.  Near the ends of the
+record it averages over the samples there are.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def moving_average(x: Array, n: int) -> Array:
+    """Mean of the n samples around each one (n odd), fewer at the ends."""
+    half = n // 2
+    total = np.concatenate([[0.0], np.cumsum(x)])
+    low = np.maximum(np.arange(x.size) - half, 0)
+    high = np.minimum(np.arange(x.size) + half + 1, x.size)
+    return np.asarray((total[high] - total[low]) / (high - low))
+
+
+def high_pass(t: Array, x: Array, width: float = 0.010) -> Array:
+    """x without its slow part; t (n) s evenly spaced, width of the average s."""
+    n = max(1, 2 * round(0.5 * width / (t[1] - t[0])) + 1)
+    return np.asarray(x - moving_average(moving_average(x, n), n))
+
+
+def fluctuation(t: Array, x: Array, begin: float, end: float, width: float = 0.010) -> float:
+    """Root mean square of the high-passed curve for begin <= t <= end."""
+    inside = (t >= begin) & (t <= end)
+    return float(np.sqrt(np.mean(high_pass(t, x, width)[inside] ** 2)))
