@@ -1,7 +1,6 @@
 """Expressions: what is allowed gives Python's own numbers, everything else is refused."""
 
 import math
-import time
 
 import pytest
 from hypothesis import given
@@ -101,10 +100,8 @@ REFUSED = {
 
 @pytest.mark.parametrize("text", REFUSED, ids=lambda text: text[:30])
 def test_refused(text):
-    start = time.perf_counter()
     with pytest.raises(ScenarioError) as caught:
         parse(text)
-    assert time.perf_counter() - start < 0.05
     assert caught.value.what == REFUSED[text]
 
 

@@ -18,7 +18,8 @@ forces:
   coil: {type: torsion_spring, joint: B, stiffness: 4, damping: 0.1, preload: 1}
   spring: {type: spring_damper, bodies: [ground, rod], points: [[0, 1], [1, 0]], stiffness: 50}
   stop: {type: limit_stop, joint: track, lower: -0.1, stiffness: 1e4, damping: 20, ramp: 1 mm}
-  load: {type: applied_load, body: slider, at: [1.25, 0.1], frame: rod, direction: [1, 1], force: 3*t - turn}
+  load: {type: applied_load, body: slider, at: [1.25, 0.1], frame: rod, direction: [1, 1],
+         force: 3*t - turn}
 """
 
 
@@ -100,7 +101,9 @@ def test_mobility_of_the_reverser():
 
 @pytest.mark.parametrize("planar", ["true", "false"])
 def test_each_clearance_adds_two(planar):
-    law = "contact_laws: {law: {normal: flores, stiffness: 1e6, bearing_radius: 0.1, restitution: 1}}"
+    law = (
+        "contact_laws: {law: {normal: flores, stiffness: 1e6, bearing_radius: 0.1, restitution: 1}}"
+    )
     one = built(slider_crank(planar, law), "joints.C.clearance=1mm")
     two = built(slider_crank(planar, law), "joints.C.clearance=1mm", "joints.B.clearance=1mm")
     none = built(slider_crank(planar, law), "joints.C.clearance=0mm")
@@ -120,7 +123,10 @@ def test_planar_motion_assumed_is_said():
      "at: [0, 0, 1], direction: [1, 0, 0], force: 1"],
 )  # fmt: skip
 def test_loads_out_of_the_plane_make_a_scene_spatial(load):
-    text = "bodies: {{disc: {{mass: 1, inertia: {}}}}}\nforces: {{f: {{type: applied_load, body: disc, {}}}}}"
+    text = """
+bodies: {{disc: {{mass: 1, inertia: {}}}}}
+forces: {{f: {{type: applied_load, body: disc, {}}}}}
+"""
     assert not built(text.format("[1, 1, 1]", load)).planar
     with pytest.raises(ModelError) as caught:
         built(text.format("1", load))

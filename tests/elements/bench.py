@@ -20,7 +20,8 @@ TWO_BODIES = """
 planar: false
 bodies:
   left: {mass: 2, inertia: [0.02, 0.03, 0.04], at: [0.1, -0.2, 0.3], angle: 0.7}
-  right: {mass: 3, inertia: [0.05, 0.04, 0.03, 0.001, 0.002, -0.003], at: [0.5, 0.2, -0.1], angle: -0.4}
+  right: {mass: 3, inertia: [0.05, 0.04, 0.03, 0.001, 0.002, -0.003], at: [0.5, 0.2, -0.1],
+          angle: -0.4}
 """
 
 
@@ -93,7 +94,7 @@ class Bench:
         return Bench(self.mechanism, r, p, self.V, self.z, self.mem, self.t, self.branch)
 
     def later(self, h: float) -> "Bench":
-        """The motion a little later, at constant twists; states of elements move with their rate."""
+        """The motion a little later, at constant twists and rates of the elements' states."""
         there = self.moved(self.V, h)
         there.t = self.t + h
         there.z = self.z + h * self.scene().zd
@@ -105,7 +106,9 @@ class Bench:
         return self.scene().zd[:N_BOOK].copy()
 
 
-def bench(text: str, rng: np.random.Generator, bodies: str = TWO_BODIES, speed: float = 1.0) -> Bench:
+def bench(
+    text: str, rng: np.random.Generator, bodies: str = TWO_BODIES, speed: float = 1.0
+) -> Bench:
     """The mechanism of a text, its bodies thrown into random poses and twists."""
     mechanism = built(bodies + text)
     n = mechanism.model.n
@@ -153,7 +156,9 @@ def check_gradient(b: Bench, h: float = 1e-5, rel: float = 1e-7) -> None:
         twist = np.zeros(6 * len(b.r))
         twist[k] = 1.0
         twist = twist.reshape(-1, 6)
-        gradient.append((still.moved(twist, h).energy() - still.moved(twist, -h).energy()) / (2 * h))
+        gradient.append(
+            (still.moved(twist, h).energy() - still.moved(twist, -h).energy()) / (2 * h)
+        )
     assert np.abs(F).max() > 0.0, "nothing acts"
     np.testing.assert_allclose(F, -np.array(gradient), rtol=0, atol=rel * np.abs(F).max())
 

@@ -7,8 +7,15 @@ from trsim.elements.contract import FLIGHT, PHASE
 from trsim.errors import ScenarioError
 
 from ..runs import built
-from .bench import TWO_BODIES, bench, check_action_is_reaction, check_gradient, check_power
-from .bench import now, put_right
+from .bench import (
+    TWO_BODIES,
+    bench,
+    check_action_is_reaction,
+    check_gradient,
+    check_power,
+    now,
+    put_right,
+)
 
 AXIS, PIN, C, R_B = np.array([0.48, 0.6, 0.64]), np.array([0.2, 0.1, 0.0]), 0.03, 0.2
 JOINT = """

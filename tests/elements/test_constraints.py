@@ -71,7 +71,7 @@ def test_rows_against_every_twist(case):
         twist[k] = 1.0
         twist = twist.reshape(3, 6)
         columns.append((b.moved(twist, h).rows().phi - b.moved(twist, -h).rows().phi) / (2 * h))
-    assert b.rows().J == pytest.approx(np.array(columns).T, abs=1e-8)
+    assert pytest.approx(np.array(columns).T, abs=1e-8) == b.rows().J
 
 
 @pytest.mark.parametrize("case", CASES)

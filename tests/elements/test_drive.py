@@ -7,8 +7,15 @@ from trsim.errors import ScenarioError
 
 from ..mechanisms import driven_slide
 from ..runs import built, run
-from .bench import TWO_BODIES, bench, check_action_is_reaction, check_gradient, check_power
-from .bench import now, put_right
+from .bench import (
+    TWO_BODIES,
+    bench,
+    check_action_is_reaction,
+    check_gradient,
+    check_power,
+    now,
+    put_right,
+)
 
 AXIS, PLACE = np.array([0.48, 0.6, 0.64]), np.array([0.2, 0.1, 0.0])
 COMPLIANT = """
@@ -24,7 +31,9 @@ def stretched(kind, motion, seed=1):
     rng = np.random.default_rng(seed)
     b = bench(COMPLIANT.format(kind, MOTIONS[motion]), rng)
     turn, shift = (0.9, 0.0) if kind == "revolute" else (0.0, 0.9)
-    put_right(b, PLACE, turn * AXIS, shift * AXIS)
+    # a slide also off its line: only there the lever on the left body shows
+    aside = 0.3 * shift * np.cross(AXIS, [1.0, 0.0, 0.0])
+    put_right(b, PLACE, turn * AXIS, shift * AXIS + aside)
     if motion == "velocity":
         b.z[-1] = 0.4
     return b

@@ -6,8 +6,15 @@ import pytest
 from trsim.errors import ScenarioError
 
 from ..runs import built
-from .bench import TWO_BODIES, bench, check_action_is_reaction, check_gradient, check_power
-from .bench import now, put_right
+from .bench import (
+    TWO_BODIES,
+    bench,
+    check_action_is_reaction,
+    check_gradient,
+    check_power,
+    now,
+    put_right,
+)
 
 AXIS, PLACE = np.array([0.48, 0.6, 0.64]), np.array([0.2, 0.1, 0.0])
 K, DAMPING, RAMP = 1e4, 200.0, 0.01
@@ -56,7 +63,13 @@ def force_on_right(b, kind):
         b.wrenches()[2, :3] @ now(b, AXIS))  # fmt: skip
 
 
-KINDS = [("wall", 1.0), ("revolute", 1.0), ("revolute", -1.0), ("prismatic", 1.0), ("prismatic", -1.0)]
+KINDS = [
+    ("wall", 1.0),
+    ("revolute", 1.0),
+    ("revolute", -1.0),
+    ("prismatic", 1.0),
+    ("prismatic", -1.0),
+]
 
 
 @pytest.mark.parametrize("kind, side", KINDS)

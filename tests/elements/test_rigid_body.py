@@ -23,13 +23,15 @@ def test_channels_are_derivatives_of_each_other():
     r = run(free_top(end=0.2)[0])
     inner = slice(1, -1)
     position, velocity = r["top.position"], r["top.velocity"]
-    np.testing.assert_allclose(np.gradient(position, r.t, axis=0)[inner], velocity[inner], atol=1e-9)
+    np.testing.assert_allclose(
+        np.gradient(position, r.t, axis=0)[inner], velocity[inner], atol=1e-9
+    )
     rate = np.gradient(r["top.angular_velocity"], r.t, axis=0)[inner]
     np.testing.assert_allclose(rate, r["top.angular_acceleration"][inner], atol=2e-3)
 
 
 def test_rotation_turns_with_the_angular_velocity():
-    r = run(free_top(end=0.2)[0], "output.channels=[\"top.*\"]")
+    r = run(free_top(end=0.2)[0], 'output.channels=["top.*"]')
     R = r["top.rotation"].reshape(-1, 3, 3)
     rate = np.gradient(R, r.t, axis=0)[1:-1]
     spin = rate @ R[1:-1].transpose(0, 2, 1)

@@ -1,12 +1,12 @@
 import pytest
 
 from tests import small
-from trsim.store.read import read
 
 
 @pytest.fixture(scope="session")
-def result(tmp_path_factory):
-    """A complete result file, opened."""
-    path = tmp_path_factory.mktemp("store") / "run.h5"
-    small.run(path)
-    return read(path)
+def paths(tmp_path_factory):
+    """Two result files that differ in one clearance."""
+    folder = tmp_path_factory.mktemp("report")
+    for name, clearance in (("a", "0.5mm"), ("b", "0.1mm")):
+        small.run(folder / f"{name}.h5", f"joints.B.clearance={clearance}")
+    return [folder / "a.h5", folder / "b.h5"]

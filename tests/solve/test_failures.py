@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from trsim.errors import ModelError
+
 from ..runs import run
 
 PUSHED = """
@@ -17,7 +19,6 @@ LAWS = {
     "log": FORCE.format("log(0.1 - t)"),
     "overflow": FORCE.format("1e300*exp(1000*t)"),
     "pole": FORCE.format("1/(0.1 - t)**2"),
-    "from the start": FORCE.format("log(-1 - t)"),
     "table": FORCE.replace('"{}"', "{}").format(
         "{table: [[0, 0], [0.05, 1], [0.1, 2]], ends: refuse}"),
     "drive": 'drives: {d: {joint: hinge, velocity: "sqrt(0.1 - t)"}}',
@@ -35,6 +36,12 @@ def test_ends_failed_with_a_reason_and_without_nan(law, method):
     assert np.all(np.diff(r.t) > 0.0)
     if law in ("log", "pole", "table", "drive"):
         assert r.outcome.time == pytest.approx(0.1, abs=2e-4)
+
+
+def test_a_force_that_is_no_number_at_the_start_is_refused():
+    with pytest.raises(ModelError, match=r"forces\.f") as caught:
+        run(PUSHED.format(FORCE.format("log(-1 - t)"), METHODS["dop853"]))
+    assert caught.value.exit_code == 4
 
 
 def test_reason_says_that_a_value_is_not_finite():

@@ -79,7 +79,8 @@ def test_damped_stop_comes_to_rest():
 LAW = """
 drives: {motor: {joint: A, velocity: 5}}
 gravity: [0, -9.81]
-contact_laws: {pin: {normal: hunt_crossley, stiffness: 1e10, bearing_radius: 0.01, restitution: 0.5}}
+contact_laws:
+  pin: {normal: hunt_crossley, stiffness: 1e10, bearing_radius: 0.01, restitution: 0.5}
 """
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from trsim.solve.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
 from trsim.spec.load import load, loads
@@ -37,7 +38,9 @@ def test_table_of_the_data_set(ideal, column, channel):
 
 def test_first_touch_and_largest_drive_force(ideal):
     names = [i.name for i in ideal.mechanism.instances]
-    lug = (ideal.events[:, EVENT_ROW] == names.index("lug")) & (ideal.events[:, EVENT_KIND] == ONSET)
+    lug = (ideal.events[:, EVENT_ROW] == names.index("lug")) & (
+        ideal.events[:, EVENT_KIND] == ONSET
+    )
     assert ideal.events[lug, EVENT_TIME][0] == pytest.approx(0.2999, abs=0.0005)
     force, t = ideal.largest("actuator.force")
     assert force == pytest.approx(800, abs=8) and t == pytest.approx(0.951, abs=0.003)
@@ -76,15 +79,13 @@ output: {{every: 10 ms}}
 def knee_angle():
     """How far the lug folds the knee: its point reaches the line of the large rod's back."""
     pin, point = np.array([-0.074336, 0.207061]), np.array([-0.094784, 0.156003])
-    n = np.array([-0.941185, -0.337890])
-    lever, turn = point - pin, np.linspace(0, 1.5, 2)
-    f = lambda x: n @ (pin + [np.cos(x) * lever[0] - np.sin(x) * lever[1],
-                              np.sin(x) * lever[0] + np.cos(x) * lever[1]])  # noqa: E731  # fmt: skip
-    low, high = turn
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if (f(middle) > 0) == (f(low) > 0) else (low, middle)
-    return low
+    normal, lever = np.array([-0.941185, -0.337890]), point - pin
+
+    def gap(turn):
+        c, s = np.cos(turn), np.sin(turn)
+        return normal @ (pin + np.array([[c, -s], [s, c]]) @ lever)
+
+    return brentq(gap, 0.0, 1.5)
 
 
 def test_closed_form_of_a_massless_chain():

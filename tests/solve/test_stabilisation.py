@@ -12,7 +12,7 @@ FALLING = "gravity: [3, -9.81]"
 
 
 def falling(stabilisation, more=""):
-    text = four_bar("true", FALLING, end=3).replace("1e-10", "1e-6")
+    text = four_bar("true", FALLING, end=3).replace("1e-10", "1e-7")
     return run(text.replace("solver: {", f"solver: {{stabilisation: {stabilisation}{more}, "))
 
 
@@ -32,11 +32,3 @@ def test_three_ways():
     for r in (projected, baumgarte):
         assert r["coupler.position"] == pytest.approx(exact["coupler.position"], abs=2e-4)
     assert energy_error(projected) < 1e-6
-
-
-def test_work_of_the_projection_is_booked():
-    r = falling("projection")
-    booked = r["energy.work.projection"][-1]
-    assert booked != 0.0
-    # without it the book would not close
-    assert abs(r["energy.residual"][-1]) < 0.3 * abs(booked)

@@ -2,7 +2,6 @@
 
 import json
 import re
-import time
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -434,13 +433,11 @@ def test_mutated_text(data):
             st.sampled_from([*"{}[]:,-#&*!|'\"\n\t 0aé\0", "null", "1e999", "? ", "{a: "])
         )
         text = text[:k] + piece + text[k + data.draw(st.integers(0, 3)) :]
-    start = time.perf_counter()
     try:
         loads(text)
     except TrsimError as error:
         assert error.exit_code == 3
         assert error.show()
-    assert time.perf_counter() - start < 1.0
 
 
 @CALM

@@ -1,7 +1,5 @@
 """YAML text to data: the core schema, marks, and every hostile file refused where it stands."""
 
-import time
-
 import pytest
 import yaml
 
@@ -129,13 +127,10 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=lambda text: repr(text[:24]))
-def test_hostile(text, request):
+def test_hostile(text):
     line, column, what = HOSTILE[text]
-    start = time.perf_counter()
     with pytest.raises(ScenarioError) as caught:
         read(text)
-    quick = len(text) < 100_000 and "Python" not in request.node.name
-    assert time.perf_counter() - start < (0.1 if quick else 5)
     error = caught.value
     assert error.what.startswith(what)
     assert len(error.show()) < 500

@@ -109,10 +109,6 @@ def assemble(
     inside = in_solve(J, planar)
     unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
     rows = all_rows(instances)
-    notes: tuple[str, ...] = ()
-    if assumed:
-        notes = ("planar motion assumed: nothing holds the bodies in their plane; "
-                 "set `planar: false` for a spatial run",)  # fmt: skip
     return Mechanism(
         model=model,
         y0=y0,
@@ -130,8 +126,25 @@ def assemble(
         follows=tuple(follow for _, follow in at.states),
         coordinates=at.coordinates,
         frames=at.frames,
-        notes=notes,
+        notes=notes(scenario, assumed),
     )
+
+
+def notes(scenario: Any, assumed: bool) -> tuple[str, ...]:
+    """What the user should know before the run."""
+    said = []
+    if assumed:
+        said.append(
+            "planar motion assumed: nothing holds the bodies in their plane; "
+            "set `planar: false` for a spatial run"
+        )
+    for name, law in scenario.contact_laws.items():
+        if law.friction.law == "coulomb":
+            said.append(
+                f"contact law '{name}': Coulomb friction jumps where sliding stops; expect tiny "
+                "steps there, and prefer modified_coulomb or sticking"
+            )
+    return tuple(said)
 
 
 def pack(  # type: ignore[no-untyped-def]

@@ -45,6 +45,17 @@ def units(instance: "Instance", unit: str, at: "Addresses") -> str:
     return unit
 
 
+def all_names(instances: list["Instance"]) -> list[str]:
+    """Every channel one may ask for, and the elements that have some."""
+    names = []
+    for instance in instances:
+        channels = [f"{instance.name}.{c.name}" for c in instance.element.channels if c.name]
+        if instance.section == "joints" and instance.element.rows:
+            channels += [f"{instance.name}.reaction", f"{instance.name}.reaction_moment"]
+        names += [instance.name, *channels] if channels else []
+    return names + [f"energy.{name}" for name in ENERGY_COLUMNS]
+
+
 def layout(
     scenario: Any, model: Model, instances: list["Instance"], at: "Addresses", planar: bool
 ) -> tuple[Model, list[Column]]:
@@ -89,7 +100,7 @@ def layout(
     if unused:
         raise ScenarioError(
             f"no channel matches '{unused[0]}'",
-            known(unused[0], [c.name for c in columns]),
+            known(unused[0], all_names(instances)),
             ("output", "channels"),
         )
     filled = model.replaced(

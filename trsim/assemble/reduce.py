@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, move, poses
-from trsim.elements.scene import Model, scene
+from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]
 
@@ -33,8 +33,7 @@ class Dependence:
 
 def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     """Phi (m), Phi_t (m) and J (m, 6 (n-1)) against the world-axes twists of the moving frames."""
-    w = scene(model)
-    w.branch[:] = np.nan_to_num(w.branch)
+    w = workspace(model)
     poses(w, y)
     constraints(w, t)
     J = np.zeros((model.m, 6 * model.n))
@@ -55,7 +54,7 @@ def weights(model: Model) -> Array:
 def displaced(model: Model, y: Array, dx: Array) -> Array:
     """y after small world-axes displacements dx (6 (n-1)) of the moving frames."""
     y = y.copy()
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     for f in range(1, model.n):
         step = dx[6 * (f - 1) : 6 * f]

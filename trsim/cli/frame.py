@@ -15,7 +15,7 @@ import click
 
 from trsim.errors import TrsimError
 
-INTERRUPTED = {signal.SIGINT: 130, signal.SIGTERM: 143}
+INTERRUPTED: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
 class Stop:

@@ -116,7 +116,7 @@ def pack(name, spec, at):
         raise ScenarioError(
             f"a radial clearance of {spec.clearance:g} m leaves no journal in a bearing of radius "
             f"{law.bearing_radius:g} m",
-            "did you mean mm?",
+            "the usual size is some tenths of a millimetre",
             ("clearance",),
         )
     K, exponent, form, chi, light = normal_numbers(law, spec.clearance)

@@ -114,6 +114,11 @@ class Scene(Model):
     status: I1  # [0] the last factorisation met a small pivot, [1] evaluations, [2] factorisations
 
 
+def workspace(model: Model) -> Scene:
+    """A scene of the model: itself if it is one, which keeps the branches of its angles."""
+    return model if isinstance(model, Scene) else scene(model)
+
+
 def scene(model: Model) -> Scene:
     """Fresh workspace for a model."""
     n, m, slots = model.n, model.m, len(model.slot_frame)

@@ -109,7 +109,7 @@ def body_motion(runs: list[Shown], body: str) -> Iterator[tuple[str, Any]]:
         a = axes[row, 0]
         for k, shown in enumerate(some(runs, channel)):
             values = shown.values(channel)
-            for c in np.flatnonzero(np.ptp(values, axis=0) > 0.0):
+            for c in np.flatnonzero(np.ptp(values, axis=0) > 0.0).tolist():
                 label = f"{'xyz'[c]}  {shown.label}".strip()
                 a.plot(*thinned(shown.time, values[:, c]), color=colour(3 * k + c), label=label)
         a.set_ylabel(f"{channel.split('.')[1]} ({some(runs, channel)[0].unit(channel)})")

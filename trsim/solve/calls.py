@@ -2,6 +2,7 @@
 
 STEP        y1 <- one step of size h from y, with K[0] = y'(t, y); returns the error, in units
             of the tolerance (<= 1 is accepted; 0 where there is no estimate)
+            Row 1 of K is scratch of the march once step and dense output are made
 DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
             is y'(t + h, y1) with y1 as finally accepted, projected
 INTERPOLATE y <- solution at t + theta h

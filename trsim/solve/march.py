@@ -89,6 +89,8 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
 NEAR = 0.5  # of the largest contact force so far: a maximum above this is searched for
 INSIDE = 16  # parts a searched step is cut into
+BISECTIONS = 16  # of a step, to the maximum of a contact force: flat there, so this is plenty
+AHEAD = 1e-4  # of a step: how far the rate of a contact force looks
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
 
@@ -121,13 +123,13 @@ def march(s, r, b, setting, method, most):
         t = r.clock[T]
         h = next_step(r, b, setting)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
-            return STEP_TOO_SMALL
+            return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
         weights(s, r, b, setting)
         copy_to(b.K[0], r.yd)
         error = call_step(method[0], s, b.K, t, r.y, h, b.y1, b.weight)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
-            r.count[AFTER_REJECTION] = 1
+            r.count[AFTER_REJECTION] = 1 if isfinite(error) else 2
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
             r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if isfinite(error) else 0.1)
@@ -137,6 +139,7 @@ def march(s, r, b, setting, method, most):
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
             r.count[REJECTED] += 1
+            r.count[AFTER_REJECTION] = 2
             r.clock[H] = 0.1 * h
             continue
         accepted += 1
@@ -181,7 +184,8 @@ def complete(s, r, b, setting, method, h, built):
         if built == 0 and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
             call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
             r.count[DENSE_BUILT] += 1
-        rows_until(s, r, b, setting, method[2], t, h, t1, projected)
+        if not rows_until(s, r, b, setting, method[2], t, h, t1, projected):
+            return WORTHLESS
         if near:
             peaks_inside(s, r, b, method[2], t, h, t1)
     accept(s, r, b, t1, projected, last)
@@ -310,25 +314,32 @@ def due(r, setting, t1):
 
 @internal
 def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
-    """Write the output rows of (t, t1]; the one at the end of the step is in b.out."""
+    """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
+
+    Returns False, and writes none of them, where a value is not finite.
+    """
+    rows, next_row = r.count[ROWS], r.count[NEXT_ROW]
     while r.count[ROWS] < b.rows.shape[0]:
         t_o = setting[EVERY] * r.count[NEXT_ROW]
         if t_o > t1 * (1.0 + 1e-15):
             break
         row = b.rows[r.count[ROWS]]
+        row[0] = t_o
         if abs(t_o - (t + h)) <= 1e-15 * abs(t_o) and t1 >= t + h:
-            row[0] = t_o
             copy_to(row[1:], b.out)
         else:
             theta = (t_o - t) / h
             call_interpolate(interpolate, b.P, r.y, theta, b.y2)
             evaluate(s, t_o, b.y2, b.K[1])
-            row[0] = t_o
             done = r.clock[WORK_PROJECTION] + theta * projected
             measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
             copy_to(row[1:], s.out)
+        if not all_finite(row):
+            r.count[ROWS], r.count[NEXT_ROW] = rows, next_row
+            return False
         r.count[ROWS] += 1
         r.count[NEXT_ROW] += 1
+    return True
 
 
 @internal
@@ -394,46 +405,86 @@ def extreme(p, t, value):
 
 
 @internal
+def force_rate(s, y, yd, t, ahead, c):
+    """Rate of contact c's force at (t, y), by its channel a little before and after along y'.
+
+    y is moved and moved back.
+    """
+    o = s.wanted[s.contact[c]]
+    for k in range(y.size):
+        y[k] -= ahead * yd[k]
+    poses(s, y)
+    call_all(s, s.measure, t - ahead)
+    before = s.out[o]
+    for k in range(y.size):
+        y[k] += 2.0 * ahead * yd[k]
+    poses(s, y)
+    call_all(s, s.measure, t + ahead)
+    for k in range(y.size):
+        y[k] -= ahead * yd[k]
+    return (s.out[o] - before) / (2.0 * ahead)
+
+
+@internal
 def near_peak(s, r, b, t, h, last):
     """Whether a contact force passes a maximum, one of its largest, inside the step just made.
 
-    Fills b.slope1 with the rate of every contact force at the end of the step, from the channels a
-    little further on along y'.
+    Fills b.slope1 with the rate of every contact force at the end of the step.
     """
-    ahead = 1e-4 * h
-    touching = False
-    for c in range(s.contact.size):
-        b.slope1[c] = 0.0
-        touching = touching or s.mem[s.contact[c], PHASE] != FLIGHT
-    if not touching:
-        return False
-    for k in range(b.y2.size):
-        b.y2[k] = b.y1[k] + ahead * b.K[last, k]
-    poses(s, b.y2)
-    call_all(s, s.measure, t + ahead)
     near = False
     for c in range(s.contact.size):
+        b.slope1[c] = 0.0
         o = s.wanted[s.contact[c]]
         if s.mem[s.contact[c], PHASE] == FLIGHT or o < 0:
             continue
-        b.slope1[c] = (s.out[o] - b.out[o]) / ahead
-        large = max(b.out[o], r.peak[o, PEAK_V2]) > NEAR * r.peak[o, PEAK_MAX]
-        near = near or (large and r.slope[c] > 0.0 and b.slope1[c] < 0.0)
+        copy_to(b.y2, b.y1)
+        b.slope1[c] = force_rate(s, b.y2, b.K[last], t, AHEAD * h, c)
+        near = near or passes(s, r, b, c)
     return near
+
+
+@internal
+def passes(s, r, b, c):
+    """Whether the force of contact c has a maximum worth finding between the step's ends."""
+    o = s.wanted[s.contact[c]]
+    if o < 0 or not (r.slope[c] > 0.0 and b.slope1[c] < 0.0):
+        return False
+    return max(b.out[o], r.peak[o, PEAK_V2]) > NEAR * r.peak[o, PEAK_MAX]
 
 
 @internal
 def peaks_inside(s, r, b, interpolate, t, h, t1):
     """Extremes of all channels inside the step, from its dense output.
 
-    The step is cut into parts; a part's value that tops its neighbours is refined by a parabola.
+    The step is cut into parts, whose tops are refined by parabolas; and the maximum of every
+    contact force is found as the root of its rate.
     """
+    reach = (t1 - t) / h
+    for c in range(s.contact.size):
+        if s.mem[s.contact[c], PHASE] == FLIGHT or not passes(s, r, b, c):
+            continue
+        low, high = 0.0, reach
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            values_inside(s, r, b, interpolate, t, h, middle)
+            if force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c) > 0.0:
+                low = middle
+            else:
+                high = middle
+        values_inside(s, r, b, interpolate, t, h, low)
+        for o in range(s.n_out):
+            extreme(r.peak[o], t + low * h, s.out[o])
     for k in range(1, INSIDE):
-        theta = (t1 - t) / h * k / INSIDE
-        call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-        evaluate(s, t + theta * h, b.y2, b.K[1])
-        measure(s, t + theta * h, b.y2, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-        refine(s, r, s.out, t + theta * h)
+        values_inside(s, r, b, interpolate, t, h, reach * k / INSIDE)
+        refine(s, r, s.out, t + reach * k / INSIDE * h)
+
+
+@internal
+def values_inside(s, r, b, interpolate, t, h, theta):
+    """All channels at t + theta h into s.out; the state in b.y2, its derivative in b.K[1]."""
+    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+    evaluate(s, t + theta * h, b.y2, b.K[1])
+    measure(s, t + theta * h, b.y2, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
 
 
 @internal
@@ -521,7 +572,7 @@ def control(r, setting, h, error, event):
     if setting[FIXED_STEP] > 0.0:
         return
     factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error ** (-1 / 8)))
-    if r.count[AFTER_REJECTION] == 1:
+    if r.count[AFTER_REJECTION] > 0:
         factor = min(factor, 1.0)
     r.count[AFTER_REJECTION] = 0
     if event:

@@ -31,7 +31,7 @@ from trsim.elements.scene import Model
     STEP_ROWS,
     EVENT_ROWS,
     DENSE_BUILT,
-    AFTER_REJECTION,
+    AFTER_REJECTION,  # 1 the last trial was rejected, 2 because it was not finite
     SAME_TIME,  # events in a row without time passing
     N_COUNT,
 ) = range(11)
@@ -99,7 +99,7 @@ def fresh_buffers(model: Model, n_y: int, stages: int, dense_rows: int, n_steps:
     """Buffers for a model and a method."""
     contacts = len(model.contact)
     return Buffers(
-        rows=np.zeros((256, 1 + model.n_out)),
+        rows=np.zeros((1024, 1 + model.n_out)),
         steps=np.zeros((1024, n_steps)),
         events=np.zeros((256, 5)),
         K=np.zeros((stages, n_y)),

@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 8)  # Chebyshev-Lobatto on 0..1
 SIGNS = np.array([0.5, -1, 1, -1, 1, -1, 1, -1, 0.5])  # their barycentric weights
+LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
 
@@ -58,8 +59,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     s, setting = scene(mechanism.model), settings(scenario, mechanism, True)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     r = new_record(s, begun)
-    b = fresh_buffers(s, r.y.size, 2, NODES.size, 2 + int(np.max(s.contact_width, initial=0)))
-    method = method_table(0, 0, interpolate.address(), 1)
+    b = fresh_buffers(
+        s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0))
+    )
+    method = method_table(0, 0, interpolate.address(), LAST)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)

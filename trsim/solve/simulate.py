@@ -22,8 +22,9 @@ COMPILED = ("dop853", "rk4")  # each a file of this folder
 VISIT = 5000  # steps between two looks at the outside world
 
 REASONS = {
+    -2: "a value is not finite: the fixed step is too large for the stiffest contact",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time",
-    rec.NOT_FINITE: "a value is not finite: the step is too large for the stiffest contact",
+    rec.NOT_FINITE: "a force or an acceleration is not finite",
     rec.CHATTER: "contacts open and close without time passing (chatter)",
 }
 
@@ -67,6 +68,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outc
 def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     """The constants of the march."""
     solver, output = scenario.solver, scenario.output
+    if solver.end is None:
+        raise ScenarioError(
+            "a run needs `solver: {end: ...}`", "for example `end: 1 s`", ("solver", "end")
+        )
     if not adaptive and not solver.step:
         raise ScenarioError(
             f"method '{solver.method}' needs a fixed `step`",
@@ -94,6 +99,7 @@ def first_step(scenario: Any, record: Record) -> float:
 def new_record(model: Scene, begun: Start) -> Record:
     """A record at the start; memory and branches are the scene's own arrays."""
     model.mem[:] = begun.mem
+    model.branch[:] = begun.branch
     record = Record(
         y=begun.y.copy(),
         yd=np.zeros_like(begun.y),
@@ -137,6 +143,8 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
             break
     cpu = time.process_time() - clock0
     status = "done" if reason == rec.DONE else "failed"
+    if reason == rec.NOT_FINITE and setting[rec.FIXED_STEP] > 0.0:
+        reason = -2
     text = REASONS.get(reason, f"more than {limit} steps" if reason == -1 else "")
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun)  # fmt: skip

@@ -2,12 +2,12 @@
 
 Positions: as drawn, moved to the joint values of `initial` in small steps, and to the static
 equilibrium of the joints named there.  Velocities: those of the mechanism with all clearances ideal
-and the drives at speed, nearest to the bodies' given ones; closed stops stay closed, and what is
-then still free of the named joints has zero rate.
+and the drives at speed - with bodies' velocities given, the nearest that the joints allow; closed
+stops stay closed, and what is then still free of the named joints has zero rate.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from trsim.assemble.assemble import Mechanism, assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.reduce import closest, jacobian, weights
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
-from trsim.elements.scene import Model, scene
+from trsim.elements.scene import Model, scene, workspace
 from trsim.errors import ModelError, known
 from trsim.solve.statics import equilibrium
 
@@ -31,6 +31,7 @@ class Start:
 
     y: Array
     mem: Array
+    branch: Array  # (n_s) the turn every angle is on
     moved: float  # m or rad: largest constraint residual the projection removed
     residual: float  # N: static force left by the equilibrium, 0 where none was asked for
     length: float  # m, first unit of the error norm
@@ -38,12 +39,15 @@ class Start:
     depth: Array  # (n_contacts) penetration expected at the forces of the start, m
 
 
-def start(scenario: Any, mechanism: Mechanism, located: bool) -> Start:
+def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     """The start of a run; raises ModelError where there is none."""
     initial = scenario.initial
     check_names(scenario, initial)
-    y, residual = positions(scenario, mechanism, initial)
+    mechanism = with_scene(mechanism)
+    y, residual, angles = positions(scenario, mechanism, initial)
     model = mechanism.model
+    for name, x in mechanism.coordinates.items():
+        model.branch[x.entry] = angles.get(name, x.drawn)
     phi = jacobian(model, 0.0, follow(mechanism, y))[0]
     moved = float(np.max(np.abs(phi), initial=0.0))
     y, left = closest(model, 0.0, follow(mechanism, y))
@@ -56,8 +60,24 @@ def start(scenario: Any, mechanism: Mechanism, located: bool) -> Start:
     check_values(mechanism, initial, y)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
+    check_finite(mechanism, y, mem)
     length, speed, depth = units(model, y, mem, scenario)
-    return Start(y, mem, moved, residual, length, speed, depth)
+    remember(mechanism.model, y)
+    return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, depth)
+
+
+def with_scene(mechanism: Mechanism) -> Any:
+    """The mechanism with a scene for its model: one workspace, and angles that keep their turn."""
+    work = scene(mechanism.model)
+    for x in mechanism.coordinates.values():
+        work.branch[x.entry] = x.drawn
+    return replace(mechanism, model=work)
+
+
+def remember(model: Any, y: Array) -> None:
+    """Let angles unwrap from their values at y on."""
+    poses(model, y)
+    model.branch[:] = model.S[:, 0]
 
 
 def check_names(scenario: Any, initial: Any) -> None:
@@ -76,7 +96,7 @@ def check_names(scenario: Any, initial: Any) -> None:
 
 def check_values(mechanism: Mechanism, initial: Any, y: Array) -> None:
     """No drive moved a joint away from where `initial` put it."""
-    w = scene(mechanism.model)
+    w = workspace(mechanism.model)
     poses(w, y)
     for name, value in initial.values.items():
         if name not in mechanism.coordinates:
@@ -94,11 +114,34 @@ def check_values(mechanism: Mechanism, initial: Any, y: Array) -> None:
             )
 
 
+def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
+    """Every force at the start is a number; the element that gives none is named."""
+    model = mechanism.model
+    w = workspace(model)
+    w.mem[:] = mem
+    yd = np.zeros_like(y)
+    derivative(w, 0.0, y, yd)
+    if np.all(np.isfinite(yd)):
+        return
+    for e, instance in enumerate(mechanism.instances):
+        force = instance.element.kernels.get("force")
+        w.F[:] = 0.0
+        if force is not None:
+            force(0.0, w, e, e + 1)
+        if not np.all(np.isfinite(w.F)):
+            raise ModelError(
+                "its force is not a finite number at t = 0",
+                "is an expression outside its range: log or sqrt of something negative, 1/0?",
+                (instance.section, instance.name),
+            )
+    raise ModelError("an acceleration is not a finite number at t = 0", "check masses and inertias")
+
+
 def follow(mechanism: Mechanism, y: Array) -> Array:
     """y with the states that start at a joint coordinate set to its value."""
     model = mechanism.model
     y = y.copy()
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     for k, s in enumerate(mechanism.follows):
         if s >= 0:
@@ -106,14 +149,16 @@ def follow(mechanism: Mechanism, y: Array) -> Array:
     return y
 
 
-def positions(scenario: Any, mechanism: Mechanism, initial: Any) -> tuple[Array, float]:
-    """q as drawn, at the given joint values, in equilibrium; and the static force left, N."""
+def positions(
+    scenario: Any, mechanism: Mechanism, initial: Any
+) -> tuple[Array, float, dict[str, float]]:
+    """q as drawn, at the given joint values, in equilibrium; the static force left, N; angles."""
     if not initial.equilibrium and not initial.values:
-        return mechanism.y0, 0.0
+        return mechanism.y0, 0.0, {}
     playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
     ideal = frozenset(playing - set(initial.equilibrium))
     try:
-        held = assemble(scenario, ideal, holding_drives(scenario, initial))
+        held = with_scene(assemble(scenario, ideal, holding_drives(scenario, initial)))
     except ModelError as error:
         name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
         if name not in initial.values:
@@ -131,7 +176,9 @@ def positions(scenario: Any, mechanism: Mechanism, initial: Any) -> tuple[Array,
         y, residual = equilibrium(held, y)
     if targets:
         y, residual = approach(held, y, targets, settle)
-    return back(mechanism, held, y), residual
+    remember(held.model, y)
+    angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
+    return back(mechanism, held, y), residual, angles
 
 
 def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
@@ -146,9 +193,7 @@ def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     return drives
 
 
-def approach(
-    held: Mechanism, y: Array, targets: dict[int, float], settle: bool
-) -> tuple[Array, float]:
+def approach(held: Any, y: Array, targets: dict[int, float], settle: bool) -> tuple[Array, float]:
     """Move joint coordinates to their targets by quasi-static steps that keep the branch."""
     model = held.model
     place = {s: model.n_q + model.n_v + N_BOOK + k for k, s in enumerate(held.follows) if s >= 0}
@@ -175,6 +220,7 @@ def approach(
                     ("initial",),
                 ) from None
             continue
+        remember(model, trial)
         y, done, step = trial, ahead, min(2.0 * step, 1.0 / 16.0)
     return y, residual
 
@@ -195,12 +241,15 @@ def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
 
 
 def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
-    """v nearest to the given one (in the metric of M) that the ideal mechanism allows.
+    """v nearest to the given one (in the metric of M) that the mechanism allows.
 
+    Clearance joints count as ideal, unless a body's velocity is given: then journals may fly.
     After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
     their rates are zero.
     """
-    playing = frozenset(n for n, s in scenario.joints.items() if s.type == "clearance_joint")
+    given = any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
+    joints = scenario.joints.items() if not given else ()
+    playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
     ideal = assemble(scenario, playing, coordinates=named)
     model = ideal.model
     y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
@@ -231,7 +280,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
 
 def closed_stops(model: Model, y: Array) -> list[Array]:
     """Gradients of the gap rates of contacts that are closed at y."""
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     gaps(w, 0.0)
     closed = [e for e in model.contact.tolist() if w.gap[e, 0] > 0.0]
@@ -246,14 +295,14 @@ def closed_stops(model: Model, y: Array) -> list[Array]:
 
 def world_velocities(model: Model, y: Array) -> Array:
     """World-axes twists of the moving frames, one vector."""
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     return w.V[1:].ravel().copy()
 
 
 def with_velocities(model: Model, y: Array, v: Array) -> Array:
     """y with the given world-axes twists."""
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     y = y.copy()
     for f in range(1, model.n):
@@ -269,7 +318,7 @@ def with_velocities(model: Model, y: Array, v: Array) -> Array:
 
 def coordinate_gradient(model: Model, y: Array, s: int) -> Array:
     """Rate of a joint coordinate per unit of every twist component."""
-    w = scene(model)
+    w = workspace(model)
 
     def rate(moving: Array) -> float:
         poses(w, moving)
@@ -291,7 +340,7 @@ def twist_gradient(model: Model, y: Array, rate: Callable[[Array], float]) -> Ar
 def phases(model: Model, y: Array, located: bool) -> Array:
     """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
     mem = np.zeros((len(model.con), 2))
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     gaps(w, 0.0)
     for c, e in enumerate(model.contact):
@@ -308,7 +357,7 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     press in.  Without: the size of the mechanism, and the largest of its speeds, of the speed its
     accelerations give over its size, and of its size per run.
     """
-    w = scene(model)
+    w = workspace(model)
     yd = np.zeros_like(y)
     w.mem[:] = mem
     derivative(w, 0.0, y, yd)

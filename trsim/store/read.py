@@ -19,6 +19,8 @@ from trsim.store.peaks import Peak
 from trsim.store.points import split
 
 FORMAT, VERSION = "trsim run", 1
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+SWMR = 0x04  # in byte 11 of the file: open for one writer, or its writer was killed
 
 
 class Part(NamedTuple):
@@ -194,12 +196,11 @@ def opened(path: Path) -> Iterator[h5py.File]:
 
 
 def _file(path: Path) -> h5py.File:
-    try:
-        return h5py.File(path, "r")
-    except OSError:
-        if not h5py.is_hdf5(path):
-            raise
-        return h5py.File(path, "r", libver="latest", swmr=True)
+    """The file, in the mode its superblock asks for: HDF5 waits long for a writer that is not."""
+    with path.open("rb") as file:
+        start = file.read(12)
+    writing = len(start) == 12 and start.startswith(SIGNATURE) and start[11] & SWMR
+    return h5py.File(path, "r", libver="latest", swmr=True) if writing else h5py.File(path, "r")
 
 
 def _unreadable(path: Path, error: Exception) -> tuple[str, str]:
@@ -207,7 +208,7 @@ def _unreadable(path: Path, error: Exception) -> tuple[str, str]:
         return f"{path}: permission denied", ""
     with path.open("rb") as file:
         signature = file.read(8)
-    if signature != b"\x89HDF\r\n\x1a\n":
+    if signature != SIGNATURE:
         return f"{path} is not a result file", "A result file is written by `trsim run`."
     text = str(error).splitlines()[0] if str(error) else type(error).__name__
     what = "is truncated" if "truncated" in text else "is damaged"

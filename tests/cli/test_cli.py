@@ -1,0 +1,298 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests import small
+from trsim.cli import COMMANDS
+from trsim.store.read import read, verify
+
+ROOT = Path(__file__).parents[2]
+
+
+def files(folder):
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+
+
+def started(folder, *arguments):
+    """A command line in a process of its own."""
+    command = [sys.executable, "-m", "trsim", *arguments]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(  # noqa: S603
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True,
+    )  # fmt: skip
+
+
+def wait_for(path, size=100_000):
+    """Until a file has some content."""
+    for _ in range(1200):
+        if path.exists() and path.stat().st_size > size:
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"{path} does not grow")
+
+
+# --- help and usage --------------------------------------------------------------------------
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys, contextlib\nfrom trsim.cli import main\n"
+        "with contextlib.suppress(SystemExit): main(['--help'])\n"
+        "heavy = {'numpy', 'numba', 'h5py', 'pydantic', 'yaml', 'rich', 'scipy', 'matplotlib'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    command = [sys.executable, "-c", code]
+    out = subprocess.run(command, check=True, cwd=ROOT, capture_output=True, text=True).stdout  # noqa: S603
+    assert out.splitlines()[-1] == "[]"
+    for name in COMMANDS:
+        assert f"  {name} " in out
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        ((), "Usage"),
+        (("rnu",), "Did you mean 'run'?"),
+        (("run",), "Missing argument"),
+        (("run", "x.yaml", "--nonsense"), "nonsense"),
+    ],
+)
+def test_usage(arguments, message, trsim):
+    code, out, err = trsim(*arguments)
+    assert code == 2
+    assert message in err
+    assert out == ""
+
+
+def test_usage_as_json(answer):
+    code, document = answer("run")
+    assert code == 2
+    assert "Missing argument" in document["errors"][0]["what"]
+
+
+# --- run -------------------------------------------------------------------------------------
+
+
+def test_run_default_output(scenario, trsim):
+    code, out, err = trsim("run", "crank.yaml")
+    assert code == 0
+    assert out == "runs/crank.h5\n"
+    assert "done at t = 0.003 s, 301 rows" in err
+    assert files(scenario.parent) == ["crank.yaml", "runs/crank.h5"]
+    assert verify("runs/crank.h5")
+
+
+def test_run_several_into_a_folder(scenario, trsim):
+    (scenario.parent / "other.yaml").write_text(small.SLIDER_CRANK.replace("3 ms", "2 ms"))
+    code, out, _ = trsim("run", "crank.yaml", "other.yaml", "-o", "results")
+    assert code == 0
+    assert out.split() == ["results/crank.h5", "results/other.h5"]
+
+
+def test_run_refuses_two_results_of_one_name(scenario, trsim):
+    code, _, err = trsim("run", "crank.yaml", "crank.yaml", "-o", "results")
+    assert code == 2
+    assert "would both be written to results/crank.h5" in err
+    assert files(scenario.parent) == ["crank.yaml"]
+
+
+def test_run_set_and_json(scenario, answer):
+    code, document = answer("run", "crank.yaml", "--set", "solver.end=1ms", "-o", "x.h5")
+    assert code == 0
+    assert document["errors"] == []
+    [summary] = document["runs"]
+    assert summary["status"] == "done"
+    assert summary["time"] == 0.001
+    assert summary["file"] == "x.h5"
+    assert summary["contacts"]["B"]["impacts"] >= 1
+
+
+def test_run_quiet(scenario, trsim):
+    code, out, err = trsim("run", "crank.yaml", "-q")
+    assert (code, out, err) == (0, "runs/crank.h5\n", "")
+
+
+# --- what can go wrong -----------------------------------------------------------------------
+
+WRONG = {  # text replaced, replacement, exit code, message
+    "unknown key": ("clearance: 0.5", "clearnce: 0.5", 3, "Did you mean 'clearance'?"),
+    "wrong unit": ("end: 3 ms", "end: 3 mm", 3, "wrong unit"),
+    "no end": ("end: 3 ms, ", "", 3, "field required: end"),
+    "no such body": ("bodies: [rod, slider]", "bodies: [rodd, slider]", 3, "rodd"),
+    "unknown channel": ("when: B.ecc", "when: B.exc", 3, "no channel named"),
+    "two drives": (
+        "  motor: {joint: O, velocity: 5000 rpm}",
+        "  motor: {joint: O, velocity: 5000 rpm}\n  twin: {joint: O, velocity: 1 rpm}",
+        4,
+        "moves a coordinate that",
+    ),
+    "solver": ("method: dop853", "method: rk4, step: 0.05 ms", 5, "the solver failed at t ="),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_wrong_scenarios(case, scenario, trsim, answer):
+    old, new, exit_code, message = WRONG[case]
+    assert old in small.SLIDER_CRANK
+    scenario.write_text(small.SLIDER_CRANK.replace(old, new))
+    code, out, err = trsim("run", "crank.yaml")
+    assert code == exit_code
+    assert message in err
+    left = files(scenario.parent)
+    if exit_code == 5:  # partial results are kept
+        assert out == "runs/crank.h5\n"
+        assert read("runs/crank.h5").attributes["status"] == "failed"
+    else:
+        assert out == ""
+        assert "crank.yaml:" in err
+        assert left == ["crank.yaml"]
+    code, document = answer("run", "crank.yaml")
+    assert code == exit_code
+    [error] = document["errors"]
+    assert message in error["what"] + error["hint"]
+    assert error["exit_code"] == exit_code
+
+
+def test_one_wrong_scenario_does_not_stop_the_others(scenario, trsim):
+    (scenario.parent / "bad.yaml").write_text("bodies: 3")
+    code, out, _ = trsim("run", "bad.yaml", "crank.yaml")
+    assert code == 3
+    assert out == "runs/crank.h5\n"
+
+
+def test_file_system(scenario, trsim, answer):
+    assert trsim("run", "none.yaml")[0] == 7
+    assert trsim("run", "crank.yaml", "-o", "crank.yaml/run.h5")[0] == 7
+    assert trsim("report", "crank.yaml")[0] == 7
+    code, document = answer("show", "none.h5")
+    assert code == 7
+    assert "no such file" in document["errors"][0]["what"]
+    assert files(scenario.parent) == ["crank.yaml"]
+
+
+def test_bug_is_one_line(scenario, trsim, answer, monkeypatch):
+    def broken(*_):
+        raise ZeroDivisionError("division by zero")
+
+    monkeypatch.setattr("trsim.cli.check.described", broken)
+    code, out, err = trsim("check", "crank.yaml")
+    assert (code, out) == (1, "")
+    assert "ZeroDivisionError: division by zero" in err
+    assert "TRSIM_DEBUG=1" in err
+    assert answer("check", "crank.yaml")[0] == 1
+    monkeypatch.setenv("TRSIM_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        trsim("check", "crank.yaml")
+
+
+# --- check, show, report ---------------------------------------------------------------------
+
+
+def test_check(scenario, trsim, answer):
+    code, out, _ = trsim("check", "crank.yaml")
+    assert code == 0
+    assert "mobility    2: 9 unknowns, 7 constraint rows" in out
+    code, document = answer("check", "crank.yaml", "--set", "joints.B.clearance=0")
+    assert code == 0
+    [found] = document["scenarios"]
+    assert found["mobility"] == 0
+    assert found["joints"]["B"] == "clearance_joint"
+    assert found["contacts"] == []
+    assert found["start"]["position_residual"] < 1e-12
+    assert files(scenario.parent) == ["crank.yaml"]
+
+
+def test_check_finds_redundant_rows(scenario, answer):
+    text = small.SLIDER_CRANK.replace(", clearance: 0.5 mm, contact: pin", "")
+    text = text[: text.index("poincare")].replace(
+        "drives:", "  again: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}\ndrives:"
+    )
+    scenario.write_text(text)
+    code, document = answer("check", "crank.yaml")
+    assert code == 0
+    [found] = document["scenarios"]
+    assert len(found["redundant"]) == 2
+    assert {name.split(".")[0] for name in found["not_unique"]} >= {"guide", "again"}
+    assert found["mobility"] == 0
+
+
+def test_show_and_report(scenario, trsim, answer):
+    trsim("run", "crank.yaml", "-o", "x.h5")
+    code, out, _ = trsim("show", "x.h5")
+    assert code == 0
+    assert "301 rows" in out or "301 of" in out
+    assert "B.contact_force" in out
+    code, document = answer("show", "x.h5")
+    assert document["channels"]["stroke"] == "m"
+    code, document = answer("report", "x.h5")
+    assert code == 0
+    assert document["folder"] == "x"
+    assert all(Path(name).stat().st_size > 0 for name in document["files"])
+    assert "x/orbit_B.png" in document["files"]
+
+
+# --- signals ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_signal_closes_the_file(number, code, scenario):
+    process = started(scenario.parent, "run", "crank.yaml", "--set", "solver.end=1000", "--json")
+    part = scenario.parent / "runs/crank.h5.part"
+    wait_for(part)
+    began = time.monotonic()
+    process.send_signal(number)
+    out, err = process.communicate(timeout=20)
+    assert time.monotonic() - began < 2.0
+    assert process.returncode == code
+    assert json.loads(out)["exit_code"] == code
+    assert "Traceback" not in err
+    result = read(part)
+    assert result.attributes["status"] == "interrupted"
+    assert np.all(np.diff(result.time) > 0.0)
+    assert files(scenario.parent) == ["crank.yaml", "runs/crank.h5.part"]
+
+
+def test_killed_run_leaves_a_readable_part(scenario):
+    process = started(scenario.parent, "run", "crank.yaml", "--set", "solver.end=1000")
+    part = scenario.parent / "runs/crank.h5.part"
+    wait_for(part)
+    while (seen := read(part).rows) == 0:  # it can be read while it grows
+        time.sleep(0.05)
+    process.kill()
+    process.communicate()
+    result = read(part)
+    assert result.attributes["status"] == "running"
+    assert result.rows >= seen
+    assert np.all(np.diff(result.time) > 0.0)
+    for name in result.names:
+        assert np.all(np.isfinite(result.channel(name)))
+    assert not (scenario.parent / "runs/crank.h5").exists()
+
+
+def test_full_disk(scenario):
+    """A file that may not grow: told in two lines, what was flushed can be read."""
+    import resource
+
+    limit = 4_000_000
+    command = [sys.executable, "-m", "trsim", "run", "crank.yaml", "--set", "solver.end=1000"]
+    done = subprocess.run(  # noqa: S603
+        command,
+        cwd=scenario.parent,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )
+    assert done.returncode == 7
+    assert "crank.h5.part: cannot be written beyond 4000000 bytes: File too large" in done.stderr
+    assert len(done.stderr.splitlines()) == 2
+    result = read(scenario.parent / "runs/crank.h5.part")
+    assert np.all(np.diff(result.time) > 0.0)

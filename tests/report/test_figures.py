@@ -1,0 +1,178 @@
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from tests import small
+from trsim.errors import FileError
+from trsim.report import report
+from trsim.report.display import compared, differences, display_units, short
+from trsim.report.figures import contact_force, contact_history, motion
+from trsim.report.orbits import orbit
+from trsim.report.style import STRETCHES, look, thinned
+from trsim.report.tables import peak_loads
+from trsim.store.read import read
+
+EXPECTED = {
+    *("motion_stroke", "motion_crank_angle", "drive_motor", "contact_B", "orbit_B"),
+    *("phase_B", "phase_stroke", "phase_crank_angle", "poincare_journal", "energy", "peaks"),
+}
+
+
+def drawn(path):
+    """Share of the pixels of a picture that are not background."""
+    picture = imread(path)[..., :3]
+    assert min(picture.shape[:2]) > 100
+    return float(np.mean(np.any(picture < 0.9, axis=2)))
+
+
+@pytest.mark.parametrize("several", [False, True])
+def test_every_figure_is_drawn(several, paths, tmp_path):
+    written = report(paths if several else paths[0], tmp_path / "figures")
+    pictures = [path for path in written if path.suffix == ".png"]
+    assert {path.stem for path in pictures} == EXPECTED
+    for path in pictures:
+        assert 0.005 < drawn(path) < 0.5, path.name
+
+
+def test_report_is_the_same_every_time(paths, tmp_path):
+    first = report(paths[0], tmp_path / "1")
+    second = report(paths[0], tmp_path / "2")
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
+
+
+def test_run_without_sensors_contacts_or_drives(tmp_path):
+    text = """\
+gravity: [0, -9.81, 0]
+bodies: {bob: {mass: 1, inertia: 0.01, at: [1, 0]}}
+joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
+solver: {end: 1 s, tolerance: 1e-6}
+"""
+    small.run(tmp_path / "run.h5", text=text)
+    written = {path.name for path in report(tmp_path / "run.h5", tmp_path)}
+    assert written == {"body_bob.png", "energy.png", "peaks.csv", "peaks.png"}
+
+
+def test_failed_run_is_reported_as_far_as_it_came(tmp_path):
+    text = small.SLIDER_CRANK.replace("method: dop853", "method: rk4, step: 0.05 ms")
+    small.run(tmp_path / "run.h5", text=text)
+    assert len(report(tmp_path / "run.h5", tmp_path / "figures")) > 5
+    [shown] = compared([read(tmp_path / "run.h5")])
+    with look():
+        assert "(failed)" in motion([shown], "stroke").get_suptitle()
+
+
+def test_figures_have_units_and_labels(paths):
+    runs = compared([read(path) for path in paths])
+    assert [shown.label for shown in runs] == ["clearance at B 0.5mm", "clearance at B 0.1mm"]
+    with look():
+        figure = motion(runs, "crank_angle")
+        labels = [axes.get_ylabel() for axes in figure.axes]
+        assert labels == [
+            "crank angle\n(deg)", "angular velocity\n(deg/s)", "angular acceleration\n(deg/s²)",
+        ]  # fmt: skip
+        assert figure.axes[-1].get_xlabel() == "time (ms)"
+        texts = [text.get_text() for text in figure.legends[0].get_texts()]
+        assert texts == [shown.label for shown in runs]
+        curve = figure.axes[1].lines[0].get_ydata()
+        np.testing.assert_allclose(curve, 30000.0, rtol=1e-9)  # 5000 rpm
+        panels = contact_force(runs, "B").axes
+        assert panels[0].get_ylim() == panels[1].get_ylim()
+
+
+def test_orbit_shows_the_clearance_circle(paths):
+    runs = compared([read(path) for path in paths])
+    with look():
+        axes = orbit(runs, "B").axes[:2]
+    for a, radius in zip(axes, (0.5, 0.1), strict=True):
+        assert a.get_aspect() == 1.0
+        [circle] = a.patches
+        assert circle.get_radius() == pytest.approx(radius)
+        assert a.get_xlim() == a.get_ylim() == axes[0].get_xlim()
+
+
+def test_contact_history_is_zero_in_flight(paths):
+    [shown] = compared([read(paths[0])])
+    time, force = contact_history(shown, "B")
+    assert np.all(np.diff(time) > 0.0)
+    events = shown.run.events
+    onset, separation = (events.time[events.kind == k] for k in ("onset", "separation"))
+    assert not np.any(force[np.isin(time, onset)])
+    for begin, end in zip(separation, onset[1:], strict=False):
+        assert not np.any(force[(time > begin) & (time < end)])
+    assert force.max() == shown.run.steps("B")["contact_force"].max()
+
+
+def test_peak_loads(paths, tmp_path):
+    report(paths, tmp_path)
+    with (tmp_path / "peaks.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    [row] = [r for r in rows if r["element"] == "B" and r["run"].endswith("0.5mm")]
+    [peak] = [p for p in read(paths[0]).peaks if p[:2] == ("B.contact_force", "largest")]
+    assert (row["load"], row["unit"], row["stroke_unit"]) == ("contact force", "N", "mm")
+    assert float(row["value"]) == peak.value
+    assert float(row["stroke"]) == pytest.approx(1e3 * peak.stroke)
+    [shown] = compared([read(paths[0])])
+    loads = [(load.element, load.load) for load in peak_loads(shown)]
+    assert loads == [
+        *(("O", "reaction"), ("A", "reaction"), ("B", "contact force"), ("guide", "reaction")),
+        ("motor", "force"),
+    ]
+
+
+def test_display_units_are_chosen():
+    units = display_units({"angle": "rad", "force": "kN"})
+    assert units["N"] == (pytest.approx(1e-3), "kN")
+    assert units["rad/s"] == (1.0, "rad/s")
+    assert units["m"] == (pytest.approx(1e3), "mm")
+    assert display_units({"length": "deg"}).get("m") is None  # nonsense is left in SI
+
+
+def test_differences_are_named():
+    one = {"parameters": {"speed": "0.5 m/s"}, "joints": {"A": {"clearance": "0.1 mm"}}}
+    two = {"parameters": {"speed": "1 m/s"}, "joints": {"A": {"type": "revolute"}}}
+    assert differences([one, two]) == [
+        "speed 0.5 m/s; clearance at A 0.1 mm",
+        "speed 1 m/s; clearance at A 0",
+    ]
+
+
+def test_thinned_curve_keeps_extremes_and_ends():
+    x = np.sort(np.random.default_rng(0).random(100_000))
+    y = np.sin(200.0 * x)
+    y[70_001], y[12_345] = 5.0, -7.0
+    a, b = thinned(x, y)
+    assert len(a) <= 4 * STRETCHES + 2
+    assert np.all(np.diff(a) > 0.0)
+    assert (b.max(), b.min(), a[0], a[-1]) == (5.0, -7.0, x[0], x[-1])
+
+
+@pytest.mark.parametrize(
+    "value, text",
+    [(45872.4, "45872"), (-333.71, "\u2212333.7"), (1e-9, "1e\u221209"), (0.25141, "0.2514")],
+)
+def test_short_numbers(value, text):
+    assert short(value) == text
+
+
+def test_what_cannot_be_reported_is_told(paths, tmp_path):
+    with pytest.raises(FileError, match="no such file"):
+        report(tmp_path / "none.h5", tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(FileError, match="file"):
+        report(paths[0], tmp_path / "file" / "folder")
+
+
+def test_a_report_needs_no_solver(paths, tmp_path):
+    """Nor pyplot, which would look for a screen."""
+    code = (
+        "import sys; from trsim.report import report; report(sys.argv[1], sys.argv[2]); "
+        "assert not {'numba', 'pandas', 'matplotlib.pyplot', 'trsim.solve'} & set(sys.modules)"
+    )
+    root = Path(__file__).parents[2]
+    command = [sys.executable, "-c", code, str(paths[0]), str(tmp_path)]
+    subprocess.run(command, check=True, cwd=root)  # noqa: S603
