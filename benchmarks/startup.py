@@ -1,4 +1,4 @@
-"""Start-up: wall time of whole commands, warm (s, median of 5) and with an empty cache (s, once)."""
+"""Start-up: wall time of whole commands, warm (median of 5) and with an empty cache (once), s."""
 
 import os
 import subprocess

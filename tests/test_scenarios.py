@@ -1,0 +1,61 @@
+"""Every scenario of the repository opens with its expected answer and runs."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from trsim.spec.load import load
+
+from .runs import energy_error, run
+
+FOLDER = Path(__file__).parent.parent / "scenarios"
+FILES = sorted(p for p in FOLDER.rglob("*.yaml") if p.name != "mechanism.yaml")
+VALIDATION = FOLDER / "validation"
+
+
+def test_every_scenario_says_what_to_expect():
+    for path in FILES:
+        assert path.read_text().startswith("# "), path
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: f"{p.parent.name}/{p.stem}")
+def test_runs_for_a_while(path):
+    """A tenth of the reverser's runs, all of the short ones."""
+    end = load(path).solver.end
+    part = 0.1 if path.parent.name == "thrust_reverser" else 1.0
+    r = run(load(path, [f"solver.end={part * end!r}", f"output.every={end / 1000!r}"]))
+    assert r.outcome.status == "done"
+    assert np.isfinite(r.rows).all()
+    assert energy_error(r) < 1e-4
+
+
+def test_conical_pendulum():
+    r = run(load(VALIDATION / "pendulum_3d.yaml"))
+    assert r["ball.position"][:, 2] == pytest.approx(-0.8660254, abs=1e-7)
+    assert r["ball.position"][-1] == pytest.approx([0.5, 0.0, -0.8660254], abs=1e-5)
+
+
+def test_slider_crank_in_space():
+    r = run(load(VALIDATION / "slider_crank_3d.yaml"))
+    assert len(r.mechanism.redundant) == 3 and not r.mechanism.planar
+    a = 10.0 * r.t
+    x = 0.05 * np.cos(a) + np.sqrt(0.12**2 - (0.05 * np.sin(a)) ** 2)
+    assert r["slider.position"][:, 0] == pytest.approx(x, abs=1e-8)
+
+
+def test_four_bar_in_space():
+    r = run(load(VALIDATION / "four_bar_3d.yaml"))
+    assert len(r.mechanism.redundant) == 3 and not r.mechanism.planar
+    assert energy_error(r) < 1e-6
+    b = r["crank.position"] * 2.0
+    c = 2.0 * r["rocker.position"] - [0.3, 0.0, 0.0]
+    assert np.linalg.norm(c - b, axis=1) == pytest.approx(0.3, abs=1e-5)
+
+
+def test_the_readme_scenario_runs(tmp_path):
+    text = (FOLDER.parent / "README.md").read_text()
+    block = text.split("```yaml")[1].split("```")[0]
+    (tmp_path / "slider_crank.yaml").write_text(block)
+    r = run(load(tmp_path / "slider_crank.yaml", ["solver.end=1 ms"]))
+    assert r.outcome.status == "done"

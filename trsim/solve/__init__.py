@@ -1,0 +1,1 @@
+"""From a mechanism to its motion: start, march, events, integrators."""
