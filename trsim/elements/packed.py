@@ -26,6 +26,8 @@ from numba.extending import (
 )
 from numba.np.arrayobj import populate_array
 
+import trsim.elements.numba_quick  # noqa: F401
+
 if TYPE_CHECKING:  # what the annotations mean to Python
     from numpy.typing import NDArray
 
