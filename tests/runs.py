@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from trsim.assemble.assemble import Mechanism, assemble
-from trsim.solve.simulate import Outcome, simulate
+from trsim.assemble.assemble import assemble
+from trsim.assemble.mechanism import Mechanism
+from trsim.solve.outcome import Outcome
+from trsim.solve.simulate import simulate
 from trsim.spec.load import loads
 
 

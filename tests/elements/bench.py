@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from trsim.assemble.assemble import Mechanism
 from trsim.assemble.equations import constraints, forces, poses, stored_energy
+from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
 from trsim.elements.scene import scene
 

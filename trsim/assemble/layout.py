@@ -12,7 +12,7 @@ from trsim.errors import ScenarioError, known
 
 if TYPE_CHECKING:
     from trsim.assemble.addresses import Addresses
-    from trsim.assemble.assemble import Instance
+    from trsim.assemble.mechanism import Instance
 
 NOT_BY_DEFAULT = ("*.rotation",)
 

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import constraints, move, poses
+from trsim.assemble.equations import constraints, poses
+from trsim.assemble.projection import move
 from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]

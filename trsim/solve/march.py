@@ -10,26 +10,20 @@ import numpy as np
 from numba import types
 
 from trsim.assemble.equations import (
-    call_all,
     evaluate,
     gaps,
-    kinetic,
-    normalise,
-    poses,
-    project_positions,
-    project_velocities,
 )
 from trsim.assemble.outputs import measure
 from trsim.elements.calls import caller
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
-from trsim.elements.scene import ANGLE, MAGNITUDE, PROJECTION, RATE
-from trsim.elements.scene import LENGTH as LENGTH_SCALE
-from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.elements.vectors import all_finite, clear_table, copy_table, copy_to, internal
 from trsim.solve.calls import call_dense, call_interpolate, call_step
 from trsim.solve.events import NONE as NO_EVENT
 from trsim.solve.events import SAME, any_suspicious, first_event, flip, hertz_step
+from trsim.solve.land import land
+from trsim.solve.norm import grow, units, weights
+from trsim.solve.peaks import near_peak, peaks_inside, refine
 from trsim.solve.record import (
     AFTER_REJECTION,
     BUFFERS,
@@ -51,34 +45,26 @@ from trsim.solve.record import (
     LARGEST_ENERGY,
     LARGEST_RESIDUAL,
     LAST_EVENT,
-    LENGTH,
     LOCATE,
     NEXT_ROW,
     NOT_FINITE,
     ONSET,
     PAUSE,
     PEAK_MAX,
-    PEAK_MAX_T,
     PEAK_MIN,
-    PEAK_MIN_T,
     PEAK_T1,
-    PEAK_T2,
-    PEAK_V1,
     PEAK_V2,
     RECORD,
     REJECTED,
     ROWS,
     SAME_TIME,
     SEPARATION,
-    SPEED,
     STEP_ROWS,
     STEP_TOO_SMALL,
     STEPS,
     T_END,
     TOLERANCE,
     WORK_PROJECTION,
-    WORST_PHI,
-    WORST_PHI_DOT,
     H,
     T,
 )
@@ -86,13 +72,7 @@ from trsim.solve.record import (
 SMOOTH_STEP, WITH_EVENT, WORTHLESS = 0, 1, 2  # what `complete` made of a trial step
 LAST_AT, COMPLETE_AT = 3, 4  # in `method`, after the addresses of step, dense, interpolate
 MAX_SAME_TIME = 1000  # events without progress: chatter
-SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
-NEAR = 0.5  # of the largest contact force so far: a maximum above this is searched for
-INSIDE = 16  # parts a searched step is cut into
-BISECTIONS = 16  # of a step, to the maximum of a contact force: flat there, so this is plenty
-AHEAD = 1e-4  # of a step: how far the rate of a contact force looks
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
-PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
 
 
 #                       scene   record  buffers  settings method h built
@@ -223,90 +203,6 @@ def next_step(r, b, setting):
 
 
 @internal
-def weights(s, r, b, setting):
-    """1 / (tolerance times unit) of every entry of y; zero outside the norm.
-
-    Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
-    the origin; rotations by that length over the body's arm; velocities by the matching speed.
-    """
-    length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
-    for c in range(b.weight.size):
-        kind, scale = s.scale_kind[c], s.scale[c]
-        if kind == LENGTH_SCALE:
-            b.weight[c] = 1.0 / (tolerance * length)
-        elif kind == ANGLE:
-            b.weight[c] = scale / (tolerance * length)
-        elif kind == SPEED_SCALE:
-            b.weight[c] = 1.0 / (tolerance * speed)
-        elif kind == RATE:
-            b.weight[c] = scale / (tolerance * speed)
-        elif kind == MAGNITUDE:
-            b.weight[c] = 1.0 / (tolerance * scale)
-        else:
-            b.weight[c] = 0.0
-
-
-@internal
-def land(s, r, b, t, y, yd):
-    """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
-
-    Returns the work done by the projection (J): the change of kinetic energy, and minus the work
-    of the applied forces on the small displacement.
-    """
-    done = 0.0
-    normalise(s, y)
-    if s.stabilisation == PROJECTION and s.m > 0:
-        for k in range(s.n_q):
-            b.y2[k] = y[k]
-        for k in range(8):
-            worst = project_positions(s, t, y)
-            if k == 0:
-                r.clock[WORST_PHI] = max(r.clock[WORST_PHI], worst)
-            if not worst > PHI_SMALL * s.size:
-                break
-        T0 = kinetic(s, y)
-        poses(s, y)
-        worst = project_velocities(s, y)
-        r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
-        done += kinetic(s, y) - T0
-    evaluate(s, t, y, yd)
-    if s.stabilisation == PROJECTION and s.m > 0:
-        done += position_work(s, b.y2, y)
-    if s.contact.size > 0:
-        gaps(s, t)
-        for c in range(s.contact.size):
-            b.gap1[c, 0] = s.gap[s.contact[c], 0]
-            b.gap1[c, 1] = s.gap[s.contact[c], 1]
-    for k in range(s.n_s):
-        b.branch1[k] = s.S[k, 0]
-    return done
-
-
-@internal
-def position_work(s, before, after):
-    """- F . dx of the displacement from one q to another, with the forces of the second, J."""
-    work, F, X = 0.0, s.F, s.X
-    for f in range(1, s.n):
-        if s.d == 3:
-            q = 3 * (f - 1)
-            work -= F[f, 0] * (after[q] - before[q]) + F[f, 1] * (after[q + 1] - before[q + 1])
-            work -= F[f, 5] * (after[q + 2] - before[q + 2])
-            continue
-        q = 7 * (f - 1)
-        e0, e1, e2, e3 = after[q + 3], after[q + 4], after[q + 5], after[q + 6]
-        d0, d1 = e0 - before[q + 3], e1 - before[q + 4]
-        d2, d3 = e2 - before[q + 5], e3 - before[q + 6]
-        # small rotation in body axes: 2 conj(p) o dp
-        o0 = 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
-        o1 = 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
-        o2 = 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
-        for c in range(3):
-            turn = X[f, 3 + 3 * c] * o0 + X[f, 4 + 3 * c] * o1 + X[f, 5 + 3 * c] * o2
-            work -= F[f, c] * (after[q + c] - before[q + c]) + F[f, 3 + c] * turn
-    return work
-
-
-@internal
 def due(r, setting, t1):
     """Whether an output time lies at or before t1."""
     return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
@@ -370,146 +266,6 @@ def accept(s, r, b, t1, projected, last):
         r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
     refine(s, r, b.out, t1)
     copy_to(r.slope, b.slope1)
-
-
-@internal
-def refine(s, r, values, t):
-    """Take the channels at t into their extremes.
-
-    A local extremum between the last three points, if they lie close together, is refined by the
-    parabola through them.
-    """
-    for c in range(s.n_out):
-        p, v2 = r.peak[c], values[c]
-        t0, v0, t1, v1 = p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2]
-        extreme(p, t, v2)
-        turns = t0 < t1 < t and (v1 - v0) * (v2 - v1) < 0.0
-        if turns and abs(v1 - v0) + abs(v2 - v1) < SMOOTH * abs(v1):
-            slope = (v1 - v0) / (t1 - t0)
-            bend = ((v2 - v1) / (t - t1) - slope) / (t - t0)
-            turn = 0.5 * (t0 + t1) - 0.5 * slope / bend
-            value = v0 + (turn - t0) * (slope + bend * (turn - t1))
-            # a kink between unevenly spaced points is no parabola
-            if abs(value - v1) < 0.25 * max(abs(v1 - v0), abs(v2 - v1)):
-                extreme(p, turn, value)
-        p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2] = t1, v1, t, v2
-
-
-@internal
-def extreme(p, t, value):
-    """Take a value into a channel's extremes."""
-    if value > p[PEAK_MAX]:
-        p[PEAK_MAX], p[PEAK_MAX_T] = value, t
-    if value < p[PEAK_MIN]:
-        p[PEAK_MIN], p[PEAK_MIN_T] = value, t
-
-
-@internal
-def force_rate(s, y, yd, t, ahead, c):
-    """Rate of contact c's force at (t, y), by its channel a little before and after along y'.
-
-    y is moved and moved back.
-    """
-    o = s.wanted[s.contact[c]]
-    for k in range(y.size):
-        y[k] -= ahead * yd[k]
-    poses(s, y)
-    call_all(s, s.measure, t - ahead)
-    before = s.out[o]
-    for k in range(y.size):
-        y[k] += 2.0 * ahead * yd[k]
-    poses(s, y)
-    call_all(s, s.measure, t + ahead)
-    for k in range(y.size):
-        y[k] -= ahead * yd[k]
-    return (s.out[o] - before) / (2.0 * ahead)
-
-
-@internal
-def near_peak(s, r, b, t, h, last):
-    """Whether a contact force passes a maximum, one of its largest, inside the step just made.
-
-    Fills b.slope1 with the rate of every contact force at the end of the step.
-    """
-    near = False
-    for c in range(s.contact.size):
-        b.slope1[c] = 0.0
-        o = s.wanted[s.contact[c]]
-        if s.mem[s.contact[c], PHASE] == FLIGHT or o < 0:
-            continue
-        copy_to(b.y2, b.y1)
-        b.slope1[c] = force_rate(s, b.y2, b.K[last], t, AHEAD * h, c)
-        near = near or passes(s, r, b, c)
-    return near
-
-
-@internal
-def passes(s, r, b, c):
-    """Whether the force of contact c has a maximum worth finding between the step's ends."""
-    o = s.wanted[s.contact[c]]
-    if o < 0 or not (r.slope[c] > 0.0 and b.slope1[c] < 0.0):
-        return False
-    return max(b.out[o], r.peak[o, PEAK_V2]) > NEAR * r.peak[o, PEAK_MAX]
-
-
-@internal
-def peaks_inside(s, r, b, interpolate, t, h, t1):
-    """Extremes of all channels inside the step, from its dense output.
-
-    The step is cut into parts, whose tops are refined by parabolas; and the maximum of every
-    contact force is found as the root of its rate.
-    """
-    reach = (t1 - t) / h
-    for c in range(s.contact.size):
-        if s.mem[s.contact[c], PHASE] == FLIGHT or not passes(s, r, b, c):
-            continue
-        low, high = 0.0, reach
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            values_inside(s, r, b, interpolate, t, h, middle)
-            if force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c) > 0.0:
-                low = middle
-            else:
-                high = middle
-        values_inside(s, r, b, interpolate, t, h, low)
-        for o in range(s.n_out):
-            extreme(r.peak[o], t + low * h, s.out[o])
-    for k in range(1, INSIDE):
-        values_inside(s, r, b, interpolate, t, h, reach * k / INSIDE)
-        refine(s, r, s.out, t + reach * k / INSIDE * h)
-
-
-@internal
-def values_inside(s, r, b, interpolate, t, h, theta):
-    """All channels at t + theta h into s.out; the state in b.y2, its derivative in b.K[1]."""
-    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-    evaluate(s, t + theta * h, b.y2, b.K[1])
-    measure(s, t + theta * h, b.y2, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-
-
-@internal
-def grow(s, r, c):
-    """Let the unit of the error norm follow the deepest penetration met."""
-    depth = r.gap[c, 0]
-    if depth > r.impact[c]:
-        r.impact[c] = depth
-        units(s, r)
-
-
-@internal
-def units(s, r):
-    """Length and speed of the error norm from the penetrations met so far."""
-    length, speed = 1e300, 1e300
-    for c in range(s.contact.size):
-        K, n, mass = s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2]
-        depth = min(r.impact[c], s.contact_par[c, 3])
-        if depth <= 0.0:
-            continue
-        length = min(length, depth)
-        # the frequency of the contact at that depth turns the length into a speed
-        speed = min(speed, depth * np.sqrt(n * K * depth ** (n - 1.0) / mass))
-    if length < 1e300:
-        r.clock[LENGTH], r.clock[SPEED] = length, speed
 
 
 @internal
@@ -582,12 +338,6 @@ def control(r, setting, h, error, event):
         r.clock[H] = h * factor
     else:
         r.clock[H] = max(r.clock[H], h * factor)
-
-
-@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
-def weigh(s, r, b, setting):
-    """`weights`, for solvers outside."""
-    weights(s, r, b, setting)
 
 
 @compiled(types.void(SCENE, RECORD, BUFFERS, A1))

@@ -14,13 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.assemble import Mechanism
 from trsim.assemble.equations import derivative
+from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.calls import INTERPOLATE
-from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete, method_table, weigh
+from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete, method_table
+from trsim.solve.norm import weigh
+from trsim.solve.outcome import Outcome, block, first_step, new_record, settings, statistics
 from trsim.solve.record import Buffers, Record, fresh_buffers
 from trsim.solve.start import start
 
@@ -54,8 +56,6 @@ def interpolate(P, y, theta, out):
 
 def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     """As solve/simulate.py's, with scipy's solver making the steps."""
-    from trsim.solve.simulate import Outcome, block, first_step, new_record, settings, statistics
-
     s, setting = scene(mechanism.model), settings(scenario, mechanism, True)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     r = new_record(s, begun)

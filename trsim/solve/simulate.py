@@ -3,18 +3,18 @@
 import time
 from collections.abc import Generator
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.assemble import Mechanism
-from trsim.elements.scene import Scene, scene
-from trsim.errors import ScenarioError
+from trsim.assemble.mechanism import Mechanism
+from trsim.elements.scene import scene
 from trsim.solve import record as rec
 from trsim.solve.march import begin, march, method_table
-from trsim.solve.record import Record, fresh_buffers
-from trsim.solve.start import Start, start
+from trsim.solve.outcome import Block, Outcome, block, first_step, new_record, settings, statistics
+from trsim.solve.record import fresh_buffers
+from trsim.solve.start import start
 
 Array = NDArray[np.float64]
 
@@ -29,29 +29,6 @@ REASONS = {
 }
 
 
-class Block(NamedTuple):
-    """Results of a stretch of the run; arrays are only valid until the next block."""
-
-    rows: Array  # (n, 1 + n_out) time, channels
-    steps: Array  # (n, 2 + n) time, row of the contact, its channels
-    events: Array  # (n, 5) see record.py
-    time: float
-    step: float
-    n_events: int
-
-
-class Outcome(NamedTuple):
-    """How the run ended, and what it says of its own accuracy."""
-
-    status: str  # done, failed
-    reason: str
-    time: float
-    statistics: dict[str, float]
-    peaks: Array  # (n_out, 4) largest, its time, smallest, its time
-    record: Record | None
-    start: Start
-
-
 def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outcome]:
     """March from the start to `end`; yields blocks and returns the outcome.
 
@@ -63,57 +40,6 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outc
 
         return by_scipy(scenario, mechanism)
     return compiled(scenario, mechanism, import_module(f"trsim.solve.{method}"))
-
-
-def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
-    """The constants of the march."""
-    solver, output = scenario.solver, scenario.output
-    if solver.end is None:
-        raise ScenarioError(
-            "a run needs `solver: {end: ...}`", "for example `end: 1 s`", ("solver", "end")
-        )
-    if not adaptive and not solver.step:
-        raise ScenarioError(
-            f"method '{solver.method}' needs a fixed `step`",
-            "for contact of steel parts start with 1e-6 s, and compare with dop853",
-            ("solver", "step"),
-        )
-    s = np.zeros(rec.N_SETTINGS)
-    s[rec.T_END] = solver.end
-    s[rec.TOLERANCE] = solver.tolerance
-    s[rec.H_MAX] = solver.max_step or solver.end or 1.0
-    s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
-    s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
-    s[rec.LOCATE] = float(adaptive and len(mechanism.model.contact) > 0)
-    return s
-
-
-def first_step(scenario: Any, record: Record) -> float:
-    """A first step from the size of the derivative, a hundredth of the natural time scale."""
-    if scenario.solver.first_step:
-        return float(scenario.solver.first_step)
-    natural = record.clock[rec.LENGTH] / max(record.clock[rec.SPEED], 1e-300)
-    return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
-
-
-def new_record(model: Scene, begun: Start) -> Record:
-    """A record at the start; memory and branches are the scene's own arrays."""
-    model.mem[:] = begun.mem
-    model.branch[:] = begun.branch
-    record = Record(
-        y=begun.y.copy(),
-        yd=np.zeros_like(begun.y),
-        mem=model.mem,
-        branch=model.branch,
-        gap=np.zeros((len(model.contact), 2)),
-        clock=np.zeros(rec.N_CLOCK),
-        count=np.zeros(rec.N_COUNT, np.int64),
-        peak=np.zeros((model.n_out, rec.N_PEAK)),
-        impact=begun.depth.copy(),
-        slope=np.zeros(len(model.contact)),
-    )
-    record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
-    return record
 
 
 def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Block, None, Outcome]:
@@ -148,35 +74,3 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
     text = REASONS.get(reason, f"more than {limit} steps" if reason == -1 else "")
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun)  # fmt: skip
-
-
-def block(r: Record, b: rec.Buffers) -> Block:
-    return Block(
-        b.rows[: r.count[rec.ROWS]],
-        b.steps[: r.count[rec.STEP_ROWS]],
-        b.events[: r.count[rec.EVENT_ROWS]],
-        float(r.clock[rec.T]),
-        float(r.clock[rec.H]),
-        int(r.count[rec.EVENTS]),
-    )
-
-
-def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
-    """Counts, residuals and the energy book's error."""
-    scale = max(float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
-    return {
-        "steps": int(r.count[rec.STEPS]),
-        "rejected_steps": int(r.count[rec.REJECTED]),
-        "evaluations": int(work.status[1]),
-        "factorisations": int(work.status[2]),
-        "dense_outputs": int(r.count[rec.DENSE_BUILT]),
-        "events": int(r.count[rec.EVENTS]),
-        "position_residual": float(r.clock[rec.WORST_PHI]),
-        "velocity_residual": float(r.clock[rec.WORST_PHI_DOT]),
-        "start_position_residual": begun.moved,
-        "start_force_residual": begun.residual,
-        "energy_residual": float(r.clock[rec.LARGEST_RESIDUAL]),
-        "energy_residual_relative": float(r.clock[rec.LARGEST_RESIDUAL]) / scale,
-        "work_of_projection": float(r.clock[rec.WORK_PROJECTION]),
-        "integration_cpu": cpu,
-    }

@@ -11,8 +11,8 @@ the clearance.  A motion that stays without stiffness is indifferent, and refuse
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.assemble import Mechanism
 from trsim.assemble.equations import forces, poses
+from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, displaced, jacobian
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
 from trsim.elements.scene import Model, workspace

@@ -1,0 +1,57 @@
+"""A model with the names that go with its numbers."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.layout import Column
+from trsim.elements.contract import Element, Row
+from trsim.elements.scene import Model
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One element of the scenario, packed."""
+
+    section: str
+    name: str
+    element: Element
+    row: Row
+
+
+@dataclass(frozen=True)
+class RowName:
+    """A constraint row, for messages and reports."""
+
+    element: str  # joint or drive
+    axis: str
+    instance: int
+    index: int  # which of the element's rows
+    frames: tuple[int, int]
+    rotation: bool
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """A model with the names that go with its numbers."""
+
+    model: Model
+    y0: Array  # as drawn; velocities as given, z zero
+    instances: tuple[Instance, ...]
+    columns: tuple[Column, ...]
+    planar: bool
+    planar_assumed: bool  # nothing holds the bodies in their plane
+    mobility: int  # degrees of freedom left, drives counted as constraints
+    redundant: tuple[str, ...]  # rows dropped, "joint.axis"
+    singular: tuple[str, ...]  # rows dependent only as drawn
+    not_unique: tuple[str, ...]  # rows whose reaction the motion does not determine
+    rows: tuple[str, ...]  # rows in the solve
+    follows: tuple[int, ...]  # coordinate each element state starts at, or -1
+    coordinates: Mapping[str, Any]  # joint -> JointCoordinate
+    frames: Mapping[str, int]
+    notes: tuple[str, ...]

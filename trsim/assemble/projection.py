@@ -1,0 +1,90 @@
+"""Back to the constraints, along the shortest way in the metric of M.
+
+dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1 J^T
+"""
+
+import numpy as np
+
+from trsim.assemble.equations import constraints, equation, poses, rows, velocity_residual
+from trsim.assemble.linear import factorise, solve
+from trsim.elements.vectors import clear_table
+
+
+@equation
+def move(s, y, f, dx):
+    """Move frame f by the small displacement dx (d) in the axes of the solve."""
+    if s.d == 3:
+        for a in range(3):
+            y[3 * (f - 1) + a] += dx[a]
+        return
+    q = 7 * (f - 1)
+    for a in range(3):
+        y[q + a] += dx[a]
+    e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
+    o0, o1, o2 = 0.5 * dx[3], 0.5 * dx[4], 0.5 * dx[5]
+    y[q + 3] = e0 - e1 * o0 - e2 * o1 - e3 * o2
+    y[q + 4] = e1 + e0 * o0 + e2 * o2 - e3 * o1
+    y[q + 5] = e2 + e0 * o1 + e3 * o0 - e1 * o2
+    y[q + 6] = e3 + e0 * o2 + e1 * o1 - e2 * o0
+    length = np.sqrt(y[q + 3] ** 2 + y[q + 4] ** 2 + y[q + 5] ** 2 + y[q + 6] ** 2)
+    for a in range(4):
+        y[q + 3 + a] /= length
+
+
+@equation
+def normalise(s, y):
+    """Quaternions back to length one."""
+    if s.d == 6:
+        for f in range(1, s.n):
+            q = 7 * (f - 1) + 3
+            length = np.sqrt(y[q] ** 2 + y[q + 1] ** 2 + y[q + 2] ** 2 + y[q + 3] ** 2)
+            for a in range(4):
+                y[q + a] /= length
+
+
+@equation
+def project_positions(s, t, y):
+    """One Newton step of Phi(q, t) = 0, nearest in the metric of M.  Returns the largest |Phi|.
+
+    dq = -M^-1 J^T S^-1 Phi.  Uses and refreshes J and S at the given y.
+    """
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    factorise(s)
+    worst = 0.0
+    for k in range(s.m):
+        s.x[k] = s.phi[k]
+        worst = max(worst, abs(s.phi[k]))
+    if worst == 0.0:
+        return worst
+    solve(s, s.x)
+    dx = s.free
+    clear_table(dx)
+    for k in range(s.m):
+        for p in range(s.row_start[k], s.row_start[k + 1]):
+            for a in range(s.d):
+                dx[s.slot_frame[p], a] -= s.W[p, a] * s.x[k]
+    for f in range(1, s.n):
+        move(s, y, f, dx[f])
+    return worst
+
+
+@equation
+def project_velocities(s, y):
+    """v -= M^-1 J^T S^-1 (J v + Phi_t), with J, S and V of the last evaluation.
+
+    Returns the largest |Phi'| found.  Call after `project_positions` or `derivative`; V is stale
+    afterwards.
+    """
+    worst = 0.0
+    for k in range(s.m):
+        s.x[k] = velocity_residual(s, k)
+        worst = max(worst, abs(s.x[k]))
+    solve(s, s.x)
+    for k in range(s.m):
+        for p in range(s.row_start[k], s.row_start[k + 1]):
+            v = s.n_q + s.d * (s.slot_frame[p] - 1)
+            for a in range(s.d):
+                y[v + a] -= s.W[p, a] * s.x[k]
+    return worst

@@ -1,0 +1,105 @@
+"""Which constraint rows are solved: those in the plane of a planar scene, no redundant ones."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.reduce import (
+    IN_PLANE,
+    OUT_OF_PLANE,
+    Dependence,
+    dependences,
+    is_planar,
+    jacobian,
+)
+from trsim.elements.contract import PHASE, UNLOCATED
+from trsim.elements.scene import Model, scene
+from trsim.errors import ModelError
+
+Array = NDArray[np.float64]
+
+
+def all_rows(instances: list[Instance]) -> list[RowName]:
+    """Every constraint row of the elements, in three dimensions."""
+    rows = []
+    for n, instance in enumerate(instances):
+        i, j = instance.row.con[0], instance.row.con[1] if len(instance.row.con) > 1 else 0
+        if instance.element.key == "drive" and instance.row.par[9] > 0.0:
+            continue  # a compliant drive is a force
+        for index, axis in enumerate(instance.element.rows):
+            turns = axis.startswith(("tilt", "turn"))
+            rows.append(RowName(instance.name, axis, n, index, (i, j), turns))
+    return rows
+
+
+def in_solve(J: Array, planar: bool) -> NDArray[np.bool_]:
+    """Rows with a part in the plane; all of them in space."""
+    if not planar:
+        return np.ones(len(J), bool)
+    blocks = J.reshape(len(J), J.shape[1] // 6, 6)[:, :, IN_PLANE]
+    return np.abs(blocks).max(axis=(1, 2), initial=0.0) > 1e-9
+
+
+def choose_rows(
+    full: Model, y6: Array, instances: list[Instance], planar: bool
+) -> tuple[list[RowName], list[Dependence]]:
+    """Rows of the solve: in the plane where the scene is planar, the redundant ones dropped."""
+    rows = all_rows(instances)
+    _, _, J = jacobian(full, 0.0, y6)
+    candidates = np.flatnonzero(in_solve(J, planar)).tolist()
+    is_drive = [instances[r.instance].element.key == "drive" for r in rows]
+    # translations first: where a choice is left, moments go rather than forces; drives last
+    order = sorted(candidates, key=lambda k: (is_drive[k], rows[k].rotation, k))
+    columns = IN_PLANE if planar else [0, 1, 2, 3, 4, 5]
+    geometric = [k for k in candidates if not is_drive[k]]
+    found = dependences(full, y6, columns, order, geometric)
+    for f in found:
+        if is_drive[f.row] and f.everywhere:
+            name = rows[f.row].element
+            raise ModelError(
+                "moves a coordinate that joints or another drive already fix",
+                "two drives on one degree of freedom? remove one, or give it a `compliance`",
+                ("drives", name),
+            )
+    dropped = {f.row for f in found if f.everywhere}
+    return [rows[k] for k in candidates if k not in dropped], found
+
+
+def planarity(scenario: Any, full: Model, y6: Array) -> tuple[bool, bool]:
+    """(planar, only assumed)."""
+    from trsim.assemble.equations import forces, poses
+
+    def sample(y: Array) -> Array:
+        w = scene(full)
+        w.mem[:, PHASE] = UNLOCATED
+        poses(w, y)
+        forces(w, 0.0)
+        return w.F.copy()
+
+    if scenario.planar is False or full.n == 1:
+        return False, False
+    inside, held = is_planar(full, y6, sample)
+    velocities = y6[full.n_q : full.n_q + full.n_v].reshape(-1, 6)
+    inside = inside and not np.any(velocities[:, OUT_OF_PLANE])
+    if scenario.planar and not inside:
+        raise ModelError(
+            "`planar: true`, but joints, loads or velocities leave the x-y plane",
+            "draw the mechanism in the x-y plane or set `planar: false`",
+            ("planar",),
+        )
+    return inside, inside and not held and scenario.planar is None
+
+
+def check_inertias(scenario: Any, planar: bool) -> None:
+    """A single inertia is about z: not enough in space."""
+    if planar:
+        return
+    for name, spec in scenario.bodies.items():
+        if isinstance(spec.inertia, float):
+            raise ModelError(
+                "one inertia (about z) is not enough in a scene that is not planar",
+                "give three principal inertias, or six numbers with the products",
+                ("bodies", name, "inertia"),
+            )

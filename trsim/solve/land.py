@@ -1,0 +1,69 @@
+"""The end of a trial step: brought to the constraints, evaluated, its work booked."""
+
+from trsim.assemble.equations import evaluate, gaps, kinetic, poses
+from trsim.assemble.projection import normalise, project_positions, project_velocities
+from trsim.elements.scene import PROJECTION
+from trsim.elements.vectors import internal
+from trsim.solve.record import WORST_PHI, WORST_PHI_DOT
+
+PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
+
+
+@internal
+def land(s, r, b, t, y, yd):
+    """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
+
+    Returns the work done by the projection (J): the change of kinetic energy, and minus the work
+    of the applied forces on the small displacement.
+    """
+    done = 0.0
+    normalise(s, y)
+    if s.stabilisation == PROJECTION and s.m > 0:
+        for k in range(s.n_q):
+            b.y2[k] = y[k]
+        for k in range(8):
+            worst = project_positions(s, t, y)
+            if k == 0:
+                r.clock[WORST_PHI] = max(r.clock[WORST_PHI], worst)
+            if not worst > PHI_SMALL * s.size:
+                break
+        T0 = kinetic(s, y)
+        poses(s, y)
+        worst = project_velocities(s, y)
+        r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
+        done += kinetic(s, y) - T0
+    evaluate(s, t, y, yd)
+    if s.stabilisation == PROJECTION and s.m > 0:
+        done += position_work(s, b.y2, y)
+    if s.contact.size > 0:
+        gaps(s, t)
+        for c in range(s.contact.size):
+            b.gap1[c, 0] = s.gap[s.contact[c], 0]
+            b.gap1[c, 1] = s.gap[s.contact[c], 1]
+    for k in range(s.n_s):
+        b.branch1[k] = s.S[k, 0]
+    return done
+
+
+@internal
+def position_work(s, before, after):
+    """- F . dx of the displacement from one q to another, with the forces of the second, J."""
+    work, F, X = 0.0, s.F, s.X
+    for f in range(1, s.n):
+        if s.d == 3:
+            q = 3 * (f - 1)
+            work -= F[f, 0] * (after[q] - before[q]) + F[f, 1] * (after[q + 1] - before[q + 1])
+            work -= F[f, 5] * (after[q + 2] - before[q + 2])
+            continue
+        q = 7 * (f - 1)
+        e0, e1, e2, e3 = after[q + 3], after[q + 4], after[q + 5], after[q + 6]
+        d0, d1 = e0 - before[q + 3], e1 - before[q + 4]
+        d2, d3 = e2 - before[q + 5], e3 - before[q + 6]
+        # small rotation in body axes: 2 conj(p) o dp
+        o0 = 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
+        o1 = 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
+        o2 = 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
+        for c in range(3):
+            turn = X[f, 3 + 3 * c] * o0 + X[f, 4 + 3 * c] * o1 + X[f, 5 + 3 * c] * o2
+            work -= F[f, c] * (after[q + c] - before[q + c]) + F[f, 3 + c] * turn
+    return work

@@ -1,0 +1,72 @@
+"""The error norm: what one unit of error is, entry by entry of the state.
+
+Lengths are weighed by the smallest gap or penetration that matters, not by the distance from the
+origin; rotations by that length over the body's arm; velocities by that length times the frequency
+of the contact.  Without contacts the length is the size of the mechanism.
+"""
+
+import numpy as np
+from numba import types
+
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.packed import A1
+from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
+from trsim.elements.scene import LENGTH as LENGTH_SCALE
+from trsim.elements.scene import SPEED as SPEED_SCALE
+from trsim.elements.vectors import internal
+from trsim.solve.record import BUFFERS, LENGTH, RECORD, SPEED, TOLERANCE
+
+
+@internal
+def weights(s, r, b, setting):
+    """1 / (tolerance times unit) of every entry of y; zero outside the norm.
+
+    Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
+    the origin; rotations by that length over the body's arm; velocities by the matching speed.
+    """
+    length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
+    for c in range(b.weight.size):
+        kind, scale = s.scale_kind[c], s.scale[c]
+        if kind == LENGTH_SCALE:
+            b.weight[c] = 1.0 / (tolerance * length)
+        elif kind == ANGLE:
+            b.weight[c] = scale / (tolerance * length)
+        elif kind == SPEED_SCALE:
+            b.weight[c] = 1.0 / (tolerance * speed)
+        elif kind == RATE:
+            b.weight[c] = scale / (tolerance * speed)
+        elif kind == MAGNITUDE:
+            b.weight[c] = 1.0 / (tolerance * scale)
+        else:
+            b.weight[c] = 0.0
+
+
+@internal
+def grow(s, r, c):
+    """Let the unit of the error norm follow the deepest penetration met."""
+    depth = r.gap[c, 0]
+    if depth > r.impact[c]:
+        r.impact[c] = depth
+        units(s, r)
+
+
+@internal
+def units(s, r):
+    """Length and speed of the error norm from the penetrations met so far."""
+    length, speed = 1e300, 1e300
+    for c in range(s.contact.size):
+        K, n, mass = s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2]
+        depth = min(r.impact[c], s.contact_par[c, 3])
+        if depth <= 0.0:
+            continue
+        length = min(length, depth)
+        # the frequency of the contact at that depth turns the length into a speed
+        speed = min(speed, depth * np.sqrt(n * K * depth ** (n - 1.0) / mass))
+    if length < 1e300:
+        r.clock[LENGTH], r.clock[SPEED] = length, speed
+
+
+@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+def weigh(s, r, b, setting):
+    """`weights`, for solvers outside."""
+    weights(s, r, b, setting)

@@ -1,0 +1,145 @@
+"""Extremes of every channel: at accepted points, and of contact forces inside the steps.
+
+A contact force passes its maximum between two accepted points.  Its rate at both ends says so; the
+step is then searched on its dense output, for all channels, since reactions and drive forces peak
+with it.
+"""
+
+from trsim.assemble.equations import call_all, evaluate, poses
+from trsim.assemble.outputs import measure
+from trsim.elements.contract import FLIGHT, PHASE
+from trsim.elements.vectors import copy_to, internal
+from trsim.solve.calls import call_interpolate
+from trsim.solve.record import (
+    ENERGY_0,
+    PEAK_MAX,
+    PEAK_MAX_T,
+    PEAK_MIN,
+    PEAK_MIN_T,
+    PEAK_T1,
+    PEAK_T2,
+    PEAK_V1,
+    PEAK_V2,
+    WORK_PROJECTION,
+)
+
+AHEAD = 1e-4  # of a step: how far the rate of a contact force looks
+BISECTIONS = 16  # of a step, to the maximum of a contact force: flat there, so this is plenty
+INSIDE = 16  # parts a searched step is cut into
+NEAR = 0.5  # of the largest contact force so far: a maximum above this is searched for
+SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
+
+
+@internal
+def refine(s, r, values, t):
+    """Take the channels at t into their extremes.
+
+    A local extremum between the last three points, if they lie close together, is refined by the
+    parabola through them.
+    """
+    for c in range(s.n_out):
+        p, v2 = r.peak[c], values[c]
+        t0, v0, t1, v1 = p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2]
+        extreme(p, t, v2)
+        turns = t0 < t1 < t and (v1 - v0) * (v2 - v1) < 0.0
+        if turns and abs(v1 - v0) + abs(v2 - v1) < SMOOTH * abs(v1):
+            slope = (v1 - v0) / (t1 - t0)
+            bend = ((v2 - v1) / (t - t1) - slope) / (t - t0)
+            turn = 0.5 * (t0 + t1) - 0.5 * slope / bend
+            value = v0 + (turn - t0) * (slope + bend * (turn - t1))
+            # a kink between unevenly spaced points is no parabola
+            if abs(value - v1) < 0.25 * max(abs(v1 - v0), abs(v2 - v1)):
+                extreme(p, turn, value)
+        p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2] = t1, v1, t, v2
+
+
+@internal
+def extreme(p, t, value):
+    """Take a value into a channel's extremes."""
+    if value > p[PEAK_MAX]:
+        p[PEAK_MAX], p[PEAK_MAX_T] = value, t
+    if value < p[PEAK_MIN]:
+        p[PEAK_MIN], p[PEAK_MIN_T] = value, t
+
+
+@internal
+def force_rate(s, y, yd, t, ahead, c):
+    """Rate of contact c's force at (t, y), by its channel a little before and after along y'.
+
+    y is moved and moved back.
+    """
+    o = s.wanted[s.contact[c]]
+    for k in range(y.size):
+        y[k] -= ahead * yd[k]
+    poses(s, y)
+    call_all(s, s.measure, t - ahead)
+    before = s.out[o]
+    for k in range(y.size):
+        y[k] += 2.0 * ahead * yd[k]
+    poses(s, y)
+    call_all(s, s.measure, t + ahead)
+    for k in range(y.size):
+        y[k] -= ahead * yd[k]
+    return (s.out[o] - before) / (2.0 * ahead)
+
+
+@internal
+def near_peak(s, r, b, t, h, last):
+    """Whether a contact force passes a maximum, one of its largest, inside the step just made.
+
+    Fills b.slope1 with the rate of every contact force at the end of the step.
+    """
+    near = False
+    for c in range(s.contact.size):
+        b.slope1[c] = 0.0
+        o = s.wanted[s.contact[c]]
+        if s.mem[s.contact[c], PHASE] == FLIGHT or o < 0:
+            continue
+        copy_to(b.y2, b.y1)
+        b.slope1[c] = force_rate(s, b.y2, b.K[last], t, AHEAD * h, c)
+        near = near or passes(s, r, b, c)
+    return near
+
+
+@internal
+def passes(s, r, b, c):
+    """Whether the force of contact c has a maximum worth finding between the step's ends."""
+    o = s.wanted[s.contact[c]]
+    if o < 0 or not (r.slope[c] > 0.0 and b.slope1[c] < 0.0):
+        return False
+    return max(b.out[o], r.peak[o, PEAK_V2]) > NEAR * r.peak[o, PEAK_MAX]
+
+
+@internal
+def peaks_inside(s, r, b, interpolate, t, h, t1):
+    """Extremes of all channels inside the step, from its dense output.
+
+    The step is cut into parts, whose tops are refined by parabolas; and the maximum of every
+    contact force is found as the root of its rate.
+    """
+    reach = (t1 - t) / h
+    for c in range(s.contact.size):
+        if s.mem[s.contact[c], PHASE] == FLIGHT or not passes(s, r, b, c):
+            continue
+        low, high = 0.0, reach
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            values_inside(s, r, b, interpolate, t, h, middle)
+            if force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c) > 0.0:
+                low = middle
+            else:
+                high = middle
+        values_inside(s, r, b, interpolate, t, h, low)
+        for o in range(s.n_out):
+            extreme(r.peak[o], t + low * h, s.out[o])
+    for k in range(1, INSIDE):
+        values_inside(s, r, b, interpolate, t, h, reach * k / INSIDE)
+        refine(s, r, s.out, t + reach * k / INSIDE * h)
+
+
+@internal
+def values_inside(s, r, b, interpolate, t, h, theta):
+    """All channels at t + theta h into s.out; the state in b.y2, its derivative in b.K[1]."""
+    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+    evaluate(s, t + theta * h, b.y2, b.K[1])
+    measure(s, t + theta * h, b.y2, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
