@@ -129,3 +129,16 @@ solver: {end: 0.01}
     assert r["pin.penetration"][0] == pytest.approx((2 * 9.81 / 1e9) ** (2 / 3), rel=1e-9)
     assert len(r.events) == 0
     assert np.ptp(r["slider.position"][:, 0]) < 1e-12
+
+
+def test_a_compliant_drive_starts_at_its_speed():
+    """No jerk at the start: the slide moves at the drive's speed and the spring is at rest."""
+    r = run("""
+bodies: {slide: {mass: 50, inertia: 1}}
+joints: {guide: {type: prismatic, bodies: [ground, slide], axis: [1, 0]}}
+drives:
+  cylinder: {joint: guide, velocity: 0.5, compliance: {stiffness: 1e7, damping_ratio: 0.1}}
+solver: {end: 0.1, tolerance: 1e-9}
+""")
+    assert r["slide.velocity"][:, 0] == pytest.approx(0.5, abs=1e-9)
+    assert r["cylinder.force"] == pytest.approx(0.0, abs=1e-4)

@@ -10,8 +10,10 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import jacobian, weights
+from trsim.elements.drive import K
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
+from trsim.laws.functions import motion
 from trsim.solve.angles import follow
 
 Array = NDArray[np.float64]
@@ -21,6 +23,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     """v nearest to the given one (in the metric of M) that the mechanism allows.
 
     Clearance joints count as ideal, unless a body's velocity is given: then journals may fly.
+    A compliant drive starts at its speed too, where nothing stiffer says otherwise.
     After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
     their rates are zero.
     """
@@ -35,14 +38,16 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     y_ideal = follow(ideal, y_ideal)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
-    wishes = closed_stops(model, y_ideal) if named else []
-    wishes += [coordinate_gradient(model, y_ideal, ideal.coordinates[n].entry)
-               for n in named if n in ideal.coordinates]  # fmt: skip
+    wishes = compliant_drives(ideal, y_ideal)
+    if named:
+        wishes += [(gradient, 0.0) for gradient in closed_stops(model, y_ideal)]
+        wishes += [(coordinate_gradient(model, y_ideal, ideal.coordinates[n].entry), 0.0)
+                   for n in named if n in ideal.coordinates]  # fmt: skip
     scale = weights(model)
-    for wish in wishes:  # a wish that contradicts what is fixed already is dropped
+    for wish, wanted in wishes:  # a wish that contradicts what is fixed already is dropped
         more = np.vstack([J, wish])
         if np.linalg.matrix_rank(more * scale, 1e-8) > np.linalg.matrix_rank(J * scale, 1e-8):
-            J, rate = more, np.append(rate, 0.0)
+            J, rate = more, np.append(rate, wanted)
     v = world_velocities(model, y_ideal)
     if len(J):
         v = v + scale * np.linalg.lstsq(J * scale, rate - J @ v, rcond=1e-10)[0]
@@ -53,6 +58,19 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
     return with_velocities(mechanism.model, y, v)
+
+
+def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]]:
+    """Gradient and prescribed rate of the joint coordinates that compliant drives move."""
+    found = []
+    for instance in mechanism.instances:
+        if instance.element.key != "drive" or instance.row.par[K] == 0.0:
+            continue
+        _, _, entry, state, _, offset = instance.row.con
+        f, f_dot, _ = motion(mechanism.model.tab, offset, 0.0)
+        gradient = coordinate_gradient(mechanism.model, y, entry)
+        found.append((gradient, float(f if state >= 0 else f_dot)))
+    return found
 
 
 def closed_stops(model: Model, y: Array) -> list[Array]:
