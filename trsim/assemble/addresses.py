@@ -9,6 +9,7 @@ from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import names
 from trsim.laws import functions
+from trsim.laws.tables import akima_coefficients
 
 
 class JointCoordinate(NamedTuple):
@@ -36,6 +37,8 @@ class Addresses:
     coordinates: dict[str, JointCoordinate] = field(default_factory=dict)
     sensors: dict[str, int] = field(default_factory=dict)
     n_s: int = 0
+    timed: bool = False  # something depends on t explicitly
+    notes: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.frames = {"ground": 0}
@@ -165,13 +168,39 @@ class Addresses:
             code = functions.constant(spec.value)
         elif spec.kind == "table":
             variable = -1 if spec.of == "t" else self.known_sensor(spec.of, time_only, path)
+            self.timed = self.timed or variable < 0
+            self.look_for_overshoot(spec, path)
             code = functions.table(spec.x, spec.y, variable, spec.ends)
         else:
+            self.timed = self.timed or "t" in names(spec.node)
             wanted = names(spec.node) - {"t", "pi"}
             indices = {name: self.known_sensor(name, time_only, path) for name in wanted}
             code = functions.expression(spec.node, indices)
         self.tab.extend(code)
         return offset
+
+    def look_for_overshoot(self, spec: Any, path: tuple[str, ...]) -> None:
+        """Refuse an Akima curve that leaves its data far behind; note one that leaves it."""
+        x, y = np.array(spec.x), np.array(spec.y)
+        span = float(np.ptp(y))
+        if span == 0.0:
+            return
+        a, b, c, d = np.array(akima_coefficients(x, y)).T
+        s = np.linspace(0.0, 1.0, 33)[:, None] * np.diff(x)
+        curve = a + s * (b + s * (c + s * d))
+        over = np.maximum(curve - np.maximum(y[:-1], y[1:]), np.minimum(y[:-1], y[1:]) - curve)
+        row = int(np.argmax(over.max(axis=0)))
+        worst = float(over[:, row].max()) / span
+        reached = float(curve[np.argmax(over[:, row]), row])
+        what = f"the Akima curve reaches {reached:g} between rows {row + 1} and {row + 2}"
+        if worst > 0.5:
+            raise ScenarioError(
+                f"{what}, far from the data",
+                "add a point on each side of a corner: ... [0.499, 0], [0.5, 0], [0.501, 1000] ...",
+                (*path, "table"),
+            )
+        if worst > 0.05:
+            self.notes.append(f"{'.'.join(path)}: {what}; more points at the corner keep it in")
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
         if time_only:

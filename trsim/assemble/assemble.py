@@ -24,6 +24,7 @@ from trsim.assemble.tables import (
     contact_numbers,
     contact_states,
     drawn,
+    eccentricity,
     extent,
     kernels,
     masses,
@@ -75,6 +76,7 @@ def assemble(
         instances=tuple(instances),
         columns=tuple(columns),
         planar=planar,
+        timed=at.timed,
         planar_assumed=assumed,
         mobility=d * (model.n - 1) - model.m + sum(not f.everywhere for f in found),
         redundant=tuple(names[f.row] for f in found if f.everywhere),
@@ -86,7 +88,7 @@ def assemble(
         follows=tuple(follow for _, follow in at.states),
         coordinates=at.coordinates,
         frames=at.frames,
-        notes=notes(scenario, assumed),
+        notes=(*notes(scenario, assumed), *at.notes),
     )
 
 
@@ -199,6 +201,7 @@ def build(
         contact=np.array(contacts, np.int64),
         contact_par=contact_numbers(scenario, at, instances, contacts),
         contact_state=contact_states(instances, contacts),
+        contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(
             [sum(c.size for c in instances[e].element.channels) for e in contacts], np.int64
         ),

@@ -45,6 +45,7 @@ class Mechanism:
     instances: tuple[Instance, ...]
     columns: tuple[Column, ...]
     planar: bool
+    timed: bool  # a load or drive depends on time explicitly
     planar_assumed: bool  # nothing holds the bodies in their plane
     mobility: int  # degrees of freedom left, drives counted as constraints
     redundant: tuple[str, ...]  # rows dropped, "joint.axis"

@@ -68,7 +68,7 @@ def displaced(model: Model, y: Array, dx: Array) -> Array:
 
 
 def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None = None,
-            columns: list[int] | None = None, steps: int = 30) -> tuple[Array, float]:  # fmt: skip
+            columns: list[int] | None = None, steps: int = 60) -> tuple[Array, float]:  # fmt: skip
     """Newton with least squares onto the constraints; works with redundant rows.
 
     columns: twist components (0..5) that may move.  Returns y and the largest residual left.
@@ -86,8 +86,10 @@ def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None =
             break
         dx = np.zeros(free.size)
         dx[free] = -scale[free] * np.linalg.lstsq(J[:, free] * scale[free], phi, rcond=1e-10)[0]
-        limit = 0.3 / max(float(np.max(np.abs(dx))), 0.3)  # a far start must not overshoot
-        y = displaced(model, y, dx * limit)
+        # a far start must not overshoot: at most 0.3 rad, or 0.3 of the mechanism's size
+        parts = np.abs(dx).reshape(-1, 6)
+        far = max(float(np.max(parts[:, :3])) / model.size, float(np.max(parts[:, 3:])))
+        y = displaced(model, y, dx * (0.3 / max(far, 0.3)))
     phi = jacobian(model, t, y)[0]
     phi = phi if active is None else phi[active]
     return y, float(np.max(np.abs(phi), initial=0.0))

@@ -166,3 +166,13 @@ def contact_states(instances: list[Instance], contacts: list[int]) -> NDArray[np
         for e in contacts
     ]
     return np.array(states, np.int64)
+
+
+def eccentricity(element: Element) -> int:
+    """Where among its channels a contact has the place of its touch, or -1."""
+    place = 0
+    for channel in element.channels:
+        if channel.name == "eccentricity_x":
+            return place
+        place += channel.size
+    return -1

@@ -72,6 +72,7 @@ class Model(Packed):
     contact_par: A2  # (n_contacts, 5) K, exponent, effective mass, clearance, slowest impact
     contact_state: I1  # (n_contacts) entry of z to reset at a touch, or -1
     contact_width: I1  # (n_contacts) its output columns
+    contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1
     wanted: I1  # (N) first output column of a row, or -1
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
     column_energy: i8  # first output column of the energy book

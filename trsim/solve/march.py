@@ -287,7 +287,10 @@ def change_phases(s, r, b, setting, t, t1):
         line[EVENT_TIME], line[EVENT_ROW] = t1, e
         line[EVENT_KIND] = ONSET if onset else SEPARATION
         line[EVENT_SPEED] = r.gap[c, 1]
-        line[EVENT_ANGLE] = 0.0
+        line[EVENT_ANGLE] = np.nan  # a stop has no angle
+        o = s.wanted[e] + s.contact_angle[c]
+        if s.contact_angle[c] >= 0 and s.wanted[e] >= 0:
+            line[EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
         if onset:
             speed = max(r.gap[c, 1], s.contact_par[c, 4])
             r.mem[e, IMPACT_SPEED] = speed

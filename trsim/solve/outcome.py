@@ -38,6 +38,11 @@ class Outcome(NamedTuple):
     start: Start
 
 
+LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
+LOOK_ROWS = 5.0  # and never longer than this many output intervals
+MOST_ROWS = 10_000  # output rows one fixed step may span
+
+
 def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     """The constants of the march."""
     solver, output = scenario.solver, scenario.output
@@ -54,9 +59,24 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     s = np.zeros(rec.N_SETTINGS)
     s[rec.T_END] = solver.end
     s[rec.TOLERANCE] = solver.tolerance
-    s[rec.H_MAX] = solver.max_step or solver.end or 1.0
     s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
+    s[rec.H_MAX] = solver.max_step or solver.end or 1.0
+    if mechanism.timed and not solver.max_step:
+        # a pulse between two stages of a long step would not be seen at all
+        s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
     s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
+    if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
+        raise ScenarioError(
+            f"a step of {solver.step:g} s spans more than {MOST_ROWS} output rows",
+            "make `output: {every: ...}` longer or the step shorter",
+            ("output", "every"),
+        )
+    if s[rec.EVERY] < 1e-9 * solver.end:
+        raise ScenarioError(
+            f"{solver.end / s[rec.EVERY]:.0e} output rows",
+            "`every` is the time between two rows; at most 1e9 rows are written",
+            ("output", "every"),
+        )
     s[rec.LOCATE] = float(adaptive and len(mechanism.model.contact) > 0)
     return s
 

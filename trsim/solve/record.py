@@ -95,13 +95,15 @@ class Buffers(Packed):
 RECORD, BUFFERS = Record.numba_type, Buffers.numba_type
 
 
-def fresh_buffers(model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int) -> Buffers:
-    """Buffers for a model and a method."""
+def fresh_buffers(
+    model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0
+) -> Buffers:
+    """Buffers for a model and a method; step_rows: output rows a fixed step may span."""
     contacts = len(model.contact)
     return Buffers(
-        rows=np.zeros((1024, 1 + model.n_out)),
-        steps=np.zeros((1024, n_steps)),
-        events=np.zeros((256, 5)),
+        rows=np.zeros((max(1024, 2 * step_rows + 16), 1 + model.n_out)),
+        steps=np.zeros((max(1024, 8 * contacts), n_steps)),
+        events=np.zeros((max(256, 8 * contacts), 5)),
         K=np.zeros((stages, n_y)),
         P=np.zeros((dense_rows, n_y)),
         y1=np.zeros(n_y),
@@ -113,6 +115,12 @@ def fresh_buffers(model: Model, n_y: int, stages: int, dense_rows: int, n_steps:
         root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
     )
+
+
+def crowded(r: Record, b: Buffers) -> bool:
+    """Whether a buffer is half full: time to empty them."""
+    filled = ((ROWS, b.rows), (STEP_ROWS, b.steps), (EVENT_ROWS, b.events))
+    return any(2 * r.count[counter] > len(buffer) for counter, buffer in filled)
 
 
 def copy(record: Record) -> dict[str, np.ndarray]:

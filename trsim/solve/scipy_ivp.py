@@ -23,7 +23,7 @@ from trsim.solve.calls import INTERPOLATE
 from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete, method_table
 from trsim.solve.norm import weigh
 from trsim.solve.outcome import Outcome, block, first_step, new_record, settings, statistics
-from trsim.solve.record import Buffers, Record, fresh_buffers
+from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
 
 Array = NDArray[np.float64]
@@ -67,6 +67,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)
     status, reason = "done", ""
+    limit = scenario.solver.max_steps or 2**62
     solver = restarted(scenario, s, r, b, setting)
     while r.clock[rec.T] < setting[rec.T_END]:
         message = solver.step()
@@ -83,11 +84,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             r.clock[rec.H] = solver.t - solver.t_old
         elif r.clock[rec.T] < setting[rec.T_END]:
             solver = restarted(scenario, s, r, b, setting)
-        if (
-            r.count[rec.ROWS] > b.rows.shape[0] // 2
-            or r.count[rec.STEPS] % 2000 == 0
-            or (r.count[rec.STEP_ROWS] > b.steps.shape[0] // 2)
-        ):
+        if r.count[rec.STEPS] >= limit and r.clock[rec.T] < setting[rec.T_END]:
+            status, reason = "failed", f"more than {limit} steps"
+            break
+        if crowded(r, b) or r.count[rec.STEPS] % 2000 == 0:
             yield emptied(r, b, block)
     yield emptied(r, b, block)
     cpu = time.process_time() - clock0

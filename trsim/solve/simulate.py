@@ -48,8 +48,9 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
     setting = settings(scenario, mechanism, method.ADAPTIVE)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     width = int(np.max(work.contact_width, initial=0))
+    spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     r = new_record(work, begun)
-    b = fresh_buffers(work, r.y.size, method.STAGES, method.DENSE_ROWS, 2 + width)
+    b = fresh_buffers(work, r.y.size, method.STAGES, method.DENSE_ROWS, 2 + width, spanned)
     addresses = method_table(
         method.step.address(), method.dense.address(), method.interpolate.address(), method.LAST
     )
@@ -58,13 +59,14 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
     r.clock[rec.H] = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
     while True:
-        reason = march(work, r, b, setting, addresses, VISIT)
+        most = min(VISIT, limit - int(r.count[rec.STEPS]))
+        reason = march(work, r, b, setting, addresses, most)
         yield block(r, b)
         for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
             r.count[counter] = 0
         if reason not in (rec.FULL, rec.PAUSE):
             break
-        if r.count[rec.STEPS] > limit:
+        if r.count[rec.STEPS] >= limit:
             reason = -1
             break
     cpu = time.process_time() - clock0
