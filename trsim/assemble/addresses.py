@@ -10,6 +10,7 @@ from trsim.errors import ScenarioError, known
 from trsim.expressions import names
 from trsim.laws import functions
 from trsim.laws.tables import akima_coefficients
+from trsim.units import quantity, unit
 
 
 class JointCoordinate(NamedTuple):
@@ -178,6 +179,23 @@ class Addresses:
             code = functions.expression(spec.node, indices)
         self.tab.extend(code)
         return offset
+
+    def check_unit(self, kind: str, angle: str, stroke: str, *path: str) -> None:
+        """Refuse a written unit that does not fit a joint that turns, or one that slides."""
+        raw = self.scenario.resolved
+        for key in path:
+            raw = raw.get(key) if isinstance(raw, dict) else None
+        written = quantity(raw) if isinstance(raw, str) else None
+        wanted = angle if kind == "angle" else stroke
+        if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
+            return
+        if wanted == "rad" and not any(unit(written[1])[1]):
+            return
+        raise ScenarioError(
+            f"wrong unit: '{written[1]}'; the joint {'turns' if kind == 'angle' else 'slides'}",
+            f"this number is in {wanted}",
+            path[2:],
+        )
 
     def look_for_overshoot(self, spec: Any, path: tuple[str, ...]) -> None:
         """Refuse an Akima curve that leaves its data far behind; note one that leaves it."""

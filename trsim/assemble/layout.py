@@ -37,10 +37,9 @@ def units(instance: "Instance", unit: str, at: "Addresses") -> str:
     """Units that depend on whether a joint turns or slides."""
     if unit in ("coordinate", "coordinate/s", "coordinate/s^2", "drive"):
         spec = getattr(at.scenario, instance.section).get(instance.name)
-        x = at.coordinate(spec.joint) if spec else None
-        if x is None:  # a drive made for the start of a run
-            return unit
-        own = "rad" if x.kind == "angle" else "m"
+        x = at.coordinate(spec.joint) if spec and spec.joint else None
+        # no joint: a stop of a point on a wall, or a drive made for the start of a run
+        own = "rad" if x is not None and x.kind == "angle" else "m"
         return {"drive": "N*m" if own == "rad" else "N"}.get(unit, unit.replace("coordinate", own))
     return unit
 

@@ -57,10 +57,22 @@ STATE, ROTATES, MOTION = 4, 5, 6  # con, after the row: state of z; angle or str
 K, C, SIGN = 9, 10, 11  # par, after the arms and the axis in body i
 
 
+COMPLIANCE_UNITS = (
+    ("stiffness", "N*m/rad", "N/m"),
+    ("damping", "N*m*s/rad", "N*s/m"),
+    ("mass", "kg*m^2", "kg"),
+)
+
+
 def pack(name, spec, at):
     x = at.coordinate(spec.joint)
     by_velocity = spec.position is None
-    f = at.function(spec.velocity if by_velocity else spec.position, "motion", time_only=True)
+    word = "velocity" if by_velocity else "position"
+    rates = ("rad/s", "m/s") if by_velocity else ("rad", "m")
+    at.check_unit(x.kind, *rates, "drives", name, word)
+    for key, turning, sliding in COMPLIANCE_UNITS:
+        at.check_unit(x.kind, turning, sliding, "drives", name, "compliance", key)
+    f = at.function(spec.velocity if by_velocity else spec.position, word, time_only=True)
     state = at.state(x.kind, follows=x.entry) if by_velocity else -1
     k = c = 0.0
     if spec.compliance is not None:

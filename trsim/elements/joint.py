@@ -6,6 +6,7 @@ par[15:18], [18:21]             u and a in the axes of body j
 par[21]                         joint angle as drawn
 """
 
+from trsim.errors import ScenarioError
 from trsim.fields import Spec, vector
 
 
@@ -19,6 +20,8 @@ class Joint(Spec):
 def perpendicular(axis):
     """Unit vectors u, w, a with a along the axis; (x, y, z) for the z axis."""
     length = sum(c * c for c in axis) ** 0.5
+    if length == 0.0:
+        raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", ("axis",))
     a = tuple(c / length for c in axis)
     # project the world axis least aligned with a, cyclically after the largest component,
     # so that a z axis gives u = x and w = y exactly

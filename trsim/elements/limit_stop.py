@@ -73,6 +73,13 @@ class LimitStop(Spec):
         return self
 
 
+UNITS = (
+    ("lower", "rad", "m"),
+    ("upper", "rad", "m"),
+    ("ramp", "rad", "m"),
+    ("stiffness", "N*m/rad", "N/m"),
+    ("damping", "N*m*s/rad", "N*s/m"),
+)
 ON_WALL, ON_ANGLE, ON_STROKE = 0, 1, 2
 UNBOUNDED = 1e300
 
@@ -93,6 +100,8 @@ def pack(name, spec, at):
         places = (*at.local(i, spec.wall.at), *at.local(j, spec.point.at))
         return Row((i, j, -1, ON_WALL), (*places, *n, *law, 0.0, 0.0), contact)
     x = at.coordinate(spec.joint)
+    for key, turning, sliding in UNITS:
+        at.check_unit(x.kind, turning, sliding, "forces", name, key)
     kind = ON_ANGLE if x.kind == "angle" else ON_STROKE
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
@@ -192,9 +201,9 @@ ELEMENT = Element(
     spec=LimitStop,
     pack=pack,
     channels=(
-        Channel("normal_force", "N", "contact force or torque; never negative"),
-        Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
-        Channel("force", "N", "on the point's body, world axes", 3),
+        Channel("normal_force", "drive", "contact force or torque; never negative"),
+        Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
+        Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
     n_mem=2,
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},

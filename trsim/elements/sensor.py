@@ -23,6 +23,7 @@ class Sensor(Spec):
 
 def pack(name, spec, at):
     source = at.coordinate(spec.joint)
+    at.check_unit(source.kind, "rad", "m", "sensors", name, "at_start")
     return Row(
         (source.i, source.j, at.sensor(name), source.entry, int(source.kind == "angle")),
         (
