@@ -20,7 +20,7 @@ def _cache_folder() -> Path:
     kernels are reached through tables of addresses; whatever is called directly is hashed here.
     """
     here = Path(__file__).parent
-    shared = ("calls", "contract", "frames", "packed", "scene", "vectors")
+    shared = ("calls", "contract", "frames", "packed", "packed_numba", "scene", "vectors")
     direct = [f"elements/{name}.py" for name in shared]
     direct += ["laws/*.py", "assemble/*.py", "solve/*.py"]
     sources = sorted(path for pattern in direct for path in here.glob(pattern))

@@ -19,6 +19,8 @@ from trsim import expressions
 from trsim.errors import ScenarioError, described, known
 from trsim.units import inside, kind, quantity, told, unit
 
+LARGEST = 1e50  # its fourth power is still a number
+
 
 def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) -> float:
     """The SI value of a YAML number, a quantity or an expression of parameters."""
@@ -38,6 +40,8 @@ def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) 
         result = math.inf
     if not math.isfinite(result):
         raise ScenarioError("must be a finite number", told(units))
+    if abs(result) > LARGEST:
+        raise ScenarioError(f"no quantity of a mechanism is {result:.0e}", told(units))
     return result
 
 

@@ -25,15 +25,14 @@ has a branch for it.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from functools import cache, cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from numba import njit, types
-
-from trsim.elements.packed import f8, i8
 from trsim.elements.scene import Scene
 
-SCENE = Scene.numba_type
-KERNEL = types.void(f8, SCENE, i8, i8)  # t, scene, first row, end row
+if TYPE_CHECKING:
+    SCENE: Any  # the numba type of a Scene
+    KERNEL: Any  # the signature of a kernel
 KINDS = ("force", "constraint", "coordinate", "gaps", "energy", "measure")
 
 # con: the first columns of every element that joins two frames
@@ -52,25 +51,45 @@ SPRINGS, CONTACTS, GRAVITY = 0, 1, 2
 STORED = ("springs", "contacts", "gravity")
 
 
+@cache
+def _kernel_signature() -> Any:
+    from trsim.elements.packed_numba import f8, i8, types
+
+    return types.void(f8, Scene.numba_type, i8, i8)  # t, scene, first row, end row
+
+
+def __getattr__(name: str) -> Any:
+    """SCENE and KERNEL, which need numba."""
+    if name == "SCENE":
+        return Scene.numba_type
+    if name == "KERNEL":
+        return _kernel_signature()
+    raise AttributeError(name)
+
+
 class Compiled:
     """A function with a fixed signature that compiles (or loads from the cache) on first use."""
 
-    def __init__(self, python: Callable, signature: Any) -> None:
-        self.python, self.signature = python, signature
-        self.dispatcher: Any = None
+    def __init__(self, python: Callable, signature: Any = None) -> None:
+        self.python, self.given = python, signature
 
-    def compiled(self) -> Any:
-        if self.dispatcher is None:
-            self.dispatcher = njit(self.signature, cache=True, error_model="numpy")(self.python)
-        return self.dispatcher
+    @property
+    def signature(self) -> Any:
+        return self.given or _kernel_signature()
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        from numba import njit
+
+        return njit(self.signature, cache=True, error_model="numpy")(self.python)
 
     def address(self) -> int:
         """Where the machine code starts, in numba's own calling convention."""
-        result = self.compiled().overloads[self.signature.args]
+        result = self.dispatcher.overloads[self.signature.args]
         return result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
 
     def __call__(self, *arguments: Any) -> Any:
-        return self.compiled()(*arguments)
+        return self.dispatcher(*arguments)
 
 
 def compiled(signature: Any) -> Callable[[Callable], Compiled]:
@@ -80,7 +99,7 @@ def compiled(signature: Any) -> Callable[[Callable], Compiled]:
 
 def kernel(python: Callable) -> Compiled:
     """Decorator of the kernels of elements."""
-    return Compiled(python, KERNEL)
+    return Compiled(python)
 
 
 class Channel(NamedTuple):

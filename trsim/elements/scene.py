@@ -9,11 +9,14 @@ spatial (d = 6): q = position and quaternion (7), v = velocity and body-axes ang
 Only `poses` in assemble/equations.py knows this; kernels see poses, twists and joint coordinates.
 """
 
-from typing import Any
+from __future__ import annotations
 
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
-from trsim.elements.packed import A1, A2, I1, I2, Packed, f8, i8
+from trsim.elements.packed import Packed
+
+if TYPE_CHECKING:  # to the compiler they are numba's types, imported with numba
+    from trsim.elements.packed import A1, A2, I1, I2, f8, i8
 
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
@@ -77,7 +80,7 @@ class Model(Packed):
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
     column_energy: i8  # first output column of the energy book
 
-    def replaced(self, **changes: Any) -> "Model":
+    def replaced(self, **changes: Any) -> Model:
         """A copy with some fields replaced."""
         values = {name: getattr(self, name) for name, _ in Model.numba_type.fields}
         return Model(**{**values, **changes})
@@ -122,6 +125,8 @@ def workspace(model: Model) -> Scene:
 
 def scene(model: Model) -> Scene:
     """Fresh workspace for a model."""
+    import numpy as np
+
     n, m, slots = model.n, model.m, len(model.slot_frame)
     X = np.zeros((n, 12))
     X[:, [3, 7, 11]] = 1.0

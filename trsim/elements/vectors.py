@@ -3,12 +3,15 @@
 Slice assignments of numba carry shape checks and their error texts: a second of compiling each.
 """
 
+from collections.abc import Callable
 from math import isfinite
 
-from numba import njit
+from trsim.laws import Lazy
 
-# for functions that only compiled code calls: no wrappers for Python are made
-internal = njit(cache=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+def internal(python: Callable) -> Lazy:
+    """Decorator of functions that only compiled code calls: no wrappers for Python are made."""
+    return Lazy(python, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
 @internal

@@ -1,8 +1,37 @@
 """Laws: numbers in, numbers out.  No bodies, no names of a scenario, no state of a run.
 
-`law` compiles a scalar law; elements call laws directly from their kernels.
+`law` makes a scalar law; elements call laws directly from their kernels.  Numba is imported when
+the first of them is compiled or called: a scenario is read and checked without it.
 """
 
-from numba import njit
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
 
-law = njit(cache=True, error_model="numpy")
+
+class Lazy:
+    """A function that becomes numba's the first time it is called or compiled code needs it."""
+
+    def __init__(self, python: Callable, **options: Any) -> None:
+        self.python, self.options = python, options
+        self.__name__, self.__doc__ = python.__name__, python.__doc__
+        self.__module__ = python.__module__
+
+    @cached_property
+    def dispatcher(self) -> Any:
+        from numba import njit
+
+        return njit(cache=True, error_model="numpy", **self.options)(self.python)
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What compiled functions take this global for: the function itself."""
+        return self.dispatcher._numba_type_
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        return self.dispatcher(*arguments, **named)
+
+
+def law(python: Callable) -> Lazy:
+    """Decorator of laws."""
+    return Lazy(python)

@@ -16,8 +16,6 @@ per call: `tab` must be writable, and two threads must not evaluate the same arr
 
 import math
 
-import numpy as np
-
 from trsim.laws import law
 from trsim.laws.operations import (
     ADD,
@@ -51,6 +49,15 @@ def table(x, y, variable=-1, ends="hold"):
     return [float(TABLE), float(variable), float(len(x)), *akima_table(x, y, ends)]
 
 
+def _folded(code, a, b):
+    """The value of an operation on constants; nan where it has none."""
+    try:
+        f = operation.python(code, a, b)
+        return math.nan if isinstance(f, complex) else float(f)
+    except (ValueError, ArithmeticError):
+        return math.nan
+
+
 class _Code:
     """Straight-line code of an expression while it is being written; a slot is a tuple."""
 
@@ -76,8 +83,7 @@ class _Code:
         """The slot of an operation: folded if constant, shared if it was there before."""
         b = a if b is None else b
         if a[0] == b[0] == "constant":
-            with np.errstate(all="ignore"):  # what is wrong is said below
-                f = float(operation.py_func(code, np.float64(a[1]), np.float64(b[1])))
+            f = _folded(code, a[1], b[1])
             if not math.isfinite(f):
                 raise ValueError("a constant part of the expression is infinite or undefined")
             return self.number(f)
@@ -260,7 +266,7 @@ def motion(tab, o, t):
     if kind == TABLE and tab[o + 1] < 0.0:
         return akima(tab, o + 3, int(tab[o + 2]), t)
     if kind == TABLE or tab[o + 1] > 0.0:
-        return np.nan, np.nan, np.nan
+        return math.nan, math.nan, math.nan
     slot = o + int(tab[o + 3])
     tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
     return run_rates(tab, o)

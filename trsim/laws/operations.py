@@ -5,7 +5,7 @@ a corner of min, max, abs or a comparison they belong to the branch taken; a com
 and does not vary.
 """
 
-import numpy as np
+from math import atan2, cos, exp, log, sin, sqrt, tan
 
 from trsim.laws import law
 from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
@@ -29,17 +29,17 @@ def single(code, a):
     if code == ABS:
         return abs(a)
     if code == SQRT:
-        return np.sqrt(a)
+        return sqrt(a)
     if code == SIN:
-        return np.sin(a)
+        return sin(a)
     if code == COS:
-        return np.cos(a)
+        return cos(a)
     if code == TAN:
-        return np.tan(a)
+        return tan(a)
     if code == EXP:
-        return np.exp(a)
+        return exp(a)
     if code == LOG:
-        return np.log(a)
+        return log(a)
     return quintic(a)
 
 
@@ -61,7 +61,7 @@ def operation(code, a, b):
     if code == MAX:
         return b if b > a else a
     if code == ATAN2:
-        return np.arctan2(a, b)
+        return atan2(a, b)
     if code >= NEG:
         return single(code, a)
     if code == LT:
@@ -87,20 +87,20 @@ def single_rates(code, a):
     if code == ABS:
         return abs(a), 1.0 if a >= 0.0 else -1.0, 0.0
     if code == SQRT:
-        f = np.sqrt(a)
+        f = sqrt(a)
         return f, 0.5 / f, -0.25 / (f * a)
     if code == SIN:
-        return np.sin(a), np.cos(a), -np.sin(a)
+        return sin(a), cos(a), -sin(a)
     if code == COS:
-        return np.cos(a), -np.sin(a), -np.cos(a)
+        return cos(a), -sin(a), -cos(a)
     if code == TAN:
-        f = np.tan(a)
+        f = tan(a)
         return f, 1.0 + f * f, 2.0 * f * (1.0 + f * f)
     if code == EXP:
-        f = np.exp(a)
+        f = exp(a)
         return f, f, f
     if code == LOG:
-        return np.log(a), 1.0 / a, -1.0 / (a * a)
+        return log(a), 1.0 / a, -1.0 / (a * a)
     return quintic_rates(a)
 
 
@@ -121,8 +121,8 @@ def power_rates(a, a1, a2, b, b1, b2):
         f_aa = b * (b - 1.0) * a ** (b - 2.0) if b != 0.0 and b != 1.0 else 0.0
         return chain(f, f_a, f_aa, a1, a2)
     # ln f = b ln a
-    u = b1 * np.log(a) + b * a1 / a
-    u1 = b2 * np.log(a) + (2.0 * b1 * a1 + b * a2) / a - b * a1 * a1 / (a * a)
+    u = b1 * log(a) + b * a1 / a
+    u1 = b2 * log(a) + (2.0 * b1 * a1 + b * a2) / a - b * a1 * a1 / (a * a)
     return f, f * u, f * (u * u + u1)
 
 
@@ -148,7 +148,7 @@ def operation_rates(code, a, a1, a2, b, b1, b2):
     if code == ATAN2:
         r, r1 = a * a + b * b, 2.0 * (a * a1 + b * b1)
         f1 = (b * a1 - a * b1) / r
-        return np.arctan2(a, b), f1, (b * a2 - a * b2 - f1 * r1) / r
+        return atan2(a, b), f1, (b * a2 - a * b2 - f1 * r1) / r
     if code >= NEG:
         f, f_a, f_aa = single_rates(code, a)
         return chain(f, f_a, f_aa, a1, a2)

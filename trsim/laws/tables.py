@@ -14,7 +14,7 @@ quadratically.  f' is continuous, f'' jumps at the points of the table.
 A table in a flat array is, from its offset,   ends, x (n), then a b c d of each interval.
 """
 
-import numpy as np
+import math
 
 from trsim.laws import law
 
@@ -85,6 +85,8 @@ def step5(x, x0, h0, x1, h1):
 
 def _checked(x, y):
     """x and y as arrays; rows are counted from 1 in the messages."""
+    import numpy as np
+
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if x.ndim != 1 or x.shape != y.shape or x.size < 2:
         raise ValueError("a table needs two columns of the same length, 2 rows or more")
@@ -103,6 +105,8 @@ def _checked(x, y):
 
 def _slopes(x, y):
     """Akima's slope at every point, (n,)."""
+    import numpy as np
+
     m = np.diff(y) / np.diff(x)
     if m.size == 1:
         return np.repeat(m, 2)
@@ -137,6 +141,8 @@ def akima_coefficients(x, y):
     -----
     Two points give a straight line, three a parabola.
     """
+    import numpy as np
+
     x, y = _checked(x, y)
     h, m, b = np.diff(x), np.diff(y) / np.diff(x), _slopes(x, y)
     c = (3 * m - 2 * b[:-1] - b[1:]) / h
@@ -170,7 +176,7 @@ def outside(f, f_x, s, ends):
         return f, 0.0, 0.0
     if ends == 1.0:
         return f + f_x * s, f_x, 0.0
-    return np.nan, np.nan, np.nan
+    return math.nan, math.nan, math.nan
 
 
 @law

@@ -17,7 +17,7 @@ from trsim.errors import Place, ScenarioError, described
 
 LARGEST = 1_000_000  # bytes
 DEEPEST = 20  # nested mappings and lists
-MOST = 100_000  # scalars, lists and mappings
+MOST = 20_000  # scalars, lists and mappings
 
 Path = tuple[str | int, ...]
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -129,7 +129,8 @@ def _events(text: str, place: Any) -> Iterator[Any]:
                 what = f"tags are not allowed: {described(tag)}"
                 raise ScenarioError(what, "Quote a text that starts with '!'.", place=place(*at))
             if count > MOST:
-                raise ScenarioError(f"more than {MOST} values", place=place(*at))
+                hint = "Long tables belong into CSV files: `table: name.csv`."
+                raise ScenarioError(f"more than {MOST} values", hint, place=place(*at))
             yield event
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark

@@ -1,0 +1,102 @@
+"""Hostile files and expressions are settled quickly, and nothing is opened, run or connected."""
+
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from trsim.errors import ScenarioError, TrsimError
+from trsim.expressions import evaluate, names, parse
+from trsim.spec.load import load
+
+from .spec.test_text import HOSTILE
+from .test_expressions import REFUSED
+
+ROOT = Path(__file__).parent.parent
+FILES = {text.encode("utf-8", "surrogatepass") for text in HOSTILE} | {
+    b"a: 1e400",
+    b"\xff\xfe" + "title: x".encode("utf-16-le"),
+    "title: \xef".encode("latin-1"),
+    b"\x00" * 1000,
+    b"\n" * 900_000,
+    b"#" * 2_000_000,
+    b"bodies: {a: {mass: " + b"1" * 5000 + b"}}",
+    b"parameters: {" + b", ".join(b"p%d: p%d" % (k + 1, k) for k in range(2000)) + b"}",
+    b"bodies:\n" + b"".join(b"  b%d: {mas: 1}\n" % k for k in range(1000)),
+    b"extends: [" + b"a.yaml, " * 5000 + b"]",
+    b"title: " + b"'" * 999_999,
+    b"forces: {a: {type: applied_load, body: b, direction: [1, 0], force: " + b"(" * 999 + b"}}",
+}
+PIECES = ["9", "**", "(", ")", "t", ".", "e9", "+", "-", "/", "*", ",", "sin", "min(", "exp("]
+PIECES += ["__class__", "open", "lambda", ":", "[", "'", "x", " ", "<", "=", "1e308", "step("]
+WATCHED = ("open", "exec", "socket", "subprocess", "os.system", "os.exec", "os.posix_spawn")
+
+watched: list[str] | None = None
+
+
+def watch(event: str, arguments: tuple) -> None:
+    if watched is not None and event.startswith(WATCHED):
+        watched.append(f"{event} {arguments!r}")
+
+
+@pytest.fixture
+def nothing_happens():
+    """Files opened, code run, sockets and processes, as Python's own audit sees them."""
+    global watched
+    if not hasattr(sys, "_trsim_watch"):
+        sys.addaudithook(watch)
+        sys._trsim_watch = True
+    watched = []
+    yield
+    seen, watched = watched, None
+    assert seen == []
+
+
+def test_files(tmp_path):
+    target = tmp_path / "hostile.yaml"
+    slowest = []
+    for data in sorted(FILES):
+        target.write_bytes(data)
+        start = time.process_time()
+        with pytest.raises(TrsimError) as caught:
+            load(target)
+        slowest.append((time.process_time() - start, data[:30]))
+        assert caught.value.exit_code == 3
+        assert len(caught.value.show()) < 20_000
+    print(f"{len(FILES)} hostile files, the slowest {max(slowest)}")
+    assert len(FILES) >= 40
+    assert max(slowest)[0] < 0.3  # CPU; 0.1 s on an idle machine
+
+
+def test_expressions(nothing_happens):
+    dice = random.Random(1)
+    texts = ["".join(dice.choices(PIECES, k=dice.randint(1, 30))) for _ in range(5000)]
+    slowest = 0.0
+    for text in [*REFUSED, *texts]:
+        start = time.process_time()
+        try:
+            node = parse(text)
+            evaluate(node, dict.fromkeys(names(node), 0.5))
+        except ScenarioError:
+            pass
+        slowest = max(slowest, time.process_time() - start)
+    print(f"{len(REFUSED) + len(texts)} expressions, the slowest {1e3 * slowest:.1f} ms")
+    assert slowest < 0.05
+
+
+def test_a_schema_error_imports_no_compiler():
+    """What makes it quick: the elements are read without numba, numpy or h5py."""
+    code = (
+        "import sys\nfrom trsim.errors import TrsimError\nfrom trsim.spec.load import load, loads\n"
+        "from trsim import elements\n"
+        "load('scenarios/thrust_reverser/clearance_ab_0.3mm.yaml')\n"
+        "for word in elements.ELEMENTS: elements.load(word)\n"
+        "print(sorted({'numpy', 'numba', 'llvmlite', 'scipy', 'h5py'} & set(sys.modules)))"
+    )
+    out = subprocess.run(  # noqa: S603
+        [sys.executable, "-c", code], check=True, cwd=ROOT, capture_output=True, text=True
+    ).stdout
+    assert out == "[]\n"

@@ -1,0 +1,88 @@
+"""Warnings about numbers that are probably not meant."""
+
+from pathlib import Path
+
+import pytest
+
+from trsim.spec.lint import lint
+from trsim.spec.load import load, loads
+
+FOLDER = Path(__file__).parent.parent / "scenarios"
+
+SCENARIO = """\
+bodies:
+  crank: {mass: 1, inertia: 0.01, at: [0.1, 0]}
+  rod: {mass: 1, inertia: [0.001, 0.02, 0.02], at: [0.35, 0]}
+joints:
+  A: {type: revolute, bodies: [ground, crank], at: [0, 0]}
+  B: {type: revolute, clearance: 0.3 mm, contact: pin, bodies: [crank, rod], at: [0.2, 0]}
+  C: {type: revolute, bodies: [ground, rod], at: [0.5, 0]}
+forces:
+  stop: {type: limit_stop, joint: A, upper: 1, stiffness: 1e4, damping: 1}
+contact_laws:
+  pin: {normal: lankarani_nikravesh, stiffness: internal, bearing_radius: 10 mm, width: 15 mm,
+        youngs_modulus: 207 GPa, poisson: 0.29, restitution: 0.9,
+        friction: {law: modified_coulomb, coefficient: 0.3, v0: 1e-4, v1: 1e-3}}
+solver: {end: 1 s}
+"""
+RK4 = "solver: {method: rk4, step: "
+
+
+def found(*changes: tuple[str, str]) -> tuple[str, ...]:
+    text = SCENARIO
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return lint(loads(text))
+
+
+def test_silent():
+    assert found() == ()
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.yaml")), ids=lambda p: p.stem)
+def test_silent_on_the_repository(path):
+    assert lint(load(path)) == ()
+
+
+CASES = [
+    # kg*mm^2 typed as kg*m^2, and the other way
+    (("inertia: 0.01", "inertia: 1e4"), "bodies.crank: radius of gyration", "100 m"),
+    (("inertia: 0.01", "inertia: 1e-8"), "bodies.crank: radius of gyration", "0.0001 m"),
+    (("mass: 1, inertia: 0.01", "mass: 0, inertia: 0.01"), "bodies.crank: inertia", "0.01"),
+    (("[0.001, 0.02, 0.02]", "[0.001, 0.02, 0.03]"), "bodies.rod.inertia", "1.43 times"),
+    (("[0.001, 0.02, 0.02]", "[0.001, 0.02, 0.02, 0.01, 0, 0]"), "bodies.rod.inertia", "below"),
+    # sqrt((20 - 0.3) / 0.3)
+    (("stiffness: internal", "stiffness: paper"), "joints.B: stiffness `paper`", "8.1 times"),
+    (("clearance: 0.3 mm", "clearance: 3 mm"), "joints.B: the clearance, 3 mm", "30%"),
+    (("clearance: 0.3 mm", "clearance: 0.005 mm"), "joints.B: clearance over radius", "5.0e-04"),
+    # from the implicit relation: see damping_factor
+    (("restitution: 0.9", "restitution: 0.5"), "contact_laws.pin: lankarani", "0.725"),
+    (("v0: 1e-4, v1: 1e-3", "v0: 0, v1: 1e-6"), "contact_laws.pin.friction", "1.0e-06"),
+    # 2 sqrt(1e4 0.01) = 20
+    (("damping: 1}", "damping: 50}"), "forces.stop: damping 50", "2.5 times"),
+    # pi sqrt(0.01 / 1e4) = 3.1e-3 s
+    (("solver: {", f"{RK4}1e-3, "), "forces.stop: a contact lasts 3.1e-03 s", "3.14 steps"),
+    (("solver: {", f"{RK4}1e-4, "), "joints.B: a contact lasts", "steps of rk4"),
+    (("solver: {", f"{RK4}1e-4, "), "joints.B: friction rises by", "unstable above"),
+]
+
+
+@pytest.mark.parametrize(("change", "start", "number"), CASES, ids=lambda c: str(c)[:40])
+def test_warning(change, start, number):
+    matching = [message for message in found(change) if message.startswith(start)]
+    assert len(matching) == 1
+    assert number in matching[0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("[0.001, 0.02, 0.02]", "[0.001, 0.02, 0.02101]"),  # rounded
+        ("normal: lankarani_nikravesh", "normal: identified"),
+        ("solver: {", f"{RK4}1e-7, "),
+        ("contact: pin, ", ""),
+    ],
+)
+def test_no_warning(change):
+    assert found(change) == ()

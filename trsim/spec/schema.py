@@ -1,0 +1,95 @@
+"""The JSON Schema of scenario files, made from the specs that also read them.
+
+A file that `extends` another may leave out what is required, and remove things with null: it is
+held to the `part` of the schema, a file that stands alone to the `whole`.
+"""
+
+from typing import Any
+
+from pydantic.json_schema import models_json_schema
+
+from trsim import elements
+from trsim.spec.scenario import DEFAULT, Scenario
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+TEXTS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
+NUMBER = {"anyOf": [{"type": "number"}, {"type": "string"}]}  # 0.3, 0.3 mm, k/2
+INITIAL = {
+    "type": "object",
+    "description": "How the mechanism starts: joints in equilibrium, coordinates of joints.",
+    "properties": {"equilibrium": {"type": "array", "items": {"type": "string"}}},
+    "additionalProperties": NUMBER,
+}
+
+
+def schema() -> dict[str, Any]:
+    """The schema of a scenario file, all elements included."""
+    specs = {word: elements.load(word).spec for word in elements.ELEMENTS}
+    wanted: list[Any] = [(spec, "validation") for spec in (Scenario, *specs.values())]
+    keys, given = models_json_schema(wanted)
+    definitions = given["$defs"]
+    root = _definition(definitions, keys[Scenario, "validation"])
+    for word, section in elements.ELEMENTS.items():
+        if section:
+            _typed(_definition(definitions, keys[specs[word], "validation"]), word, section)
+    for section in set(elements.ELEMENTS.values()) - {""}:
+        entries = [
+            keys[specs[word], "validation"]
+            for word, of in elements.ELEMENTS.items()
+            if of == section
+        ]
+        root["properties"][section]["additionalProperties"] = (
+            {"anyOf": entries} if len(entries) > 1 else entries[0]
+        )
+    root["properties"]["initial"] = INITIAL
+    root["properties"]["extends"] = TEXTS
+    root["properties"]["parameters"]["additionalProperties"] = NUMBER
+    parts = {f"part_{name}": _part(value) for name, value in definitions.items()}
+    whole = keys[Scenario, "validation"]["$ref"]
+    return {
+        "$schema": DIALECT,
+        "title": "trsim scenario",
+        "$defs": {**definitions, **parts},
+        "if": {"required": ["extends"]},
+        "then": {"$ref": whole.replace("#/$defs/", "#/$defs/part_")},
+        "else": {"$ref": whole},
+    }
+
+
+def _definition(definitions: dict[str, Any], reference: Any) -> dict[str, Any]:
+    return definitions[reference["$ref"].removeprefix("#/$defs/")]
+
+
+def _typed(entry: dict[str, Any], word: str, section: str) -> None:
+    """Add the key `type` that chooses the element."""
+    words = [word, "revolute"] if word == "clearance_joint" else [word]
+    entry["properties"] = {"type": {"enum": words}, **entry["properties"]}
+    if DEFAULT.get(section) != word:
+        entry["required"] = ["type", *entry.get("required", ())]
+
+
+def _part(value: Any) -> Any:
+    """The same with nothing required and null allowed for every key."""
+    if isinstance(value, list):
+        return [_part(item) for item in value]
+    if not isinstance(value, dict):
+        return value.replace("#/$defs/", "#/$defs/part_") if _is_reference(value) else value
+    found = {}
+    for key, inner in value.items():
+        if key == "required" and isinstance(inner, list):
+            continue
+        if key == "properties":
+            found[key] = {name: _or_null(_part(item)) for name, item in inner.items()}
+        elif key == "additionalProperties" and isinstance(inner, dict):
+            found[key] = _or_null(_part(inner))
+        else:
+            found[key] = _part(inner)
+    return found
+
+
+def _is_reference(value: Any) -> bool:
+    return isinstance(value, str) and value.startswith("#/$defs/")
+
+
+def _or_null(value: dict[str, Any]) -> dict[str, Any]:
+    return {"anyOf": [value, {"type": "null"}]}
