@@ -1,6 +1,7 @@
 import pytest
 
 from tests import small
+from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.spec.load import loads
 from trsim.store.read import read
@@ -22,3 +23,14 @@ def scenario():
 @pytest.fixture(scope="session")
 def mechanism(scenario):
     return assemble(scenario)
+
+
+@pytest.fixture(scope="session")
+def running_part(tmp_path_factory):
+    """The file of a run that was killed."""
+    folder = tmp_path_factory.mktemp("killed")
+    process = outside.begun(folder)
+    outside.blocks_until(process, 1.2)
+    process.kill()
+    process.communicate()
+    return folder / "runs/crank.h5.part"

@@ -1,6 +1,7 @@
 import h5py
 import numpy as np
 import pytest
+import xarray
 
 from trsim.errors import FileError, UsageError
 from trsim.store import describe
@@ -65,3 +66,15 @@ def test_unknown_channel_and_contact(result):
 def test_cause_names_what_the_system_said():
     text = "Can't write (errno = 28, error message = 'No space left on device', buf = 0x5)"
     assert describe.cause(OSError(text)) == "No space left on device"
+
+
+def test_xarray_opens_a_result_with_one_line(result):
+    with xarray.open_dataset(result.path, engine="h5netcdf") as data:
+        assert data.sizes["time"] == result.rows
+        for name in result.names:
+            np.testing.assert_array_equal(data[name].values, result.channel(name))
+            assert data[name].attrs["units"] == result.unit(name)
+            assert data[name].dims[0] == "time"
+        np.testing.assert_array_equal(data.time.values, result.time)
+        force = data["B.force"].sel({"component.xyz": "y"})
+        np.testing.assert_array_equal(force, result.channel("B.force.y"))

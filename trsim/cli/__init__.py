@@ -14,7 +14,7 @@ import click
 from trsim.cli.frame import usage
 from trsim.version import __version__
 
-COMMANDS = ("run", "report", "check", "show")  # each a module of this package
+COMMANDS = ("run", "report", "check", "show", "export", "recover")  # each a module of this package
 
 
 class Commands(click.Group):

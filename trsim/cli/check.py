@@ -5,6 +5,7 @@ from typing import Any
 import click
 
 from trsim.cli.frame import Answer, framed
+from trsim.cli.source import loaded
 from trsim.errors import TrsimError
 
 
@@ -32,9 +33,8 @@ def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
     """What a scenario is once assembled, and where it would start."""
     from trsim.cli.progress import compiling
     from trsim.cli.run import placed
-    from trsim.spec.load import load
 
-    scenario = load(source, sets)
+    scenario = loaded(source, sets)
     compiling(answer, "equations.derivative")
     from trsim.assemble.assemble import assemble
 
@@ -52,6 +52,8 @@ def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
 
 def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
     """Bodies, joints and what the assembly found out about them."""
+    from trsim.spec.lint import lint
+
     model = mechanism.model
     return {
         "bodies": list(scenario.bodies),
@@ -67,7 +69,7 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "redundant": list(mechanism.redundant),
         "singular": list(mechanism.singular),
         "not_unique": list(mechanism.not_unique),
-        "notes": list(mechanism.notes),
+        "notes": [*mechanism.notes, *lint(scenario)],
     }
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from trsim.errors import TrsimError
+from trsim.errors import FileError, TrsimError
 
 INTERRUPTED: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
@@ -87,6 +87,9 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
         except BrokenPipeError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             return 0
+        except OSError as error:  # of a file that is none of ours: kernels being compiled, for one
+            what = f"{error.filename or 'file system'}: {error.strerror or error}"
+            answer.fail(FileError(what))
         except Exception as error:
             if Stop.number:  # numba's own way of telling that an exception passed through
                 answer.interrupted()

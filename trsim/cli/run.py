@@ -8,7 +8,11 @@ from typing import Any
 import click
 
 from trsim.cli.frame import Answer, Stop, framed
+from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
+
+LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 @click.command("run")
@@ -21,7 +25,8 @@ def command(
 ) -> None:
     """Simulate SCENARIO files and write result files (HDF5).
 
-    Default output: runs/NAME.h5.
+    Default output: runs/NAME.h5.  A result file in place of a scenario runs its scenario again,
+    into runs/NAME.again.h5.
     """
     answer.data["runs"] = []
     for source, target in targets(scenarios, output):
@@ -46,7 +51,7 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
         return [(scenarios[0], folder)]
     found: dict[Path, str] = {}
     for source in scenarios:
-        target = folder / f"{Path(source).stem}.h5"
+        target = folder / f"{stem(source)}.h5"
         if target in found:
             what = f"{found[target]} and {source} would both be written to {target}"
             raise UsageError(what, "Run them one by one with -o.")
@@ -57,9 +62,9 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
 def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dict[str, Any]:
     """Run one scenario; the summary of its result."""
     from trsim.cli.progress import compiling, watched
-    from trsim.spec.load import load
 
-    scenario = load(source, sets)
+    check_target(target)
+    scenario = loaded(source, sets)
     if scenario.solver.end is None:
         error = ScenarioError(
             "field required: end (s)", "Write for example `end: 1 s`.", ("solver",)
@@ -69,12 +74,13 @@ def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dic
     compiling(answer, "equations.derivative" if by_scipy else "march.march")
     from trsim.assemble.assemble import assemble
     from trsim.solve.simulate import simulate
+    from trsim.spec.lint import lint
     from trsim.store.hdf5 import write
 
     try:
         mechanism = assemble(scenario)
-        for note in mechanism.notes:
-            answer.say(f"{source}: {note}")
+        for note in (*mechanism.notes, *lint(scenario)):
+            answer.say(f"{source}: warning: {note}")
         blocks = watched(simulate(scenario, mechanism), answer, source, scenario.solver.end)
         summary = write(target, scenario, mechanism, blocks, shlex.join(["trsim", *sys.argv[1:]]))
     except TrsimError as error:
@@ -84,7 +90,27 @@ def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dic
     if Stop.number:
         raise KeyboardInterrupt
     answer.say(line(summary))
+    lost = summary["statistics"].get("energy_residual_relative", 0.0)
+    if lost > LOST:
+        answer.say(
+            f"{source}: warning: the energy book does not close, by {100 * lost:.2g} % of the "
+            "largest energy exchanged; tighten `tolerance`; does the velocity of a drive jump?"
+        )
+    if (identical := same(source, summary)) is not None:
+        summary["identical"] = identical
+        answer.say(f"the content {'is identical to' if identical else 'differs from'} {source}")
     return summary
+
+
+def check_target(target: Path) -> None:
+    """Refuse to write over a file that is no result of ours."""
+    if not target.is_file() or target.stat().st_size == 0:
+        return
+    with target.open("rb") as file:
+        if file.read(8) != SIGNATURE:
+            raise UsageError(
+                f"{target} exists and is not a result file", "Name another file with -o."
+            )
 
 
 def placed(error: TrsimError, scenario: Any) -> TrsimError:

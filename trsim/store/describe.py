@@ -149,11 +149,7 @@ def end(
     file: h5py.File, told: dict[str, Any], scenario: Any, outcome: Any, provenance: dict
 ) -> None:
     """Status, summary, solver and provenance."""
-    file.attrs["status"], file.attrs["reason"] = told["status"], told["reason"]
-    for name in ("time", "rows", "events"):
-        file["summary"].attrs[name] = told[name]
-    for joint, numbers in told["contacts"].items():
-        file["summary"].create_group(joint).attrs.update(numbers)
+    summarised(file, told)
     solver = file["solver"]
     for name, value in vars(scenario.solver).items():
         if isinstance(value, str | int | float | bool):
@@ -162,6 +158,15 @@ def end(
         if name != CPU:
             solver.attrs[name] = value
     file["provenance"].attrs.update(provenance)
+
+
+def summarised(file: h5py.File, told: dict[str, Any]) -> None:
+    """Status and summary."""
+    file.attrs["status"], file.attrs["reason"] = told["status"], told["reason"]
+    for name in ("time", "rows", "events"):
+        file["summary"].attrs[name] = told[name]
+    for joint, numbers in told["contacts"].items():
+        file["summary"].create_group(joint).attrs.update(numbers)
 
 
 def provenance(command: str, clock: Clock, outcome: Any) -> dict[str, Any]:

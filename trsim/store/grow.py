@@ -90,6 +90,7 @@ def _dataset(group: h5py.Group, field: Field, chunk: int) -> h5py.Dataset:
         maxshape=(None, *shape),
         chunks=(chunk, *shape),
         dtype=dtype,
+        fillvalue=None if field.words else np.nan,  # a row that was never written says so
         fletcher32=True,
     )
     if field.unit:

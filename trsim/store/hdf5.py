@@ -25,6 +25,7 @@ __all__ = ["Run", "read", "write"]
 LIBVER = ("v110", "v110")  # the first with SWMR: every HDF5 since 1.10 reads it
 FLUSHED = 0.5  # s of wall time between two flushes
 CACHE = 128 << 10  # bytes of chunks kept per dataset
+BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
 EXPECTED = 256  # rows of the tables whose length nobody knows
 KINDS = ("", "onset", "separation")  # of events, by number
 
@@ -116,8 +117,20 @@ class Running:
         """Make the file with everything that has a name, then let readers in."""
         if self.file is not None:
             return
-        columns = [c for c in self.mechanism.columns if c.wanted or c.name in self.planned.columns]
+        _room(self.part)
         file = h5py.File(self.part, "w", libver=LIBVER, rdcc_nbytes=CACHE)
+        try:
+            self.declare(file)
+            file.swmr_mode = True
+        except BaseException:  # there is no row in it yet
+            _let_go(file)
+            self.part.unlink(missing_ok=True)
+            raise
+        self.file = file
+
+    def declare(self, file: h5py.File) -> None:
+        """Groups, names and attributes."""
+        columns = [c for c in self.mechanism.columns if c.wanted or c.name in self.planned.columns]
         describe.begin(file, self.scenario, self.mechanism)
         scales(file, {c.size for c in self.mechanism.columns})
         time_field = Field("time", "s", "simulated time", 0)
@@ -135,8 +148,6 @@ class Running:
         self.force = {e: _force_column(self.mechanism.instances[e]) for e in self.contacts}
         self.events = _events(file, self.mechanism, time_field)
         points.declare(file, self.planned)
-        file.swmr_mode = True
-        self.file, self.flushed = file, time.monotonic()
 
     def take(self, block: Any) -> None:
         """Store one block of results."""
@@ -171,6 +182,7 @@ class Running:
             self.flush()
             self.file.close()
             with h5py.File(self.part, "r+", libver=LIBVER) as file:
+                self.file = file
                 complete = status != "interrupted"  # otherwise there are only two seconds
                 if complete:
                     points.complete(file, self.planned)
@@ -197,13 +209,33 @@ class Running:
         HDF5 would go on trying to write what it holds, and fail again when it is unloaded; all it
         still has to say goes to nowhere instead.
         """
-        if self.file is None or not self.file.id.valid:
-            return
-        with contextlib.suppress(OSError, RuntimeError):
-            nowhere = os.open(os.devnull, os.O_RDWR)
-            os.dup2(nowhere, self.file.id.get_vfd_handle())
-            os.close(nowhere)
-            self.file.close()
+        if self.file is not None:
+            _let_go(self.file)
+
+
+def _room(part: Path) -> None:
+    """See that a file can be begun: HDF5 ends the process where its first bytes fail."""
+    trial = part.with_name(part.name + ".room")  # readers may already look for the part file
+    try:
+        with trial.open("wb") as file:
+            file.write(bytes(BEGINNING))
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        what = f"{part}: the first {BEGINNING} bytes cannot be written: {error.strerror}"
+        raise FileError(what) from None
+    finally:
+        trial.unlink(missing_ok=True)
+
+
+def _let_go(file: h5py.File) -> None:
+    if not file.id.valid:
+        return
+    with contextlib.suppress(OSError, RuntimeError):
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, file.id.get_vfd_handle())
+        os.close(nowhere)
+        file.close()
 
 
 def _steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:

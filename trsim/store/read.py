@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from trsim.errors import FileError, UsageError, known
 from trsim.store.content import content_hash
-from trsim.store.grow import Array
+from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
+from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import split
 
 FORMAT, VERSION = "trsim run", 1
-SIGNATURE = b"\x89HDF\r\n\x1a\n"
 SWMR = 0x04  # in byte 11 of the file: open for one writer, or its writer was killed
 
 
@@ -165,8 +165,7 @@ def read(path: str | os.PathLike) -> Run:
             sizes={name: d.shape[1] if d.ndim == 2 else 1 for name, d in channels.items()},
             parts=_parts(file["mechanism"]),
             contacts=tuple(file["steps"]),
-            # a killed writer may have left the last columns behind
-            rows=min(len(d) for d in [time, *channels.values()]),
+            rows=_written([time, *channels.values()]),
         )
 
 
@@ -198,8 +197,11 @@ def opened(path: Path) -> Iterator[h5py.File]:
 def _file(path: Path) -> h5py.File:
     """The file, in the mode its superblock asks for: HDF5 waits long for a writer that is not."""
     with path.open("rb") as file:
-        start = file.read(12)
-    writing = len(start) == 12 and start.startswith(SIGNATURE) and start[11] & SWMR
+        start = file.read(36)
+    writing = len(start) == 36 and start.startswith(SIGNATURE) and start[11] & SWMR
+    if writing and path.stat().st_size < int.from_bytes(start[28:36], "little"):
+        # cut short: in SWMR mode HDF5 would go on looking for the rest, for minutes
+        return h5py.File(Plain(path), "r")
     return h5py.File(path, "r", libver="latest", swmr=True) if writing else h5py.File(path, "r")
 
 
@@ -212,7 +214,10 @@ def _unreadable(path: Path, error: Exception) -> tuple[str, str]:
         return f"{path} is not a result file", "A result file is written by `trsim run`."
     text = str(error).splitlines()[0] if str(error) else type(error).__name__
     what = "is truncated" if "truncated" in text else "is damaged"
-    return f"{path} {what}: {text[:200]}", "Run the scenario again."
+    hint = "Run the scenario again."
+    if path.suffix == ".part":
+        hint = f"`trsim recover {path}` copies what is left."
+    return f"{path} {what}: {text[:200]}", hint
 
 
 def _check(file: h5py.File, path: Path) -> None:
@@ -235,8 +240,28 @@ def _parts(group: h5py.Group) -> dict[str, Part]:
 
 
 def _table(group: h5py.Group) -> dict[str, Any]:
-    n = min(len(dataset) for dataset in group.values())
+    n = _written(list(group.values()))
     return {name: dataset[:n] for name, dataset in group.items()}
+
+
+def _written(datasets: list[h5py.Dataset]) -> int:
+    """The rows that all datasets have.
+
+    A killed writer, or one that met a full disk, may have left some behind, or have made room for
+    rows it never filled: they are NaN then.
+    """
+    n = min(len(dataset) for dataset in datasets)
+    if datasets[0].file.attrs["status"] != "running":
+        return n
+    for dataset in datasets:
+        while n and dataset.dtype.kind == "f":
+            begin = max(n - LONGEST, 0)
+            filled = ~np.isnan(dataset[begin:n].reshape(n - begin, -1)).any(axis=1)
+            if filled.any():
+                n = begin + int(np.flatnonzero(filled)[-1]) + 1
+                break
+            n = begin
+    return n
 
 
 def _points(group: h5py.Group) -> Points:

@@ -1,0 +1,34 @@
+"""trsim recover: what a dead run left, as a result file."""
+
+from pathlib import Path
+
+import click
+
+from trsim.cli.frame import Answer, framed
+from trsim.errors import UsageError
+
+
+@click.command("recover")
+@click.argument("part", type=click.Path())
+@click.option("-o", "--output", type=click.Path(), help="Result file.")
+@framed
+def command(answer: Answer, part: str, output: str | None) -> None:
+    """Copy what a dead run left in FILE.part into a result file with status `recovered`.
+
+    Default output: FILE.recovered.h5 beside it.  FILE.part stays as it is.
+    """
+    from trsim.store.recover import recover
+
+    source = Path(part)
+    stem = source.name.removesuffix(".part").removesuffix(".h5")
+    target = Path(output) if output else source.with_name(f"{stem}.recovered.h5")
+    if target.resolve() == source.resolve():
+        raise UsageError(f"{part} would be replaced by what is recovered from it")
+    answer.say(f"reading {part} in a process of its own, as a damaged file may stop HDF5")
+    found = recover(source, target)
+    answer.data |= found
+    answer.put(found["file"])
+    answer.say(
+        f"{found['file']}: recovered until t = {found['time']:.6g} s, {found['rows']} rows, "
+        f"{found['events']} contact events; the run was '{found['was']}'"
+    )

@@ -1,0 +1,43 @@
+"""Channels of a result file as comma-separated values."""
+
+import os
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from trsim.store.read import Run, opened
+
+LETTERS = ("x", "y", "z")
+ROWS = 4096  # rows handled together
+
+
+def components(channel: str, size: int) -> list[str]:
+    """The scalar columns of a channel: itself, .x .y .z, or .xx .xy ... of a rotation."""
+    if size == 1:
+        return [channel]
+    if size == 3:
+        return [f"{channel}.{letter}" for letter in LETTERS]
+    pairs = [a + b for a in LETTERS for b in LETTERS]
+    return [f"{channel}.{pairs[k] if size == 9 else k}" for k in range(size)]
+
+
+def export(run: Run, names: list[str], target: Path) -> int:
+    """Write time and the named columns; the number of rows."""
+    places = {n: (c, k) for c, s in run.sizes.items() for k, n in enumerate(components(c, s))}
+    units = [run.units[places[name][0]] for name in names]
+    heads = ["time [s]", *(f"{n} [{u}]" for n, u in zip(names, units, strict=True))]
+    target.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = target.with_name(target.name + ".part")
+    with opened(run.path) as file, unfinished.open("w", encoding="utf-8", newline="") as out:
+        out.write(",".join(f'"{head}"' if "," in head else head for head in heads) + "\r\n")
+        for begin in range(0, run.rows, ROWS):
+            table = _table(file, [places[n] for n in names], begin, min(begin + ROWS, run.rows))
+            out.writelines(",".join(map(repr, row)) + "\r\n" for row in table.tolist())
+    os.replace(unfinished, target)
+    return run.rows
+
+
+def _table(file: h5py.File, places: list[tuple[str, int]], begin: int, end: int) -> np.ndarray:
+    stored = {c: file[c][begin:end].reshape(end - begin, -1) for c, _ in places}
+    return np.column_stack([file["time"][begin:end], *(stored[c][:, k] for c, k in places)])

@@ -1,0 +1,192 @@
+"""The tables of a broken file, cut to what is whole, written into another file."""
+
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+
+from trsim.store.grow import AXES, Array
+from trsim.store.peaks import Peak
+from trsim.store.peaks import store as store_peaks
+
+ROWS = 1 << 14  # rows handled together
+LETTERS = "xyz"
+SECTIONS = {"joints", "drives", "forces", "sensors"}
+KEPT = ("scenario", "mechanism", "solver", "provenance")  # groups of small things, copied whole
+SCALE = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
+
+
+class Extremes(NamedTuple):
+    """Largest and smallest values of the components of one dataset, and their rows' times."""
+
+    high: Array
+    high_time: Array
+    low: Array
+    low_time: Array
+
+
+class Salvage:
+    """Copies a source into an empty file."""
+
+    def __init__(self, source: h5py.File, file: h5py.File) -> None:
+        self.source, self.file = source, file
+        self.extremes: dict[str, Extremes] = {}  # dataset -> its extremes
+        self.rows: dict[str, int] = {}  # group -> rows
+
+    def copy(self) -> None:
+        """Everything but phase portraits and sections, which follow from the rows."""
+        source, file = self.source, self.file
+        for name, value in source.attrs.items():
+            if name != "content_sha256":
+                file.attrs[name] = value
+        for name in KEPT:
+            source.copy(name, file)
+        scales = [name for name in source if name.startswith("component.")]
+        for name in scales:
+            file[name] = source[name][:]
+            file[name].attrs["long_name"] = "component"
+            file[name].make_scale(name)
+        self._table(source, file)
+        for group in ("events", *(f"steps/{name}" for name in source["steps"])):
+            self._table(source[group], file.create_group(group))
+        file.require_group("steps")
+        file.create_group("summary")
+        self._peaks()
+
+    def _table(self, source: h5py.Group, group: h5py.Group) -> None:
+        """Copy the datasets with a time scale, as far as they are whole."""
+        names = [n for n, d in source.items() if isinstance(d, h5py.Dataset)]
+        names = ["time", *(n for n in names if n != "time" and not n.startswith("component."))]
+        for name in names:
+            _empty(source[name], group, name)
+        last, n = -np.inf, 0
+        while True:
+            piece = _piece(source, names, n, last)
+            count = len(piece["time"])
+            for name, values in piece.items():
+                group[name].resize(n + count, axis=0)
+                group[name][n:] = values
+                if values.dtype.kind == "f" and count:
+                    self._extreme(group[name].name[1:], values, piece["time"])
+            n += count
+            if count < ROWS:
+                break
+            last = piece["time"][-1]
+        self.rows[group.name] = n
+        group["time"].make_scale("time")
+        for name in names[1:]:
+            group[name].dims[0].attach_scale(group["time"])
+            if group[name].ndim == 2:
+                group[name].dims[1].attach_scale(self.file[AXES[group[name].shape[1]]])
+
+    def _extreme(self, name: str, values: Array, time: Array) -> None:
+        table = values.reshape(len(values), -1)
+        k, j = table.argmax(0), table.argmin(0)
+        each = np.arange(table.shape[1])
+        now = Extremes(table[k, each], time[k], table[j, each], time[j])
+        old = self.extremes.get(name, now)
+        up, down = now.high > old.high, now.low < old.low
+        self.extremes[name] = Extremes(
+            np.where(up, now.high, old.high), np.where(up, now.high_time, old.high_time),
+            np.where(down, now.low, old.low), np.where(down, now.low_time, old.low_time),
+        )  # fmt: skip
+
+    # --- what a complete run would have said ------------------------------------------------
+
+    def _peaks(self) -> None:
+        """Those of the solver if it came so far, otherwise those of the rows."""
+        if "value" in self.source["peaks"]:
+            self.source.copy("peaks", self.file)
+            return
+        self.file.create_group("peaks")
+        inside = self.file["mechanism"]
+        sections = inside["section"].asstr()[:]
+        told = {n for n, s in zip(inside["name"].asstr()[:], sections, strict=True)
+                if s in SECTIONS}  # fmt: skip
+        found = []
+        for name, e in self.extremes.items():
+            if "/" in name or name.split(".")[0] not in told or len(e.high) not in (1, 3):
+                continue
+            unit = str(self.file[name].attrs.get("units", "-"))
+            for k in range(len(e.high)):
+                full = name + (f".{LETTERS[k]}" if len(e.high) == 3 else "")
+                values = (("largest", e.high, e.high_time), ("smallest", e.low, e.low_time))
+                for extreme, value, when in values:
+                    found.append(Peak(full, extreme, float(value[k]), float(when[k]), np.nan, unit))
+        store_peaks(self.file, found)
+        self.file["peaks"].attrs["extremes"] = "of the output rows"
+
+    def summary(self) -> dict[str, Any]:
+        """The recovered run in a few numbers."""
+        events, contacts = self.file["events"], {}
+        element, kind = events["element"].asstr()[:], events["kind"].asstr()[:]
+        for name in self.file["steps"]:
+            onset = (element == name) & (kind == "onset")
+            speed = events["speed"][:][onset]
+            peak = self.extremes.get(f"steps/{name}/contact_force")
+            peak = peak or self.extremes.get(f"steps/{name}/normal_force")
+            contacts[name] = {
+                "impacts": int(np.count_nonzero(onset)),
+                "fastest_impact": float(speed.max(initial=0.0)),
+                "peak_force": float(peak.high[0]) if peak else 0.0,
+                "peak_time": float(peak.high_time[0]) if peak else 0.0,
+                "steps": self.rows[f"/steps/{name}"],
+            }
+        n = self.rows["/"]
+        return {
+            "title": str(self.file.attrs["title"]),
+            "time": float(self.file["time"][n - 1]) if n else 0.0,
+            "rows": n,
+            "events": self.rows["/events"],
+            "contacts": contacts,
+        }
+
+
+def _empty(item: h5py.Dataset, group: h5py.Group, name: str) -> None:
+    """A dataset like `item`, without rows."""
+    made = group.create_dataset(
+        name, (0, *item.shape[1:]), maxshape=(None, *item.shape[1:]), chunks=item.chunks,
+        dtype=item.dtype, fletcher32=True,
+    )  # fmt: skip
+    for key, value in item.attrs.items():
+        if key not in SCALE:
+            made.attrs[key] = value
+
+
+def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dict[str, Any]:
+    """The next rows that are whole in all datasets, at most ROWS."""
+    end = min(begin + ROWS, *(len(source[name]) for name in names), begin + ROWS)
+    piece: dict[str, Any] = {}
+    for name in names:
+        piece[name] = values = _readable(source[name], begin, end)
+        end = begin + len(values)
+    n = max(end - begin, 0)
+    time = piece["time"][:n]
+    n = _first(~(np.diff(time, prepend=last) > 0.0), n)
+    for values in piece.values():
+        rows = values[:n].reshape(n, int(np.prod(values.shape[1:])))
+        # a row that was never written; a text is empty then, see hdf5.KINDS
+        unwritten = np.isnan(rows) if values.dtype.kind == "f" else rows == b""
+        n = _first(unwritten.any(axis=1), n)
+    return {name: values[:n] for name, values in piece.items()}
+
+
+def _readable(item: h5py.Dataset, begin: int, end: int) -> Any:
+    """Rows up to the first chunk that cannot be read."""
+    try:
+        return item[begin : max(begin, end)]
+    except OSError:
+        pass
+    good, step = begin, item.chunks[0]
+    for k in range(begin, end, step):
+        try:
+            item[k : min(k + step, end)]
+        except OSError:
+            break
+        good = min(k + step, end)
+    return item[begin:good]
+
+
+def _first(bad: Any, n: int) -> int:
+    """The index of the first true value, n without one."""
+    return int(np.argmax(bad)) if bad.any() else n
