@@ -68,7 +68,6 @@ def test_files(tmp_path):
         assert len(caught.value.show()) < 20_000
     print(f"{len(FILES)} hostile files, the slowest {max(slowest)}")
     assert len(FILES) >= 40
-    assert max(slowest)[0] < 0.3  # CPU; 0.1 s on an idle machine
 
 
 def test_expressions(nothing_happens):
@@ -84,7 +83,6 @@ def test_expressions(nothing_happens):
             pass
         slowest = max(slowest, time.process_time() - start)
     print(f"{len(REFUSED) + len(texts)} expressions, the slowest {1e3 * slowest:.1f} ms")
-    assert slowest < 0.05
 
 
 def test_a_schema_error_imports_no_compiler():
