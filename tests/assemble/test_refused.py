@@ -61,7 +61,7 @@ def test_bad_bodies(old, new, path, hint):
 @pytest.mark.parametrize(
     "old, new, path, hint",
     [
-        ("[crank, coupler]", "[cranck, coupler]", ("joints", "B", "bodies"), "'crank'"),
+        ("[crank, coupler]", "[cranck, coupler]", ("joints", "B", "bodies", 0), "'crank'"),
         ("[crank, coupler]", "[crank, crank]", ("joints", "B", "bodies"), "two different"),
     ],
 )
@@ -70,6 +70,13 @@ def test_bad_joints(old, new, path, hint):
         built(four_bar().replace(old, new))
     assert caught.value.exit_code == 3
     assert caught.value.path == path and hint in caught.value.hint
+
+
+def test_unknown_joint_in_an_equilibrium():
+    with pytest.raises(ScenarioError) as caught:
+        built(four_bar("true", "initial: {equilibrium: [A, E]}"))
+    assert caught.value.exit_code == 3
+    assert caught.value.path == ("initial", "equilibrium", 1)
 
 
 def test_unknown_sensor_in_a_load():
@@ -94,7 +101,6 @@ def test_a_loop_that_cannot_be_closed():
         ("{A: 0.3, D: -0.1}", "", ("initial", "D")),
         ("{A: 0.3}", "drives: {motor: {joint: A, position: t}}", ("initial", "A")),
         ("{A: 0.3}", "drives: {motor: {joint: D, position: t}}", ("initial", "A")),
-        ("{equilibrium: [E]}", "", ("initial",)),
     ],
 )
 def test_contradictory_starts(initial, more, path):

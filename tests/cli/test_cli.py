@@ -20,12 +20,12 @@ def files(folder):
     return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
 
 
-def started(folder, *arguments):
+def started(folder, *arguments, stdout=subprocess.PIPE):
     """A command line in a process of its own."""
     command = [sys.executable, "-m", "trsim", *arguments]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.Popen(  # noqa: S603
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        command, cwd=folder, env=environment, stdout=stdout, stderr=subprocess.PIPE,
         text=True,
     )  # fmt: skip
 

@@ -56,7 +56,7 @@ class Addresses:
         self.specs = specs
         self.points: list[tuple[int, tuple[float, ...]]] = []  # for arms and the size
 
-    def body(self, name: str, *path: str) -> int:
+    def body(self, name: str, *path: str | int) -> int:
         """Frame of a body; ground is 0."""
         if name not in self.frames:
             raise ScenarioError(f"no body named '{name}'", known(name, self.frames), path)
@@ -64,7 +64,7 @@ class Addresses:
 
     def bodies(self, pair: tuple[str, str]) -> tuple[int, int]:
         """Frames of two different bodies."""
-        i, j = self.body(pair[0], "bodies"), self.body(pair[1], "bodies")
+        i, j = self.body(pair[0], "bodies", 0), self.body(pair[1], "bodies", 1)
         if i == j:
             raise ScenarioError(
                 f"joins '{pair[0]}' to itself", "name two different bodies", ("bodies",)

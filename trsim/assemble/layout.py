@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from trsim.assemble.outputs import ENERGY_COLUMNS
-from trsim.elements.contract import FIRST_ROW
+from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import Model
 from trsim.errors import ScenarioError, known
 
@@ -33,24 +33,22 @@ def matches(name: str, patterns: tuple[str, ...]) -> bool:
     return any(fnmatchcase(name, p) or name.startswith(p + ".") for p in patterns)
 
 
-def units(instance: "Instance", unit: str, at: "Addresses") -> str:
-    """Units that depend on whether a joint turns or slides."""
-    if unit in ("coordinate", "coordinate/s", "coordinate/s^2", "drive"):
-        spec = getattr(at.scenario, instance.section).get(instance.name)
-        x = at.coordinate(spec.joint) if spec and spec.joint else None
-        # no joint: a stop of a point on a wall, or a drive made for the start of a run
-        own = "rad" if x is not None and x.kind == "angle" else "m"
-        return {"drive": "N*m" if own == "rad" else "N"}.get(unit, unit.replace("coordinate", own))
-    return unit
+def unit(instance: "Instance", channel: Channel, at: "Addresses") -> str:
+    """The unit of a channel; some depend on whether a joint turns or slides."""
+    if channel.unit == channel.unit_on("rad") == channel.unit_on("m"):
+        return channel.unit
+    spec = getattr(at.scenario, instance.section).get(instance.name)
+    x = at.coordinate(spec.joint) if spec and spec.joint else None
+    # no joint: a stop of a point on a wall, or a drive made for the start of a run
+    return channel.unit_on("rad" if x is not None and x.kind == "angle" else "m")
 
 
 def all_names(instances: list["Instance"]) -> list[str]:
     """Every channel one may ask for, and the elements that have some."""
     names = []
     for instance in instances:
-        channels = [f"{instance.name}.{c.name}" for c in instance.element.channels if c.name]
-        if instance.section == "joints" and instance.element.rows:
-            channels += [f"{instance.name}.reaction", f"{instance.name}.reaction_moment"]
+        recorded = (*instance.element.channels, *instance.element.reactions)
+        channels = [f"{instance.name}.{c.name}" for c in recorded if c.name]
         names += [instance.name, *channels] if channels else []
     return names + [f"energy.{name}" for name in ENERGY_COLUMNS]
 
@@ -82,16 +80,13 @@ def layout(
         if names and (any(map(asked, names)) or instance.row.contact):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
-                add(name, units(instance, channel.unit, at), channel.meaning, channel.size)
+                add(name, unit(instance, channel, at), channel.meaning, channel.size)
     for e, instance in enumerate(instances):
-        number = len(instance.element.rows)
-        if instance.section != "joints" or not number:
-            continue
-        name = f"{instance.name}.reaction"
-        if asked(name) or asked(name + "_moment"):
-            joints.append((e, FIRST_ROW, number, width))
-            add(name, "N", "constraint force on the second body, world axes", 3)
-            add(name + "_moment", "N*m", "constraint moment on the second body at the joint", 3)
+        names = [f"{instance.name}.{c.name}" for c in instance.element.reactions]
+        if any(map(asked, names)):
+            joints.append((e, FIRST_ROW, len(instance.element.rows), width))
+            for name, channel in zip(names, instance.element.reactions, strict=True):
+                add(name, channel.unit, channel.meaning, channel.size)
     energy = width
     for name in ENERGY_COLUMNS:
         add(f"energy.{name}", "J", "energy book", 1)
@@ -100,7 +95,7 @@ def layout(
         raise ScenarioError(
             f"no channel matches '{unused[0]}'",
             known(unused[0], all_names(instances)),
-            ("output", "channels"),
+            ("output", "channels", patterns.index(unused[0])),
         )
     filled = model.replaced(
         wanted=wanted,

@@ -1,9 +1,6 @@
-"""The command line: `trsim run`, `trsim report`, ...  One file per command, imported when used.
+"""The command line: `trsim run`, `trsim report`, ...  One file per command, imported when used."""
 
-Exit codes: 0 done, 1 bug in trsim, 2 usage, 3 scenario invalid, 4 model ill-posed, 5 solver failed,
-6 some cases of a sweep failed, 7 file system, 130 and 143 interrupted.
-"""
-
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -11,10 +8,12 @@ from typing import Any, NoReturn
 
 import click
 
-from trsim.cli.frame import usage
+from trsim.cli.frame import EXIT_CODES, Answer
 from trsim.version import __version__
 
-COMMANDS = ("run", "report", "check", "show", "export", "recover")  # each a module of this package
+# each a module of this package
+COMMANDS = ("run", "report", "check", "show", "export", "recover", "explain", "schema")
+EPILOG = f"Exit codes: {', '.join(f'{code} {told}' for code, told in EXIT_CODES.items())}."
 
 
 class Commands(click.Group):
@@ -37,7 +36,7 @@ class Commands(click.Group):
         return super().resolve_command(ctx, args)
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=Commands, epilog=EPILOG, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, message="trsim %(version)s")
 def program() -> None:
     """Simulate mechanisms with clearance in their joints."""
@@ -46,13 +45,14 @@ def program() -> None:
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run a command line and exit."""
     given = list(sys.argv[1:] if arguments is None else arguments)
+    named = given[0] if given and given[0] in COMMANDS else None
+    answer = Answer(named, "--json" in given)  # where the command cannot give its own
     try:
         code = program.main(given, prog_name="trsim", standalone_mode=False)
-    except click.exceptions.NoArgsIsHelpError as error:
-        click.echo(error.format_message(), err=True)
-        code = 2
     except click.ClickException as error:
-        code = usage(error, given)
+        answer.refuse(error)
+        code = answer.close()
     except click.Abort:
-        code = 130
+        answer.interrupted(signal.SIGINT)
+        code = answer.close()
     sys.exit(code or 0)

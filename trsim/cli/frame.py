@@ -13,8 +13,19 @@ from typing import Any
 
 import click
 
-from trsim.errors import FileError, TrsimError
+from trsim.errors import FileError, Place, TrsimError
 
+EXIT_CODES = {  # 6 is kept for sweeps of which some cases failed
+    0: "done",
+    1: "bug in trsim",
+    2: "usage",
+    3: "scenario invalid",
+    4: "model ill-posed",
+    5: "solver failed",
+    7: "file system",
+    130: "interrupted by SIGINT",
+    143: "interrupted by SIGTERM",
+}
 INTERRUPTED: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
@@ -27,12 +38,17 @@ class Stop:
 
 
 class Answer:
-    """What a command has to tell, collected while it works."""
+    """What a command has to tell, collected while it works; documents/ says what that may be."""
 
-    def __init__(self, command: str, as_json: bool, quiet: bool) -> None:
+    def __init__(self, command: str | None, as_json: bool, quiet: bool = False) -> None:
         self.as_json, self.quiet = as_json, quiet
         self.exit_code = 0
-        self.data: dict[str, Any] = {"command": command, "exit_code": 0, "errors": []}
+        self.data: dict[str, Any] = {
+            "command": command,
+            "exit_code": 0,
+            "errors": [],
+            "unlisted": 0,
+        }
 
     def say(self, text: str) -> None:
         """A message."""
@@ -48,7 +64,9 @@ class Answer:
         """Tell an error.  The exit code is that of the first one."""
         click.echo(text or f"error: {error.show()}", err=True)
         self.exit_code = self.exit_code or error.exit_code
-        self.data["errors"] += [told(problem) for problem in error.problems]
+        self.data["unlisted"] += getattr(error, "unlisted", 0)
+        for one in error.problems:
+            self.entry(one.what, one.hint, one.exit_code, one.path, one.place)
 
     def broken(self, error: Exception) -> None:
         """Tell a bug."""
@@ -56,18 +74,41 @@ class Answer:
         hint = "This is a bug in trsim: please report it.  TRSIM_DEBUG=1 shows the traceback."
         click.echo(f"internal error: {kind}\n  {hint}", err=True)
         self.exit_code = 1
-        self.data["errors"].append({"what": kind, "hint": hint, "exit_code": 1})
+        self.entry(kind, hint, 1)
 
-    def interrupted(self) -> None:
+    def interrupted(self, number: int | None) -> None:
         """Tell that a signal ended the command."""
         click.echo("interrupted", err=True)
-        self.exit_code = INTERRUPTED.get(Stop.number or signal.SIGINT, 130)
+        self.exit_code = INTERRUPTED[number or signal.SIGINT]
+        self.entry(EXIT_CODES[self.exit_code], "", self.exit_code)
+
+    def refuse(self, error: click.ClickException) -> None:
+        """Tell what is wrong with the command line."""
+        error.show(sys.stderr)
+        self.exit_code = error.exit_code
+        self.entry(error.format_message(), "", error.exit_code)
+
+    def entry(
+        self, what: str, hint: str, code: int, path: tuple = (), place: Place | None = None
+    ) -> None:
+        """Add an error to the document."""
+        told = {"what": what, "hint": hint, "path": ".".join(map(str, path)), "exit_code": code}
+        for name in ("file", "line", "column"):
+            told[name] = getattr(place, name, None)
+        self.data["errors"].append(told)
 
     def close(self) -> int:
         """Print the document; the exit code."""
         self.data["exit_code"] = self.exit_code
-        if self.as_json:
-            click.echo(json.dumps(plain(self.data), indent=1, ensure_ascii=False))
+        try:
+            if self.as_json:
+                click.echo(json.dumps(plain(self.data), indent=1))
+            sys.stdout.flush()
+        except OSError as error:
+            unheard()
+            if not isinstance(error, BrokenPipeError):
+                click.echo(f"error: standard output: {error.strerror or error}", err=True)
+                return self.exit_code or FileError.exit_code
         return self.exit_code
 
 
@@ -83,16 +124,16 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
         except TrsimError as error:
             answer.fail(error)
         except KeyboardInterrupt:
-            answer.interrupted()
+            answer.interrupted(Stop.number)
         except BrokenPipeError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0
+            unheard()
+            return answer.exit_code
         except OSError as error:  # of a file that is none of ours: kernels being compiled, for one
             what = f"{error.filename or 'file system'}: {error.strerror or error}"
             answer.fail(FileError(what))
         except Exception as error:
             if Stop.number:  # numba's own way of telling that an exception passed through
-                answer.interrupted()
+                answer.interrupted(Stop.number)
             elif os.environ.get("TRSIM_DEBUG"):
                 raise
             else:
@@ -129,28 +170,9 @@ def _stop(number: int, _: Any) -> None:
         raise KeyboardInterrupt
 
 
-def told(error: TrsimError) -> dict[str, Any]:
-    """An error as data."""
-    place = error.place
-    return {
-        "what": error.what,
-        "hint": error.hint,
-        "path": ".".join(map(str, error.path)),
-        "file": place.file if place else None,
-        "line": place.line if place else None,
-        "column": place.column if place else None,
-        "exit_code": error.exit_code,
-    }
-
-
-def usage(error: click.ClickException, given: list[str]) -> int:
-    """Tell a wrong command line."""
-    error.show(sys.stderr)
-    if "--json" in given:
-        told = {"what": error.format_message(), "hint": "", "exit_code": error.exit_code}
-        document = {"command": given[0], "exit_code": error.exit_code, "errors": [told]}
-        click.echo(json.dumps(document, indent=1, ensure_ascii=False))
-    return error.exit_code
+def unheard() -> None:
+    """Nobody reads standard output any more: what is still to be said goes to nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def plain(value: Any) -> Any:

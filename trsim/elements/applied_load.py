@@ -17,11 +17,19 @@ from trsim.laws.functions import value
 
 
 class AppliedLoad(Spec):
-    """A force at a point of a body (`at`, as drawn) or a torque on it."""
+    """A force at a point of a body or a torque on it: give one of the two.
+
+    body       the body it acts on
+    at         point of a force, as drawn; the centre of mass unless given
+    frame      `world`, or a body with which the direction turns
+    direction  of the force, or axis of the torque, as drawn; of any length
+    force      magnitude along the direction
+    torque     magnitude about the direction
+    """
 
     type: ClassVar[str] = "applied_load"
     body: str
-    at: vector("m") | None = None  # the centre of mass unless given
+    at: vector("m") | None = None
     frame: str = "world"
     direction: vector("-")
     force: Function("N") | None = None
@@ -90,4 +98,13 @@ ELEMENT = Element(
         Channel("load", "N", "its components, world axes", 3),
     ),
     kernels={"force": force, "measure": measure},
+    example="""
+bodies:
+  block: {mass: 2 kg, inertia: 0.01 kg*m^2}
+joints:
+  slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}
+forces:
+  push: {type: applied_load, body: block, direction: [1, 0, 0], force: "10*sin(20*t)"}
+solver: {end: 1 s}
+""",
 )

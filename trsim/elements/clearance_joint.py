@@ -59,7 +59,11 @@ from trsim.laws.friction import CODES, N_PARAMETERS, PARAMETERS, friction_force
 
 
 class ClearanceJoint(Revolute):
-    """A hinge with play: `clearance` is radial; `contact` names an entry of contact_laws."""
+    """A hinge with play: a revolute with the key `clearance`.
+
+    clearance  radial; with 0 the joint is an ideal revolute
+    contact    entry of contact_laws; may be left out where there is only one
+    """
 
     clearance: Annotated[float, Ge(0), Unit("m")]
     contact: str | None = None
@@ -312,4 +316,15 @@ ELEMENT = Element(
         "energy": energy,
         "measure": measure,
     },
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  pin: {type: revolute, bodies: [ground, rod], at: [0, 0], clearance: 0.1 mm, contact: steel}
+contact_laws:
+  steel: {normal: lankarani_nikravesh, bearing_radius: 10 mm, youngs_modulus: 207 GPa,
+          poisson: 0.3, restitution: 0.9}
+gravity: [0, -9.81, 0]
+solver: {end: 0.02 s}
+""",
 )

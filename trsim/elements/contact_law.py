@@ -41,14 +41,25 @@ def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
 
 
 class Friction(Spec):
-    """Friction in a contact."""
+    """Friction in a contact.
+
+    law                 none; coulomb: constant; modified_coulomb: none below v0, full from v1 on;
+                        sticking: bristles that hold at rest
+    coefficient         of sliding friction
+    v0                  sliding speed below which there is none
+    v1                  sliding speed from which it is full
+    static_coefficient  of sticking; the coefficient unless given
+    stribeck_speed      sliding speed at which sticking turns into sliding
+    bristle_stiffness   of the bristles, per unit of normal force
+    bristle_damping     of the bristles, per unit of normal force
+    """
 
     type: ClassVar[str] = "friction"
     law: Literal["none", "coulomb", "modified_coulomb", "sticking"] = "none"
     coefficient: Coefficient | None = None
     v0: Annotated[float, Ge(0), Unit("m/s")] | None = None
     v1: Speed | None = None
-    static_coefficient: Coefficient | None = None  # the coefficient unless given
+    static_coefficient: Coefficient | None = None
     stribeck_speed: Speed | None = None
     bristle_stiffness: Annotated[float, Gt(0), Unit("1/m")] | None = None
     bristle_damping: Annotated[float, Ge(0), Unit("s/m")] = 0.0
@@ -64,7 +75,21 @@ class Friction(Spec):
 
 
 class ContactLaw(Spec):
-    """The law of a contact between two bodies of given material and size."""
+    """The law of a contact between two bodies of given material and size.
+
+    normal                  how force depends on penetration and its rate
+    stiffness               a word that computes it from size and material, or the number
+    exponent                of the penetration
+    bearing_radius          radius of the bearing, and lever of the friction
+    width                   length of a line contact
+    youngs_modulus          of the bearing, and of the journal unless given
+    poisson                 Poisson's ratio of the bearing, and of the journal unless given
+    journal_youngs_modulus  of the journal
+    journal_poisson         Poisson's ratio of the journal
+    restitution             speed after an impact over speed before
+    slowest_impact          floor of the remembered impact speed
+    friction                along the surfaces
+    """
 
     type: ClassVar[str] = "contact_law"
     normal: Literal["lankarani_nikravesh", "hunt_crossley", "flores", "identified"]
@@ -74,7 +99,7 @@ class ContactLaw(Spec):
     exponent: Annotated[float, Interval(ge=1, le=3), Unit("-")] = 1.5
     bearing_radius: Length | None = None
     width: Length | None = None
-    youngs_modulus: Modulus | None = None  # of the bearing, and of the journal unless given
+    youngs_modulus: Modulus | None = None
     poisson: Poisson | None = None
     journal_youngs_modulus: Modulus | None = None
     journal_poisson: Poisson | None = None

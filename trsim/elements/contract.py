@@ -110,6 +110,18 @@ class Channel(NamedTuple):
     meaning: str
     size: int = 1
 
+    def unit_on(self, own: str) -> str:
+        """The unit where it depends on the joint, whose coordinate is in `own`: rad or m."""
+        turning = {"drive": "N*m" if own == "rad" else "N"}
+        return turning.get(self.unit, self.unit.replace("coordinate", own))
+
+
+# what every joint with constraint rows records
+REACTIONS = (
+    Channel("reaction", "N", "constraint force on the second body, world axes", 3),
+    Channel("reaction_moment", "N*m", "constraint moment on the second body at the joint", 3),
+)
+
 
 class Contact(NamedTuple):
     """What the solver must know of a contact to step through it (error norm, first step)."""
@@ -143,3 +155,8 @@ class Element:
     n_mem: int = 0
     n_state: int = 0  # entries of z an instance owns
     kernels: dict[str, Compiled] = field(default_factory=dict)
+    example: str = ""  # a scenario that runs, as short as it can be
+
+    @property
+    def reactions(self) -> tuple[Channel, ...]:
+        return REACTIONS if self.section == "joints" and self.rows else ()

@@ -28,7 +28,13 @@ from trsim.laws.functions import motion
 
 
 class Compliance(Spec):
-    """A spring and a damper in parallel, in series with the prescribed motion."""
+    """A spring and a damper in parallel, in series with the prescribed motion.
+
+    stiffness      of the spring
+    damping        of the damper; 0 unless this or damping_ratio is given
+    damping_ratio  zeta of c = 2 zeta sqrt(k m)
+    mass           m of it; unless given the driven body's mass, or inertia about the axis
+    """
 
     stiffness: Annotated[float, Gt(0), Unit("N/m", "N*m/rad")]
     damping: Annotated[float, Ge(0), Unit("N*s/m", "N*m*s/rad")] | None = None
@@ -37,7 +43,14 @@ class Compliance(Spec):
 
 
 class Drive(Spec):
-    """A prescribed position or velocity of a joint coordinate; depends on t only."""
+    """A prescribed position or velocity of a joint coordinate; depends on t only.
+
+    joint       revolute or prismatic joint whose coordinate is driven
+    position    the coordinate
+    velocity    its rate; starts from the place of the joint
+    sign        of the channel `force`; the motion does not depend on it
+    compliance  what lies between the prescribed motion and the joint; rigid without it
+    """
 
     type: ClassVar[str] = "drive"
     joint: str
@@ -217,4 +230,13 @@ ELEMENT = Element(
         "energy": energy,
         "measure": measure,
     },
+    example="""
+bodies:
+  disc: {mass: 2 kg, inertia: 0.01 kg*m^2}
+joints:
+  bearing: {type: revolute, bodies: [ground, disc], at: [0, 0]}
+drives:
+  motor: {joint: bearing, position: "0.5*smoothstep(t/0.2)"}
+solver: {end: 0.3 s}
+""",
 )

@@ -50,4 +50,14 @@ ELEMENT = Element(
     pack=pack,
     rows=("x", "y", "z", "tilt 1", "tilt 2", "turn"),
     kernels={"constraint": constraint},
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+  tip: {mass: 1 kg, inertia: 0.01 kg*m^2, at: [0.5, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+  weld: {type: fixed, bodies: [rod, tip], at: [0.4, 0]}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
 )

@@ -8,7 +8,11 @@ from trsim.fields import Spec
 
 
 class Gravity(Spec):
-    """Made from the key `gravity` of a scenario, one instance per body with mass."""
+    """Made from the key `gravity` of a scenario, one instance per body with mass.
+
+    body   the body
+    field  acceleration of a free fall
+    """
 
     body: str
     field: tuple[float, float, float]
@@ -43,4 +47,10 @@ ELEMENT = Element(
     spec=Gravity,
     pack=pack,
     kernels={"force": force, "energy": energy},
+    example="""
+bodies:
+  ball: {mass: 2 kg, inertia: 8e-4 kg*m^2}
+gravity: [0, -9.81, 0]
+solver: {end: 0.4 s}
+""",
 )

@@ -11,7 +11,11 @@ from trsim.fields import Spec, vector
 
 
 class Joint(Spec):
-    """Two bodies and the place they meet.  The bearing is on the first one."""
+    """Two bodies and the place they meet.
+
+    bodies  the first one has the bearing; reactions are those on the second one
+    at      the place, as drawn
+    """
 
     bodies: tuple[str, str]
     at: vector("m")

@@ -31,14 +31,23 @@ from trsim.laws.contact import ramped_damping
 
 
 class BodyPoint(Spec):
-    """A point of a body, as drawn."""
+    """A point of a body.
+
+    body  the body
+    at    the point, as drawn
+    """
 
     body: str
     at: vector("m")
 
 
 class Wall(Spec):
-    """A plane of a body: a point of it and the normal to the allowed side, as drawn."""
+    """A plane of a body.
+
+    body    the body
+    at      a point of the plane, as drawn
+    normal  to the allowed side, as drawn; turns with the body
+    """
 
     body: str
     at: vector("m")
@@ -46,7 +55,17 @@ class Wall(Spec):
 
 
 class LimitStop(Spec):
-    """A stop: `point` against `wall`, or the coordinate of `joint` between `lower` and `upper`."""
+    """A stop: `point` against `wall`, or the coordinate of `joint` between `lower` and `upper`.
+
+    point      what touches the wall
+    wall       what it touches
+    joint      joint whose coordinate is limited
+    lower      least coordinate
+    upper      largest coordinate
+    stiffness  of the contact
+    damping    of the contact, where the ramp is over
+    ramp       penetration over which the damping fades in
+    """
 
     type: ClassVar[str] = "limit_stop"
     point: BodyPoint | None = None
@@ -207,4 +226,13 @@ ELEMENT = Element(
     ),
     n_mem=2,
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
+    example="""
+bodies:
+  block: {mass: 2 kg, inertia: 0.01 kg*m^2, velocity: [0.5 m/s, 0]}
+joints:
+  slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}
+forces:
+  bumper: {type: limit_stop, joint: slide, upper: 20 mm, stiffness: 1e6 N/m, damping: 400 N*s/m}
+solver: {end: 0.1 s}
+""",
 )

@@ -25,12 +25,17 @@ from trsim.fields import Spec, vector
 
 
 class Prismatic(Spec):
-    """A slide of the second body along `axis` of the first."""
+    """A slide of the second body along an axis of the first.
+
+    bodies  the first one has the axis; reactions are those on the second one
+    axis    direction in which the stroke grows, as drawn; of any length
+    at      where reactions are told, as drawn; the second body's centre of mass unless given
+    """
 
     type: ClassVar[str] = "prismatic"
     bodies: tuple[str, str]
     axis: vector("-")
-    at: vector("m") | None = None  # the second body's centre of mass unless given
+    at: vector("m") | None = None
 
 
 def pack(name, spec, at):
@@ -83,4 +88,12 @@ ELEMENT = Element(
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
     kernels={"constraint": constraint, "coordinate": coordinate},
+    example="""
+bodies:
+  block: {mass: 2 kg, inertia: 0.01 kg*m^2}
+joints:
+  slide: {type: prismatic, bodies: [ground, block], axis: [1, -1, 0]}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
 )

@@ -25,7 +25,10 @@ from trsim.fields import vector
 
 
 class Revolute(Joint):
-    """A hinge between two bodies: `at` a point, about `axis` (z unless given)."""
+    """A hinge between two bodies.  With the key `clearance` it is a clearance_joint.
+
+    axis  direction of the hinge, as drawn; of any length
+    """
 
     type: ClassVar[str] = "revolute"
     axis: vector("-") = (0.0, 0.0, 1.0)
@@ -81,4 +84,12 @@ ELEMENT = Element(
     rows=("x", "y", "z", "tilt 1", "tilt 2"),
     coordinate="angle",
     kernels={"constraint": constraint, "coordinate": coordinate},
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
 )

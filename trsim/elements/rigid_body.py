@@ -18,10 +18,17 @@ INERTIA = Annotated[float, Ge(0), KG_M2]
 
 
 class RigidBody(Spec):
-    """A rigid body: mass, inertia about the centre of mass, and where that is as drawn.
+    """A rigid body and its centre of mass.
 
-    A single inertia is about z.  Three are principal ones; six are
-    Ixx, Iyy, Izz, Ixy, Ixz, Iyz (products with the sign of the tensor's entries), in body axes.
+    mass              its mass
+    inertia           about the centre of mass: one about z, for a planar scene; three principal
+                      ones; or Ixx, Iyy, Izz, Ixy, Ixz, Iyz, products with the sign of the
+                      tensor's entries, in body axes
+    at                centre of mass, as drawn
+    angle             turns the body axes about z
+    velocity          of the centre of mass at the start; where any body has a velocity, clearance
+                      joints start free, otherwise as ideal ones
+    angular_velocity  at the start, world axes
     """
 
     type: ClassVar[str] = "rigid_body"
@@ -87,4 +94,10 @@ ELEMENT = Element(
         Channel("rotation", "-", "rotation matrix, row by row", 9),
     ),
     kernels={"measure": measure},
+    example="""
+bodies:
+  ball: {mass: 2 kg, inertia: 8e-4 kg*m^2, at: [0, 1 m], velocity: [3 m/s, 0]}
+gravity: [0, -9.81, 0]
+solver: {end: 0.4 s}
+""",
 )

@@ -13,7 +13,12 @@ from trsim.fields import Spec, Unit
 
 
 class Sensor(Spec):
-    """The coordinate of a joint: an angle (rad) or a stroke (m)."""
+    """The coordinate of a joint: an angle (rad) or a stroke (m).
+
+    joint     joint whose coordinate it is
+    sign      -1 counts the other way round
+    at_start  what it shows as drawn
+    """
 
     type: ClassVar[str] = "sensor"
     joint: str
@@ -77,4 +82,14 @@ ELEMENT = Element(
         Channel("acceleration", "coordinate/s^2", "its acceleration"),
     ),
     kernels={"coordinate": coordinate, "measure": measure},
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+sensors:
+  elevation: {joint: hinge, at_start: 90 deg}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
 )

@@ -41,4 +41,13 @@ ELEMENT = Element(
     pack=pack,
     rows=("x", "y", "z"),
     kernels={"constraint": constraint},
+    example="""
+planar: false
+bodies:
+  ball: {mass: 2 kg, inertia: [0.01, 0.01, 0.01], at: [0.2, 0, 0], velocity: [0, 1 m/s, 0]}
+joints:
+  socket: {type: spherical, bodies: [ground, ball], at: [0, 0, 0]}
+gravity: [0, 0, -9.81]
+solver: {end: 1 s}
+""",
 )

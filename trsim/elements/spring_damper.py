@@ -24,7 +24,15 @@ from trsim.fields import Spec, Unit, vector
 
 
 class SpringDamper(Spec):
-    """A linear spring and damper between a point of each body."""
+    """A linear spring and damper between a point of each body.
+
+    bodies       the two bodies
+    points       on the first and on the second body, as drawn
+    stiffness    of the spring
+    damping      of the damper
+    free_length  where the spring has its preload; the distance as drawn unless given
+    preload      tension at the free length
+    """
 
     type: ClassVar[str] = "spring_damper"
     bodies: tuple[str, str]
@@ -32,7 +40,7 @@ class SpringDamper(Spec):
     stiffness: Annotated[float, Ge(0), Unit("N/m")]
     damping: Annotated[float, Ge(0), Unit("N*s/m")] = 0.0
     free_length: Annotated[float, Ge(0), Unit("m")] | None = None
-    preload: Annotated[float, Unit("N")] = 0.0  # tension at the free length
+    preload: Annotated[float, Unit("N")] = 0.0
 
 
 def pack(name, spec, at):
@@ -105,4 +113,14 @@ ELEMENT = Element(
         Channel("length", "m", "distance of the two points"),
     ),
     kernels={"force": force, "energy": energy, "measure": measure},
+    example="""
+bodies:
+  block: {mass: 2 kg, inertia: 0.01 kg*m^2}
+joints:
+  slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}
+forces:
+  spring: {type: spring_damper, bodies: [ground, block], points: [[-0.2, 0], [0, 0]],
+           stiffness: 500 N/m, damping: 2 N*s/m, preload: 10 N}
+solver: {end: 1 s}
+""",
 )

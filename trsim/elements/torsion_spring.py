@@ -22,7 +22,13 @@ from trsim.fields import Spec, Unit
 
 
 class TorsionSpring(Spec):
-    """A torsion spring about a joint.  `preload` is the torque as drawn."""
+    """A torsion spring about the axis of a joint.
+
+    joint      revolute joint whose bodies it turns
+    stiffness  of the spring
+    preload    torque on the second body, as drawn
+    damping    of the damper
+    """
 
     type: ClassVar[str] = "torsion_spring"
     joint: str
@@ -77,4 +83,13 @@ ELEMENT = Element(
     pack=pack,
     channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
     kernels={"force": force, "energy": energy, "measure": measure},
+    example="""
+bodies:
+  disc: {mass: 2 kg, inertia: 0.01 kg*m^2}
+joints:
+  bearing: {type: revolute, bodies: [ground, disc], at: [0, 0]}
+forces:
+  spring: {type: torsion_spring, joint: bearing, stiffness: 2 N*m/rad, preload: 0.5 N*m}
+solver: {end: 1 s}
+""",
 )

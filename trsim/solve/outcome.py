@@ -11,6 +11,7 @@ from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.record import Record
 from trsim.solve.start import Start
+from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ class Block(NamedTuple):
 class Outcome(NamedTuple):
     """How the run ended, and what it says of its own accuracy."""
 
-    status: str  # done, failed
+    status: Ended
     reason: str
     time: float
     statistics: dict[str, float]

@@ -25,6 +25,7 @@ from trsim.solve.norm import weigh
 from trsim.solve.outcome import Outcome, block, first_step, new_record, settings, statistics
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
+from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
@@ -66,7 +67,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)
-    status, reason = "done", ""
+    status: Ended = "done"
+    reason = ""
     limit = scenario.solver.max_steps or 2**62
     solver = restarted(scenario, s, r, b, setting)
     while r.clock[rec.T] < setting[rec.T_END]:

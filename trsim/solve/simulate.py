@@ -15,6 +15,7 @@ from trsim.solve.march import begin, march, method_table
 from trsim.solve.outcome import Block, Outcome, block, first_step, new_record, settings, statistics
 from trsim.solve.record import fresh_buffers
 from trsim.solve.start import start
+from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
@@ -70,7 +71,7 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
             reason = -1
             break
     cpu = time.process_time() - clock0
-    status = "done" if reason == rec.DONE else "failed"
+    status: Ended = "done" if reason == rec.DONE else "failed"
     if reason == rec.NOT_FINITE and setting[rec.FIXED_STEP] > 0.0:
         reason = -2
     text = REASONS.get(reason, f"more than {limit} steps" if reason == -1 else "")

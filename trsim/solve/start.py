@@ -19,7 +19,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
 from trsim.elements.scene import Model, workspace
-from trsim.errors import ModelError, known
+from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, with_scene
 from trsim.solve.statics import equilibrium
 from trsim.solve.velocities import velocities
@@ -69,10 +69,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
 
 
 def check_names(scenario: Any, initial: Any) -> None:
-    """Joints named under `initial` exist and have a coordinate to set."""
-    for name in (*initial.equilibrium, *initial.values):
-        if name not in scenario.joints:
-            raise ModelError(f"no joint named '{name}'", known(name, scenario.joints), ("initial",))
+    """Joints given a value under `initial` have a coordinate to set."""
     for name in initial.values:
         if not elements.load(scenario.joints[name].type).coordinate:
             raise ModelError(

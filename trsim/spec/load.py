@@ -12,7 +12,8 @@ from pydantic import ValidationError
 from trsim.errors import Problems, ScenarioError, TrsimError, closest, described
 from trsim.fields import Spec, SpecError, Unit
 from trsim.spec import expand
-from trsim.spec.scenario import Scenario, name_faults, suggestion, sweep_faults
+from trsim.spec.names import name_faults, sweep_faults
+from trsim.spec.scenario import Scenario, suggestion
 from trsim.spec.text import Tree
 from trsim.units import told
 
@@ -217,18 +218,18 @@ def _told(one: dict, hint: str) -> tuple[str, str]:
 
 def _missing(one: dict, spec: type[Spec] | None) -> ScenarioError:
     key = one["loc"][-1]
-    unit = _unit(spec, key)
+    unit = unit_of(spec, key)
     return ScenarioError(
         f"field required: {key}{f' ({unit.text})' if unit else ''}", "", one["here"]
     )
 
 
 def _unit_hint(spec: type[Spec] | None, below: tuple) -> str:
-    unit = _unit(spec, below[0]) if below else None
+    unit = unit_of(spec, below[0]) if below else None
     return told(unit.units) if unit else ""
 
 
-def _unit(spec: type[Spec] | None, key: Any) -> Unit | None:
+def unit_of(spec: type[Spec] | None, key: Any) -> Unit | None:
     """The unit of a field, wherever it stands in the annotation."""
     field = spec.model_fields.get(key) if spec else None
     parts = [*field.metadata, field.annotation] if field else []

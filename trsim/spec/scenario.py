@@ -4,9 +4,6 @@ The elements bring their own specs: the word after `type:` says which, and only 
 scenario uses are imported.
 """
 
-import keyword
-import re
-from collections.abc import Iterator
 from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
@@ -16,18 +13,11 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 from trsim import elements
 from trsim.elements.contact_law import ContactLaw
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
-from trsim.expressions import FUNCTIONS
 from trsim.fields import Flag, Spec, Unit, number, vector
-from trsim.spec.expand import NAMED
 from trsim.spec.text import Tree
 
 METHODS = ("dop853", "rk4", "scipy:BDF", "scipy:Radau", "scipy:RK45")
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
-RESERVED = {
-    *("ground", "world", "t", "pi", "time", "energy"),
-    *("steps", "events", "peaks", "summary", "solver", "phase", "poincare", "scenario"),
-    *("provenance", *FUNCTIONS, *keyword.kwlist),
-}
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
 Rate = Annotated[float, Ge(0), Unit("1/s")]
@@ -73,7 +63,11 @@ def word(section: str, data: dict) -> str:
 
 
 class Baumgarte(Spec):
-    """Constraint stabilisation: phi'' + 2 alpha phi' + beta^2 phi = 0."""
+    """Constraint stabilisation: phi'' + 2 alpha phi' + beta^2 phi = 0.
+
+    alpha  rate of decay
+    beta   frequency
+    """
 
     type: ClassVar[str] = "baumgarte"
     alpha: Rate
@@ -81,11 +75,23 @@ class Baumgarte(Spec):
 
 
 class SolverSpec(Spec):
-    """How, how far and how exactly the motion is integrated."""
+    """How, how far and how exactly the motion is integrated.
+
+    method         dop853 has adaptive steps, rk4 fixed ones; scipy's are independent checks
+    end            time at which the run ends; needed by `run`, not by `check`
+    step           of rk4
+    tolerance      error of a step, relative to the size of clearances or of the mechanism
+    stabilisation  how joints are kept closed
+    baumgarte      rates of that stabilisation
+    first_step     found out unless given
+    max_step       largest step; a pulse shorter than a 200th of the run needs it
+    max_steps      the run fails after as many
+    force          go on where a fixed step is known to be too large
+    """
 
     type: ClassVar[str] = "solver"
     method: Literal[METHODS] = "dop853"  # type: ignore[valid-type]
-    end: Seconds | None = None  # needed by `run`, not by `check`
+    end: Seconds | None = None
     step: Seconds | None = None
     tolerance: Annotated[float, Interval(ge=1e-14, le=1e-1), Unit("-")] = 1e-8
     stabilisation: Literal["projection", "baumgarte", "none"] = "projection"
@@ -93,7 +99,7 @@ class SolverSpec(Spec):
     first_step: Seconds | None = None
     max_step: Seconds | None = None
     max_steps: Annotated[int, Gt(0)] | None = None
-    force: Flag = False  # go on where a fixed step is known to be too large
+    force: Flag = False
 
     @model_validator(mode="after")
     def consistent(self) -> "SolverSpec":
@@ -106,15 +112,23 @@ class SolverSpec(Spec):
 
 
 class OutputSpec(Spec):
-    """What is recorded, and how often."""
+    """What is recorded, and how often.
+
+    every     simulated time between two rows; end/1000 unless given
+    channels  names, patterns such as 'B.*', or names of elements; all but *.rotation unless given
+    """
 
     type: ClassVar[str] = "output"
-    every: Seconds | None = None  # end/1000 unless given
-    channels: tuple[str, ...] = ("*",)  # patterns of names
+    every: Seconds | None = None
+    channels: tuple[str, ...] = ("*",)
 
 
 class PhasePortrait(Spec):
-    """One channel against another."""
+    """One channel against another.
+
+    x  channel to the right
+    y  channel upwards
+    """
 
     type: ClassVar[str] = "phase_portrait"
     x: str
@@ -122,7 +136,12 @@ class PhasePortrait(Spec):
 
 
 class PoincareSection(Spec):
-    """Two channels at the times a third one crosses zero."""
+    """Two channels at the times a third one crosses zero.
+
+    when     channel that crosses zero
+    crosses  the direction that counts
+    plot     channels to the right and upwards
+    """
 
     type: ClassVar[str] = "poincare_section"
     when: str
@@ -147,6 +166,10 @@ def _initial(data: Any, info: Any) -> Initial:
         raise ScenarioError("must be a list of joints", path=("equilibrium",))
     parameters, values = (info.context or {}).get("parameters"), {}
     joints = [*info.data.get("joints", ()), "equilibrium"]
+    for k, name in enumerate(names):
+        if name not in joints[:-1] and "joints" in info.data:
+            what = f"no joint named {described(name)}"
+            raise ScenarioError(what, known(name, joints[:-1]), ("equilibrium", k))
     for key, value in data.items():
         if key == "equilibrium":
             continue
@@ -169,7 +192,28 @@ class Source(NamedTuple):
 
 
 class Scenario(Spec):
-    """A mechanism and a load case, checked and in SI units; nothing changes it any more."""
+    """A mechanism and a load case, checked and in SI units; nothing changes it any more.
+
+    title            a line for figures and tables
+    planar           whether the motion stays in the x-y plane; found out unless given
+    gravity          acceleration of a free fall
+    parameters       named numbers that every number may use: `velocity: 2*speed`
+    bodies           what has mass
+    joints           what holds bodies together
+    drives           prescribed motion of joints
+    sensors          joint coordinates with a name, for loads, expressions and plots
+    forces           what acts on bodies
+    contact_laws     laws of clearance joints, by name
+    initial          how the mechanism starts, where that is not as drawn with the drives at speed
+    solver           how, how far and how exactly the motion is integrated
+    output           what is recorded, and how often
+    phase_portraits  one channel against another
+    poincare         two channels at the times a third one crosses zero
+    phases           kept for load steps; not used yet
+    cases            kept for named overrides; not used yet
+    sweep            values of keys to vary, by dotted path; not used by `run`
+    report           units of figures and tables: `units: {angle: deg, length: mm}`
+    """
 
     title: str = ""
     planar: Flag | None = None
@@ -206,43 +250,6 @@ class Scenario(Spec):
     def place(self, path: tuple) -> Place | None:
         """Where in the files a path of the scenario stands."""
         return self._tree.place(path)
-
-
-# --- across sections -------------------------------------------------------------------------
-
-
-def name_faults(data: dict) -> Iterator[ScenarioError]:
-    """All names share one name space; each must be a word an expression can contain."""
-    taken: dict[str, str] = {}
-    for section in ("parameters", *NAMED):
-        entries = data.get(section)
-        for name in entries if isinstance(entries, dict) else ():
-            path = (section, name)
-            if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
-                hint = "A name is letters, digits and _, a letter first."
-                yield ScenarioError(f"not a name: {described(name)}", hint, path)
-            elif name in RESERVED:
-                yield ScenarioError(f"the name '{name}' is reserved", "Choose another.", path)
-            elif name in taken:
-                what = f"the name '{name}' is taken by {taken[name]}.{name}"
-                yield ScenarioError(what, "All names share one name space.", path)
-            taken.setdefault(name, section)
-
-
-def sweep_faults(data: dict) -> Iterator[ScenarioError]:
-    """A sweep varies what is there: its keys are dotted paths of the scenario."""
-    sweep = data.get("sweep")
-    for dotted in sweep if isinstance(sweep, dict) else ():
-        inner: Any = data
-        for key in dotted.split("."):
-            entries = inner if isinstance(inner, dict) else {}
-            if isinstance(inner, list):
-                entries = {str(k): item for k, item in enumerate(inner)}
-            if key not in entries:
-                what = f"nothing to vary at {described(dotted)}: no {described(key)}"
-                yield ScenarioError(what, known(key, entries), ("sweep", dotted))
-                break
-            inner = entries[key]
 
 
 def suggestion(name: str, spec: type[Spec], present: dict) -> tuple[str | None, str]:

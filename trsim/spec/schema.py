@@ -9,40 +9,54 @@ from typing import Any
 from pydantic.json_schema import models_json_schema
 
 from trsim import elements
+from trsim.fields import Spec
+from trsim.spec.load import unit_of
+from trsim.spec.meanings import description, meanings, specs
 from trsim.spec.scenario import DEFAULT, Scenario
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
-TEXTS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
+EXTENDS = {
+    "description": "file, or list of files, that this one overrides key by key",
+    "anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}],
+}
 NUMBER = {"anyOf": [{"type": "number"}, {"type": "string"}]}  # 0.3, 0.3 mm, k/2
 INITIAL = {
     "type": "object",
-    "description": "How the mechanism starts: joints in equilibrium, coordinates of joints.",
-    "properties": {"equilibrium": {"type": "array", "items": {"type": "string"}}},
-    "additionalProperties": NUMBER,
+    "properties": {
+        "equilibrium": {
+            "description": "joints that are free in the balance of forces",
+            "type": "array",
+            "items": {"type": "string"},
+        }
+    },
+    "additionalProperties": {"description": "coordinate of the joint (rad or m)", **NUMBER},
 }
 
 
 def schema() -> dict[str, Any]:
     """The schema of a scenario file, all elements included."""
-    specs = {word: elements.load(word).spec for word in elements.ELEMENTS}
-    wanted: list[Any] = [(spec, "validation") for spec in (Scenario, *specs.values())]
-    keys, given = models_json_schema(wanted)
+    of_word: dict[str, Any] = {word: elements.load(word).spec for word in elements.ELEMENTS}
+    every = dict.fromkeys(spec for top in (Scenario, *of_word.values()) for spec in specs(top))
+    keys, given = models_json_schema([(spec, "validation") for spec in every])
     definitions = given["$defs"]
+    for spec in every:
+        _describe(_definition(definitions, keys[spec, "validation"]), spec)
     root = _definition(definitions, keys[Scenario, "validation"])
     for word, section in elements.ELEMENTS.items():
         if section:
-            _typed(_definition(definitions, keys[specs[word], "validation"]), word, section)
+            _typed(_definition(definitions, keys[of_word[word], "validation"]), word, section)
     for section in set(elements.ELEMENTS.values()) - {""}:
         entries = [
-            keys[specs[word], "validation"]
+            keys[of_word[word], "validation"]
             for word, of in elements.ELEMENTS.items()
             if of == section
         ]
         root["properties"][section]["additionalProperties"] = (
             {"anyOf": entries} if len(entries) > 1 else entries[0]
         )
-    root["properties"]["initial"] = INITIAL
-    root["properties"]["extends"] = TEXTS
+    root["properties"]["initial"] |= INITIAL
+    del root["properties"]["initial"]["default"]  # as drawn, the drives at speed
+    root["properties"]["extends"] = EXTENDS
     root["properties"]["parameters"]["additionalProperties"] = NUMBER
     parts = {f"part_{name}": _part(value) for name, value in definitions.items()}
     whole = keys[Scenario, "validation"]["$ref"]
@@ -60,10 +74,22 @@ def _definition(definitions: dict[str, Any], reference: Any) -> dict[str, Any]:
     return definitions[reference["$ref"].removeprefix("#/$defs/")]
 
 
+def _describe(entry: dict[str, Any], spec: type[Spec]) -> None:
+    """Add what the keys mean, and their units."""
+    entry["description"] = description(spec)
+    meaning = meanings(spec)
+    for key, rule in entry["properties"].items():
+        unit = unit_of(spec, key)
+        told = f" ({unit.text})" if unit and unit.text != "-" else ""
+        rule["description"] = meaning.get(key, "") + told
+        rule.pop("title", None)  # the key again
+
+
 def _typed(entry: dict[str, Any], word: str, section: str) -> None:
     """Add the key `type` that chooses the element."""
     words = [word, "revolute"] if word == "clearance_joint" else [word]
-    entry["properties"] = {"type": {"enum": words}, **entry["properties"]}
+    kind = {"description": "which kind of entry", "enum": words}
+    entry["properties"] = {"type": kind, **entry["properties"]}
     if DEFAULT.get(section) != word:
         entry["required"] = ["type", *entry.get("required", ())]
 

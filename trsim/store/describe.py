@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
+from trsim.statuses import Status
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION
 from trsim.version import __version__
@@ -117,7 +118,7 @@ def flag(file: h5py.File, mechanism: Any) -> None:
 
 
 def summary(
-    run: Any, file: h5py.File, status: str, reason: str, outcome: Any, found: list[Peak]
+    run: Any, file: h5py.File, status: Status, reason: str, outcome: Any, found: list[Peak]
 ) -> dict[str, Any]:
     """The run in a few numbers."""
     names = [instance.name for instance in run.mechanism.instances]

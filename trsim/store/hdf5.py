@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 
 from trsim.errors import FileError, TrsimError
+from trsim.statuses import Status
 from trsim.store import describe, peaks, points
 from trsim.store.content import content_hash
 from trsim.store.grow import Field, Growing, scales
@@ -45,6 +46,7 @@ def write(
     run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism))
     clock = describe.Clock.now()
     outcome, broken = None, None
+    status: Status
     try:
         outcome = run.take_all(blocks)
         status, reason = outcome.status, outcome.reason
@@ -175,7 +177,7 @@ class Running:
 
     # --- at the end --------------------------------------------------------------------------
 
-    def finish(self, status: str, reason: str, outcome: Any, provenance: dict) -> dict[str, Any]:
+    def finish(self, status: Status, reason: str, outcome: Any, provenance: dict) -> dict[str, Any]:
         """Add what is known only now, and give the file its name; the summary."""
         with self.told():
             assert self.file is not None  # noqa: S101

@@ -74,7 +74,7 @@ def copy(part: Path, target: Path) -> dict[str, Any]:
     with unfinished.open("rb") as done:
         os.fsync(done.fileno())
     os.replace(unfinished, target)
-    return {"file": str(target), "from": str(part), "was": was, **told}
+    return {"file": str(target), "part": str(part), "was": was, **told}
 
 
 def _planned(source: h5py.File) -> points.Plan:

@@ -1,0 +1,124 @@
+"""`trsim explain`: examples that run, channels that are recorded, a meaning for every key."""
+
+import pytest
+
+from trsim import elements
+from trsim.assemble.assemble import assemble
+from trsim.solve.simulate import simulate
+from trsim.spec.explain import explained, worded
+from trsim.spec.load import loads
+from trsim.spec.meanings import meanings, specs
+from trsim.spec.scenario import Scenario
+
+EVERYTHING = explained()
+SPECS = {spec for word in elements.ELEMENTS for spec in specs(elements.load(word).spec)}
+
+
+@pytest.mark.parametrize("page", EVERYTHING["elements"], ids=lambda page: page["word"])
+def test_example_runs_and_records_what_is_said(page):
+    scenario = loads(page["example"], ['output.channels=["*", "*.rotation"]'])
+    mechanism = assemble(scenario)
+    [instance] = [i for i in mechanism.instances if i.element.key == page["word"]]
+    own = {c.name: c for c in mechanism.columns if c.name.split(".")[0] == instance.name}
+    assert len(own) == len(page["channels"]) or not instance.section
+    for channel in page["channels"]:
+        column = own[channel["name"].replace("NAME", instance.name)]
+        assert column.unit in channel["unit"].split(" or ")
+        assert (column.size, column.meaning) == (channel["size"], channel["meaning"])
+    blocks = simulate(scenario, mechanism)
+    while True:
+        try:
+            next(blocks)
+        except StopIteration as end:
+            assert end.value.status == "done"
+            assert end.value.time == scenario.solver.end
+            break
+
+
+@pytest.mark.parametrize("spec", [*specs(Scenario), *SPECS], ids=lambda spec: spec.__name__)
+def test_every_key_has_a_meaning(spec):
+    assert set(meanings(spec)) == set(spec.model_fields)
+
+
+def test_meanings_of_docstrings():
+    class Base:
+        """A base.
+
+        one  first
+        two  second,
+             on two lines
+        and  no key
+        """
+
+        one: int
+        two: int
+
+    class Derived(Base):
+        """two  again
+        six  sixth
+        """
+
+        two: int
+        six: int
+
+    assert meanings(Base) == {"one": "first", "two": "second, on two lines"}
+    assert meanings(Derived) == {"one": "first", "two": "again", "six": "sixth"}
+
+
+@pytest.mark.parametrize(
+    "word, told",
+    [
+        ("torsion_spring", ["tau = T_0", "stiffness: number >= 0, N*m/rad, required",
+                            "preload: number, N*m, default 0", "NAME.torque  [N*m]"]),
+        ("clearance_joint", ["type: clearance_joint | revolute, required", "NAME.reaction  [N, 3",
+                             "joint coordinate: angle", "axis: [x, y] or [x, y, z], default [0, "]),
+        ("gravity", ["E = -m g . r", "a section: [x, y] or [x, y, z], m/s^2"]),
+        ("rigid_body", ["inertia: number >= 0 or 3 numbers or 6 numbers, kg*m^2, required"]),
+        ("drive", ["velocity: number, expression or table, m/s or rad/s", "compliance.mass: numb"]),
+        ("solver", ["method: dop853 | rk4 | scipy:BDF", "tolerance: number >= 1e-14, <= 0.1, def",
+                    "force: true or false, default false", "max_steps: whole number > 0"]),
+        ("contact_laws", ["K = 4/(3 (s_i + s_j))", "stiffness: internal | paper | cylinder or numb",
+                          "friction.law: none | coulomb"]),
+        ("initial", ["equilibrium: list of text", "NAME: number"]),
+        ("forces", ["applied_load", "limit_stop"]),
+        ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial;"]),
+        ("at", ["applied_load.at", "limit_stop.wall.at", "revolute.at"]),
+        ("wall.normal", ["limit_stop.wall.normal: [x, y] or [x, y, z], required"]),
+        ("friction", ["contact_laws.friction: mapping", "contact_laws.friction.v0: number >= 0"]),
+    ],
+)  # fmt: skip
+def test_word(word, told, trsim):
+    code, out, err = trsim("explain", word)
+    assert (code, err) == (0, "")
+    for text in told:
+        assert text in out
+    assert max(map(len, out.splitlines())) <= 100
+
+
+def test_all_words_are_listed_and_known(trsim, answer):
+    _, out, _ = trsim("explain")
+    words = out.replace("elements:", "").replace("sections:", "").replace("keys:", "").split()
+    assert {*elements.ELEMENTS, "solver", "extends", "clearance", "friction"} <= set(words)
+    assert {key["place"].split(".")[-1] for key in EVERYTHING["keys"]} <= set(words)
+    _, document = answer("explain")
+    assert document["word"] is None
+    assert [page["word"] for page in document["elements"]] == list(elements.ELEMENTS)
+
+
+def test_unknown_word(trsim):
+    code, out, err = trsim("explain", "torsoin_spring")
+    assert (code, out) == (2, "")
+    assert "Did you mean 'torsion_spring'?" in err
+
+
+@pytest.mark.parametrize(
+    "rule, told",
+    [
+        ({"type": "number", "exclusiveMinimum": -1, "maximum": 0.5}, "number > -1, <= 0.5"),
+        ({"anyOf": [{"type": "string"}, {"type": "null"}]}, "text"),
+        ({"type": "array", "prefixItems": [{"type": "string"}] * 2}, "[text, text]"),
+        ({}, "anything"),
+    ],
+)
+def test_types_in_words(rule, told):
+    assert worded(rule) == told

@@ -1,0 +1,47 @@
+"""The documents that `--json` prints, as types; published.py makes JSON Schemas of them.
+
+Nothing here is imported when a command runs.  A number that is not finite is null.  A command
+that did not end with 0 may leave out what its document has beyond `Document`.
+"""
+
+from trsim.cli.documents.common import Document, Error
+from trsim.cli.documents.files import Export, Provenance, Recover, Report, Show, Solver, Summary
+from trsim.cli.documents.runs import (
+    Check,
+    Checked,
+    Contact,
+    Ran,
+    Results,
+    Run,
+    RunStatistics,
+    Start,
+    Statistics,
+)
+from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema, SectionPage
+
+__all__ = [
+    "Channel",
+    "Check",
+    "Checked",
+    "Contact",
+    "Document",
+    "ElementPage",
+    "Error",
+    "Explain",
+    "Export",
+    "Key",
+    "Provenance",
+    "Ran",
+    "Recover",
+    "Report",
+    "Results",
+    "Run",
+    "RunStatistics",
+    "Schema",
+    "SectionPage",
+    "Show",
+    "Solver",
+    "Start",
+    "Statistics",
+    "Summary",
+]

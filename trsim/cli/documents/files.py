@@ -1,0 +1,153 @@
+"""Documents about result files."""
+
+from typing import Literal, NotRequired, Required
+
+from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
+
+from trsim.cli.documents.common import Document, Number
+from trsim.cli.documents.runs import Contact, Results, Statistics
+from trsim.statuses import Status
+
+
+class Solver(Statistics, total=False):
+    """The settings of the solver, and what it did; nothing in a file that was not completed.
+
+    method         as in the scenario, all of these
+    end            s
+    step           s
+    tolerance      of a step
+    stabilisation  of the constraints
+    first_step     s
+    max_step       s
+    max_steps      of a run
+    force          whether a warning was overruled
+    """
+
+    method: str
+    end: Number
+    step: Number
+    tolerance: Number
+    stabilisation: str
+    first_step: Number
+    max_step: Number
+    max_steps: int
+    force: bool
+
+
+class Summary(TypedDict, total=False):
+    """A run in a few numbers; contacts alone in a file that was not completed.
+
+    time      simulated until, s
+    rows      output rows
+    events    contact events
+    contacts  by name
+    """
+
+    time: Number
+    rows: int
+    events: int
+    contacts: Required[dict[str, Contact]]
+
+
+class Provenance(TypedDict, total=False):
+    """Where the file comes from: command, machine, versions; times in s."""
+
+    command: str
+    machine: str
+    platform: str
+    processors: int
+    began: str
+    wall_time: Number
+    cpu_time: Number
+    integration_cpu: Number
+    trsim: str
+    python: str
+    hdf5: str
+    numpy: str
+    numba: str
+    llvmlite: str
+    scipy: str
+    h5py: str
+    pydantic: str
+    recovered_from: str
+    recovered_by: str
+
+
+class Show(Document):
+    """trsim show.
+
+    file            as given
+    format          of all result files
+    format_version  of this one
+    title           of the scenario
+    status          how the run stands or ended
+    reason          why
+    content_sha256  of all results; only in a complete file
+    rows            output rows that can be read
+    channels        name -> unit
+    summary         the run in a few numbers
+    solver          its settings, and what it did
+    provenance      where the file comes from
+    phase           names of phase portraits
+    poincare        section -> number of points
+    """
+
+    file: str
+    format: str
+    format_version: int
+    title: str
+    status: Status
+    reason: str
+    content_sha256: NotRequired[str]
+    rows: int
+    channels: dict[str, str]
+    summary: Summary
+    solver: Solver
+    provenance: Provenance
+    phase: list[str]
+    poincare: dict[str, int]
+
+
+class Report(Document):
+    """trsim report.
+
+    folder  of the figures and tables
+    files   written, in that folder
+    """
+
+    folder: str
+    files: list[str]
+
+
+class Export(Document):
+    """trsim export.
+
+    file      written
+    rows      lines after the first
+    channels  columns after the time; components of vectors are NAME.x, NAME.y, NAME.z
+    """
+
+    file: str
+    rows: int
+    channels: list[str]
+
+
+class Recover(Document, Results):
+    """trsim recover.
+
+    file            the result file that was made
+    part            the file it was made of
+    was             the status of that, or ?
+    title           of the scenario
+    status          of the new file
+    reason          the same in words
+    content_sha256  of all results
+    """
+
+    file: str
+    part: str
+    was: Status | Literal["?"]
+    title: str
+    status: Status
+    reason: str
+    content_sha256: str

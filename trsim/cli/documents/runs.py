@@ -1,0 +1,179 @@
+"""Documents about scenarios that are run or checked."""
+
+from typing import NotRequired
+
+from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
+
+from trsim.cli.documents.common import Document, Number
+from trsim.statuses import Ended
+
+
+class Contact(TypedDict):
+    """What happened in one contact.
+
+    impacts         onsets
+    fastest_impact  approach speed, m/s or rad/s
+    peak_force      largest contact force, N or N*m
+    peak_time       when, s
+    steps           accepted steps in touch
+    """
+
+    impacts: int
+    fastest_impact: Number
+    peak_force: Number
+    peak_time: Number
+    steps: int
+
+
+class Statistics(TypedDict, total=False):
+    """What the solver did.
+
+    steps                     accepted
+    rejected_steps            made again, smaller
+    evaluations               right-hand sides
+    factorisations            of the constraint matrix
+    dense_outputs             interpolants made
+    events                    contact events located
+    position_residual         largest of the constraints, m or rad
+    velocity_residual         largest of the constraints, m/s or rad/s
+    start_position_residual   removed by closing the joints at the start, m or rad
+    start_force_residual      left by the equilibrium, N
+    energy_residual           largest error of the energy book, J
+    energy_residual_relative  the same over the largest energy exchanged
+    work_of_projection        J
+    """
+
+    steps: int
+    rejected_steps: int
+    evaluations: int
+    factorisations: int
+    dense_outputs: int
+    events: int
+    position_residual: Number
+    velocity_residual: Number
+    start_position_residual: Number
+    start_force_residual: Number
+    energy_residual: Number
+    energy_residual_relative: Number
+    work_of_projection: Number
+
+
+class RunStatistics(Statistics, total=False):
+    """What the solver did, and how long it took.
+
+    integration_cpu  s
+    """
+
+    integration_cpu: Number
+
+
+class Results(TypedDict):
+    """A run in a few numbers.
+
+    time      simulated until, s
+    rows      output rows
+    events    contact events
+    contacts  by name
+    """
+
+    time: Number
+    rows: int
+    events: int
+    contacts: dict[str, Contact]
+
+
+class Ran(Results):
+    """A run that ended.
+
+    file            its result file
+    title           of the scenario
+    status          how it ended; after `failed` the exit code is 5
+    reason          why it failed
+    statistics      what the solver did
+    content_sha256  of all results; the same for the same results
+    identical       whether they are those of the result file that was run again
+    """
+
+    file: str
+    title: str
+    status: Ended
+    reason: str
+    statistics: RunStatistics
+    content_sha256: str
+    identical: NotRequired[bool]
+
+
+class Run(Document):
+    """trsim run.
+
+    runs  those that ended, also the failed ones, in the order given
+    """
+
+    runs: list[Ran]
+
+
+class Start(TypedDict):
+    """Where a run would start.
+
+    position_residual  removed by closing the joints, m or rad
+    force_residual     left by the equilibrium, N
+    length             smallest length that matters to the error norm, m
+    speed              the same, m/s
+    closed_contacts    contacts in touch
+    """
+
+    position_residual: Number
+    force_residual: Number
+    length: Number
+    speed: Number
+    closed_contacts: list[str]
+
+
+class Checked(TypedDict):
+    """What a scenario is once assembled.
+
+    file            as given
+    title           of the scenario
+    bodies          names
+    joints          name -> type
+    drives          names
+    forces          name -> type
+    contacts        names of joints and stops
+    planar          whether the motion stays in a plane
+    planar_assumed  whether nothing but the start says so
+    unknowns        velocities
+    constraints     rows kept, drives included
+    mobility        unknowns less constraints
+    redundant       rows dropped
+    singular        rows that depend on others only as drawn
+    not_unique      reactions that the motion does not determine
+    notes           what looks wrong
+    start           where a run would start
+    """
+
+    file: str
+    title: str
+    bodies: list[str]
+    joints: dict[str, str]
+    drives: list[str]
+    forces: dict[str, str]
+    contacts: list[str]
+    planar: bool
+    planar_assumed: bool
+    unknowns: int
+    constraints: int
+    mobility: int
+    redundant: list[str]
+    singular: list[str]
+    not_unique: list[str]
+    notes: list[str]
+    start: Start
+
+
+class Check(Document):
+    """trsim check.
+
+    scenarios  those without errors, in the order given
+    """
+
+    scenarios: list[Checked]

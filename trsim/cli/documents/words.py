@@ -1,0 +1,115 @@
+"""Documents about the words of scenario files."""
+
+from typing import Any
+
+from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
+
+from trsim.cli.documents.common import Document
+
+
+class Key(TypedDict):
+    """A key of a mapping in a scenario file.
+
+    place     ELEMENT.KEY or SECTION.KEY, and on into mappings
+    meaning   in words
+    type      what it may be, in words; a number is also a quantity or an expression
+    unit      SI; "-" of plain numbers, null of what is no number
+    required  whether it must be given
+    default   what it is if it is not; null where nothing is
+    """
+
+    place: str
+    meaning: str
+    type: str
+    unit: str | None
+    required: bool
+    default: str | float | bool | list[Any] | None
+
+
+class Channel(TypedDict):
+    """A recorded quantity.
+
+    name     NAME stands for that of the entry
+    unit     SI; two where it depends on the joint
+    size     numbers in it
+    meaning  in words
+    """
+
+    name: str
+    unit: str
+    size: int
+    meaning: str
+
+
+class ElementPage(TypedDict):
+    """An element.
+
+    word        after `type:`
+    section     where it stands
+    law         equations and conventions
+    about       what it is
+    keys        what one writes
+    coordinate  of a joint, or null
+    channels    what is recorded
+    example     a scenario that runs
+    """
+
+    word: str
+    section: str
+    law: str
+    about: str
+    keys: list[Key]
+    coordinate: str | None
+    channels: list[Channel]
+    example: str
+
+
+class SectionPage(TypedDict):
+    """A section of a scenario file.
+
+    word      its name
+    about     what it is
+    law       equations and conventions, or ""
+    type      what it may be, in words
+    unit      SI, or null
+    elements  that may stand in it
+    keys      of it, or of its entries
+    """
+
+    word: str
+    about: str
+    law: str
+    type: str
+    unit: str | None
+    elements: list[str]
+    keys: list[Key]
+
+
+class Explain(Document):
+    """trsim explain.
+
+    word      as given, or null: then everything follows
+    elements  of that name
+    sections  of that name
+    keys      of that name, and of the mappings they hold
+    """
+
+    word: str | None
+    elements: list[ElementPage]
+    sections: list[SectionPage]
+    keys: list[Key]
+
+
+class Schema(Document):
+    """trsim schema.
+
+    what      whose schema it is
+    schema    itself; null where it went into a file
+    file      where it went, or null
+    modeline  first line of a scenario file that has an editor check it, or null
+    """
+
+    what: str
+    schema: dict[str, Any] | None
+    file: str | None
+    modeline: str | None

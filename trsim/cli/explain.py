@@ -1,0 +1,101 @@
+"""trsim explain: what an element, a section or a key of a scenario file is."""
+
+import textwrap
+from collections.abc import Iterator
+from typing import Any
+
+import click
+
+from trsim.cli.frame import Answer, framed
+
+WIDTH = 96
+INDENT = 4
+
+
+@click.command("explain")
+@click.argument("word", required=False)
+@framed
+def command(answer: Answer, word: str | None) -> None:
+    """Say what WORD is: an element, a section or a key of a scenario file.
+
+    Without WORD, list all there are.  A key may be named by its place: limit_stop.wall.normal.
+    """
+    from trsim.spec.explain import explained
+
+    found = explained(word)
+    answer.data |= {"word": word, **found}
+    for text in lines(found) if word else listed(found):
+        answer.put(text)
+
+
+def listed(found: dict[str, list[Any]]) -> Iterator[str]:
+    """All words, by what they are."""
+    names = {kind: [page["word"] for page in found[kind]] for kind in ("elements", "sections")}
+    names["keys"] = sorted({key["place"].rpartition(".")[2] for key in found["keys"]})
+    for kind, words in names.items():
+        yield f"{kind}:"
+        yield from _wrapped("  ".join(words), INDENT)
+
+
+def lines(found: dict[str, list[Any]]) -> Iterator[str]:
+    """The pages of one word."""
+    parts = [list(element(page)) for page in found["elements"]]
+    parts += [list(section(page)) for page in found["sections"]]
+    parts += [list(key(page, page["place"], 0)) for page in found["keys"]]
+    for k, part in enumerate(parts):
+        yield from ["", *part] if k else part
+
+
+def element(page: dict[str, Any]) -> Iterator[str]:
+    yield f"{page['word']}: an element, in `{page['section']}`"
+    yield from ("", page["law"], "", page["about"])
+    yield from keys(page)
+    if page["coordinate"]:
+        yield from ("", f"joint coordinate: {page['coordinate']}")
+    if page["channels"]:
+        yield from ("", "channels:")
+    for channel in page["channels"]:
+        size = f", {channel['size']} numbers" if channel["size"] > 1 else ""
+        yield f"    {channel['name']}  [{channel['unit']}{size}]"
+        yield from _wrapped(channel["meaning"], 2 * INDENT)
+    yield from ("", "example:", textwrap.indent(page["example"], " " * INDENT))
+
+
+def section(page: dict[str, Any]) -> Iterator[str]:
+    unit = f", {page['unit']}" if page["unit"] else ""
+    yield f"{page['word']}: a section: {page['type']}{unit}"
+    yield from ("", page["about"])
+    yield from ("", page["law"]) if page["law"] else ()
+    if page["elements"]:
+        yield from ("", "elements:", *_wrapped("  ".join(page["elements"]), INDENT))
+    yield from keys(page)
+
+
+def keys(page: dict[str, Any]) -> Iterator[str]:
+    if page["keys"]:
+        yield from ("", "keys:")
+    for one in page["keys"]:
+        yield from key(one, one["place"].removeprefix(f"{page['word']}."), INDENT)
+
+
+def key(one: dict[str, Any], name: str, indent: int) -> Iterator[str]:
+    facts = [one["type"]]
+    facts += [one["unit"]] if one["unit"] not in (None, "-") else []
+    facts += ["required"] if one["required"] else []
+    facts += [f"default {told(one['default'])}"] if one["default"] not in (None, "") else []
+    yield f"{' ' * indent}{name}: {', '.join(facts)}"
+    yield from _wrapped(one["meaning"], indent + INDENT)
+
+
+def told(default: Any) -> str:
+    """A default as one would write it."""
+    if isinstance(default, list | tuple):
+        return f"[{', '.join(map(told, default))}]"
+    if isinstance(default, bool):
+        return str(default).lower()
+    return f"{default:g}" if isinstance(default, float) else str(default)
+
+
+def _wrapped(text: str, indent: int) -> list[str]:
+    space = " " * indent
+    return textwrap.wrap(text, WIDTH, initial_indent=space, subsequent_indent=space)

@@ -1,0 +1,15 @@
+"""How a run stands or ended: the word `status` of result files, of `--json` and of reports."""
+
+from typing import Literal
+
+# said by the solver, said by the writer of the file
+Ended = Literal["done", "failed"]
+Status = Literal["running", Ended, "interrupted", "recovered"]
+
+STATUSES: dict[Status, str] = {
+    "running": "goes on, or was killed: `trsim recover` copies what it left",
+    "done": "reached its end",
+    "failed": "the solver could not go on; the file holds what was computed until then",
+    "interrupted": "ended by a signal; the file was closed and is named .part",
+    "recovered": "copied out of a .part file",
+}
