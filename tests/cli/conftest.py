@@ -1,9 +1,18 @@
 import json
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from tests import small
 from trsim.cli import main
+from trsim.cli.published import WORDS, published
+
+SCHEMAS = {word: published(word) for word in WORDS}
+
+
+def faults(document, command):
+    """What is wrong with a document by the schema of a command."""
+    return [fault.message for fault in Draft202012Validator(SCHEMAS[command]).iter_errors(document)]
 
 
 @pytest.fixture
@@ -38,6 +47,7 @@ def answer(trsim):
         document = json.loads(out)
         assert document["exit_code"] == code
         assert document["command"] == arguments[0]
+        assert faults(document, arguments[0]) == []
         return code, document
 
     return command

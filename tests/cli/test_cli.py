@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests import small
+from tests.cli.conftest import faults
 from trsim.cli import COMMANDS
 from trsim.store.read import read, verify
 
@@ -250,7 +251,9 @@ def test_signal_closes_the_file(number, code, scenario):
     process.send_signal(number)
     out, err = process.communicate(timeout=20)
     assert process.returncode == code
-    assert json.loads(out)["exit_code"] == code
+    document = json.loads(out)
+    assert document["exit_code"] == code
+    assert faults(document, "run") == []
     assert "Traceback" not in err
     result = read(part)
     assert result.attributes["status"] == "interrupted"

@@ -11,18 +11,18 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from tests import small
+from tests.cli.conftest import SCHEMAS, faults
 from tests.cli.test_cli import started
 from trsim.assemble.assemble import assemble
 from trsim.cli import COMMANDS
 from trsim.cli.frame import EXIT_CODES
-from trsim.cli.published import ENDS, WORDS, published
+from trsim.cli.published import ENDS, WORDS
 from trsim.errors import TrsimError
 from trsim.solve.simulate import simulate
 from trsim.spec.load import loads
 from trsim.statuses import STATUSES, Status
 from trsim.store.hdf5 import write
 
-SCHEMAS = {word: published(word) for word in WORDS}
 GOOD = {
     "run": ("crank.yaml",),
     "check": ("crank.yaml",),
@@ -72,10 +72,6 @@ def folder(scenario):
     """A scenario and its result file, in the current folder."""
     small.run(scenario.parent / "x.h5")
     return scenario.parent
-
-
-def faults(document, command):
-    return [fault.message for fault in Draft202012Validator(SCHEMAS[command]).iter_errors(document)]
 
 
 @pytest.fixture
