@@ -31,7 +31,7 @@ class Document(TypedDict):
     """What every command tells.
 
     command    its name; null where the command line names none
-    exit_code  that of the process: of the first error, or of the signal that ended it
+    exit_code  that of the process: of the first error, or of the bug or signal that ended it
     errors     all that is wrong, none with exit code 0
     unlisted   how many more errors there are
     """
