@@ -258,7 +258,9 @@ def test_signal_closes_the_file(number, code, scenario):
     result = read(part)
     assert result.attributes["status"] == "interrupted"
     assert np.all(np.diff(result.time) > 0.0)
-    assert files(scenario.parent) == ["crank.yaml", "runs/crank.h5.part"]
+    assert files(scenario.parent) == [
+        "crank.yaml", "runs/crank.h5.checkpoint", "runs/crank.h5.part",
+    ]  # fmt: skip
 
 
 def test_killed_run_leaves_a_readable_part(scenario):

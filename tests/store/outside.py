@@ -18,8 +18,8 @@ import os, resource, sys
 from trsim.cli import main
 from trsim.solve import simulate as module
 original = module.simulate
-def told(scenario, mechanism):
-    running = original(scenario, mechanism)
+def told(*given):
+    running = original(*given)
     while True:
         try:
             block = next(running)

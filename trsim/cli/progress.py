@@ -45,11 +45,11 @@ def watched(
         show.close()
 
 
-def left(elapsed: float, share: float) -> str:
-    """The time left at the pace so far."""
-    if share <= 0.0:
+def left(elapsed: float, share: float, first: float) -> str:
+    """The time left at the pace since a first share was done; a resumed run begins with more."""
+    if share <= first:
         return "?"
-    seconds = elapsed * (1.0 - share) / share
+    seconds = elapsed * (1.0 - share) / (share - first)
     return f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
 
 
@@ -62,16 +62,17 @@ class Lines:
 
     def __init__(self, answer: Answer, name: str, end: float) -> None:
         self.answer, self.name, self.end = answer, name, end
-        self.began = self.last = 0.0
+        self.began = self.last = self.first = 0.0
 
     def update(self, block: Any) -> None:
         now = time.monotonic()
-        self.began, self.last = self.began or now, self.last or now
+        share = block.time / self.end
+        if not self.began:
+            self.began, self.last, self.first = now, now, share
         if now - self.last < LINE:
             return
         self.last = now
-        share = block.time / self.end
-        to_go = left(now - self.began, share)
+        to_go = left(now - self.began, share, self.first)
         self.answer.say(f"{self.name}: {100 * share:.0f} %, {told(block)}, {to_go} left")
 
     def close(self) -> None:
@@ -83,19 +84,21 @@ class Bar:
 
     def __init__(self, name: str, end: float) -> None:
         self.name, self.end = name, end
-        self.began = self.last = 0.0
+        self.began = self.last = self.first = 0.0
         self.bar: Any = None
 
     def update(self, block: Any) -> None:
         now = time.monotonic()
-        self.began = self.began or now
+        share = block.time / self.end
+        if not self.began:
+            self.began, self.first = now, share
         if now - self.began < PATIENCE or now - self.last < DRAWN:
             return
         self.last = now
         if self.bar is None:
             self.bar = self._started()
             self.task = self.bar.add_task(Path(self.name).stem, total=self.end, told="", left="")
-        to_go = left(now - self.began, block.time / self.end)
+        to_go = left(now - self.began, share, self.first)
         self.bar.update(self.task, completed=block.time, told=told(block), left=to_go)
 
     def _started(self) -> Any:

@@ -8,6 +8,7 @@ from typing import Any
 import click
 
 from trsim.cli.frame import Answer, Stop, framed
+from trsim.cli.resume import found, interval
 from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
 
@@ -19,19 +20,28 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
 @click.argument("scenarios", nargs=-1, required=True, type=click.Path())
 @click.option("-o", "--output", type=click.Path(), help="Result file; a folder for several.")
 @click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
+@click.option("--resume", is_flag=True, help="Go on where an interrupted or killed run was.")
+@click.option(
+    "--checkpoint", type=click.FloatRange(min=0.0), metavar="SECONDS",
+    help="Wall time between two checkpoints, 0 for none.  [default: 60]",
+)  # fmt: skip
 @framed
 def command(
-    answer: Answer, scenarios: tuple[str, ...], output: str | None, sets: tuple[str, ...]
-) -> None:
+    answer: Answer, scenarios: tuple[str, ...], output: str | None, sets: tuple[str, ...],
+    resume: bool, checkpoint: float | None,
+) -> None:  # fmt: skip
     """Simulate SCENARIO files and write result files (HDF5).
 
     Default output: runs/NAME.h5.  A result file in place of a scenario runs its scenario again,
     into runs/NAME.again.h5.
+
+    A run that was interrupted or killed leaves FILE.part and, every 60 s, FILE.checkpoint: the same
+    command with --resume goes on there, and ends with the result of an unbroken run.
     """
     answer.data["runs"] = []
     for source, target in targets(scenarios, output):
         try:
-            summary = one(answer, source, target, sets)
+            summary = one(answer, source, target, sets, resume, checkpoint)
         except TrsimError as error:
             answer.fail(error)
             continue
@@ -59,17 +69,20 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
     return [(source, target) for target, source in found.items()]
 
 
-def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dict[str, Any]:
+def one(
+    answer: Answer, source: str, target: Path, sets: tuple[str, ...], resume: bool,
+    checkpoint: float | None,
+) -> dict[str, Any]:  # fmt: skip
     """Run one scenario; the summary of its result."""
     from trsim.cli.progress import compiling, watched
 
     check_target(target)
     scenario = loaded(source, sets)
     if scenario.solver.end is None:
-        error = ScenarioError(
-            "field required: end (s)", "Write for example `end: 1 s`.", ("solver",)
-        )
-        raise placed(error, scenario)
+        what = "field required: end (s)"
+        raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
+    every = interval(answer, source, scenario, checkpoint)
+    kept = found(answer, source, target, scenario, resume)
     by_scipy = scenario.solver.method.startswith("scipy:")
     compiling(answer, "equations.derivative" if by_scipy else "march.march")
     from trsim.assemble.assemble import assemble
@@ -81,8 +94,11 @@ def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dic
         mechanism = assemble(scenario)
         for note in (*mechanism.notes, *lint(scenario)):
             answer.say(f"{source}: warning: {note}")
-        blocks = watched(simulate(scenario, mechanism), answer, source, scenario.solver.end)
-        summary = write(target, scenario, mechanism, blocks, shlex.join(["trsim", *sys.argv[1:]]))
+        running = simulate(scenario, mechanism, kept.state if kept else None)
+        blocks = watched(running, answer, source, scenario.solver.end)
+        called = shlex.join(["trsim", *sys.argv[1:]])
+        summary = write(target, scenario, mechanism, blocks, called, every, kept)
+        summary["resumed_from"] = kept.time if kept else None
     except TrsimError as error:
         raise placed(error, scenario) from None
     finally:
@@ -90,6 +106,12 @@ def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dic
     if Stop.number:
         raise KeyboardInterrupt
     answer.say(line(summary))
+    remark(answer, source, summary)
+    return summary
+
+
+def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
+    """Say what is worth knowing of a result: an open energy book, the same content as before."""
     lost = summary["statistics"].get("energy_residual_relative", 0.0)
     if lost > LOST:
         answer.say(
@@ -99,7 +121,6 @@ def one(answer: Answer, source: str, target: Path, sets: tuple[str, ...]) -> dic
     if (identical := same(source, summary)) is not None:
         summary["identical"] = identical
         answer.say(f"the content {'is identical to' if identical else 'differs from'} {source}")
-    return summary
 
 
 def check_target(target: Path) -> None:

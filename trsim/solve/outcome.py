@@ -25,6 +25,7 @@ class Block(NamedTuple):
     time: float
     step: float
     n_events: int
+    state: dict[str, NDArray[Any]] | None = None  # after it, see checkpoint.py; None: cannot go on
 
 
 class Outcome(NamedTuple):
@@ -110,8 +111,9 @@ def new_record(model: Scene, begun: Start) -> Record:
     return record
 
 
-def block(r: Record, b: rec.Buffers) -> Block:
-    return Block(
+def emptied(r: Record, b: rec.Buffers) -> Block:
+    """What the buffers hold; they count as empty afterwards."""
+    block = Block(
         b.rows[: r.count[rec.ROWS]],
         b.steps[: r.count[rec.STEP_ROWS]],
         b.events[: r.count[rec.EVENT_ROWS]],
@@ -119,6 +121,9 @@ def block(r: Record, b: rec.Buffers) -> Block:
         float(r.clock[rec.H]),
         int(r.count[rec.EVENTS]),
     )
+    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
+        r.count[counter] = 0
+    return block
 
 
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:

@@ -22,7 +22,7 @@ from trsim.solve import record as rec
 from trsim.solve.calls import INTERPOLATE
 from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete, method_table
 from trsim.solve.norm import weigh
-from trsim.solve.outcome import Outcome, block, first_step, new_record, settings, statistics
+from trsim.solve.outcome import Outcome, emptied, first_step, new_record, settings, statistics
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
 from trsim.statuses import Ended
@@ -90,19 +90,11 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             status, reason = "failed", f"more than {limit} steps"
             break
         if crowded(r, b) or r.count[rec.STEPS] % 2000 == 0:
-            yield emptied(r, b, block)
-    yield emptied(r, b, block)
+            yield emptied(r, b)
+    yield emptied(r, b)
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
-
-
-def emptied(r: Record, b: Buffers, block: Any) -> Any:
-    """The buffers as a block; they count as empty afterwards."""
-    full = block(r, b)
-    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
-        r.count[counter] = 0
-    return full
 
 
 def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) -> Any:

@@ -11,8 +11,17 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import scene
 from trsim.solve import record as rec
+from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.march import begin, march, method_table
-from trsim.solve.outcome import Block, Outcome, block, first_step, new_record, settings, statistics
+from trsim.solve.outcome import (
+    Block,
+    Outcome,
+    emptied,
+    first_step,
+    new_record,
+    settings,
+    statistics,
+)
 from trsim.solve.record import fresh_buffers
 from trsim.solve.start import start
 from trsim.statuses import Ended
@@ -30,8 +39,13 @@ REASONS = {
 }
 
 
-def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outcome]:
+def simulate(
+    scenario: Any, mechanism: Mechanism, checkpoint: State | None = None
+) -> Generator[Block, None, Outcome]:
     """March from the start to `end`; yields blocks and returns the outcome.
+
+    With a checkpoint, the `state` of a block, it goes on after that block instead, and yields what
+    an unbroken run would have yielded from there.  Methods of scipy know no checkpoints.
 
     Raises ModelError where there is no consistent start.
     """
@@ -40,14 +54,17 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Block, None, Outc
         from trsim.solve.scipy_ivp import simulate as by_scipy
 
         return by_scipy(scenario, mechanism)
-    return compiled(scenario, mechanism, import_module(f"trsim.solve.{method}"))
+    return compiled(scenario, mechanism, import_module(f"trsim.solve.{method}"), checkpoint)
 
 
-def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Block, None, Outcome]:
+def compiled(
+    scenario: Any, mechanism: Mechanism, method: Any, checkpoint: State | None
+) -> Generator[Block, None, Outcome]:
     """The march of march.py with one of the compiled methods."""
     work = scene(mechanism.model)
     setting = settings(scenario, mechanism, method.ADAPTIVE)
-    begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
+    located = setting[rec.LOCATE] > 0.0
+    begun = begun_at(checkpoint) if checkpoint else start(scenario, mechanism, located)
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     r = new_record(work, begun)
@@ -56,21 +73,23 @@ def compiled(scenario: Any, mechanism: Mechanism, method: Any) -> Generator[Bloc
         method.step.address(), method.dense.address(), method.interpolate.address(), method.LAST
     )
     clock0 = time.process_time()
-    begin(work, r, b, setting)
-    r.clock[rec.H] = first_step(scenario, r)
+    if checkpoint:
+        clock0 -= put_back(checkpoint, r, work)
+    else:
+        begin(work, r, b, setting)
+        r.clock[rec.H] = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
     while True:
         most = min(VISIT, limit - int(r.count[rec.STEPS]))
         reason = march(work, r, b, setting, addresses, most)
-        yield block(r, b)
-        for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
-            r.count[counter] = 0
-        if reason not in (rec.FULL, rec.PAUSE):
+        cpu, paused = time.process_time() - clock0, reason in (rec.FULL, rec.PAUSE)
+        block = emptied(r, b)
+        yield block._replace(state=state(r, work, begun, cpu)) if paused else block
+        if not paused:
             break
         if r.count[rec.STEPS] >= limit:
             reason = -1
             break
-    cpu = time.process_time() - clock0
     status: Ended = "done" if reason == rec.DONE else "failed"
     if reason == rec.NOT_FINITE and setting[rec.FIXED_STEP] > 0.0:
         reason = -2

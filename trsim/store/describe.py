@@ -6,6 +6,7 @@ import os
 import platform
 import re
 import time
+from collections.abc import Sequence
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
@@ -37,25 +38,24 @@ class Clock(NamedTuple):
 class Impacts:
     """Onsets, fastest onset and largest force of every contact, kept while blocks pass by."""
 
-    def __init__(self) -> None:
-        self.count: dict[int, int] = {}
-        self.fastest: dict[int, float] = {}
-        self.events = 0
-        self.peak: dict[int, tuple[float, float]] = {}  # force, time
+    ONSETS, FASTEST, FORCE, WHEN = range(4)
+
+    def __init__(self, instances: int) -> None:
+        self.of = np.zeros((instances, 4))
 
     def press(self, e: int, lines: Any, column: int) -> None:
-        """Keep the largest force of a contact."""
+        """Keep the largest force of a contact; of equal ones the first."""
         if len(lines):
             k = int(np.argmax(lines[:, column]))
-            self.peak[e] = max(self.peak.get(e, (0.0, 0.0)), (lines[k, column], lines[k, 0]))
+            if lines[k, column] > self.of[e, self.FORCE]:
+                self.of[e, self.FORCE], self.of[e, self.WHEN] = lines[k, column], lines[k, 0]
 
     def update(self, events: Any) -> None:
-        self.events += len(events)
         for _, kind, e, speed, _ in events.tolist():
             if kind == 1.0:
-                e = int(e)
-                self.count[e] = self.count.get(e, 0) + 1
-                self.fastest[e] = max(self.fastest.get(e, 0.0), speed)
+                contact = self.of[int(e)]
+                contact[self.ONSETS] += 1.0
+                contact[self.FASTEST] = max(contact[self.FASTEST], speed)
 
 
 # --- before the first row --------------------------------------------------------------------
@@ -126,12 +126,12 @@ def summary(
     contacts = {}
     for e in run.contacts:
         force = largest.get(f"{names[e]}.contact_force") or largest.get(f"{names[e]}.normal_force")
-        peak, when = run.impacts.peak.get(e, (0.0, 0.0))
+        onsets, fastest, peak, when = run.impacts.of[e].tolist()
         contacts[names[e]] = {
-            "impacts": run.impacts.count.get(e, 0),
-            "fastest_impact": run.impacts.fastest.get(e, 0.0),
-            "peak_force": force.value if force else float(peak),
-            "peak_time": force.time if force else float(when),
+            "impacts": int(onsets),
+            "fastest_impact": fastest,
+            "peak_force": force.value if force else peak,
+            "peak_time": force.time if force else when,
             "steps": run.contacts[e].n,
         }
     return {
@@ -140,7 +140,7 @@ def summary(
         "title": str(file.attrs["title"]),
         "time": float(outcome.time if outcome else run.time),
         "rows": run.rows.n,
-        "events": run.impacts.events,
+        "events": run.events.n,
         "contacts": contacts,
         "statistics": dict(outcome.statistics) if outcome else {},
     }
@@ -170,8 +170,8 @@ def summarised(file: h5py.File, told: dict[str, Any]) -> None:
         file["summary"].create_group(joint).attrs.update(numbers)
 
 
-def provenance(command: str, clock: Clock, outcome: Any) -> dict[str, Any]:
-    """Where, when, by what and how long."""
+def provenance(command: str, clock: Clock, outcome: Any, resumed: Sequence[str]) -> dict[str, Any]:
+    """Where, when, by what and how long; times are those since the run was last resumed."""
     from importlib.metadata import version
 
     told = {
@@ -179,7 +179,9 @@ def provenance(command: str, clock: Clock, outcome: Any) -> dict[str, Any]:
         "machine": platform.node(),
         "platform": platform.platform(),
         "processors": os.cpu_count() or 0,
-        "began": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(clock.date)),
+        "began": stamp(clock.date),
+        "resumed": len(resumed),
+        "resumed_at": "; ".join(resumed),
         "wall_time": time.perf_counter() - clock.wall,
         "cpu_time": time.process_time() - clock.cpu,
         "trsim": __version__,
@@ -191,6 +193,11 @@ def provenance(command: str, clock: Clock, outcome: Any) -> dict[str, Any]:
     if outcome is not None and CPU in outcome.statistics:
         told[CPU] = outcome.statistics[CPU]
     return told
+
+
+def stamp(date: float) -> str:
+    """A date in UTC."""
+    return time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime(date))
 
 
 def cause(error: BaseException) -> str:

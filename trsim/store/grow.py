@@ -33,8 +33,8 @@ class Growing:
 
     def __init__(self, group: h5py.Group, fields: list[Field], width: int, expected: int) -> None:
         """width: columns of the rows; expected: how many rows there may be."""
-        self.fields = fields
-        chunk = min(LONGEST, max(64, 1 << (max(expected, 1) - 1).bit_length()))
+        self.fields, self.name = fields, group.name
+        self.chunk = chunk = min(LONGEST, max(64, 1 << (max(expected, 1) - 1).bit_length()))
         self.datasets = [_dataset(group, field, chunk) for field in fields]
         time = self.datasets[0]
         time.make_scale(fields[0].name)
@@ -68,6 +68,16 @@ class Growing:
             dataset.resize(n, axis=0)
             dataset[self.n : n] = _values(field, rows)
         self.n, self.n_waiting = n, 0
+
+    def full(self, n: int) -> int:
+        """How many of n rows are in chunks that are full: those are never written again."""
+        return n - n % self.chunk
+
+    def tail(self) -> dict[str, Any]:
+        """The rows in the file after them, by the names of the datasets."""
+        rows = {d.name: d[self.full(self.n) : self.n] for d in self.datasets}
+        # HDF5 says of texts how they are coded, and numpy would say that it does not keep that
+        return {name: values.view(values.dtype.str) for name, values in rows.items()}
 
 
 def scales(file: h5py.File, sizes: set[int]) -> None:

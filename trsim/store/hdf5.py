@@ -16,19 +16,22 @@ import h5py
 
 from trsim.errors import FileError, TrsimError
 from trsim.statuses import Status
-from trsim.store import describe, peaks, points
+from trsim.store import checkpoint as checkpoints
+from trsim.store import describe, peaks, points, tables
+from trsim.store.checkpoint import Checkpoint
 from trsim.store.content import content_hash
+from trsim.store.disk import let_go, see_room, synced
 from trsim.store.grow import Field, Growing, scales
 from trsim.store.read import Run, read
+from trsim.store.resume import refill
 
 __all__ = ["Run", "read", "write"]
 
 LIBVER = ("v110", "v110")  # the first with SWMR: every HDF5 since 1.10 reads it
 FLUSHED = 0.5  # s of wall time between two flushes
 CACHE = 128 << 10  # bytes of chunks kept per dataset
-BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
-EXPECTED = 256  # rows of the tables whose length nobody knows
-KINDS = ("", "onset", "separation")  # of events, by number
+INTERRUPTED: Status = "interrupted"
+HASTE = 1.0  # s: a checkpoint that takes longer is not begun after an interrupt
 
 
 def write(
@@ -37,16 +40,20 @@ def write(
     mechanism: Any,
     blocks: Generator[Any, None, Any],
     command: str = "",
+    every: float = 0.0,
+    kept: Checkpoint | None = None,
 ) -> dict[str, Any]:
     """Write what `blocks` yields to a result file; returns its summary.
 
-    A solver that fails leaves a complete file with status `failed`.  An interrupt leaves a closed
-    .part file with status `interrupted`.  A run that never starts leaves no file at all.
+    every: s of wall time between two checkpoints, 0 for none.  kept: where `blocks` go on.
+
+    A solver that fails leaves a complete file with status `failed`, an interrupt a closed .part
+    file with status `interrupted`, a run that never starts no file at all.
     """
-    run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism))
-    clock = describe.Clock.now()
-    outcome, broken = None, None
+    run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every)
+    clock, outcome, broken = describe.Clock.now(), None, None
     status: Status
+    run.go_on(kept)
     try:
         outcome = run.take_all(blocks)
         status, reason = outcome.status, outcome.reason
@@ -56,14 +63,12 @@ def write(
     except BaseException as error:
         if run.file is None:
             raise
-        status, reason = "failed", f"error in trsim: {type(error).__name__}: {error}"
-        if isinstance(error, KeyboardInterrupt):
-            status, reason = "interrupted", "interrupted from outside"
-        elif isinstance(error, TrsimError):
-            reason = error.what
+        status, reason = _ending(error)
+        run.save_last(status)
         broken = error
     try:
-        summary = run.finish(status, reason, outcome, describe.provenance(command, clock, outcome))
+        provenance = describe.provenance(command, clock, outcome, run.resumed)
+        summary = run.finish(status, reason, outcome, provenance)
     except FileError:
         run.abandon()
         raise
@@ -72,15 +77,31 @@ def write(
     return summary
 
 
+def _ending(error: BaseException) -> tuple[Status, str]:
+    """Status and reason of a run that an exception ended."""
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED, "interrupted from outside"
+    told = f"error in trsim: {type(error).__name__}: {error}"
+    return "failed", error.what if isinstance(error, TrsimError) else told
+
+
 class Running:
     """A part file and its growing tables; the file is made when the first rows arrive."""
 
-    def __init__(self, final: Path, scenario: Any, mechanism: Any, planned: points.Plan) -> None:
+    def __init__(
+        self, final: Path, scenario: Any, mechanism: Any, planned: points.Plan, every: float
+    ) -> None:
         self.final, self.part = final, final.with_name(final.name + ".part")
+        self.fresh = final.with_name(final.name + ".part.new")  # of a resumed run
+        self.checkpoint = checkpoints.beside(final)
         self.scenario, self.mechanism, self.planned = scenario, mechanism, planned
         self.file: h5py.File | None = None
         self.magnitudes = peaks.Magnitudes(mechanism.columns)
-        self.impacts = describe.Impacts()
+        self.impacts = describe.Impacts(len(mechanism.instances))
+        self.extremes = {"magnitudes": self.magnitudes.largest, "impacts": self.impacts.of}
+        self.every, self.saved, self.took = every, time.monotonic(), 0.0  # s of wall time
+        self.state: dict[str, Any] | None = None  # of the solver after the last block taken
+        self.resumed: list[str] = []  # when
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
         with self.told():
             final.parent.mkdir(parents=True, exist_ok=True)
@@ -116,19 +137,42 @@ class Running:
     # --- while the run goes on ---------------------------------------------------------------
 
     def open(self) -> None:
-        """Make the file with everything that has a name, then let readers in."""
-        if self.file is not None:
-            return
-        _room(self.part)
-        file = h5py.File(self.part, "w", libver=LIBVER, rdcc_nbytes=CACHE)
+        """Make the file, unless it is there."""
+        if self.file is None:
+            for old in (self.checkpoint, self.fresh):  # of rows about to be written over
+                old.unlink(missing_ok=True)
+            self.file = self.begun(self.part)
+
+    def begun(self, path: Path, kept: Checkpoint | None = None) -> h5py.File:
+        """A file with all that has a name, and the rows of a checkpoint; readers may come."""
+        see_room(path)
+        file = h5py.File(path, "w", libver=LIBVER, rdcc_nbytes=CACHE)
         try:
             self.declare(file)
+            if kept is not None:
+                refill(self.part, self.tables, kept)
             file.swmr_mode = True
-        except BaseException:  # there is no row in it yet
-            _let_go(file)
-            self.part.unlink(missing_ok=True)
+        except BaseException:  # there is no row in it that is not elsewhere
+            let_go(file)
+            path.unlink(missing_ok=True)
             raise
+        return file
+
+    def go_on(self, kept: Checkpoint | None) -> None:
+        """Be where a run was at a checkpoint, with a fresh part file in place of the old one."""
+        if kept is None:
+            return
+        with self.told():
+            file = self.begun(self.fresh, kept)
+            file.flush()
+            synced(self.fresh)
+            os.replace(self.fresh, self.part)
+            synced(self.part.parent)
         self.file = file
+        for name, array in kept.extremes.items():
+            self.extremes[name][:] = array
+        self.time = self.kept = kept.time
+        self.resumed = [*kept.resumed, f"t = {kept.time:g} s on {describe.stamp(time.time())}"]
 
     def declare(self, file: h5py.File) -> None:
         """Groups, names and attributes."""
@@ -143,16 +187,18 @@ class Running:
         self.rows = Growing(file, [time_field, *fields], width, expected)
         describe.flag(file, self.mechanism)
         self.contacts = {
-            e: _steps(file, instance, time_field)
+            e: tables.steps(file, instance, time_field)
             for e, instance in enumerate(self.mechanism.instances)
             if instance.row.contact is not None
         }
-        self.force = {e: _force_column(self.mechanism.instances[e]) for e in self.contacts}
-        self.events = _events(file, self.mechanism, time_field)
+        self.force = {e: tables.force_column(self.mechanism.instances[e]) for e in self.contacts}
+        self.events = tables.events(file, self.mechanism, time_field)
+        self.tables = [self.rows, self.events, *self.contacts.values()]
         points.declare(file, self.planned)
 
     def take(self, block: Any) -> None:
         """Store one block of results."""
+        self.state = None  # until all of the block is taken
         self.rows.append(block.rows)
         if len(block.rows):
             self.magnitudes.update(block.rows)
@@ -164,16 +210,39 @@ class Running:
                 self.impacts.press(e, lines, self.force[e])
         self.events.append(block.events)
         self.impacts.update(block.events)
-        self.time = block.time
-        if time.monotonic() - self.flushed > FLUSHED:
+        self.time, self.state = block.time, block.state
+        now = time.monotonic()
+        if self.every and self.state is not None and now - self.saved > self.every:
+            self.save()
+        elif now - self.flushed > FLUSHED:
             self.flush()
 
     def flush(self) -> None:
         assert self.file is not None  # noqa: S101
-        for table in (self.rows, self.events, *self.contacts.values()):
+        for table in self.tables:
             table.flush()
         self.file.flush()
         self.kept, self.flushed = self.time, time.monotonic()
+
+    def save(self) -> None:
+        """Write a checkpoint of what was taken so far, once all of that is on the disk."""
+        assert self.state is not None  # noqa: S101
+        began = time.monotonic()
+        self.flush()
+        synced(self.part)
+        rows = {table.name: table.n for table in self.tables}
+        tail = {name: rows for table in self.tables for name, rows in table.tail().items()}
+        keys = checkpoints.keys(self.scenario)
+        kept = Checkpoint(self.time, keys, rows, self.resumed, self.state, self.extremes, tail)
+        checkpoints.store(self.checkpoint, kept)
+        self.saved = time.monotonic()
+        self.took = self.saved - began
+
+    def save_last(self, status: str) -> None:
+        """A checkpoint before an interrupt ends the run, if there is time for it."""
+        if status == INTERRUPTED and self.every and self.state is not None and self.took < HASTE:
+            with contextlib.suppress(FileError), self.told():
+                self.save()
 
     # --- at the end --------------------------------------------------------------------------
 
@@ -185,7 +254,7 @@ class Running:
             self.file.close()
             with h5py.File(self.part, "r+", libver=LIBVER) as file:
                 self.file = file
-                complete = status != "interrupted"  # otherwise there are only two seconds
+                complete = status != INTERRUPTED  # otherwise there are only two seconds
                 if complete:
                     points.complete(file, self.planned)
                 extremes = None if outcome is None else outcome.peaks
@@ -198,82 +267,15 @@ class Running:
                 if complete:
                     summary["content_sha256"] = content_hash(file)
                     file.attrs["content_sha256"] = summary["content_sha256"]
-            _synced(self.part)
+            synced(self.part)
             if complete:
                 os.replace(self.part, self.final)
-                _synced(self.final.parent)
+                synced(self.final.parent)
+                self.checkpoint.unlink(missing_ok=True)
         summary["file"] = str(self.final if complete else self.part)
         return summary
 
     def abandon(self) -> None:
-        """Let go of a file that cannot be written: readers find what was flushed.
-
-        HDF5 would go on trying to write what it holds, and fail again when it is unloaded; all it
-        still has to say goes to nowhere instead.
-        """
+        """Let go of a file that cannot be written."""
         if self.file is not None:
-            _let_go(self.file)
-
-
-def _room(part: Path) -> None:
-    """See that a file can be begun: HDF5 ends the process where its first bytes fail."""
-    trial = part.with_name(part.name + ".room")  # readers may already look for the part file
-    try:
-        with trial.open("wb") as file:
-            file.write(bytes(BEGINNING))
-            file.flush()
-            os.fsync(file.fileno())
-    except OSError as error:
-        what = f"{part}: the first {BEGINNING} bytes cannot be written: {error.strerror}"
-        raise FileError(what) from None
-    finally:
-        trial.unlink(missing_ok=True)
-
-
-def _let_go(file: h5py.File) -> None:
-    if not file.id.valid:
-        return
-    with contextlib.suppress(OSError, RuntimeError):
-        nowhere = os.open(os.devnull, os.O_RDWR)
-        os.dup2(nowhere, file.id.get_vfd_handle())
-        os.close(nowhere)
-        file.close()
-
-
-def _steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
-    """The table of one contact: its channels at every accepted step in touch."""
-    fields, start = [time_field], 2
-    for c in instance.element.channels:
-        fields.append(Field(c.name, c.unit, c.meaning, start, c.size))
-        start += c.size
-    return Growing(file["steps"].create_group(instance.name), fields, start, EXPECTED)
-
-
-def _force_column(instance: Any) -> int:
-    """The column of a line of steps that holds the contact force."""
-    start = {}
-    column = 2
-    for c in instance.element.channels:
-        start[c.name], column = column, column + c.size
-    return start.get("contact_force", start.get("normal_force", 1))
-
-
-def _events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
-    names = tuple(instance.name or "-" for instance in mechanism.instances)
-    fields = [
-        time_field,
-        Field("kind", "", "what happened", 1, words=KINDS),
-        Field("element", "", "where", 2, words=names or ("-",)),
-        Field("speed", "m/s", "rate of penetration", 3),
-        Field("angle", "rad", "of the contact point around the bearing", 4),
-    ]
-    return Growing(file["events"], fields, 5, EXPECTED)
-
-
-def _synced(path: Path) -> None:
-    """Have the system bring a file or a folder to the disk."""
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+            let_go(self.file)

@@ -4,6 +4,7 @@ Extremes of scalars and components come from the solver, at its accepted steps. 
 vectors that have no channel of their own come from the output rows.
 """
 
+import math
 from typing import Any, NamedTuple
 
 import h5py
@@ -33,15 +34,22 @@ class Magnitudes:
 
     def __init__(self, columns: tuple[Any, ...]) -> None:
         self.columns = [c for c in columns if c.size == 3 and "reaction" in c.name and c.wanted]
-        self.largest = {c.name: (0.0, 0.0) for c in self.columns}  # name -> value, time
+        self.row = {c.name: k for k, c in enumerate(self.columns)}
+        self.largest = np.zeros((len(self.columns), 2))  # square, time: a root would lose bits
 
     def update(self, rows: Array) -> None:
-        for c in self.columns:
-            vector = rows[:, 1 + c.start : 4 + c.start]
-            square = np.einsum("ij,ij->i", vector, vector)
+        """Of equal ones the first counts, wherever the rows are cut into blocks."""
+        for c, largest in zip(self.columns, self.largest, strict=True):
+            x, y, z = rows[:, 1 + c.start : 4 + c.start].T
+            square = x * x + y * y + z * z
             k = int(np.argmax(square))
-            if square[k] > self.largest[c.name][0] ** 2:
-                self.largest[c.name] = float(np.sqrt(square[k])), float(rows[k, 0])
+            if square[k] > largest[0]:
+                largest[:] = square[k], rows[k, 0]
+
+    def of(self, name: str) -> tuple[float, float]:
+        """The largest magnitude of a vector, and its time."""
+        square, time = self.largest[self.row[name]].tolist()
+        return math.sqrt(square), time
 
 
 def table(
@@ -53,8 +61,8 @@ def table(
     for column in mechanism.columns:
         if column.name.split(".")[0] not in names:
             continue
-        if column.name in magnitudes.largest:
-            value, time = magnitudes.largest[column.name]
+        if column.name in magnitudes.row:
+            value, time = magnitudes.of(column.name)
             peaks.append(Peak(column.name, "magnitude", value, time, np.nan, column.unit))
         if extremes is None or column.size not in (1, 3):
             continue

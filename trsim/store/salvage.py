@@ -165,7 +165,7 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
     n = _first(~(np.diff(time, prepend=last) > 0.0), n)
     for values in piece.values():
         rows = values[:n].reshape(n, int(np.prod(values.shape[1:])))
-        # a row that was never written; a text is empty then, see hdf5.KINDS
+        # a row that was never written; a text is empty then, see tables.KINDS
         unwritten = np.isnan(rows) if values.dtype.kind == "f" else rows == b""
         n = _first(unwritten.any(axis=1), n)
     return {name: values[:n] for name, values in piece.items()}

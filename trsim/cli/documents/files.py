@@ -57,6 +57,8 @@ class Provenance(TypedDict, total=False):
     platform: str
     processors: int
     began: str
+    resumed: int
+    resumed_at: str
     wall_time: Number
     cpu_time: Number
     integration_cpu: Number

@@ -91,6 +91,7 @@ class Ran(Results):
     reason          why it failed
     statistics      what the solver did
     content_sha256  of all results; the same for the same results
+    resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again
     """
 
@@ -100,6 +101,7 @@ class Ran(Results):
     reason: str
     statistics: RunStatistics
     content_sha256: str
+    resumed_from: Number
     identical: NotRequired[bool]
 
 

@@ -1,0 +1,92 @@
+"""A run put back to a checkpoint goes on as if nothing had happened, to the last bit."""
+
+import numpy as np
+import pytest
+
+from tests import small
+from trsim.assemble.assemble import assemble
+from trsim.elements.scene import scene
+from trsim.solve import simulate as module
+from trsim.solve.record import T
+from trsim.solve.simulate import simulate
+from trsim.spec.load import loads
+
+SPATIAL = (
+    "planar=false",
+    *(f"bodies.{b}.inertia=[1e-4, 2e-4, 2e-4]" for b in ("crank", "rod", "slider")),
+)
+RK4 = ("solver.method=rk4", "solver.step=1us", "solver.end=0.6ms")
+FRICTION = "contact_laws.pin.friction={law: modified_coulomb, coefficient: 0.1, v0: 1e-4, v1: 1e-3}"
+KINDS = [(), SPATIAL, RK4, (*RK4, *SPATIAL), (FRICTION,)]
+KEPT = {"mem", "branch", "status"}  # of a scene: the record's, and counters
+
+
+def named(sets):
+    return " ".join(one.split("=")[1][:9] for one in sets) or "planar"
+
+
+def blocks(sets, checkpoint=None):
+    """Copies of all blocks from a checkpoint on, and the outcome."""
+    scenario = loads(small.SLIDER_CRANK, sets)
+    running, found = simulate(scenario, assemble(scenario), checkpoint), []
+    while True:
+        try:
+            block = next(running)
+        except StopIteration as stop:
+            return found, stop.value
+        tables = {n: getattr(block, n).copy() for n in ("rows", "steps", "events")}
+        found.append(block._replace(**tables))
+
+
+def assert_same(found, outcome, expected, unbroken):
+    """The tables, extremes and statistics of two runs, bit by bit; cpu times apart."""
+    for name in ("rows", "steps", "events"):
+        together = [np.concatenate([getattr(b, name) for b in run]) for run in (found, expected)]
+        np.testing.assert_array_equal(*together)
+    np.testing.assert_array_equal(outcome.peaks, unbroken.peaks)
+    assert outcome.time == unbroken.time
+    statistics = [{**o.statistics, "integration_cpu": 0.0} for o in (outcome, unbroken)]
+    assert statistics[0] == statistics[1]
+
+
+@pytest.mark.parametrize("sets", KINDS, ids=named)
+def test_every_state_leads_to_the_same_end(sets, monkeypatch):
+    unbroken, outcome = blocks(sets)
+    monkeypatch.setattr(module, "VISIT", 5)
+    cut, again = blocks(sets)
+    assert_same(cut, again, unbroken, outcome)  # where a run pauses does not matter
+    assert len(cut) > 5
+    for k in range(0, len(cut) - 1, max(1, len(cut) // 5)):
+        rest, end = blocks(sets, cut[k].state)
+        assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
+
+
+@pytest.mark.parametrize("sets", KINDS[:4], ids=named)
+def test_nothing_but_the_record_lasts(sets, monkeypatch):
+    """Workspace as new and buffers full of NaN at every step: they carry nothing along."""
+    unbroken, outcome = blocks(sets)
+
+    def forgetful(s, r, b, *rest):
+        if r.clock[T] > 0.0:
+            for name, array in scene(s).arrays().items():
+                if name not in KEPT:
+                    getattr(s, name)[...] = array
+            for array in b.arrays().values():
+                array[...] = np.nan
+        return march(s, r, b, *rest)
+
+    march = module.march
+    monkeypatch.setattr(module, "VISIT", 1)
+    monkeypatch.setattr(module, "march", forgetful)
+    assert_same(*blocks(sets), unbroken, outcome)
+
+
+def test_a_checkpoint_stays_as_it_is():
+    """It is a copy: the run it was taken of has gone on since."""
+    scenario = loads(small.SLIDER_CRANK, ["solver.end=30ms"])
+    running = simulate(scenario, assemble(scenario))
+    state = next(running).state
+    before = {name: array.copy() for name, array in state.items()}
+    next(running)
+    for name, array in state.items():
+        np.testing.assert_array_equal(array, before[name])

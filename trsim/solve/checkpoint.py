@@ -1,0 +1,45 @@
+"""The state of a run between two calls of the march, as named arrays: all it needs to go on.
+
+    record.NAME   the arrays of the Record, whatever they are
+    start.NAME    the Start, which the statistics of the whole run tell of
+    scene.status  evaluations and factorisations so far
+    cpu           s the march has taken so far
+
+Nothing else of a run lasts from one step to the next (tests/solve/test_checkpoint.py), so a run put
+back to such a state takes the same steps, to the last bit, as one that was never interrupted.
+"""
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.elements.scene import Scene
+from trsim.solve.record import Record, copy, restore
+from trsim.solve.start import Start
+
+State = dict[str, NDArray[Any]]
+
+
+def state(r: Record, work: Scene, begun: Start, cpu: float) -> State:
+    """A copy: it stays as it is while the run goes on."""
+    return {
+        **{f"record.{name}": array for name, array in copy(r).items()},
+        **{f"start.{f.name}": np.array(getattr(begun, f.name)) for f in fields(begun)},
+        "scene.status": work.status.copy(),
+        "cpu": np.array(cpu),
+    }
+
+
+def begun_at(checkpoint: State) -> Start:
+    """The start of the run that a checkpoint was taken of."""
+    found: dict[str, Any] = {f.name: checkpoint[f"start.{f.name}"] for f in fields(Start)}
+    return Start(**{name: a if a.ndim else a.item() for name, a in found.items()})
+
+
+def put_back(checkpoint: State, r: Record, work: Scene) -> float:
+    """Bring the record and the counters to a checkpoint; the cpu time spent until then, s."""
+    restore(r, {name: checkpoint[f"record.{name}"] for name in r.arrays()})
+    work.status[:] = checkpoint["scene.status"]
+    return float(checkpoint["cpu"])

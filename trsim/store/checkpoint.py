@@ -1,0 +1,161 @@
+"""Checkpoints: X.h5.checkpoint beside X.h5.part, all that a dead run needs to go on.
+
+    trsim checkpoint 1 SHA256\\n    of everything after this line
+    an archive of numpy             state/NAME     of the solver, see solve/checkpoint.py
+                                    extremes/NAME  of the writer, kept while blocks pass by
+                                    tail/DATASET   rows of the last chunk, if it is not full
+                                    about          the rest as JSON
+
+Chunks of the part file that are full are never written again, and are on the disk before the
+checkpoint is: whatever happens to the run later, it leaves them as they are.
+"""
+
+import hashlib
+import io
+import json
+import os
+import platform
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.errors import FileError
+from trsim.store.disk import synced
+from trsim.version import __version__
+
+MAGIC = "trsim checkpoint 1"
+ENDING = ".checkpoint"
+ANEW = "Without --resume the run starts anew."
+SHOWN = 5  # differences in a message
+OUTSIDE = {"cli", "report", "analyse"}  # packages that have no part in a run
+Arrays = dict[str, NDArray[Any]]
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """A run between two blocks."""
+
+    time: float  # s simulated
+    keys: dict[str, Any]  # what must be the same to go on
+    rows: dict[str, int]  # group -> rows in the part file
+    resumed: list[str]  # when the run was resumed until then
+    state: Arrays
+    extremes: Arrays
+    tail: Arrays
+
+
+def beside(final: Path) -> Path:
+    """The checkpoint that goes with a result file."""
+    return final.with_name(final.name + ENDING)
+
+
+# --- what must be the same -------------------------------------------------------------------
+
+
+def keys(scenario: Any) -> dict[str, Any]:
+    """All that has an influence on the last bit of a run."""
+    return {"scenario": json.loads(json.dumps(scenario.resolved)), **_surroundings()}
+
+
+@cache
+def _surroundings() -> dict[str, str]:
+    from importlib.metadata import version
+
+    from llvmlite.binding import get_host_cpu_name
+
+    found = {
+        "trsim": __version__,
+        "sources": sources(Path(__file__).parents[1]),
+        "python": platform.python_version(),
+        "machine": platform.machine(),
+        "processor": get_host_cpu_name(),
+        "libc": " ".join(platform.libc_ver()),
+    }
+    return found | {name: version(name) for name in ("numpy", "numba", "llvmlite")}
+
+
+def sources(package: Path) -> str:
+    """A hash of the code that makes results: kernels called by address belong to it as well."""
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*.py")):
+        inside = path.relative_to(package)
+        if inside.parts[0] not in OUTSIDE:
+            digest.update(f"{inside.as_posix()}\n".encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def differences(kept: Checkpoint, scenario: Any) -> str:
+    """What is not as it was when a checkpoint was written, in words; nothing if all is."""
+    was, now = dict(_leaves(kept.keys)), dict(_leaves(keys(scenario)))
+    names = [n for n in sorted(was | now) if was.get(n) != now.get(n)]
+    told = [
+        f"{n.removeprefix('scenario.')} is {_short(now.get(n))}, was {_short(was.get(n))}"
+        for n in names[:SHOWN]
+    ]
+    return "; ".join(told) + (f"; {len(names) - SHOWN} more" if len(names) > SHOWN else "")
+
+
+def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, str]]:
+    if not isinstance(tree, dict):
+        yield path, json.dumps(tree)
+        return
+    for name, inner in tree.items():
+        yield from _leaves(inner, f"{path}.{name}" if path else name)
+
+
+def _short(value: str | None) -> str:
+    return "absent" if value is None else value if len(value) < 40 else f"{value[:30]}..."
+
+
+# --- on the disk -----------------------------------------------------------------------------
+
+
+def store(path: Path, kept: Checkpoint) -> None:
+    """Write a checkpoint in one go: at any time there is the old one or the new one."""
+    about = {name: getattr(kept, name) for name in ("time", "keys", "rows", "resumed")}
+    archive = {"about": np.array(json.dumps(about))}
+    for part in ("state", "extremes", "tail"):
+        archive |= {f"{part}/{name}": array for name, array in getattr(kept, part).items()}
+    body = io.BytesIO()
+    np.savez(body, **archive)  # type: ignore[arg-type]
+    digest = hashlib.sha256(body.getbuffer()).hexdigest()
+    fresh = path.with_name(path.name + ".new")
+    try:
+        with fresh.open("wb") as file:
+            file.write(f"{MAGIC} {digest}\n".encode())
+            file.write(body.getbuffer())
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(fresh, path)
+        synced(path.parent)
+    except OSError as error:
+        with suppress(OSError):
+            fresh.unlink()
+        raise FileError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def load(path: Path) -> Checkpoint:
+    """Read a checkpoint.  Raises FileError unless every byte is as it was written."""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}", ANEW) from None
+    first, _, body = content.partition(b"\n")
+    if not first.startswith(MAGIC.encode()):
+        raise FileError(f"{path} is not a checkpoint of this trsim", ANEW)
+    if first.decode(errors="replace").split()[-1] != hashlib.sha256(body).hexdigest():
+        raise FileError(f"{path} is damaged: its checksum is wrong", ANEW)
+    parts: dict[str, Any] = {"state": {}, "extremes": {}, "tail": {}}
+    with np.load(io.BytesIO(body), allow_pickle=False) as archive:
+        about = json.loads(archive["about"].item())
+        for name in archive.files:
+            part, _, inner = name.partition("/")
+            if inner:
+                parts[part][inner] = archive[name]
+    return Checkpoint(**about, **parts)

@@ -1,0 +1,50 @@
+"""What the file system is asked for around HDF5: room to begin, data on the disk, a way out."""
+
+import contextlib
+import os
+from pathlib import Path
+
+import h5py
+
+from trsim.errors import FileError
+
+BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
+
+
+def see_room(part: Path) -> None:
+    """See that a file can be begun: HDF5 ends the process where its first bytes fail."""
+    trial = part.with_name(part.name + ".room")  # readers may already look for the part file
+    try:
+        with trial.open("wb") as file:
+            file.write(bytes(BEGINNING))
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError as error:
+        what = f"{part}: the first {BEGINNING} bytes cannot be written: {error.strerror}"
+        raise FileError(what) from None
+    finally:
+        trial.unlink(missing_ok=True)
+
+
+def let_go(file: h5py.File) -> None:
+    """Close a file that cannot be written.
+
+    HDF5 would go on trying to write what it holds, and fail again when it is unloaded; all it
+    still has to say goes to nowhere instead.  Readers find what was flushed.
+    """
+    if not file.id.valid:
+        return
+    with contextlib.suppress(OSError, RuntimeError):
+        nowhere = os.open(os.devnull, os.O_RDWR)
+        os.dup2(nowhere, file.id.get_vfd_handle())
+        os.close(nowhere)
+        file.close()
+
+
+def synced(path: Path) -> None:
+    """Have the system bring a file or a folder to the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
