@@ -10,7 +10,17 @@ from pydantic import ValidationError
 from pydantic_core import ValidationError as CoreError
 
 from trsim.errors import ScenarioError
-from trsim.fields import Flag, Function, FunctionSpec, Spec, SpecError, Unit, number, vector
+from trsim.fields import (
+    Flag,
+    Function,
+    FunctionSpec,
+    Spec,
+    SpecError,
+    Unit,
+    direction,
+    number,
+    vector,
+)
 from trsim.units import BASE, DERIVED, quantity, unit
 
 EXACT = {
@@ -240,3 +250,10 @@ def test_json_schema_takes_quantities():
     assert {"type": "string"} in schema["stiffness"]["anyOf"]
     assert {"minimum": 0, "type": "number"} in schema["stiffness"]["anyOf"]
     assert schema["at"]["minItems"] == 2
+
+
+@pytest.mark.parametrize("size", [1e-320, 1e-300, 1.0, 1e50])
+def test_direction_of_any_size(size):
+    x, y, z = direction((3 * size, 0.0, -4 * size))
+    assert (x, y, z) == pytest.approx((0.6, 0.0, -0.8), rel=1e-3 if size < 1e-308 else 1e-15)
+    assert math.hypot(x, y, z) == pytest.approx(1.0, abs=1e-15)

@@ -34,7 +34,7 @@ def places(spec, path, lines):
 def all_places():
     yield from places(Scenario, (), [])
     for word, section in elements.ELEMENTS.items():
-        if section and word != "clearance_joint":
+        if section:
             lines = [] if section in DEFAULTS else [f"type: {word}"]
             yield from places(elements.load(word).spec, (section, "thing"), lines)
 

@@ -1,6 +1,6 @@
 """Damaged scenarios are refused with an error of ours, or are scenarios: nothing else happens.
 
-The same elements, loader, warnings and assembly as in `trsim check`, in one process.
+All that `trsim check` does with them, in one process: load, assemble, find the start, warn.
 """
 
 import copy
@@ -8,29 +8,47 @@ import functools
 import json
 import operator
 import random
-import time
+import re
+import shutil
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from trsim.assemble.assemble import assemble
-from trsim.errors import ModelError, ScenarioError, TrsimError
-from trsim.spec.lint import lint
-from trsim.spec.load import load, loads
+from trsim.spec.load import load
+
+from .checking import LARGEST, Checks, written
+from .sizes import size
 
 SCENARIOS = Path(__file__).parent.parent / "scenarios"
-FILES = [
-    SCENARIOS / "thrust_reverser" / "mechanism.yaml",
-    SCENARIOS / "validation" / "slider_crank_friction.yaml",
-    SCENARIOS / "validation" / "four_bar_3d.yaml",
-    SCENARIOS / "validation" / "pendulum_3d.yaml",
-]
-MUTANTS = 500  # of each file
+MECHANISM = SCENARIOS / "thrust_reverser" / "mechanism.yaml"
+FILES = {  # scenario: mutants of it
+    SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml": size(1_000, 10_000),  # static start
+    MECHANISM: size(4_750, 47_500),
+    SCENARIOS / "validation" / "slider_crank_friction.yaml": size(4_750, 47_500),
+    SCENARIOS / "validation" / "four_bar_3d.yaml": size(4_750, 47_500),
+    SCENARIOS / "validation" / "pendulum_3d.yaml": size(4_750, 47_500),
+}
+STRUCTURES = size(2_000, 50_000)
 PIECES = [b"{", b"}", b"[", b"]", b":", b",", b"-", b"#", b"&a ", b"*a", b"!!x ", b"|", b"'", b'"',
           b"\n", b"\t", b" ", b"0", b"9", b"e9", b"-1", b"1e999", b".nan", b"null", b"\x00",
           b"\xff", b"\xc3\xa9", b"\xef\xbb\xbf", b"? ", b"<<: ", b"t", b"**9", b"()"]  # fmt: skip
+
+
+def test_how_many():
+    assert sum(FILES.values()) == size(20_000, 200_000)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """Where mutants lie, beside the file some of them extend."""
+    monkeypatch.setenv("TRSIM_DEBUG", "1")  # what is not an error of ours shows its traceback
+    shutil.copy(MECHANISM, tmp_path)
+    return tmp_path
+
+
+# --- bytes -----------------------------------------------------------------------------------
 
 
 def body_of(path):
@@ -59,37 +77,23 @@ def mutated(data, dice):
 
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
-def test_mutated_bytes(path, tmp_path):
-    assemble(load(path))  # what compiles, compiles before the clock runs
-    whole, dice = body_of(path), random.Random(path.name)
-    counts = {"read": 0, "refused": 0, "ill-posed": 0}
-    target = tmp_path / "mutant.yaml"
-    slowest = 0.0
-    for _ in range(MUTANTS):
+def test_mutated_bytes(path, folder):
+    whole, dice, checks = body_of(path), random.Random(path.name), Checks()
+    checks.warm(path)
+    for _ in range(FILES[path]):
         data = mutated(whole, dice)
-        target.write_bytes(data)
-        start = time.perf_counter()
         try:
-            scenario = load(target)
-            assert all(isinstance(text, str) for text in lint(scenario))
-            assemble(scenario)
-            counts["read"] += 1
-        except ModelError as error:
-            assert error.show()
-            counts["ill-posed"] += 1
-        except TrsimError as error:
-            assert error.exit_code == ScenarioError.exit_code, data
-            assert error.show()
-            counts["refused"] += 1
+            checks.check(written(folder / "mutant.yaml", data))
         except Exception as error:
             raise AssertionError(f"{type(error).__name__} {error}: {data!r}") from error
-        slowest = max(slowest, time.perf_counter() - start)
-    print(path.stem, counts, f"slowest {slowest:.2f} s")
-    assert counts["refused"] > 0.2 * MUTANTS
+    print(f"{path.stem}: {checks.told()}")
+    assert checks.counts[3] > 0.2 * FILES[path]
+    assert checks.largest < LARGEST
 
 
 # --- values and structures -------------------------------------------------------------------
 
+EXPONENTS = (-300, -12, -6, 3, 6, 9, 12, 20, 49, 100, 155, 300)
 TREES = [load(path).resolved for path in FILES]
 VALUES = (
     st.none()
@@ -101,7 +105,7 @@ VALUES = (
     )
     | st.sampled_from(["fairing", "door", "guide", "stroke", "B", "sqrt(-1)", "exp(1e9)", "pi"])
 )
-STRUCTURES = st.recursive(
+SHAPES = st.recursive(
     VALUES,
     lambda inner: (
         st.lists(inner, max_size=4)
@@ -121,23 +125,67 @@ def paths(data, path=()):
             yield from paths(value, (*path, key))
 
 
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numpy, at 1e300 m
-@settings(max_examples=300, deadline=1000, derandomize=True)
-@given(st.data())
-def test_changed_values(data):
-    """Some values of a good scenario replaced by others, removed, or copied from elsewhere."""
-    tree = copy.deepcopy(data.draw(st.sampled_from(TREES)))
-    for _ in range(data.draw(st.integers(1, 3))):
-        *above, key = data.draw(st.sampled_from(sorted(paths(tree), key=str)))
-        holder = functools.reduce(operator.getitem, above, tree)
+def at(tree, path):
+    return functools.reduce(operator.getitem, path, tree)
+
+
+def numeric(tree):
+    """The paths of numbers, with or without a unit."""
+    return [path for path in sorted(paths(tree), key=str) if NUMBER.match(str(at(tree, path)))]
+
+
+NUMBER = re.compile(r"[-+]?[0-9.]+(e[-+]?[0-9]+)?")
+ANYWHERE = [sorted(paths(tree), key=str) for tree in TREES]
+NUMBERS = [numeric(tree) for tree in TREES]
+EXTREMES = st.sampled_from([0.0, -1.0, *(s * 10.0**e for s in (1, -1) for e in EXPONENTS)])
+
+
+def change_number(data, tree, path):
+    """Another number in place of one, in the same unit."""
+    *above, key = path
+    value = data.draw(EXTREMES | st.floats(-10.0, 10.0))
+    old = at(tree, path)
+    at(tree, above)[key] = NUMBER.sub(repr(value), old, count=1) if isinstance(old, str) else value
+
+
+def change_anything(data, tree, path):
+    """Any value in place of one, or none."""
+    *above, key = path
+    try:
+        holder = at(tree, above)
         if data.draw(st.integers(0, 4)) == 0:
             del holder[key]
         else:
-            holder[key] = data.draw(STRUCTURES)
-    try:
-        scenario = loads(json.dumps(tree))
-        assert all(isinstance(text, str) for text in lint(scenario))
-        assemble(scenario)
-    except TrsimError as error:
-        assert error.exit_code in (3, 4)
-        assert error.show()
+            holder[key] = data.draw(SHAPES)
+    except (LookupError, TypeError):  # it went with an earlier change
+        return
+
+
+def changed(data):
+    """A good scenario with one to three changes: of numbers only, or of anything."""
+    which = data.draw(st.integers(0, len(TREES) - 1))
+    change, places = data.draw(
+        st.sampled_from([(change_number, NUMBERS[which]), (change_anything, ANYWHERE[which])])
+    )
+    tree = copy.deepcopy(TREES[which])
+    for path in data.draw(st.lists(st.sampled_from(places), min_size=1, max_size=3, unique=True)):
+        change(data, tree, path)
+    return tree
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # of numpy, at 1e300 m
+def test_changed_values(folder):
+    checks = Checks()
+    for path in FILES:
+        checks.warm(path)
+
+    @settings(max_examples=STRUCTURES, deadline=None, derandomize=True, database=None)
+    @given(st.data())
+    def change(data):
+        text = json.dumps(changed(data))
+        checks.check(written(folder / "mutant.yaml", text.encode()))
+
+    change()
+    print(f"structures: {checks.told()}")
+    assert sum(checks.counts.values()) >= STRUCTURES
+    assert checks.largest < LARGEST

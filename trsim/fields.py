@@ -9,6 +9,7 @@ pydantic's validation context: {"parameters": {"speed": 0.5}}.
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -146,6 +147,15 @@ class _VectorUnit(Unit):
 def vector(*units: str) -> Any:
     """The type of a vector: three floats, given as two or three numbers."""
     return Annotated[tuple[float, float, float], _VectorUnit(*units)]
+
+
+def direction(v: Iterable[float]) -> tuple[float, ...]:
+    """The unit vector along v, which is not zero; no square vanishes."""
+    v = tuple(v)
+    exponent = math.frexp(max(map(abs, v)))[1]
+    v = tuple(math.ldexp(c, -exponent) for c in v)
+    length = math.sqrt(sum(c * c for c in v))
+    return tuple(c / length for c in v)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,3 @@
-import json
-import os
-import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -10,25 +5,13 @@ import numpy as np
 import pytest
 
 from tests import small
-from tests.cli.conftest import faults
+from tests.store import outside
 from trsim.cli import COMMANDS
 from trsim.store.read import read, verify
-
-ROOT = Path(__file__).parents[2]
 
 
 def files(folder):
     return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
-
-
-def started(folder, *arguments, stdout=subprocess.PIPE):
-    """A command line in a process of its own."""
-    command = [sys.executable, "-m", "trsim", *arguments]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.Popen(  # noqa: S603
-        command, cwd=folder, env=environment, stdout=stdout, stderr=subprocess.PIPE,
-        text=True,
-    )  # fmt: skip
 
 
 def wait_for(path, size=100_000):
@@ -50,8 +33,7 @@ def test_help_imports_nothing_heavy():
         "heavy = {'numpy', 'numba', 'h5py', 'pydantic', 'yaml', 'rich', 'scipy', 'matplotlib'}\n"
         "print(sorted(heavy & set(sys.modules)))"
     )
-    command = [sys.executable, "-c", code]
-    out = subprocess.run(command, check=True, cwd=ROOT, capture_output=True, text=True).stdout  # noqa: S603
+    out, _ = outside.started(outside.ROOT, "-c", code).communicate()
     assert out.splitlines()[-1] == "[]"
     for name in COMMANDS:
         assert f"  {name} " in out
@@ -240,37 +222,16 @@ def test_show_and_report(scenario, trsim, answer):
     assert "x/orbit_B.png" in document["files"]
 
 
-# --- signals ---------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_signal_closes_the_file(number, code, scenario):
-    process = started(scenario.parent, "run", "crank.yaml", "--set", "solver.end=1000", "--json")
-    part = scenario.parent / "runs/crank.h5.part"
-    wait_for(part)
-    process.send_signal(number)
-    out, err = process.communicate(timeout=20)
-    assert process.returncode == code
-    document = json.loads(out)
-    assert document["exit_code"] == code
-    assert faults(document, "run") == []
-    assert "Traceback" not in err
-    result = read(part)
-    assert result.attributes["status"] == "interrupted"
-    assert np.all(np.diff(result.time) > 0.0)
-    assert files(scenario.parent) == [
-        "crank.yaml", "runs/crank.h5.checkpoint", "runs/crank.h5.part",
-    ]  # fmt: skip
+# --- killed ----------------------------------------------------------------------------------
 
 
 def test_killed_run_leaves_a_readable_part(scenario):
-    process = started(scenario.parent, "run", "crank.yaml", "--set", "solver.end=1000")
+    process = outside.trsim(scenario.parent, "run", "crank.yaml", "--set", outside.LONG)
     part = scenario.parent / "runs/crank.h5.part"
     wait_for(part)
     while (seen := read(part).rows) == 0:  # it can be read while it grows
         time.sleep(0.05)
-    process.kill()
-    process.communicate()
+    outside.killed(process)
     result = read(part)
     assert result.attributes["status"] == "running"
     assert result.rows >= seen

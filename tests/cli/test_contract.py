@@ -12,7 +12,7 @@ from jsonschema import Draft202012Validator
 
 from tests import small
 from tests.cli.conftest import SCHEMAS, faults
-from tests.cli.test_cli import started
+from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.cli import COMMANDS
 from trsim.cli.frame import EXIT_CODES
@@ -155,7 +155,7 @@ def test_more_errors_than_are_listed(folder, document):
 
 
 def test_a_file_name_that_is_no_text(tmp_path):
-    process = started(tmp_path, "show", os.fsdecode(b"\xff.h5"), "--json")
+    process = outside.trsim(tmp_path, "show", os.fsdecode(b"\xff.h5"), "--json")
     told = json.loads(process.communicate(timeout=60)[0])
     assert told["errors"][0]["what"].startswith("\udcff.h5: no such file")
 
@@ -164,7 +164,7 @@ def test_nobody_can_be_told(tmp_path):
     """A full disk behind standard output is told on the other one."""
     with open("/dev/full", "w") as full:
         for options in ((), ("--json",)):
-            process = started(tmp_path, "explain", "drive", *options, stdout=full)
+            process = outside.trsim(tmp_path, "explain", "drive", *options, stdout=full)
             assert "No space left on device" in process.communicate(timeout=60)[1]
             assert process.returncode == 7
 

@@ -1,7 +1,6 @@
 """Commands on result files: export, recover, and run of a result."""
 
 import csv
-import signal
 
 import numpy as np
 import pytest
@@ -96,8 +95,7 @@ def test_run_of_a_result_is_identical(scenario, trsim, answer):
 def test_recover(scenario, trsim, answer):
     process = outside.begun(scenario.parent)
     outside.blocks_until(process, 0.7)
-    process.send_signal(signal.SIGKILL)
-    process.communicate()
+    outside.killed(process)
     code, out, err = trsim("recover", "runs/crank.h5.part")
     assert (code, out) == (0, "runs/crank.recovered.h5\n")
     assert "the run was 'running'" in err

@@ -8,6 +8,8 @@ import pytest
 from trsim.errors import FileError, ScenarioError, TrsimError, UsageError
 from trsim.spec.expand import DEEPEST, MOST, expand, expand_text, parameters, rows
 
+from ..watching import watched
+
 
 def files(folder, **texts):
     for name, text in texts.items():
@@ -129,7 +131,9 @@ def test_traversal(secret):
         "mechanism.yaml/x.yaml": "there is no file",
     }.items():
         files(secret, top=f'extends: "{name}"')
-        error = refusal("top.yaml")
+        with watched("open") as opened:
+            error = refusal("top.yaml")
+        assert len(opened) == 1 and "top.yaml" in opened[0]
         assert what in error.what
         assert error.show().startswith("top.yaml:1:10: extends: ")
     files(secret, top="extends: mechanisn.yaml")

@@ -31,6 +31,5 @@ def running_part(tmp_path_factory):
     folder = tmp_path_factory.mktemp("killed")
     process = outside.begun(folder)
     outside.blocks_until(process, 1.2)
-    process.kill()
-    process.communicate()
+    outside.killed(process)
     return folder / "runs/crank.h5.part"

@@ -34,15 +34,33 @@ main(["run", *sys.argv[1:], "-q"])
 """
 
 
+def started(folder, *words, stdout=subprocess.PIPE, **environment):
+    """Python in a process of its own, with these words on its command line."""
+    return subprocess.Popen(  # noqa: S603
+        [sys.executable, *words], cwd=folder, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        stdout=stdout, stderr=subprocess.PIPE,
+    )  # fmt: skip
+
+
+def trsim(folder, *words, **options):
+    """A command line in a process of its own."""
+    return started(folder, "-m", "trsim", *words, **options)
+
+
 def begun(folder, *arguments, limit=0):
     """A long run that tells how far it is; the process."""
     (folder / "crank.yaml").write_text(small.SLIDER_CRANK)
-    command = [sys.executable, "-c", TELLING, "crank.yaml", "--set", LONG, *arguments]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "LIMIT": str(limit)}
-    return subprocess.Popen(  # noqa: S603
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True,
-    )  # fmt: skip
+    words = ("-c", TELLING, "crank.yaml", "--set", LONG, *arguments)
+    return started(folder, *words, LIMIT=str(limit))
+
+
+def killed(process):
+    """The wall time at which a process was killed."""
+    process.kill()
+    when = time.monotonic()
+    process.communicate()
+    return when
 
 
 def blocks_until(process, seconds):

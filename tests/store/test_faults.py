@@ -2,17 +2,21 @@
 
 import json
 import signal
-import subprocess
-import sys
 import time
 
 import numpy as np
 import pytest
 
+from tests.cli.conftest import faults
+from tests.sizes import RELEASE, size
 from tests.store import outside
 from trsim.store.read import read
 
 LIMITS = [3_000, 40_000, 300_000, 1_000_000, 4_000_000]  # bytes a file may have
+if RELEASE:
+    LIMITS += np.geomspace(2_000, 20_000_000, 95).astype(int).tolist()
+ROWS = size(1_000_000, 10_000_000)
+SIGNALS = [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
 
 
 @pytest.mark.parametrize("limit", LIMITS)
@@ -26,46 +30,53 @@ def test_full_disk(limit, tmp_path):
     assert "runs/crank.h5" in err.splitlines()[0]
     assert "File too large" in err.splitlines()[0]
     assert len(err.splitlines()) <= 2, err
-    size = part.stat().st_size if part.exists() else 0
-    assert size <= limit
+    length = part.stat().st_size if part.exists() else 0
+    assert length <= limit
     rows = 0
-    if "bytes: File too large" in err and size:
-        assert f"beyond {size} bytes" in err
+    if "bytes: File too large" in err and length:
+        assert f"beyond {length} bytes" in err
         run = read(part)
         rows = run.rows
         assert np.all(np.diff(run.time) > 0.0)
         assert all(np.all(np.isfinite(run.channel(name))) for name in run.names)
-    print(f"at most {limit} bytes: {size} written, {rows} rows can be read")
+    print(f"at most {limit} bytes: {length} written, {rows} rows can be read")
 
 
-@pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("number, code", SIGNALS)
 @pytest.mark.parametrize("wait", [0.0, 0.8])
 def test_signal(number, code, wait, tmp_path):
     process = outside.begun(tmp_path, "--json")
     outside.blocks_until(process, wait)
     sent = time.monotonic()
     process.send_signal(number)
-    process.communicate(timeout=20)
+    out, err = process.communicate(timeout=20)
     took = time.monotonic() - sent
     print(f"{signal.Signals(number).name} after {wait} s: closed in {took:.2f} s")
     assert process.returncode == code
+    document = json.loads(out[out.index("{") :])
+    assert document["exit_code"] == code
+    assert faults(document, "run") == []
+    assert "Traceback" not in err
     part = tmp_path / "runs/crank.h5.part"
     if part.exists() or wait:  # before the first rows there is no file
         run = read(part)
         assert run.attributes["status"] == "interrupted"
         assert np.all(np.diff(run.time) > 0.0)
-    assert not (tmp_path / "runs/crank.h5").exists()
+    found = {p.name for p in tmp_path.rglob("*") if p.is_file()}
+    assert found <= {"crank.yaml", "crank.h5.part", "crank.h5.checkpoint"}
 
 
-def test_second_signal_ends_at_once(tmp_path):
+@pytest.mark.parametrize("number, code", SIGNALS)
+def test_second_signal_ends_at_once(number, code, tmp_path):
+    """The one that comes while the file is being closed, if it does not come too late."""
     process = outside.begun(tmp_path)
     outside.blocks_until(process, 0.5)
     sent = time.monotonic()
     while process.poll() is None and time.monotonic() - sent < 2.0:
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
     process.communicate(timeout=20)
-    assert process.returncode in (-signal.SIGINT, 130)
-    print(f"second signal: ended after {time.monotonic() - sent:.2f} s")
+    assert process.returncode in (-number, code)
+    print(f"second {signal.Signals(number).name}: ended after {time.monotonic() - sent:.2f} s")
 
 
 # rows as fast as they can be made, and the memory the process held meanwhile
@@ -111,16 +122,13 @@ print(json.dumps({"seconds": took, "start": held[2], "most": max(held), "end": r
 
 
 def test_memory_does_not_grow(tmp_path):
-    rows = 1_000_000
-    done = subprocess.run(  # noqa: S603
-        [sys.executable, "-c", MANY, str(rows), str(tmp_path / "x.h5")],
-        cwd=outside.ROOT, capture_output=True, text=True, timeout=100,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    told = json.loads(done.stdout)
+    process = outside.started(tmp_path, "-c", MANY, str(ROWS), "x.h5")
+    out, err = process.communicate()
+    assert process.returncode == 0, err
+    told = json.loads(out)
     growth = (max(told["most"], told["end"]) - told["start"]) / 1e6
     rate = told["size"] / told["seconds"] / 1e6
-    print(f"{rows} rows, {told['size'] / 1e6:.0f} MB in {told['seconds']:.1f} s, {rate:.0f} MB/s,"
+    print(f"{ROWS} rows, {told['size'] / 1e6:.0f} MB in {told['seconds']:.1f} s, {rate:.0f} MB/s,"
           f" memory grew by {growth:.1f} MB")  # fmt: skip
-    assert read(tmp_path / "x.h5.part").rows == rows
+    assert read(tmp_path / "x.h5.part").rows == ROWS
     assert growth <= 20.0

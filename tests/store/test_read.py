@@ -5,7 +5,7 @@ import xarray
 
 from trsim.errors import FileError, UsageError
 from trsim.store import describe
-from trsim.store.read import read, verify
+from trsim.store.read import read
 
 
 def test_what_cannot_be_read_is_told(result, tmp_path):
@@ -33,27 +33,6 @@ def test_newer_format_is_refused(result, tmp_path):
         file.attrs["format_version"] = 99
     with pytest.raises(FileError, match="format 99"):
         read(tmp_path / "new.h5")
-
-
-def test_flipped_bytes_are_noticed(result, tmp_path):
-    """Never a crash, never another number unnoticed."""
-    whole = bytearray(result.path.read_bytes())
-    rng = np.random.default_rng(1)
-    missed = 0
-    for k in rng.integers(8, len(whole), 40):
-        flipped = whole.copy()
-        flipped[k] ^= 0x40
-        (tmp_path / "f.h5").write_bytes(flipped)
-        try:
-            noticed = not verify(tmp_path / "f.h5")
-        except FileError:
-            noticed = True
-        if not noticed:  # in space that no number uses
-            found = read(tmp_path / "f.h5")
-            for name in result.names:
-                np.testing.assert_array_equal(found.channel(name), result.channel(name))
-            missed += 1
-    assert missed < 40
 
 
 def test_unknown_channel_and_contact(result):

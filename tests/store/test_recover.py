@@ -1,11 +1,10 @@
 """A run that was killed is recovered; so is a file that was cut short or never closed."""
 
-import time
-
 import h5py
 import numpy as np
 import pytest
 
+from tests.sizes import size
 from tests.store import outside
 from trsim.errors import FileError
 from trsim.store import hdf5
@@ -13,7 +12,7 @@ from trsim.store.plain import Plain, checksum
 from trsim.store.read import read, verify
 from trsim.store.recover import copy, recover
 
-KILLS = np.random.default_rng(9).uniform(0.05, 1.6, 5)  # s after the first rows
+KILLS = np.random.default_rng(9).uniform(0.05, 1.6, size(10, 500))  # s after the first rows
 
 
 def whole(path):
@@ -35,9 +34,7 @@ def whole(path):
 def test_killed_run(wait, tmp_path, record_property):
     process = outside.begun(tmp_path)
     told = outside.blocks_until(process, wait)
-    process.kill()
-    killed = time.monotonic()
-    process.communicate()
+    killed = outside.killed(process)
     recover(tmp_path / "runs/crank.h5.part", tmp_path / "x.h5")
     run = whole(tmp_path / "x.h5")
     assert run.attributes["status"] == "recovered"

@@ -36,7 +36,7 @@ from trsim.elements.contract import (
     N_BOOK,
     Row,
 )
-from trsim.elements.scene import BAUMGARTE, NONE, PROJECTION, Model
+from trsim.elements.scene import BAUMGARTE, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ def assemble(
     of the scenario's; coordinates: joints whose coordinate is needed though nobody asks for it.
     """
     at, instances = pack(scenario, ideal, drives, coordinates)
-    full = build(scenario, at, instances, all_rows(instances), 6)
+    full = scene(build(scenario, at, instances, all_rows(instances), 6))  # one workspace for all
     y6 = drawn(scenario, at, 6)
     planar, assumed = planarity(scenario, full, y6)
     check_inertias(scenario, planar)

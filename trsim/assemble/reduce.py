@@ -37,12 +37,10 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     w = workspace(model)
     poses(w, y)
     constraints(w, t)
-    J = np.zeros((model.m, 6 * model.n))
-    for k in range(model.m):
-        for s in range(model.row_start[k], model.row_start[k + 1]):
-            f, c = model.slot_frame[s], model.slot_column[s]
-            J[k, 6 * f : 6 * f + 6] += w.J[k, c : c + 6]
-    return w.phi.copy(), w.phi_t.copy(), J[:, 6:]
+    J = np.zeros((model.m, model.n, 6))
+    row = np.repeat(np.arange(model.m), np.diff(model.row_start))
+    np.add.at(J, (row, model.slot_frame), w.J.reshape(-1, 2, 6)[row, model.slot_column // 6])
+    return w.phi.copy(), w.phi_t.copy(), J[:, 1:].reshape(model.m, 6 * (model.n - 1))
 
 
 def weights(model: Model) -> Array:
@@ -57,13 +55,13 @@ def displaced(model: Model, y: Array, dx: Array) -> Array:
     y = y.copy()
     w = workspace(model)
     poses(w, y)
-    for f in range(1, model.n):
-        step = dx[6 * (f - 1) : 6 * f]
-        if model.d == 3:
-            move(w, y, f, np.ascontiguousarray(step[IN_PLANE]))
-        else:
-            R = w.X[f, 3:].reshape(3, 3)
-            move(w, y, f, np.concatenate([step[:3], R.T @ step[3:]]))
+    steps = dx.reshape(-1, 6)
+    if model.d == 3:
+        steps = np.ascontiguousarray(steps[:, IN_PLANE])
+    for f, step in enumerate(steps, start=1):
+        if model.d == 6:
+            step = np.concatenate([step[:3], w.X[f, 3:].reshape(3, 3).T @ step[3:]])
+        move(w, y, f, step)
     return y
 
 

@@ -12,7 +12,7 @@ from pydantic import model_validator
 
 from trsim.elements.contract import LOADS, Channel, Element, Row, kernel
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
-from trsim.fields import Function, Spec, vector
+from trsim.fields import Function, Spec, direction, vector
 from trsim.laws.functions import value
 
 
@@ -48,9 +48,8 @@ def pack(name, spec, at):
     i = at.body(spec.body)
     frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame")
     place = at.centre(i) if spec.at is None else spec.at
-    length = sum(c * c for c in spec.direction) ** 0.5
     # the direction is drawn in world axes at t = 0 and then turns with its frame
-    n = at.axes(frame, tuple(c / length for c in spec.direction))
+    n = at.axes(frame, direction(spec.direction))
     is_torque = spec.force is None
     f = at.function(spec.torque if is_torque else spec.force, "torque" if is_torque else "force")
     return Row((i, frame, f, int(is_torque)), (*at.local(i, place), *n))

@@ -7,7 +7,7 @@ par[21]                         joint angle as drawn
 """
 
 from trsim.errors import ScenarioError
-from trsim.fields import Spec, vector
+from trsim.fields import Spec, direction, vector
 
 
 class Joint(Spec):
@@ -23,19 +23,16 @@ class Joint(Spec):
 
 def perpendicular(axis):
     """Unit vectors u, w, a with a along the axis; (x, y, z) for the z axis."""
-    length = sum(c * c for c in axis) ** 0.5
-    if length == 0.0:
+    if not any(axis):
         raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", ("axis",))
-    a = tuple(c / length for c in axis)
+    a = direction(axis)
     # project the world axis least aligned with a, cyclically after the largest component,
     # so that a z axis gives u = x and w = y exactly
     largest = max(range(3), key=lambda c: abs(a[c]))
     u = [0.0, 0.0, 0.0]
     u[(largest + 1) % 3] = 1.0
     along = sum(p * q for p, q in zip(u, a, strict=True))
-    u = [p - along * q for p, q in zip(u, a, strict=True)]
-    length = sum(c * c for c in u) ** 0.5
-    u = tuple(c / length for c in u)
+    u = direction(p - along * q for p, q in zip(u, a, strict=True))
     w = (
         a[1] * u[2] - a[2] * u[1],
         a[2] * u[0] - a[0] * u[2],

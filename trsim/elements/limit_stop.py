@@ -26,7 +26,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
 from trsim.errors import ScenarioError
-from trsim.fields import Spec, Unit, vector
+from trsim.fields import Spec, Unit, direction, vector
 from trsim.laws.contact import ramped_damping
 
 
@@ -114,8 +114,7 @@ def pack(name, spec, at):
                 "name two different bodies",
                 ("point", "body"),
             )
-        length = sum(c * c for c in spec.wall.normal) ** 0.5
-        n = at.axes(i, tuple(c / length for c in spec.wall.normal))
+        n = at.axes(i, direction(spec.wall.normal))
         places = (*at.local(i, spec.wall.at), *at.local(j, spec.point.at))
         return Row((i, j, -1, ON_WALL), (*places, *n, *law, 0.0, 0.0), contact)
     x = at.coordinate(spec.joint)

@@ -68,7 +68,8 @@ class Packed:
             value = values[name]
             if _is_array(kind):
                 wanted = np.float64 if str(kind.dtype) == "float64" else np.int64
-                value = np.require(value, wanted, ["C", "W"])
+                if not _as_it_is(value, wanted):
+                    value = np.require(value, wanted, ["C", "W"])
                 if value.ndim != kind.ndim:
                     raise TypeError(f"{name}: {value.ndim} dimensions instead of {kind.ndim}")
                 self.words[WORDS * k] = value.ctypes.data
@@ -78,20 +79,19 @@ class Packed:
             else:
                 self.words[WORDS * k] = value
             object.__setattr__(self, name, value)
-
-    @property
-    def address(self) -> int:
-        return self.words.ctypes.data
+        self.address: int = self.words.ctypes.data
+        self._numba_type_ = self.numba_type  # what numba takes a record for
 
     def arrays(self) -> dict[str, np.ndarray]:
         """The arrays by name."""
         return {n: getattr(self, n) for n, kind in self.numba_type.fields if _is_array(kind)}
 
-    @property
-    def _numba_type_(self) -> Any:
-        """What numba takes a record for."""
-        return self.numba_type
-
 
 def _is_array(kind: Any) -> bool:
     return hasattr(kind, "ndim")
+
+
+def _as_it_is(value: Any, wanted: Any) -> bool:
+    """Whether compiled code can use the array without a copy."""
+    flags = getattr(value, "flags", None)
+    return flags is not None and value.dtype == wanted and flags.c_contiguous and flags.writeable

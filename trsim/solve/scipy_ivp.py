@@ -72,9 +72,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     limit = scenario.solver.max_steps or 2**62
     solver = restarted(scenario, s, r, b, setting)
     while r.clock[rec.T] < setting[rec.T_END]:
-        message = solver.step()
-        if solver.status == "failed":
-            status, reason = "failed", f"scipy stopped: {message}"
+        reason = stopped(solver)
+        if reason:
+            status = "failed"
             break
         hand_over(solver, b)
         outcome = complete(s, r, b, setting, method, solver.t - solver.t_old, 1)
@@ -95,6 +95,17 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
+
+
+def stopped(solver: Any) -> str:
+    """Make a step; why it could not be made."""
+    try:
+        message = solver.step()
+    except ValueError as error:
+        if "infs or NaNs" not in str(error):
+            raise
+        return "a force or an acceleration is not finite"  # met when factorising a Jacobian
+    return f"scipy stopped: {message}" if solver.status == "failed" else ""
 
 
 def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) -> Any:

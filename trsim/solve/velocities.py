@@ -31,7 +31,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     joints = scenario.joints.items() if not given else ()
     playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
     ideal = assemble(scenario, playing, coordinates=named)
-    model = ideal.model
+    model = workspace(ideal.model)
     y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
     n = model.n_q + model.n_v
     y_ideal[:n] = y[:n]

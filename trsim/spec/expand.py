@@ -97,9 +97,11 @@ class _Files:
     def extended(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> Tree:
         """The tree merged over the files its key `extends` names."""
         names = tree.data.pop("extends", None)
+        if names is None:
+            return tree
         single = not isinstance(names, list)
         base = Tree({})
-        for k, name in enumerate([names] if single and names is not None else names or []):
+        for k, name in enumerate([names] if single else names):
             where = ("extends",) if single else ("extends", k)
             place: Any = tree.place(where)
             try:

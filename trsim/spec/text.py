@@ -114,16 +114,19 @@ def _events(text: str, place: Any) -> Iterator[Any]:
         for count, event in enumerate(yaml.parse(text, Loader=LOADER)):
             mark: Any = event.start_mark
             at = (mark.line, mark.column)
-            if isinstance(event, yaml.DocumentStartEvent):
+            if isinstance(event, yaml.NodeEvent):
+                if event.anchor or isinstance(event, yaml.AliasEvent):
+                    what = "anchors and aliases are not allowed"
+                    hint = "Use `parameters` or `extends`."
+                    raise ScenarioError(what, hint, place=place(*at))
+            elif isinstance(event, yaml.DocumentStartEvent):
                 documents += 1
                 if documents > 1:
                     what, hint = "a second document starts here", "Put it into a file of its own."
                     raise ScenarioError(what, hint, place=place(*at))
-            if not isinstance(event, yaml.NodeEvent | yaml.CollectionEndEvent):
                 continue
-            if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
-                what, hint = "anchors and aliases are not allowed", "Use `parameters` or `extends`."
-                raise ScenarioError(what, hint, place=place(*at))
+            elif not isinstance(event, yaml.CollectionEndEvent):
+                continue
             tag = getattr(event, "tag", None)
             if tag:
                 what = f"tags are not allowed: {described(tag)}"
@@ -185,7 +188,7 @@ def _node(event: Any, events: Iterator[Any], tree: Tree, path: Path, place: Any)
 def _scalar(event: Any, path: Path, where: Place) -> Any:
     """A scalar by the YAML 1.2 core schema; quoted ones are text."""
     text = event.value
-    if _UNPRINTABLE.search(text):
+    if not text.isprintable() and _UNPRINTABLE.search(text):
         raise ScenarioError("a character that cannot be printed", "Delete it.", path, where)
     if not event.implicit[0]:
         return text

@@ -1,0 +1,90 @@
+"""`trsim check` in this process: how it ends, and the time and memory it took."""
+
+import contextlib
+import io
+import json
+import signal
+import time
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from trsim.cli.check import command
+
+HANGS = 20.0  # s of CPU
+LARGEST = 200e6  # bytes a check may add to what the process held before
+
+
+class Hang(BaseException):
+    """No `except Exception` of the code under test stops it."""
+
+
+@contextlib.contextmanager
+def watchdog() -> Iterator[None]:
+    """Ends what uses the processor for longer than HANGS."""
+
+    def bite(*_: Any) -> None:
+        raise Hang(f"still busy after {HANGS} s")
+
+    before = signal.signal(signal.SIGPROF, bite)
+    signal.setitimer(signal.ITIMER_PROF, HANGS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def written(path: Path, data: bytes) -> Path:
+    """A file made anew: one that is cut and filled again has to wait for the disk."""
+    path.unlink(missing_ok=True)
+    path.write_bytes(data)
+    return path
+
+
+def held(what: str) -> float:
+    """VmRSS (now) or VmHWM (the most since `forget`) of this process, bytes."""
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return 1024.0 * next(int(line.split()[1]) for line in lines if line.startswith(what))
+
+
+def forget() -> None:
+    """Let VmHWM begin anew."""
+    Path("/proc/self/clear_refs").write_text("5")
+
+
+class Checks:
+    """`trsim check` of many files, with what became of them."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[int] = Counter()  # by exit code
+        self.slowest = self.largest = 0.0
+
+    def warm(self, path: Path) -> None:
+        """What is compiled or imported, is so before the clock runs."""
+        assert Checks().check(path) == 0
+
+    def check(self, path: Path) -> int:
+        """The exit code: 0, 3 or 4, with a message for each error; anything else is refused."""
+        out, err = io.StringIO(), io.StringIO()
+        forget()
+        before, start = held("VmRSS"), time.process_time()
+        with watchdog(), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = command.callback(scenarios=(str(path),), sets=(), as_json=True, quiet=True)
+        self.slowest = max(self.slowest, time.process_time() - start)
+        self.largest = max(self.largest, held("VmHWM") - before)
+        self.counts[code] += 1
+        errors = json.loads(out.getvalue())["errors"]
+        assert code in (0, 3, 4), (code, err.getvalue())
+        assert bool(errors) == (code != 0)
+        assert all(error["what"] and error["exit_code"] in (3, 4) for error in errors), errors
+        assert "Traceback" not in err.getvalue()
+        return code
+
+    def told(self) -> str:
+        counts = ", ".join(f"exit {code}: {n}" for code, n in sorted(self.counts.items()))
+        return (
+            f"{sum(self.counts.values())} checked ({counts}), the slowest {self.slowest:.2f} s of"
+            f" CPU, the largest {self.largest / 1e6:.0f} MB"
+        )
