@@ -182,7 +182,7 @@ def test_bug_is_one_line(scenario, trsim, answer, monkeypatch):
 def test_check(scenario, trsim, answer):
     code, out, _ = trsim("check", "crank.yaml")
     assert code == 0
-    assert "mobility    2: 9 unknowns, 7 constraint rows" in out
+    assert "mobility    2 by rank, 2 by count: 9 unknowns, 7 constraint rows" in out
     code, document = answer("check", "crank.yaml", "--set", "joints.B.clearance=0")
     assert code == 0
     [found] = document["scenarios"]

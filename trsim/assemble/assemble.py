@@ -70,6 +70,10 @@ def assemble(
     inside = in_solve(J, planar)
     unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
     rows = all_rows(instances)
+
+    def named(which: NDArray[np.bool_]) -> tuple[str, ...]:
+        return tuple(names[k] for k in np.flatnonzero(inside)[which].tolist())
+
     return Mechanism(
         model=model,
         y0=y0,
@@ -78,12 +82,12 @@ def assemble(
         planar=planar,
         timed=at.timed,
         planar_assumed=assumed,
-        mobility=d * (model.n - 1) - model.m + sum(not f.everywhere for f in found),
+        mobility=model.n_v - model.m,
+        mobility_by_count=model.n_v - int(inside.sum()),
         redundant=tuple(names[f.row] for f in found if f.everywhere),
         singular=tuple(names[f.row] for f in found if not f.everywhere),
-        not_unique=tuple(
-            names[k] for k, u in zip(np.flatnonzero(inside).tolist(), unique, strict=True) if not u
-        ),
+        unique=named(unique),
+        not_unique=named(~unique),
         rows=tuple(f"{r.element}.{r.axis}" for r in rows if r in kept),
         follows=tuple(follow for _, follow in at.states),
         coordinates=at.coordinates,

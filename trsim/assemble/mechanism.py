@@ -47,10 +47,12 @@ class Mechanism:
     planar: bool
     timed: bool  # a load or drive depends on time explicitly
     planar_assumed: bool  # nothing holds the bodies in their plane
-    mobility: int  # degrees of freedom left, drives counted as constraints
+    mobility: int  # degrees of freedom left, by rank near the drawn position; drives are rows
+    mobility_by_count: int  # unknowns minus rows, as Gruebler counts them
     redundant: tuple[str, ...]  # rows dropped, "joint.axis"
     singular: tuple[str, ...]  # rows dependent only as drawn
-    not_unique: tuple[str, ...]  # rows whose reaction the motion does not determine
+    unique: tuple[str, ...]  # rows whose reaction the motion determines
+    not_unique: tuple[str, ...]  # and those it does not
     rows: tuple[str, ...]  # rows in the solve
     follows: tuple[int, ...]  # coordinate each element state starts at, or -1
     coordinates: Mapping[str, Any]  # joint -> JointCoordinate

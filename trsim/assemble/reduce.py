@@ -6,6 +6,7 @@ redundant by rank, at several consistent positions near the drawn one: what is d
 the drawn position (a dead centre, a parallelogram lying flat) is singular, not redundant, and kept.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -127,8 +128,23 @@ def dependences(model: Model, y: Array, columns: list[int], order: list[int],
     here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
     if not here:
         return []
+    always = None
+    for near in nearby(model, y, columns, geometric):
+        there = dependent_rows(jacobian(model, 0.0, near)[2][:, keep], scale, order)
+        always = there if always is None else always & there
+    if always is None:
+        always = here
+    return [Dependence(k, k in always) for k in sorted(here | always)]
+
+
+def nearby(model: Model, y: Array, columns: list[int], geometric: list[int]) -> Iterator[Array]:
+    """Consistent positions around y, perturbed in the twist components of `columns`.
+
+    geometric: the rows positions keep to.  At most SAMPLES; always the same ones.
+    """
+    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns], int)
+    scale = weights(model)[keep]
     rng = np.random.default_rng(0)
-    ranks, always = [], None
     for _ in range(SAMPLES):
         dx = np.zeros(6 * (model.n - 1))
         dx[keep] = SPREAD * rng.normal(size=keep.size) * scale
@@ -136,14 +152,8 @@ def dependences(model: Model, y: Array, columns: list[int], order: list[int],
         near, left = closest(
             model, 0.0, displaced(model, y, dx), np.array(geometric, np.int64), columns
         )
-        if left > 1e-9 * model.size:
-            continue
-        there = dependent_rows(jacobian(model, 0.0, near)[2][:, keep], scale, order)
-        ranks.append(len(there))
-        always = there if always is None else always & there
-    if always is None:
-        always = here
-    return [Dependence(k, k in always) for k in sorted(here | always)]
+        if left <= 1e-9 * model.size:
+            yield near
 
 
 def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:

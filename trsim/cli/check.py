@@ -1,5 +1,7 @@
 """trsim check: read and assemble scenarios, and say what they are, without running them."""
 
+from dataclasses import asdict
+from math import pi
 from typing import Any
 
 import click
@@ -14,7 +16,11 @@ from trsim.errors import TrsimError
 @click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
 @framed
 def command(answer: Answer, scenarios: tuple[str, ...], sets: tuple[str, ...]) -> None:
-    """Check SCENARIO files: bodies, joints, mobility, redundancy, start."""
+    """Check SCENARIO files: what they describe, and what a run of them will meet.
+
+    Bodies, joints, mobility, redundancy and what to do about it, the start, stiffness and time
+    scales, and what a run leaves out.
+    """
     answer.data["scenarios"] = []
     for k, source in enumerate(scenarios):
         try:
@@ -30,13 +36,14 @@ def command(answer: Answer, scenarios: tuple[str, ...], sets: tuple[str, ...]) -
 
 
 def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
-    """What a scenario is once assembled, and where it would start."""
+    """What a scenario is once assembled, where it would start, and what is fast in it."""
     from trsim.cli.progress import compiling
     from trsim.cli.run import placed
 
     scenario = loaded(source, sets)
     compiling(answer, "equations.derivative")
     from trsim.assemble.assemble import assemble
+    from trsim.solve.skipped import skipped
 
     try:
         mechanism = assemble(scenario)
@@ -44,7 +51,8 @@ def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
             "file": source,
             "title": scenario.title,
             **described(scenario, mechanism),
-            "start": started(scenario, mechanism),
+            **begun(scenario, mechanism),
+            "skipped": list(skipped(scenario, mechanism)),
         }
     except TrsimError as error:
         raise placed(error, scenario) from None
@@ -66,43 +74,70 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "unknowns": int(model.n_v),
         "constraints": int(model.m),
         "mobility": int(mechanism.mobility),
+        "mobility_by_count": int(mechanism.mobility_by_count),
         "redundant": list(mechanism.redundant),
         "singular": list(mechanism.singular),
+        "unique": list(mechanism.unique),
         "not_unique": list(mechanism.not_unique),
+        "release": released(scenario, mechanism),
         "notes": [*mechanism.notes, *lint(scenario)],
     }
 
 
-def started(scenario: Any, mechanism: Any) -> dict[str, Any]:
-    """The start of a run; its own errors are those of the scenario."""
+def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
+    """What to let go where rows are redundant."""
+    from trsim.assemble.release import release
+
+    found = release(scenario, mechanism)
+    if found is None:
+        return None
+    return {
+        "rows": list(found.rows),
+        "joints": {change.joint: change.becomes for change in found.changes},
+        "types": {change.joint: change.type for change in found.changes if change.type},
+        "alternatives": found.alternatives,
+        "proven": found.proven,
+    }
+
+
+def begun(scenario: Any, mechanism: Any) -> dict[str, Any]:
+    """The start of a run, and its time scales; its own errors are those of the scenario."""
+    from trsim.solve.projected import projected
+    from trsim.solve.scales import scales
     from trsim.solve.start import start
 
-    if scenario.solver.end is None:  # a scale of time is needed, not how long it would run
+    end = scenario.solver.end
+    if end is None:  # a scale of time is needed, not how long it would run
         solver = scenario.solver.model_copy(update={"end": 1.0})
         scenario = scenario.model_copy(update={"solver": solver})
-    begun = start(scenario, mechanism, located=True)
+    at = start(scenario, mechanism, located=True)
+    found = asdict(scales(scenario, mechanism, at))
+    found["eigenvalues"] = [[x.real, x.imag] for x in found["eigenvalues"]]
     return {
-        "position_residual": begun.moved,
-        "force_residual": begun.residual,
-        "length": begun.length,
-        "speed": begun.speed,
-        "closed_contacts": [
-            mechanism.instances[e].name for e in mechanism.model.contact if begun.mem[e, 0] > 0.0
-        ],
+        "start": {
+            "position_residual": at.moved,
+            "force_residual": at.residual,
+            "length": at.length,
+            "speed": at.speed,
+            "closed_contacts": [
+                mechanism.instances[e].name for e in mechanism.model.contact if at.mem[e, 0] > 0.0
+            ],
+            "projected": asdict(projected(mechanism, at)),
+        },
+        "scales": {**found, "end": end},
     }
+
+
+# --- for a reader ----------------------------------------------------------------------------
 
 
 def lines(found: dict[str, Any]) -> list[str]:
     """The same for a reader."""
 
-    def words(names: Any) -> str:
-        return ", ".join(names) or "-"
-
     def typed(key: str) -> str:
         return words(f"{name} ({kind})" for name, kind in found[key].items())
 
     plane = "planar" + (" (assumed)" if found["planar_assumed"] else "")
-    start = found["start"]
     return [
         f"{found['file']}: {found['title']}" if found["title"] else found["file"],
         f"  bodies      {len(found['bodies'])}: {words(found['bodies'])}",
@@ -111,14 +146,116 @@ def lines(found: dict[str, Any]) -> list[str]:
         f"  forces      {typed('forces')}",
         f"  contacts    {words(found['contacts'])}",
         f"  motion      {plane if found['planar'] else 'spatial'}",
-        f"  mobility    {found['mobility']}: {found['unknowns']} unknowns, "
-        f"{found['constraints']} constraint rows, drives included",
-        f"  redundant   {words(found['redundant'])}",
-        f"  singular    {words(found['singular'])}",
-        f"  reactions   {'all unique' if not found['not_unique'] else 'not unique: '}"
-        f"{', '.join(found['not_unique'])}",
-        f"  start       joints closed from {start['position_residual']:.1e} m, "
-        f"{start['force_residual']:.1e} N out of balance, "
-        f"in touch: {words(start['closed_contacts'])}",
+        *mobility_lines(found),
+        *start_lines(found["start"]),
+        *scale_lines(found["scales"], found["mobility"]),
+        *(f"  skipped     {text}" for text in found["skipped"]),
         *(f"  note        {note}" for note in found["notes"]),
     ]
+
+
+def words(names: Any) -> str:
+    return ", ".join(names) or "-"
+
+
+def mobility_lines(found: dict[str, Any]) -> list[str]:
+    """Mobility, dependent rows, reactions, what to let go."""
+    rank, count = found["mobility"], found["mobility_by_count"]
+    redundant, singular = found["redundant"], found["singular"]
+    told = [
+        f"  mobility    {rank} by rank, {count} by count: {found['unknowns']} unknowns, "
+        f"{found['unknowns'] - count} constraint rows, drives included"
+    ]
+    if rank != count:
+        told.append(
+            f"              they differ because {len(redundant)} rows repeat what others say: "
+            "counting takes every row for a freedom"
+        )
+    if singular:
+        told.append(
+            f"              as drawn {rank + len(singular)}: a singular position, where "
+            f"{words(singular)} depends on other rows"
+        )
+    told += [f"  redundant   {words(redundant)}", f"  singular    {words(singular)}"]
+    told.append(f"  reactions   unique: {words(found['unique'])}")
+    if found["not_unique"]:
+        told.append(f"              not unique: {words(found['not_unique'])}")
+    if found["release"]:
+        told += release_lines(found["release"], rank)
+    return told
+
+
+def release_lines(release: dict[str, Any], rank: int) -> list[str]:
+    """The proposal, and how far it is proven."""
+    told = []
+    for joint, becomes in release["joints"].items():
+        rows = words(row for row in release["rows"] if row.split(".")[0] == joint)
+        kind = release["types"].get(joint)
+        how = f"`type: {kind}`" if kind else becomes
+        told.append(f"release {rows}" + (f" ({joint}: {how})" if how else ""))
+    result = f"leaves no redundant row, all reactions unique and mobility {rank}"
+    other = release["alternatives"]
+    choice = f"; {other} other choices are as good, the first in the file is shown" if other else ""
+    return [
+        f"  release     {'; '.join(told)}",
+        f"              {result if release['proven'] else 'not proven: try it'}{choice}",
+    ]
+
+
+def start_lines(start: dict[str, Any]) -> list[str]:
+    """Residuals, and what was projected."""
+    p = start["projected"]
+    of = {k: f" ({p[k]})" if p[k] else "" for k in ("position_row", "velocity_row")}
+    moved = [f"{p['shift_body']} by {p['shift']:.2g} m"] if p["shift"] else []
+    moved += [f"{p['turn_body']} by {p['turn']:.2g} rad"] if p["turn"] else []
+    return [
+        f"  start       positions open by {p['position_before']:.1e} as drawn{of['position_row']}, "
+        f"{p['position_after']:.1e} at the start; moved most: {words(moved)}",
+        f"              velocities off by {p['velocity_before']:.1e} as given{of['velocity_row']}, "
+        f"{p['velocity_after']:.1e} at the start",
+        f"              {start['force_residual']:.1e} N out of balance, "
+        f"in touch: {words(start['closed_contacts'])}",
+    ]
+
+
+def scale_lines(scales: dict[str, Any], mobility: int) -> list[str]:
+    """What is fast, and what that means for explicit steps."""
+    told = []
+    if not scales["eigenvalues"]:
+        why = "mobility 0" if mobility == 0 else "no stiffness at the start"
+        told.append(f"no eigenvalues: {why}")
+    else:
+        fastest = [f"{scales['frequency'] / (2 * pi):.3g} Hz"] if scales["frequency"] else []
+        fastest += [f"decays in {1 / scales['decay']:.1e} s"] if scales["decay"] else []
+        fastest += [f"grows in {1 / scales['growth']:.1e} s"] if scales["growth"] else []
+        told.append(f"fastest motion at the start: {words(fastest)}")
+    told += map(contact_line, scales["contacts"])
+    told.append(f"natural time {scales['natural_time']:.2g} s")
+    told.append(step_line(scales))
+    first, *rest = told
+    return [f"  scales      {first}", *(f"              {text}" for text in rest)]
+
+
+def contact_line(contact: dict[str, Any]) -> str:
+    """One contact: how it vibrates, how it rebounds, how its friction grows."""
+    if contact["half_period"] == float("inf"):
+        return f"{contact['name']}: joints and drives fix it, it cannot vibrate"
+    text = (
+        f"{contact['name']}: half a period {contact['half_period']:.1e} s pressed by "
+        f"{contact['force']:.2g} ({contact['mass']:.2g} kg move), "
+        f"{contact['impact_time']:.1e} s at the slowest impact"
+    )
+    rate = contact["friction_rate"]
+    return text + (f", friction settles in {1 / rate:.1e} s" if rate else "")
+
+
+def step_line(scales: dict[str, Any]) -> str:
+    """The bound of explicit steps."""
+    step = scales["explicit_step"]
+    if step == float("inf"):
+        return "explicit steps: nothing here limits them but accuracy"
+    number = f", {scales['end'] / step:.1e} steps to the end" if scales["end"] else ""
+    return (
+        f"explicit steps: rk4 is stable below {step:.1e} s{number}; the limit is "
+        f"{scales['fastest_is']}, {scales['fastest']:.1e} 1/s; higher loads make it shorter"
+    )

@@ -26,6 +26,8 @@ from trsim.solve.velocities import velocities
 
 Array = NDArray[np.float64]
 
+SETBACKS = 25  # steps of the way to an initial position that may fail, one after the other or not
+
 
 @dataclass(frozen=True)
 class Start:
@@ -171,7 +173,7 @@ def approach(held: Any, y: Array, targets: dict[int, float], settle: bool) -> tu
     model = held.model
     place = {s: model.n_q + model.n_v + N_BOOK + k for k, s in enumerate(held.follows) if s >= 0}
     begin = {s: y[place[s]] for s in targets}
-    done, step, residual = 0.0, 1.0 / 64.0, 0.0
+    done, step, residual, failed = 0.0, 1.0 / 64.0, 0.0, 0
     while done < 1.0:
         ahead = min(1.0, done + step)
         trial = y.copy()
@@ -185,7 +187,8 @@ def approach(held: Any, y: Array, targets: dict[int, float], settle: bool) -> tu
                 trial, residual = equilibrium(held, trial)
         except ModelError as error:
             step *= 0.5
-            if step < 1e-5:
+            failed += 1
+            if step < 1e-5 or failed > SETBACKS:
                 raise ModelError(
                     f"the mechanism cannot be moved to its initial position: {error.what} after "
                     f"{100 * done:.1f} % of the way",

@@ -1,0 +1,142 @@
+"""The linearised motion: frequencies and dampings with a known answer."""
+
+from math import sqrt
+
+import numpy as np
+import pytest
+
+from trsim.solve.linearised import linearised
+from trsim.solve.start import start
+
+from ..linkages import INERTIA, slider_crank
+from ..mechanisms import compound_pendulum, free_top, torsion_pendulum
+from ..runs import assemble, scenario
+
+EXACT = 1e-6
+
+
+def linear(text, *sets):
+    read = scenario(text, "solver.end=1", *sets)
+    mechanism = assemble(read)
+    return linearised(mechanism, start(read, mechanism, located=True))
+
+
+def frequencies(found):
+    """rad/s, of an undamped motion."""
+    return np.sqrt(np.sort(np.linalg.eigvals(found.K).real))
+
+
+def oscillator(m=2.0, k=450.0, c=6.0, planar="true"):
+    return f"""
+planar: {planar}
+bodies: {{mass: {{mass: {m}, {INERTIA}}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, mass], axis: [1, 0, 0]}}}}
+forces:
+  spring: {{type: spring_damper, bodies: [ground, mass], points: [[-1, 0], [0, 0]],
+           stiffness: {k}, damping: {c}}}
+"""
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_spring_mass_damper(planar):
+    m, k, c = 2.0, 450.0, 6.0
+    found = linear(oscillator(m, k, c, planar))
+    assert found.K == pytest.approx(np.array([[k / m]]), rel=EXACT)
+    assert found.C == pytest.approx(np.array([[c / m]]), rel=EXACT)
+    values = sorted(np.linalg.eigvals(found.A), key=lambda x: x.imag)
+    damped = sqrt(k / m - (c / (2 * m)) ** 2)
+    assert values == pytest.approx(
+        [complex(-c / (2 * m), -damped), complex(-c / (2 * m), damped)], rel=EXACT
+    )
+
+
+def test_torsion_pendulum():
+    found = linear(torsion_pendulum(theta0=0.3)[0])
+    assert frequencies(found) == pytest.approx([20.0], rel=EXACT)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_compound_pendulum(planar):
+    m, L, J, g = 2.0, 0.4, 0.05, 9.81
+    for theta in (0.0, 0.7):  # V'' = m g L cos theta, also away from equilibrium
+        text = compound_pendulum(theta, m, L, J, g)[0]
+        text = text.replace(f"inertia: {J}", f"inertia: [1, 2, {J}]")
+        squared = m * g * L * np.cos(theta) / (J + m * L * L)
+        found = linear(text, f"planar={planar}")
+        assert frequencies(found) == pytest.approx([sqrt(squared)], rel=EXACT)
+
+
+def chain(n=5, m=0.7, k=1e4):
+    """n masses between two walls, n + 1 springs."""
+    lines = ["planar: true", "bodies:"]
+    lines += [f"  m{i}: {{mass: {m}, inertia: 1, at: [{i}, 0]}}" for i in range(1, n + 1)]
+    lines += ["joints:"]
+    lines += [
+        f"  s{i}: {{type: prismatic, bodies: [ground, m{i}], axis: [1, 0, 0]}}"
+        for i in range(1, n + 1)
+    ]
+    lines += ["forces:"]
+    names = ["ground", *(f"m{i}" for i in range(1, n + 1)), "ground"]
+    for i in range(n + 1):
+        ends = f"bodies: [{names[i]}, {names[i + 1]}], points: [[{i}, 0], [{i + 1}, 0]]"
+        lines += [f"  k{i}: {{type: spring_damper, {ends}, stiffness: {k}}}"]
+    return "\n".join(lines)
+
+
+def test_chain_of_masses():
+    n, m, k = 5, 0.7, 1e4
+    found = linear(chain(n, m, k))
+    exact = [2 * sqrt(k / m) * np.sin(p * np.pi / (2 * (n + 1))) for p in range(1, n + 1)]
+    assert frequencies(found) == pytest.approx(exact, rel=EXACT)
+    assert found.K == pytest.approx(found.K.T, abs=1e-6 * k / m)
+    assert found.Z.T @ (m * found.Z) == pytest.approx(np.eye(n), abs=1e-9)
+
+
+def test_spinning_top():
+    """A symmetric top that spins about its axis nods at (I3 - I1) / I1 of its spin."""
+    values = np.linalg.eigvals(linear(free_top((1.0, 1.0, 3.0), (0, 0, 4.0))[0]).A)
+    assert sorted(set(np.round(np.abs(values.imag), 6))) == [0.0, 4.0, 8.0]
+    assert np.abs(values.real).max() < 1e-6
+
+
+def test_stiffness_of_a_closed_loop():
+    """One freedom of a slider-crank: k_eff / m_eff from its energies along the motion."""
+    k = 300.0
+    text = slider_crank("true", "forces: {s: {type: torsion_spring, joint: A, stiffness: 300}}")
+    found = linear(text)
+    # T = 1/2 m_eff angle'^2 with the ratios of the drawing, by the geometry of the crank
+    r, L, angle = 0.3, 1.0, np.radians(30)
+    beta = np.arcsin(r * np.sin(angle) / L)
+    rod = -r * np.cos(angle) / (L * np.cos(beta))
+    slider = -r * np.sin(angle) + L * np.sin(beta) * rod
+    cx = -r * np.sin(angle) + 0.5 * L * np.sin(beta) * rod
+    cy = 0.5 * r * np.cos(angle)
+    m_eff = 0.03 + 0.15**2 + 0.03 * rod**2 + cx**2 + cy**2 + slider**2
+    assert frequencies(found) == pytest.approx([sqrt(k / m_eff)], rel=EXACT)
+
+
+@pytest.mark.parametrize("law, friction", [("identified", "none"), ("flores", "coulomb")])
+def test_journal_pressed_into_its_bearing(law, friction):
+    """A contact that carries the weight: k = 1.5 K d^0.5 with K d^1.5 = m g."""
+    K, m, g = 1e9, 2.0, 9.81
+    text = f"""
+planar: true
+gravity: [{g}, 0]
+bodies: {{slider: {{mass: {m}, inertia: 1}}}}
+joints:
+  slide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}
+  pin: {{type: revolute, bodies: [ground, slider], at: [0, 0], clearance: 1 mm, contact: law}}
+contact_laws:
+  law: {{normal: {law}, restitution: 1, stiffness: {K}, bearing_radius: 0.1,
+        friction: {{law: {friction}, coefficient: {0.3 if friction == "coulomb" else 0}}}}}
+initial: {{equilibrium: [pin]}}
+"""
+    if friction == "none":
+        text = text.replace(", coefficient: 0}", "}")
+    d = (m * g / K) ** (2 / 3)
+    assert frequencies(linear(text)) == pytest.approx([sqrt(1.5 * K * d**0.5 / m)], rel=EXACT)
+
+
+def test_a_driven_mechanism_has_no_freedom():
+    found = linear(slider_crank("true", "drives: {motor: {joint: A, velocity: 5}}"))
+    assert found.A.shape == (0, 0)

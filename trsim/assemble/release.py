@@ -1,0 +1,217 @@
+"""What to let go so that no row is redundant: a mechanism with k dependent rows too many loses k.
+
+    N^T J = 0,   N (m, k)            the states of self-stress: reactions that need no load
+    rows L can go, |L| = k   <=>   det N[L] != 0
+
+What is left then has the rank of the whole: no freedom is gained, nothing is redundant, and every
+reaction is unique.  Among all L those are preferred that an engineer would draw: moments go before
+forces, joint types trsim has before others, few joints, pins between moving bodies before
+bearings, then the order of the file.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations, product
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.assemble import build, pack
+from trsim.assemble.mechanism import Instance, Mechanism, RowName
+from trsim.assemble.reduce import (
+    DEPENDENT,
+    IN_PLANE,
+    OUT_OF_PLANE,
+    dependent_rows,
+    jacobian,
+    nearby,
+    unique_reactions,
+    weights,
+)
+from trsim.assemble.rows import all_rows, in_solve
+from trsim.assemble.tables import drawn
+
+Array = NDArray[np.float64]
+
+REGULAR = 1e-6  # smallest singular value of N[L]: below, it is not sure that L may go
+MOST_JOINTS = 3  # changed together in the search; beyond that, rows one by one
+ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
+
+
+class Change(NamedTuple):
+    """Rows of one joint that go together, and what the joint is without them."""
+
+    joint: str
+    rows: tuple[int, ...]
+    becomes: str  # in words
+    type: str | None  # the joint type of a scenario, where there is one
+
+
+@dataclass(frozen=True)
+class Release:
+    """Changes that leave no row redundant and no reaction undetermined."""
+
+    changes: tuple[Change, ...]
+    rows: tuple[str, ...]  # "joint.axis"
+    alternatives: int  # other choices that are as good
+    proven: bool  # no dependent row as drawn and nearby
+
+
+class Stress(NamedTuple):
+    """The rows of a mechanism, and their null spaces N at some positions."""
+
+    rows: list[RowName]  # all of them
+    inside: list[int]  # those of the solve
+    jacobians: list[Array]  # (len(inside), columns), scaled to rows of length one
+    spaces: list[Array]  # (len(rows), k)
+
+
+def release(scenario: Any, mechanism: Mechanism) -> Release | None:
+    """The rows to let go where some are redundant, or None."""
+    if not mechanism.redundant:
+        return None
+    at, instances = pack(scenario, frozenset(), None, ())
+    stress = self_stress(scenario, mechanism, at, instances)
+    k = len(mechanism.redundant)
+    options = [
+        list(changes(instances[n], stress, at.coordinates))
+        for n in sorted({stress.rows[r].instance for r in stress.inside})
+        if instances[n].section == "joints"
+    ]
+    order = {instance.name: n for n, instance in enumerate(instances)}
+    best: list[tuple[Change, ...]] = []
+    lowest: tuple[int, ...] | None = None
+    for chosen in choices(options, k):
+        cost = price(chosen, stress.rows, instances)
+        if lowest is not None and cost > lowest:
+            continue
+        if removable([row for change in chosen for row in change.rows], stress):
+            best = [*best, chosen] if cost == lowest else [chosen]
+            lowest = cost
+    if not best:
+        best = [by_rows(k, stress, instances)]
+    best.sort(key=lambda chosen: [order[change.joint] for change in chosen])
+    gone = [row for change in best[0] for row in change.rows]
+    words = tuple(f"{stress.rows[r].element}.{stress.rows[r].axis}" for r in gone)
+    return Release(best[0], words, len(best) - 1, proven(gone, stress))
+
+
+def self_stress(scenario: Any, mechanism: Mechanism, at: Any, instances: list[Instance]) -> Stress:
+    """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
+    rows = all_rows(instances)
+    full = build(scenario, at, instances, rows, 6)
+    y6 = drawn(scenario, at, 6)
+    inside = np.flatnonzero(in_solve(jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
+    columns = IN_PLANE if mechanism.planar else sorted([*IN_PLANE, *OUT_OF_PLANE])
+    keep = np.array([6 * f + c for f in range(full.n - 1) for c in columns], int)
+    geometric = [r for r in inside if instances[rows[r].instance].section == "joints"]
+    scale = weights(full)[keep]
+    places = [] if mechanism.singular else [y6]
+    jacobians, spaces = [], []
+    for y in [*places, *nearby(full, y6, columns, geometric)]:
+        J = jacobian(full, 0.0, y)[2][:, keep][inside] * scale
+        J = J / np.linalg.norm(J, axis=1)[:, None]
+        u, s, _ = np.linalg.svd(J, full_matrices=True)
+        rank = int(np.sum(s > DEPENDENT * s.max(initial=1.0)))
+        N = np.zeros((len(rows), len(inside) - rank))
+        N[inside] = u[:, rank:]
+        jacobians.append(J)
+        spaces.append(N)
+    return Stress(rows, inside, jacobians, spaces)
+
+
+def changes(instance: Instance, stress: Stress, used: Any) -> Iterator[Change]:
+    """What may go of one joint; nothing of one whose angle or stroke somebody needs."""
+    if instance.name in used:
+        return
+    own = {stress.rows[r].axis: r for r in stress.inside if stress.rows[r].element == instance.name}
+    tilts, turn = ("tilt 1", "tilt 2"), ("turn",)
+    key = instance.element.key
+    axial = axial_row(instance)
+    wanted: list[tuple[tuple[str, ...], str, str | None]] = []
+    if key in ("revolute", "clearance_joint"):
+        wanted += [(tilts, "spherical" if key == "revolute" else "free to tilt", None)]
+        wanted += [(("tilt 1",), "universal", None), (("tilt 2",), "universal", None)]
+        if axial:
+            wanted += [((axial,), "cylindrical", None)]
+            wanted += [((axial, *tilts), "a ball in a sleeve", None)]
+    elif key == "prismatic":
+        wanted += [(turn, "cylindrical", None), ((*tilts, *turn), "a ball in a sleeve", None)]
+    elif key == "fixed":
+        wanted += [(turn, "revolute", "revolute"), ((*tilts, *turn), "spherical", "spherical")]
+    for axes, becomes, kind in wanted:
+        if all(axis in own for axis in axes) and len(axes) < len(own):
+            kind = "spherical" if (becomes, key) == ("spherical", "revolute") else kind
+            yield Change(instance.name, tuple(own[axis] for axis in axes), becomes, kind)
+
+
+def axial_row(instance: Instance) -> str:
+    """The row that holds a hinge along its axis, where one row does."""
+    if instance.element.key == "clearance_joint":
+        return "axial"
+    axis = np.abs(instance.row.par[12:15])
+    return "xyz"[int(np.argmax(axis))] if axis.size == 3 and axis.max() > ALONG else ""
+
+
+def choices(options: list[list[Change]], k: int) -> Iterator[tuple[Change, ...]]:
+    """Changes of one, two, ... joints that let k rows go together."""
+    for number in range(1, MOST_JOINTS + 1):
+        for joints in combinations(options, number):
+            for chosen in product(*joints):
+                if sum(len(change.rows) for change in chosen) == k:
+                    yield chosen
+
+
+def price(
+    chosen: tuple[Change, ...], rows: list[RowName], instances: list[Instance]
+) -> tuple[int, ...]:
+    """Forces let go; joints of a type trsim lacks; joints changed; bearings opened."""
+    gone = [row for change in chosen for row in change.rows]
+    return (
+        sum(not rows[row].rotation for row in gone),
+        sum(change.type is None for change in chosen),
+        len(chosen),
+        sum(change.becomes == "universal" for change in chosen),
+        sum(0 in rows[change.rows[0]].frames for change in chosen),
+    )
+
+
+def removable(gone: list[int], stress: Stress) -> bool:
+    """Whether N[L] is regular at every position."""
+    return all(
+        np.linalg.svd(N[gone], compute_uv=False).min(initial=np.inf) > REGULAR
+        for N in stress.spaces
+        if N.shape[1] == len(gone)
+    )
+
+
+def by_rows(k: int, stress: Stress, instances: list[Instance]) -> tuple[Change, ...]:
+    """k rows found one by one: of the rows in turn, what still cuts a self-stress, moments first."""
+    may = [r for r in stress.inside if instances[stress.rows[r].instance].section == "joints"]
+    may.sort(key=lambda r: (not stress.rows[r].rotation, -r))
+    N, gone = stress.spaces[-1].copy(), list[int]()
+    for r in may:
+        size = float(np.linalg.norm(N[r]))
+        if size > REGULAR and len(gone) < k:
+            # the stresses left are those without a part in this row
+            direction = N[r] / size
+            N -= np.outer(N @ direction, direction)
+            gone.append(r)
+    joints = list(dict.fromkeys(stress.rows[r].element for r in gone))
+    return tuple(
+        Change(name, tuple(r for r in gone if stress.rows[r].element == name), "", None)
+        for name in joints
+    )
+
+
+def proven(gone: list[int], stress: Stress) -> bool:
+    """Whether nothing depends on anything once these rows are gone, at every position."""
+    left = [n for n, r in enumerate(stress.inside) if r not in gone]
+    for J in stress.jacobians:
+        ones = np.ones(J.shape[1])
+        if dependent_rows(J[left], ones, list(range(len(left)))):
+            return False
+        if not unique_reactions(J[left], ones).all():
+            return False
+    return True

@@ -1,0 +1,209 @@
+"""The motion close to a start, on the constraints: M xi'' + C xi' + K xi = 0.
+
+    dq = Z xi + O(xi^2),   Phi(q) = 0           J Z = 0,   Z^T M Z = 1
+    dv = Z eta + ...,      J v + Phi_t = 0
+    xi'  = eta - Z^T M (omega x) Z xi           spatial rotations in body axes; 0 in a plane
+    eta' = Z^T M v'(q, v, s),                   s: states of elements, such as bristles
+
+A is the Jacobian of the right-hand sides against (xi, eta, s), by central differences of the full
+equations of motion: every probe is brought back to the constraints by Newton steps with the
+pseudoinverse of the start, so nothing of the constraints' own stiffness gets into A.  Exact for
+small motions about an equilibrium; where the start moves it is the Jacobian frozen there.
+Time stands still: what drives prescribe, and their states, are held.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import constraints, derivative, gaps, poses
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.projection import move
+from trsim.assemble.reduce import IN_PLANE, jacobian
+from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
+from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
+from trsim.elements.scene import Model, Scene, scene
+from trsim.laws.friction import CODES
+from trsim.solve.start import Start
+
+Array = NDArray[np.float64]
+
+REACH = 1e-5  # of the mechanism's size, and of its speed: how far a probe goes
+PRESSED = 1e-3  # of a penetration: a probe must not leave the contact
+TOUCHING = 1e-12  # of the mechanism's size: contacts pressed in by less count as open
+FREE = 1e-10  # relative singular value of J below which a motion is free
+CORRECTIONS = 4  # Newton steps of a probe; two reach rounding
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """Small motions about a start; f freedoms, n_s element states.
+
+    M is the identity: the columns of Z are M-orthonormal.  Frequencies are the square roots of the
+    eigenvalues of K where C vanishes; in general the eigenvalues of A are those of the motion, 1/s.
+    """
+
+    M: Array  # (f, f)
+    C: Array  # (f, f) 1/s
+    K: Array  # (f, f) 1/s^2
+    A: Array  # (2 f + n_s, 2 f + n_s) state matrix of (xi, xi', s)
+    Z: Array  # (n_v, f) motions of the freedoms, axes of the solve
+    twists: Array  # (6 (n - 1), f) the same as world-axes twists of the moving frames
+
+
+def linearised(mechanism: Mechanism, begun: Start) -> Linearised:
+    """The linear equations of motion at a start."""
+    work = scene(smooth(mechanism))
+    work.mem[:] = begun.mem
+    work.branch[:] = begun.branch
+    probe = Probe(mechanism, work, begun)
+    f, own = probe.Z.shape[1], probe.own
+    n = 2 * f + len(own)
+    A = np.zeros((n, n))
+    A[:f, f : 2 * f] = np.eye(f)
+    A[:f, :f] = probe.turning()
+    none = np.zeros(f), np.zeros(f), np.zeros(len(own))
+    for k in range(n):
+        kind, place = (0, k) if k < f else (1, k - f) if k < 2 * f else (2, k - 2 * f)
+        step = probe.steps(kind, place)
+        ahead = [part.copy() for part in none]
+        ahead[kind][place] = step
+        back = [-part for part in ahead]
+        A[f:, k] = (probe.rates(*ahead) - probe.rates(*back)) / (2.0 * step)
+    return Linearised(
+        np.eye(f), -A[f : 2 * f, f : 2 * f], -A[f : 2 * f, :f], A, probe.Z, probe.twists
+    )
+
+
+def smooth(mechanism: Mechanism) -> Model:
+    """The model without Coulomb's friction, whose jump at rest has no derivative."""
+    par = mechanism.model.par.copy()
+    for e, instance in enumerate(mechanism.instances):
+        if instance.element.key != "clearance_joint":
+            continue
+        if mechanism.model.con[e, FRICTION_LAW] == CODES["coulomb"]:
+            par[e, FRICTION_PAR] = 0.0
+    return mechanism.model.replaced(par=par)
+
+
+def mass_matrix(work: Scene) -> Array:
+    """M (n_v, n_v) in the axes of the solve."""
+    M = np.zeros((work.n_v, work.n_v))
+    for f in range(1, work.n):
+        o = work.d * (f - 1)
+        if work.d == 3:
+            M[o : o + 3, o : o + 3] = np.diag([work.mass[f], work.mass[f], work.inertia[f, 8]])
+        else:
+            M[o : o + 3, o : o + 3] = work.mass[f] * np.eye(3)
+            M[o + 3 : o + 6, o + 3 : o + 6] = work.inertia[f].reshape(3, 3)
+    return M
+
+
+class Probe:
+    """The start, and states a little away from it that satisfy the constraints."""
+
+    def __init__(self, mechanism: Mechanism, work: Scene, begun: Start) -> None:
+        self.work, self.y = work, begun.y
+        self.n_q, self.n_v = work.n_q, work.n_v
+        self.own = [
+            self.n_q + self.n_v + N_BOOK + k for k, s in enumerate(mechanism.follows) if s < 0
+        ]
+        ends = [(0, 0)] * work.m
+        for k in range(work.m):
+            for p in range(work.row_start[k], work.row_start[k + 1]):
+                i, j = ends[k]
+                f = int(work.slot_frame[p])
+                ends[k] = (f, j) if work.slot_column[p] == 0 else (i, f)
+        self.ends = np.array(ends, np.int64).reshape(-1, 2)
+        self.basis()
+        self.scales(begun)
+
+    def basis(self) -> None:
+        """Z, the M-weighted pseudoinverse of J, and Z in world axes."""
+        work = self.work
+        J = jacobian(work, 0.0, self.y)[2]
+        turn = [work.X[f, 3:].reshape(3, 3).copy() for f in range(1, work.n)]
+        # columns: what a unit of every velocity of the solve does to the world-axes twists
+        T = np.zeros((6 * (work.n - 1), self.n_v))
+        for f, R in enumerate(turn):
+            if work.d == 3:
+                T[[6 * f + c for c in IN_PLANE], range(3 * f, 3 * f + 3)] = 1.0
+            else:
+                T[6 * f : 6 * f + 3, 6 * f : 6 * f + 3] = np.eye(3)
+                T[6 * f + 3 : 6 * f + 6, 6 * f + 3 : 6 * f + 6] = R
+        self.M = mass_matrix(work)
+        back = np.linalg.inv(np.linalg.cholesky(self.M)).T  # M = L L^T, back = L^-T
+        if work.m:
+            u, s, vt = np.linalg.svd(J @ T @ back, full_matrices=True)
+            rank = int(np.sum(s > FREE * s.max(initial=0.0)))
+            self.pseudo = back @ vt[:rank].T @ (u[:, :rank] / s[:rank]).T
+            self.Z = back @ vt[rank:].T
+        else:
+            self.pseudo, self.Z = np.zeros((self.n_v, 0)), back
+        self.twists = T @ self.Z
+
+    def scales(self, begun: Start) -> None:
+        """How far probes go: m and m/s of the point that moves most."""
+        work = self.work
+        gaps(work, 0.0)
+        pressed = work.gap[work.contact, 0] > TOUCHING * work.size
+        work.mem[work.contact[~pressed], PHASE] = FLIGHT
+        depths = work.gap[work.contact[pressed], 0].tolist()
+        self.length = min([REACH * work.size, *(PRESSED * d for d in depths)])
+        slowest = [v for v in work.contact_par[:, 4].tolist() if v > 0.0]
+        self.speed = min([REACH * begun.speed, *(PRESSED * v for v in slowest)])
+        parts = np.abs(self.twists).reshape(work.n - 1, 6, self.Z.shape[1])
+        points = np.maximum(parts[:, :3].max(axis=1), work.size * parts[:, 3:].max(axis=1))
+        self.most = points.max(axis=0, initial=1e-300)
+
+    def steps(self, kind: int, place: int) -> float:
+        """Step along a freedom (0), its rate (1), a state of an element (2)."""
+        if kind == 2:
+            return float(REACH * self.work.scale[self.own[place]])
+        return (self.length, self.speed)[kind] / float(self.most[place])
+
+    def rates(self, xi: Array, eta: Array, states: Array) -> Array:
+        """(eta', s') at a state brought to the constraints."""
+        work, y, n = self.work, self.y.copy(), self.n_q
+        self.shift(y, self.Z @ xi)
+        for _ in range(CORRECTIONS):
+            poses(work, y)
+            constraints(work, 0.0)
+            if np.max(np.abs(work.phi), initial=0.0) < 1e-15 * work.size:
+                break
+            self.shift(y, -self.pseudo @ work.phi)
+        y[n : n + self.n_v] += self.Z @ eta
+        for _ in range(CORRECTIONS):
+            poses(work, y)
+            constraints(work, 0.0)
+            y[n : n + self.n_v] -= self.pseudo @ self.drift()
+        y[self.own] += states
+        yd = np.zeros_like(y)
+        derivative(work, 0.0, y, yd)
+        return np.concatenate([self.Z.T @ self.M @ yd[n : n + self.n_v], yd[self.own]])
+
+    def shift(self, y: Array, dx: Array) -> None:
+        """Move all bodies by small displacements in the axes of the solve."""
+        d = self.work.d
+        for f in range(1, self.work.n):
+            move(self.work, y, f, np.ascontiguousarray(dx[d * (f - 1) : d * f]))
+
+    def drift(self) -> Array:
+        """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
+        work = self.work
+        i, j = self.ends[:, 0], self.ends[:, 1]
+        return np.asarray(
+            np.sum(work.J[:, :6] * work.V[i] + work.J[:, 6:] * work.V[j], axis=1) + work.phi_t
+        )
+
+    def turning(self) -> Array:
+        """- Z^T M (omega x) Z: a body that spins carries its small rotations along."""
+        G = np.zeros((self.n_v, self.n_v))
+        if self.work.d == 6:
+            for f in range(1, self.work.n):
+                o = self.n_q + 6 * (f - 1) + 3
+                x, y, z = self.y[o : o + 3]
+                k = 6 * (f - 1) + 3
+                G[k : k + 3, k : k + 3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
+        return -self.Z.T @ self.M @ G @ self.Z

@@ -1,0 +1,90 @@
+"""What a run of this scenario leaves out, and why: every line is a branch of the code not taken."""
+
+from collections.abc import Iterator
+from typing import Any
+
+
+from trsim.assemble.layout import all_names
+from trsim.assemble.mechanism import Mechanism
+
+UNREAD = ("phases", "cases", "sweep")  # keys a scenario may have that `run` does not act on
+SHOWN = 4  # names of a list
+
+
+def skipped(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
+    """Sentences "what: why"."""
+    parts = (_rows, _contacts, _stabilisation, _start, _channels, _keys)
+    return tuple(text for part in parts for text in part(scenario, mechanism))
+
+
+def _rows(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """Unknowns and constraint rows that are not solved for."""
+    model = mechanism.model
+    if mechanism.planar:
+        rows = sum(len(i.element.rows) for i in mechanism.instances if i.section == "joints")
+        inside = len(mechanism.unique) + len(mechanism.not_unique)
+        drives = sum(name.split(".")[0] in scenario.drives for name in mechanism.rows)
+        yield (
+            "motion out of the plane: planar, so 3 of 6 unknowns of a body are solved and "
+            f"{rows + drives - inside} rows of the joints are not needed; reactions out of the "
+            "plane are reported as zero"
+        )
+    if mechanism.redundant:
+        yield (
+            f"{len(mechanism.redundant)} redundant rows ({listed(mechanism.redundant)}): the other "
+            "rows hold the mechanism; their reactions are reported as zero"
+        )
+    if model.m == 0:
+        yield "constraints: no joint or drive has a row in the solve, so nothing is factorised"
+
+
+def _contacts(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """Events and friction."""
+    number, method = len(mechanism.model.contact), scenario.solver.method
+    if number == 0:
+        yield "contact events: no joint has clearance and there is no limit stop"
+    elif method == "rk4":
+        yield "location of touches: rk4 has a fixed step, a contact begins at the end of a step"
+    joints = [j for j in scenario.joints.values() if j.type == "clearance_joint"]
+    ideal = [n for n, j in scenario.joints.items() if getattr(j, "clearance", None) == 0.0]
+    if ideal:
+        yield f"play of {listed(ideal)}: clearance 0 is an ideal joint"
+    frictions = [law.friction.law for law in scenario.contact_laws.values()]
+    if joints and all(law == "none" for law in frictions):
+        yield "friction: no contact law has any"
+
+
+def _stabilisation(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    kind = scenario.solver.stabilisation
+    if mechanism.model.m and kind != "projection":
+        yield f"projection to the constraints: `stabilisation: {kind}`"
+
+
+def _start(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    if not any(scenario.gravity):
+        yield "weight: `gravity` is not given"
+    if not scenario.initial.equilibrium:
+        yield "static equilibrium: `initial` asks for none, the start is as drawn"
+
+
+def _channels(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """Channels nobody asked for."""
+    wanted = {c.name for c in mechanism.columns if c.wanted}
+    every = [n for n in all_names(list(mechanism.instances)) if "." in n or n in wanted]
+    missing = [name for name in every if name not in wanted]
+    if missing:
+        yield f"{len(missing)} of {len(every)} channels: `output.channels` does not ask for them"
+
+
+def _keys(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """Sections that `run` reads and does not act on."""
+    given = [key for key in UNREAD if getattr(scenario, key)]
+    if given:
+        yield f"`{'`, `'.join(given)}`: one run takes the scenario as it stands outside of them"
+
+
+def listed(names: Any) -> str:
+    """A few names, and how many more."""
+    names = list(names)
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more
