@@ -1,35 +1,66 @@
-"""Start-up: wall time of whole commands, warm (median of 5) and with an empty cache (once), s."""
+"""Start-up: wall and CPU seconds of whole commands, warm (median of 5) and with an empty cache.
 
+The overhead of a run is its wall time without the CPU time of its integration.
+"""
+
+import json
 import os
+import resource
+import statistics
 import subprocess
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
-from benchmarks.measure import SCENARIOS, trsim, wall
+from benchmarks.measure import ROOT, SCENARIOS, trsim
 
-REVERSER = SCENARIOS / "thrust_reverser"
+REVERSER = SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml"
+REPEATS = 5
+
+
+class Took(NamedTuple):
+    """Seconds of one process."""
+
+    wall: float
+    cpu: float
+    integration: float  # CPU, of a run
+
+
+def took(command: list[str], code: int = 0, cache: str = "") -> Took:
+    """One process, with its own cache folder if one is given; `code` is the exit expected."""
+    environment = {**os.environ, **({"XDG_CACHE_HOME": cache} if cache else {})}
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True)  # noqa: S603
+    wall = time.perf_counter() - start
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert done.returncode == code, done.stderr.decode()
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    runs = json.loads(done.stdout).get("runs", []) if "--json" in command else []
+    return Took(wall, cpu, runs[0]["statistics"]["integration_cpu"] if runs else 0.0)
+
+
+def median(command: list[str], code: int = 0) -> Took:
+    """Of several processes, the first one not counted."""
+    took(command, code)
+    columns = zip(*(took(command, code) for _ in range(REPEATS)), strict=True)
+    return Took(*map(statistics.median, columns))
+
+
+def told(label: str, took: Took) -> None:
+    overhead = f"{took.wall - took.integration:10.2f}" if took.integration else ""
+    print(f"  {label:44s} {took.wall:8.2f} {took.cpu:8.2f}{overhead}")
 
 
 def main() -> None:
-    demo = str(REVERSER / "clearance_ab_0.3mm.yaml")
+    """Print the table."""
     with TemporaryDirectory() as folder:
-        out = str(Path(folder) / "run.h5")
-        for label, command in {
-            "trsim --help": trsim("--help"),
-            "trsim check, reverser": trsim("check", demo),
-            "trsim run, reverser, 0.1 ms simulated": trsim(
-                "run", demo, "-q", "--set", "solver.end=0.1 ms", "-o", out
-            ),
-            "trsim run, reverser, 0.3 mm at A and B, 1 s": trsim("run", demo, "-q", "-o", out),
-        }.items():
-            print(f"  {label:50s} {wall(command):6.2f}")
-        environment = {**os.environ, "XDG_CACHE_HOME": folder}
-        environment.pop("NUMBA_CACHE_DIR", None)
-        start = time.perf_counter()
-        subprocess.run(  # noqa: S603
-            trsim("run", demo, "-q", "-o", out), check=True, capture_output=True, env=environment
-        )
-        print(
-            f"  {'the same with an empty cache (compiling)':50s} {time.perf_counter() - start:6.2f}"
-        )
+        wrong = Path(folder) / "wrong.yaml"
+        wrong.write_text(REVERSER.parent.joinpath("mechanism.yaml").read_text() + "\nsolvr: {}\n")
+        run = trsim("run", str(REVERSER), "-q", "--json", "-o", f"{folder}/run.h5")
+        print(f"  {'':44s} {'wall s':>8s} {'CPU s':>8s}  overhead s")
+        told("trsim --help", median(trsim("--help")))
+        told("a schema error", median(trsim("check", str(wrong)), 3))
+        told("trsim check, reverser", median(trsim("check", str(REVERSER))))
+        told("trsim run, reverser, 1 s", median(run))
+        told("the same, compiling (empty cache)", took(run, cache=f"{folder}/cache"))

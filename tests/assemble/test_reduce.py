@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trsim.assemble.reduce import SAMPLES, jacobian, nearby
 from trsim.errors import ModelError
 from trsim.spec.load import load
 
@@ -89,6 +90,24 @@ def test_parallelogram_leaves_the_flat_position_on_its_branch(planar):
     assert r["coupler.position"][:, 1] == pytest.approx(np.sin(r.t), abs=1e-7)
 
 
+def test_positions_judged_are_near_the_drawing():
+    """A perturbed position is closed again and not far from where it started."""
+    model = built(slider_crank()).model
+    y = built(slider_crank()).y0
+    found = list(nearby(model, y, [0, 1, 2, 3, 4, 5], list(range(model.m))))
+    assert len(found) == SAMPLES
+    for near in found:
+        assert np.abs(jacobian(model, 0.0, near)[0]).max() < 1e-9
+        moved = np.abs(near - y)[: model.n_q].reshape(-1, 7)
+        assert 1e-4 < moved[:, :3].max() < 0.3 * model.size
+        assert moved[:, 3:].max() < 0.3  # half an angle
+
+
+def test_mobility_in_a_dead_centre_is_that_around_it():
+    m = built(flat_parallelogram(more="drives: {motor: {joint: A, velocity: 1}}"))
+    assert (m.mobility, m.mobility_by_count, len(m.singular)) == (0, 0, 1)
+
+
 def test_mobility_of_the_reverser():
     ideal = load(REVERSER / "ideal.yaml")
     assert assemble(ideal).mobility == 1
@@ -108,6 +127,9 @@ def test_each_clearance_adds_two(planar):
     two = built(slider_crank(planar, law), "joints.C.clearance=1mm", "joints.B.clearance=1mm")
     none = built(slider_crank(planar, law), "joints.C.clearance=0mm")
     assert (none.mobility, one.mobility, two.mobility) == (1, 3, 5)
+    count = none.mobility_by_count
+    assert (one.mobility_by_count, two.mobility_by_count) == (count + 2, count + 4)
+    assert count == (1 if planar == "true" else -2)
 
 
 def test_planar_motion_assumed_is_said():

@@ -49,6 +49,12 @@ def test_drive_on_a_locked_coordinate():
          ("bodies", "crank", "inertia"), "check the moments"),
         ("[0.01, 0.02, 0.03], at: [0, 0.5]", "[1, 1, 1, 2, 0, 0], at: [0, 0.5]",
          ("bodies", "crank", "inertia"), "check the moments"),
+        ("mass: 1, inertia: [0.01, 0.02, 0.03], at: [0, 0.5]",
+         "mass: 1e-160, inertia: [0.01, 0.02, 0.03], at: [0, 0.5]",
+         ("bodies", "crank", "mass"), "check its unit"),
+        ("[0.01, 0.02, 0.03], at: [0, 0.5]", "[0.01, 1e-300, 0.03], at: [0, 0.5]",
+         ("bodies", "crank", "inertia"), "check mass and inertia"),
+        ("0.03], at: [0, 0.5]", "0.03], at: [0, 1e40]", ("bodies", "crank"), "check the units"),
     ],
 )  # fmt: skip
 def test_bad_bodies(old, new, path, hint):

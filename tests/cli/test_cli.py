@@ -39,6 +39,22 @@ def test_help_imports_nothing_heavy():
         assert f"  {name} " in out
 
 
+def test_numba_is_needed_once(scenario):
+    """The second run loads machine code; a compliant drive calls a law from Python as well."""
+    compliant = "velocity: 5000 rpm, compliance: {stiffness: 1e4, damping: 1}"
+    scenario.write_text(small.SLIDER_CRANK.replace("velocity: 5000 rpm", compliant))
+    code = (
+        "import sys, contextlib\nfrom trsim.cli import main\n"
+        "for command in ('check', 'run'):\n"
+        "    with contextlib.suppress(SystemExit): main([command, 'crank.yaml'])\n"
+        "print(sorted({'numba', 'scipy', 'matplotlib'} & set(sys.modules)))"
+    )
+    for _ in range(2):
+        out, _ = outside.started(scenario.parent, "-c", code).communicate()
+    assert "runs/crank.h5" in out
+    assert out.splitlines()[-1] == "[]"
+
+
 @pytest.mark.parametrize(
     "arguments, message",
     [

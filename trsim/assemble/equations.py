@@ -12,20 +12,18 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 
 from math import cos, sin
 
-from numba import njit, types
-
 from trsim.assemble.linear import factorise, solve
 from trsim.elements.calls import call_kernel, caller
 from trsim.elements.contract import DRIVES, SCENE, compiled
-from trsim.elements.packed import A1, f8
 from trsim.elements.scene import BAUMGARTE
+from trsim.elements.signatures import A1, f8, float64, void
 from trsim.elements.vectors import clear, clear_table
-
-equation = njit(cache=True, error_model="numpy")
+from trsim.elements.vectors import internal as equation
 
 #                        scene  t   y   y'
-DERIVATIVE = types.void(SCENE, f8, A1, A1)
+DERIVATIVE = void(SCENE, f8, A1, A1)
 call_derivative = caller(DERIVATIVE)
+AT = void(SCENE, f8)
 
 
 @compiled(DERIVATIVE)
@@ -54,7 +52,7 @@ def evaluate(s, t, y, yd):
     call_derivative(s.derivative, s, t, y, yd)
 
 
-@equation
+@compiled(void(SCENE, A1))
 def poses(s, y):
     """X, V, S and z from the state: the only place that knows the generalised coordinates."""
     X, V, S, branch, turn = s.X, s.V, s.S, s.branch, s.turn
@@ -104,7 +102,7 @@ def spatial_pose(X, V, f, y, q, v):
     V[f, 5] = X[f, 9] * o0 + X[f, 10] * o1 + X[f, 11] * o2
 
 
-@equation
+@compiled(AT)
 def forces(s, t):
     """Sum the wrenches F and the powers and rates z'."""
     clear_table(s.F)
@@ -119,7 +117,7 @@ def call_all(s, kernels, t):
         call_kernel(kernels[k, 0], t, s, kernels[k, 1], kernels[k, 2])
 
 
-@equation
+@compiled(AT)
 def constraints(s, t):
     """Phi, Phi_t, J and gamma of all rows."""
     call_all(s, s.constraint, t)
@@ -270,13 +268,13 @@ def accelerations(s, y, yd):
         yd[q + 6] = 0.5 * (e0 * o2 + e1 * o1 - e2 * o0)
 
 
-@equation
+@compiled(AT)
 def gaps(s, t):
     """Penetration and its rate of every contact, at the poses of the last evaluation."""
     call_all(s, s.gaps, t)
 
 
-@equation
+@compiled(float64(SCENE, A1))
 def kinetic(s, y):
     """Kinetic energy, J."""
     T = 0.0
@@ -293,7 +291,7 @@ def kinetic(s, y):
     return T
 
 
-@equation
+@compiled(float64(SCENE, f8))
 def stored_energy(s, t):
     """Fill E and return its sum, J; at the poses of the last evaluation."""
     clear(s.E)

@@ -7,7 +7,16 @@ import numpy as np
 
 from trsim.assemble.equations import constraints, equation, poses, rows, velocity_residual
 from trsim.assemble.linear import factorise, solve
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.signatures import A1, f8, float64, void
 from trsim.elements.vectors import clear_table
+
+
+@compiled(void(SCENE, A1, A1))
+def move_all(s, y, dx):
+    """Move all bodies by the small displacements dx (n_v) in the axes of the solve."""
+    for f in range(1, s.n):
+        move(s, y, f, dx[s.d * (f - 1) : s.d * f])
 
 
 @equation
@@ -42,7 +51,7 @@ def normalise(s, y):
                 y[q + a] /= length
 
 
-@equation
+@compiled(float64(SCENE, f8, A1))
 def project_positions(s, t, y):
     """One Newton step of Phi(q, t) = 0, nearest in the metric of M.  Returns the largest |Phi|.
 
@@ -70,7 +79,7 @@ def project_positions(s, t, y):
     return worst
 
 
-@equation
+@compiled(float64(SCENE, A1))
 def project_velocities(s, y):
     """v -= M^-1 J^T S^-1 (J v + Phi_t), with J, S and V of the last evaluation.
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
-from trsim.assemble.projection import move
+from trsim.assemble.projection import move_all
 from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     constraints(w, t)
     J = np.zeros((model.m, model.n, 6))
     row = np.repeat(np.arange(model.m), np.diff(model.row_start))
-    np.add.at(J, (row, model.slot_frame), w.J.reshape(-1, 2, 6)[row, model.slot_column // 6])
+    J[row, model.slot_frame] = w.J.reshape(-1, 2, 6)[row, model.slot_column // 6]
     return w.phi.copy(), w.phi_t.copy(), J[:, 1:].reshape(model.m, 6 * (model.n - 1))
 
 
@@ -55,14 +55,14 @@ def displaced(model: Model, y: Array, dx: Array) -> Array:
     """y after small world-axes displacements dx (6 (n-1)) of the moving frames."""
     y = y.copy()
     w = workspace(model)
-    poses(w, y)
     steps = dx.reshape(-1, 6)
     if model.d == 3:
-        steps = np.ascontiguousarray(steps[:, IN_PLANE])
-    for f, step in enumerate(steps, start=1):
-        if model.d == 6:
-            step = np.concatenate([step[:3], w.X[f, 3:].reshape(3, 3).T @ step[3:]])
-        move(w, y, f, step)
+        steps = steps[:, IN_PLANE]
+    else:
+        poses(w, y)
+        R = w.X[1:, 3:].reshape(-1, 3, 3)
+        steps = np.hstack([steps[:, :3], np.einsum("fij,fi->fj", R, steps[:, 3:])])
+    move_all(w, y, np.ascontiguousarray(steps).ravel())
     return y
 
 
@@ -142,15 +142,13 @@ def nearby(model: Model, y: Array, columns: list[int], geometric: list[int]) -> 
 
     geometric: the rows positions keep to.  At most SAMPLES; always the same ones.
     """
-    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns], int)
-    scale = weights(model)[keep]
     rng = np.random.default_rng(0)
     for _ in range(SAMPLES):
-        dx = np.zeros(6 * (model.n - 1))
-        dx[keep] = SPREAD * rng.normal(size=keep.size) * scale
-        dx.reshape(-1, 6)[:, :3] *= model.size
+        dx = np.zeros((model.n - 1, 6))
+        dx[:, columns] = SPREAD * rng.normal(size=(model.n - 1, len(columns)))
+        dx[:, :3] *= model.size
         near, left = closest(
-            model, 0.0, displaced(model, y, dx), np.array(geometric, np.int64), columns
+            model, 0.0, displaced(model, y, dx.ravel()), np.array(geometric, np.int64), columns
         )
         if left <= 1e-9 * model.size:
             yield near

@@ -31,6 +31,7 @@ from trsim.assemble.reduce import (
 )
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
+from trsim.elements.scene import scene
 
 Array = NDArray[np.float64]
 
@@ -100,7 +101,7 @@ def release(scenario: Any, mechanism: Mechanism) -> Release | None:
 def self_stress(scenario: Any, mechanism: Mechanism, at: Any, instances: list[Instance]) -> Stress:
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
-    full = build(scenario, at, instances, rows, 6)
+    full = scene(build(scenario, at, instances, rows, 6))
     y6 = drawn(scenario, at, 6)
     inside = np.flatnonzero(in_solve(jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
     columns = IN_PLANE if mechanism.planar else sorted([*IN_PLANE, *OUT_OF_PLANE])
@@ -187,7 +188,7 @@ def removable(gone: list[int], stress: Stress) -> bool:
 
 
 def by_rows(k: int, stress: Stress, instances: list[Instance]) -> tuple[Change, ...]:
-    """k rows found one by one: of the rows in turn, what still cuts a self-stress, moments first."""
+    """k rows found one by one: each cuts a self-stress that is left, moments first."""
     may = [r for r in stress.inside if instances[stress.rows[r].instance].section == "joints"]
     may.sort(key=lambda r: (not stress.rows[r].rotation, -r))
     N, gone = stress.spaces[-1].copy(), list[int]()

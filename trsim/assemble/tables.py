@@ -1,5 +1,6 @@
 """The arrays of a model, one function for each group of them."""
 
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,9 @@ from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
+
+LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
+SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
 
 
 def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.int64], Array]:
@@ -61,6 +65,9 @@ def masses(scenario: Any, d: int) -> tuple[Array, Array, Array, Array]:
         if spec.mass == 0.0:
             raise ModelError("a body without mass cannot be solved for", "give it a mass",
                              ("bodies", name, "mass"))  # fmt: skip
+        if not LIGHTEST <= spec.mass <= HEAVIEST:
+            raise ModelError(f"no body of a mechanism has a mass of {spec.mass:.3g} kg",
+                             "check its unit", ("bodies", name, "mass"))  # fmt: skip
         mass_inverse[f] = 1.0 / spec.mass
         if (complete and np.linalg.eigvalsh(known).min() <= 0.0) or inertia[f, 8] <= 0.0:
             raise ModelError(
@@ -68,6 +75,7 @@ def masses(scenario: Any, d: int) -> tuple[Array, Array, Array, Array]:
                 "check the moments and products",
                 ("bodies", name, "inertia"),
             )
+        check_radius(name, spec.mass, known if complete else known[2:, 2:])
         if d == 3:
             inertia_inverse[f, 8] = 1.0 / inertia[f, 8]
         elif complete:
@@ -75,6 +83,18 @@ def masses(scenario: Any, d: int) -> tuple[Array, Array, Array, Array]:
         else:  # only for the look at the rows before planarity is known
             inertia_inverse[f, [0, 4, 8]] = 1.0 / inertia[f, 8]
     return mass, inertia, mass_inverse, inertia_inverse
+
+
+def check_radius(name: str, mass: float, inertia: Array) -> None:
+    """Refuse inertias that turn into no number: sqrt(I / m) is a length of the body."""
+    for moment in np.linalg.eigvalsh(inertia).tolist():
+        radius = sqrt(moment / mass)
+        if not SMALLEST <= radius <= LARGEST:
+            raise ModelError(
+                f"a radius of gyration sqrt(inertia/mass) of {radius:.3g} m",
+                f"between {SMALLEST:g} and {LARGEST:g} m can be solved; check mass and inertia",
+                ("bodies", name, "inertia"),
+            )
 
 
 def drawn(scenario: Any, at: Addresses, d: int) -> Array:
@@ -112,6 +132,16 @@ def extent(at: Addresses) -> float:
     """Size of the mechanism: the diagonal of the box around its points as drawn, m."""
     corners = [at.at_start[0], *at.at_start[1:]]
     corners += [at.at_start[i] + at.rotation[i] @ np.array(s) for i, s in at.points]
+    far = np.max(np.abs(corners), axis=1)
+    worst = int(np.argmax(far))
+    if far[worst] > LARGEST:
+        frames = [*range(len(at.frames)), *(i for i, _ in at.points)]
+        name = list(at.frames)[frames[worst]]
+        raise ModelError(
+            f"a point of '{name}' lies {far[worst]:.3g} m from the origin",
+            f"a mechanism of at most {LARGEST:g} m can be solved; check the units",
+            ("bodies", name) if name in at.scenario.bodies else ("joints",),
+        )
     box = np.ptp(np.array(corners), axis=0)
     size = float(np.linalg.norm(box))
     return size if size > 0.0 else 1.0

@@ -41,7 +41,7 @@ def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
     from trsim.cli.run import placed
 
     scenario = loaded(source, sets)
-    compiling(answer, "equations.derivative")
+    compiling(answer)
     from trsim.assemble.assemble import assemble
     from trsim.solve.skipped import skipped
 

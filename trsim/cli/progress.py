@@ -1,6 +1,5 @@
 """How far a run is: a bar on a terminal, otherwise a line every ten seconds."""
 
-import os
 import sys
 import time
 from collections.abc import Generator
@@ -14,11 +13,25 @@ LINE = 10.0  # s between two lines where there is no terminal
 DRAWN = 0.2  # s between two looks at the bar
 
 
-def compiling(answer: Answer, kernel: str) -> None:
-    """Say so where a kernel was never compiled on this machine, and with it most others."""
-    folder = Path(os.environ["NUMBA_CACHE_DIR"])
-    if not any(folder.glob(f"*/{kernel}-*.nbi")):
-        answer.say("compiling (once per installation, about half a minute)")
+def compiling(answer: Answer, method: str = "") -> None:
+    """Say so where nothing was compiled on this machine yet.
+
+    method: of a run; its solver is then compiled meanwhile, in a second process.
+    """
+    from trsim.assemble.equations import derivative
+
+    needed, later = derivative, ["trsim.solve.march", f"trsim.solve.{method}"]
+    if method.startswith("scipy:"):
+        later[1] = "trsim.solve.scipy_ivp"
+    elif method:
+        from trsim.solve.march import march as needed
+    if needed.file.exists():
+        return
+    answer.say("compiling (once per installation, about half a minute)")
+    if method:
+        from trsim.elements import ahead
+
+        ahead.begin(*later)
 
 
 def watched(

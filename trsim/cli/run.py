@@ -83,8 +83,7 @@ def one(
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
     every = interval(answer, source, scenario, checkpoint)
     kept = found(answer, source, target, scenario, resume)
-    by_scipy = scenario.solver.method.startswith("scipy:")
-    compiling(answer, "equations.derivative" if by_scipy else "march.march")
+    compiling(answer, scenario.solver.method)
     from trsim.assemble.assemble import assemble
     from trsim.solve.simulate import simulate
     from trsim.spec.lint import lint

@@ -25,14 +25,12 @@ has a branch for it.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
+from trsim.elements.machine import Compiled
 from trsim.elements.scene import Scene
+from trsim.elements.signatures import Signature, f8, i8, void
 
-if TYPE_CHECKING:
-    SCENE: Any  # the numba type of a Scene
-    KERNEL: Any  # the signature of a kernel
 KINDS = ("force", "constraint", "coordinate", "gaps", "energy", "measure")
 
 # con: the first columns of every element that joins two frames
@@ -51,55 +49,18 @@ SPRINGS, CONTACTS, GRAVITY = 0, 1, 2
 STORED = ("springs", "contacts", "gravity")
 
 
-@cache
-def _kernel_signature() -> Any:
-    from trsim.elements.packed_numba import f8, i8, types
-
-    return types.void(f8, Scene.numba_type, i8, i8)  # t, scene, first row, end row
+SCENE = Scene.kind
+KERNEL = void(f8, SCENE, i8, i8)  # t, scene, first row, end row
 
 
-def __getattr__(name: str) -> Any:
-    """SCENE and KERNEL, which need numba."""
-    if name == "SCENE":
-        return Scene.numba_type
-    if name == "KERNEL":
-        return _kernel_signature()
-    raise AttributeError(name)
-
-
-class Compiled:
-    """A function with a fixed signature that compiles (or loads from the cache) on first use."""
-
-    def __init__(self, python: Callable, signature: Any = None) -> None:
-        self.python, self.given = python, signature
-
-    @property
-    def signature(self) -> Any:
-        return self.given or _kernel_signature()
-
-    @cached_property
-    def dispatcher(self) -> Any:
-        from numba import njit
-
-        return njit(self.signature, cache=True, error_model="numpy")(self.python)
-
-    def address(self) -> int:
-        """Where the machine code starts, in numba's own calling convention."""
-        result = self.dispatcher.overloads[self.signature.args]
-        return result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
-
-    def __call__(self, *arguments: Any) -> Any:
-        return self.dispatcher(*arguments)
-
-
-def compiled(signature: Any) -> Callable[[Callable], Compiled]:
+def compiled(signature: Signature) -> Callable[[Callable], Compiled]:
     """Decorator for functions called by address or from Python."""
     return lambda python: Compiled(python, signature)
 
 
 def kernel(python: Callable) -> Compiled:
     """Decorator of the kernels of elements."""
-    return Compiled(python)
+    return Compiled(python, KERNEL)
 
 
 class Channel(NamedTuple):

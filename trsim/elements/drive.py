@@ -20,9 +20,11 @@ from trsim.elements.contract import (
     Channel,
     Element,
     Row,
+    compiled,
     kernel,
 )
 from trsim.elements.frames import along_row, arm, cross, dot, helper, push, separation, spin, twist
+from trsim.elements.signatures import A1, f8, i8, void
 from trsim.fields import Function, Spec, Unit
 from trsim.laws.functions import motion
 
@@ -98,6 +100,12 @@ def pack(name, spec, at):
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
     con = (x.i, x.j, x.entry, state, int(x.kind == "angle"), f)
     return Row(con, (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign)))
+
+
+@compiled(void(A1, i8, f8, A1))
+def rates_at(tab, offset, t, out):
+    """out = f, f', f'' of a function of tab at t."""
+    out[0], out[1], out[2] = motion(tab, offset, t)
 
 
 @helper

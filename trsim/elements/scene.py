@@ -11,12 +11,9 @@ Only `poses` in assemble/equations.py knows this; kernels see poses, twists and 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from trsim.elements.packed import Packed
-
-if TYPE_CHECKING:  # to the compiler they are numba's types, imported with numba
-    from trsim.elements.packed import A1, A2, I1, I2, f8, i8
+from trsim.elements.packed import A1, A2, I1, I2, Packed, f8, i8
 
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
@@ -82,7 +79,7 @@ class Model(Packed):
 
     def replaced(self, **changes: Any) -> Model:
         """A copy with some fields replaced."""
-        values = {name: getattr(self, name) for name, _ in Model.numba_type.fields}
+        values = {name: getattr(self, name) for name, _ in Model.kind.fields}
         return Model(**{**values, **changes})
 
 
@@ -131,7 +128,7 @@ def scene(model: Model) -> Scene:
     X = np.zeros((n, 12))
     X[:, [3, 7, 11]] = 1.0
     X[:, 2] = model.depth
-    constants = {name: getattr(model, name) for name, _ in Model.numba_type.fields}
+    constants = {name: getattr(model, name) for name, _ in Model.kind.fields}
     return Scene(
         **constants,
         X=X,

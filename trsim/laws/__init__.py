@@ -8,6 +8,10 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
+# as in numpy x / 0 is inf; no reference counts: nothing compiled allocates
+COMPILED = {"error_model": "numpy", "_nrt": False}
+UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Python to call
+
 
 class Lazy:
     """A function that becomes numba's the first time it is called or compiled code needs it."""
@@ -21,7 +25,7 @@ class Lazy:
     def dispatcher(self) -> Any:
         from numba import njit
 
-        return njit(cache=True, error_model="numpy", **self.options)(self.python)
+        return njit(**COMPILED, **self.options)(self.python)
 
     @property
     def _numba_type_(self) -> Any:

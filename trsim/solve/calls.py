@@ -8,8 +8,7 @@ DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1
 INTERPOLATE y <- solution at t + theta h
 """
 
-from numba import types
-
+from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE
 from trsim.elements.packed import A1, A2, f8

@@ -19,17 +19,19 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.projection import move
+from trsim.assemble.projection import move_all
 from trsim.assemble.reduce import IN_PLANE, jacobian
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
+from trsim.errors import ModelError
 from trsim.laws.friction import CODES
 from trsim.solve.start import Start
 
 Array = NDArray[np.float64]
 
 REACH = 1e-5  # of the mechanism's size, and of its speed: how far a probe goes
+FASTEST = 1e-2  # m/s: a run of next to no time makes its unit of speed as large as one likes
 PRESSED = 1e-3  # of a penetration: a probe must not leave the contact
 TOUCHING = 1e-12  # of the mechanism's size: contacts pressed in by less count as open
 FREE = 1e-10  # relative singular value of J below which a motion is free
@@ -71,6 +73,13 @@ def linearised(mechanism: Mechanism, begun: Start) -> Linearised:
         ahead[kind][place] = step
         back = [-part for part in ahead]
         A[f:, k] = (probe.rates(*ahead) - probe.rates(*back)) / (2.0 * step)
+    if not np.all(np.isfinite(A)):
+        worst = int(np.argmin(np.isfinite(A).all(axis=0)))
+        raise ModelError(
+            "the start cannot be linearised: a derivative of its accelerations is not finite",
+            "is a stiffness, a mass or a damping out of all proportion?",
+            ("bodies", probe.body(worst)) if worst < 2 * f else (),
+        )
     return Linearised(
         np.eye(f), -A[f : 2 * f, f : 2 * f], -A[f : 2 * f, :f], A, probe.Z, probe.twists
     )
@@ -106,6 +115,7 @@ class Probe:
     def __init__(self, mechanism: Mechanism, work: Scene, begun: Start) -> None:
         self.work, self.y = work, begun.y
         self.n_q, self.n_v = work.n_q, work.n_v
+        self.names = [name for name, f in mechanism.frames.items() if f > 0]
         self.own = [
             self.n_q + self.n_v + N_BOOK + k for k, s in enumerate(mechanism.follows) if s < 0
         ]
@@ -152,10 +162,15 @@ class Probe:
         depths = work.gap[work.contact[pressed], 0].tolist()
         self.length = min([REACH * work.size, *(PRESSED * d for d in depths)])
         slowest = [v for v in work.contact_par[:, 4].tolist() if v > 0.0]
-        self.speed = min([REACH * begun.speed, *(PRESSED * v for v in slowest)])
+        self.speed = min([REACH * begun.speed, FASTEST, *(PRESSED * v for v in slowest)])
         parts = np.abs(self.twists).reshape(work.n - 1, 6, self.Z.shape[1])
         points = np.maximum(parts[:, :3].max(axis=1), work.size * parts[:, 3:].max(axis=1))
         self.most = points.max(axis=0, initial=1e-300)
+
+    def body(self, k: int) -> str:
+        """The body that moves most in the freedom of a column of A."""
+        twist = np.abs(self.twists[:, k % self.Z.shape[1]])
+        return self.names[int(np.argmax(twist)) // 6]
 
     def steps(self, kind: int, place: int) -> float:
         """Step along a freedom (0), its rate (1), a state of an element (2)."""
@@ -166,13 +181,13 @@ class Probe:
     def rates(self, xi: Array, eta: Array, states: Array) -> Array:
         """(eta', s') at a state brought to the constraints."""
         work, y, n = self.work, self.y.copy(), self.n_q
-        self.shift(y, self.Z @ xi)
+        move_all(work, y, self.Z @ xi)
         for _ in range(CORRECTIONS):
             poses(work, y)
             constraints(work, 0.0)
             if np.max(np.abs(work.phi), initial=0.0) < 1e-15 * work.size:
                 break
-            self.shift(y, -self.pseudo @ work.phi)
+            move_all(work, y, -self.pseudo @ work.phi)
         y[n : n + self.n_v] += self.Z @ eta
         for _ in range(CORRECTIONS):
             poses(work, y)
@@ -182,12 +197,6 @@ class Probe:
         yd = np.zeros_like(y)
         derivative(work, 0.0, y, yd)
         return np.concatenate([self.Z.T @ self.M @ yd[n : n + self.n_v], yd[self.own]])
-
-    def shift(self, y: Array, dx: Array) -> None:
-        """Move all bodies by small displacements in the axes of the solve."""
-        d = self.work.d
-        for f in range(1, self.work.n):
-            move(self.work, y, f, np.ascontiguousarray(dx[d * (f - 1) : d * f]))
 
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""

@@ -7,13 +7,13 @@ it is done, or when it cannot go on, and can be called again with the same recor
 from math import isfinite
 
 import numpy as np
-from numba import types
 
 from trsim.assemble.equations import (
     evaluate,
     gaps,
 )
 from trsim.assemble.outputs import measure
+from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8

@@ -6,8 +6,8 @@ of the contact.  Without contacts the length is the size of the mechanism.
 """
 
 import numpy as np
-from numba import types
 
+from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1
 from trsim.elements.scene import ANGLE, MAGNITUDE, RATE

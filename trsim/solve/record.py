@@ -92,7 +92,7 @@ class Buffers(Packed):
     branch1: A1
 
 
-RECORD, BUFFERS = Record.numba_type, Buffers.numba_type
+RECORD, BUFFERS = Record.kind, Buffers.kind
 
 
 def fresh_buffers(

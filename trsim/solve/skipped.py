@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from typing import Any
 
-
 from trsim.assemble.layout import all_names
 from trsim.assemble.mechanism import Mechanism
 

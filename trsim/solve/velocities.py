@@ -10,10 +10,9 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import jacobian, weights
-from trsim.elements.drive import K
+from trsim.elements.drive import K, rates_at
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
-from trsim.laws.functions import motion
 from trsim.solve.angles import follow
 
 Array = NDArray[np.float64]
@@ -67,9 +66,10 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
         if instance.element.key != "drive" or instance.row.par[K] == 0.0:
             continue
         _, _, entry, state, _, offset = instance.row.con
-        f, f_dot, _ = motion(mechanism.model.tab, offset, 0.0)
+        prescribed = np.zeros(3)
+        rates_at(mechanism.model.tab, offset, 0.0, prescribed)
         gradient = coordinate_gradient(mechanism.model, y, entry)
-        found.append((gradient, float(f if state >= 0 else f_dot)))
+        found.append((gradient, float(prescribed[0 if state >= 0 else 1])))
     return found
 
 

@@ -4,17 +4,23 @@ Nothing here is imported when a command runs.  A number that is not finite is nu
 that did not end with 0 may leave out what its document has beyond `Document`.
 """
 
+from trsim.cli.documents.checks import (
+    Check,
+    Checked,
+    ContactScale,
+    Projection,
+    Release,
+    Scales,
+    Start,
+)
 from trsim.cli.documents.common import Document, Error
 from trsim.cli.documents.files import Export, Provenance, Recover, Report, Show, Solver, Summary
 from trsim.cli.documents.runs import (
-    Check,
-    Checked,
     Contact,
     Ran,
     Results,
     Run,
     RunStatistics,
-    Start,
     Statistics,
 )
 from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema, SectionPage
@@ -24,19 +30,23 @@ __all__ = [
     "Check",
     "Checked",
     "Contact",
+    "ContactScale",
     "Document",
     "ElementPage",
     "Error",
     "Explain",
     "Export",
     "Key",
+    "Projection",
     "Provenance",
     "Ran",
     "Recover",
+    "Release",
     "Report",
     "Results",
     "Run",
     "RunStatistics",
+    "Scales",
     "Schema",
     "SectionPage",
     "Show",

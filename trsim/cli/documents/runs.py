@@ -1,4 +1,4 @@
-"""Documents about scenarios that are run or checked."""
+"""Documents about scenarios that are run."""
 
 from typing import NotRequired
 
@@ -112,70 +112,3 @@ class Run(Document):
     """
 
     runs: list[Ran]
-
-
-class Start(TypedDict):
-    """Where a run would start.
-
-    position_residual  removed by closing the joints, m or rad
-    force_residual     left by the equilibrium, N
-    length             smallest length that matters to the error norm, m
-    speed              the same, m/s
-    closed_contacts    contacts in touch
-    """
-
-    position_residual: Number
-    force_residual: Number
-    length: Number
-    speed: Number
-    closed_contacts: list[str]
-
-
-class Checked(TypedDict):
-    """What a scenario is once assembled.
-
-    file            as given
-    title           of the scenario
-    bodies          names
-    joints          name -> type
-    drives          names
-    forces          name -> type
-    contacts        names of joints and stops
-    planar          whether the motion stays in a plane
-    planar_assumed  whether nothing but the start says so
-    unknowns        velocities
-    constraints     rows kept, drives included
-    mobility        unknowns less constraints
-    redundant       rows dropped
-    singular        rows that depend on others only as drawn
-    not_unique      reactions that the motion does not determine
-    notes           what looks wrong
-    start           where a run would start
-    """
-
-    file: str
-    title: str
-    bodies: list[str]
-    joints: dict[str, str]
-    drives: list[str]
-    forces: dict[str, str]
-    contacts: list[str]
-    planar: bool
-    planar_assumed: bool
-    unknowns: int
-    constraints: int
-    mobility: int
-    redundant: list[str]
-    singular: list[str]
-    not_unique: list[str]
-    notes: list[str]
-    start: Start
-
-
-class Check(Document):
-    """trsim check.
-
-    scenarios  those without errors, in the order given
-    """
-
-    scenarios: list[Checked]

@@ -1,0 +1,173 @@
+"""Machine code kept between runs: the right one, an undamaged one, or a fresh one."""
+
+import os
+import subprocess
+import sys
+from math import sin
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba.core.errors import NumbaError
+
+from trsim.elements import fingerprint
+from trsim.elements.contract import compiled
+from trsim.elements.machine import Compiled, folder
+from trsim.elements.packed import Packed
+from trsim.elements.signatures import A1, A2, Kind, f8, float64, i8, int64, void
+from trsim.elements.vectors import internal
+
+ROOT = Path(__file__).parents[2]
+FACTOR = 2.0
+
+
+@internal
+def scaled(x):
+    return FACTOR * x
+
+
+def total(x, table, k, add):
+    """Arguments of every kind."""
+    for i in range(x.size):
+        add += scaled(x[i]) * table[k, i]
+    return add + sin(add)
+
+
+TOTAL = float64(A1, A2, i8, f8)
+
+
+@pytest.fixture
+def cache(tmp_path, monkeypatch):
+    """An empty cache folder."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    return folder()
+
+
+def arguments():
+    return np.array([1.0, 2.0, 3.0]), np.arange(6.0).reshape(2, 3), 1, 0.5
+
+
+def expected():
+    x, table, k, add = arguments()
+    add += float(FACTOR * x @ table[k])
+    return add + np.sin(add)
+
+
+def test_a_second_one_loads_what_the_first_has_kept(cache, monkeypatch):
+    assert Compiled(total, TOTAL)(*arguments()) == pytest.approx(expected(), rel=1e-15)
+    [file] = cache.iterdir()
+    assert file.stat().st_size < 20_000
+    monkeypatch.setitem(sys.modules, "trsim.elements.compiler", None)  # an import would fail
+    assert Compiled(total, TOTAL)(*arguments()) == pytest.approx(expected(), rel=1e-15)
+
+
+@pytest.mark.parametrize("damage", ["cut", "flip", "empty"])
+def test_damaged_code_is_compiled_again(damage, cache, monkeypatch):
+    function = Compiled(total, TOTAL)
+    function.address()
+    content = function.file.read_bytes()
+    middle = len(content) // 2
+    damaged = {
+        "cut": content[:middle],
+        "flip": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
+        "empty": b"",
+    }
+    function.file.write_bytes(damaged[damage])
+    assert Compiled(total, TOTAL)(*arguments()) == pytest.approx(expected(), rel=1e-15)
+    monkeypatch.setitem(sys.modules, "trsim.elements.compiler", None)
+    assert Compiled(total, TOTAL).address()  # and kept again
+
+
+def test_a_folder_that_cannot_be_written_to(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    assert Compiled(total, TOTAL)(*arguments()) == pytest.approx(expected(), rel=1e-15)
+
+
+def test_what_cannot_be_kept_is_refused(cache):
+    @compiled(void(A1))
+    def allocates(x):
+        x[:] = np.zeros(x.size) + 1.0
+
+    with pytest.raises(NumbaError):
+        allocates.address()
+
+
+def test_results():
+    @compiled(int64(i8, A1))
+    def count(k, x):
+        return k + x.size
+
+    @compiled(void(A1, f8))
+    def fill(x, value):
+        for k in range(x.size):
+            x[k] = value
+
+    assert count(3, np.zeros(4)) == 7
+    x = np.zeros(3)
+    assert fill(x, 2.5) is None and x.tolist() == [2.5] * 3
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        (np.zeros((2, 2)), np.zeros((2, 3)), 1, 0.5),  # dimensions
+        (np.zeros(3, np.int64), np.zeros((2, 3)), 1, 0.5),  # type
+        (np.zeros(6)[::2], np.zeros((2, 3)), 1, 0.5),  # not contiguous
+        (np.zeros(3), np.zeros((2, 3)), 1),  # one missing
+    ],
+)
+def test_wrong_arguments(wrong):
+    with pytest.raises(TypeError):
+        Compiled(total, TOTAL)(*wrong)
+
+
+# --- the key ---------------------------------------------------------------------------------
+
+
+def key(python=total, signature=TOTAL):
+    fingerprint._function.cache_clear()
+    return fingerprint.of(python, signature)
+
+
+def test_the_key_follows_what_the_code_depends_on(monkeypatch):
+    before = key()
+    assert key() == before
+    assert key(signature=float64(A1, A2, i8, i8)) != before
+    monkeypatch.setitem(globals(), "FACTOR", 3.0)  # read by a function that `total` calls
+    assert key() != before
+    monkeypatch.setitem(globals(), "FACTOR", 2.0)
+    monkeypatch.setitem(globals(), "scaled", internal(lambda x: FACTOR * x * x))
+    assert key() != before
+
+
+def test_the_key_follows_the_fields_of_records():
+    class One(Packed):
+        a: A1
+        n: i8
+
+    class Other(Packed):
+        a: A1
+        b: A1
+        n: i8
+
+    other = Kind("One", fields=Other.kind.fields)
+    assert key(signature=void(One.kind)) != key(signature=void(other))
+    with pytest.raises(TypeError, match="missing or unknown"):
+        One(a=np.zeros(2))
+    with pytest.raises(TypeError, match="dimensions"):
+        One(a=np.zeros((2, 2)), n=1)
+
+
+def test_the_key_is_that_of_every_process():
+    code = (
+        "from trsim.assemble.equations import derivative\n"
+        "from trsim.solve.march import march\n"
+        "print(derivative.file.name, march.file.name)"
+    )
+    told = set()
+    for seed in ("0", "1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)}
+        command = [sys.executable, "-c", code]
+        told.add(subprocess.run(command, check=True, capture_output=True, env=environment).stdout)  # noqa: S603
+    assert len(told) == 1

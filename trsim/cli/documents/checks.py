@@ -1,0 +1,182 @@
+"""Documents about scenarios that are checked."""
+
+from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
+
+from trsim.cli.documents.common import Document, Number
+
+
+class Release(TypedDict):
+    """What to let go: no row is redundant then, all reactions are unique, no freedom is gained.
+
+    rows          "joint.axis", as many as are redundant
+    joints        joint -> what it is without its rows, in words; "" where it has no name
+    types         joint -> its type in a scenario, where there is one
+    alternatives  other choices that are as good; the first in the file is given
+    proven        whether nothing depends on anything without these rows, as drawn and nearby
+    """
+
+    rows: list[str]
+    joints: dict[str, str]
+    types: dict[str, str]
+    alternatives: int
+    proven: bool
+
+
+class Projection(TypedDict):
+    """What the start changed in the drawing.
+
+    position_before  largest residual of the constraints as drawn, m or rad
+    position_after   and at the start
+    position_row     whose was the largest, "joint.axis"; "" for none
+    velocity_before  largest residual of their rates with the velocities given, m/s or rad/s
+    velocity_after   and at the start
+    velocity_row     whose was the largest
+    shift            longest way of a centre of mass from where it is drawn, m
+    shift_body       whose
+    turn             largest turn of a body from how it is drawn, rad
+    turn_body        whose
+    """
+
+    position_before: Number
+    position_after: Number
+    position_row: str
+    velocity_before: Number
+    velocity_after: Number
+    velocity_row: str
+    shift: Number
+    shift_body: str
+    turn: Number
+    turn_body: str
+
+
+class Start(TypedDict):
+    """Where a run would start.
+
+    position_residual  removed by closing the joints, m or rad
+    force_residual     left by the equilibrium, N
+    length             smallest length that matters to the error norm, m
+    speed              the same, m/s
+    closed_contacts    contacts in touch
+    projected          what the start changed in the drawing
+    """
+
+    position_residual: Number
+    force_residual: Number
+    length: Number
+    speed: Number
+    closed_contacts: list[str]
+    projected: Projection
+
+
+class ContactScale(TypedDict):
+    """How fast a contact is, pressed as the largest force of the start would.
+
+    name           joint or stop
+    closed         whether it is in touch at the start
+    depth          penetration, m or rad
+    force          N or N*m
+    stiffness      tangent, N/m or N*m/rad
+    mass           that moves, with all joints and drives in force, kg or kg*m^2; null: nothing can
+    half_period    of its vibration, s; null where nothing can move
+    impact_time    from touch to separation at the slowest impact, s; null where nothing can move
+    friction_rate  1/s, of the ramp of modified Coulomb friction; 0 without one
+    """
+
+    name: str
+    closed: bool
+    depth: Number
+    force: Number
+    stiffness: Number
+    mass: Number
+    half_period: Number
+    impact_time: Number
+    friction_rate: Number
+
+
+class Scales(TypedDict):
+    """Stiffness and time scales at the start.
+
+    eigenvalues    of the linearised motion, [real, imaginary] in 1/s, largest first, without zeros
+    zeros          how many of them are zero
+    decay          largest rate at which a motion fades, 1/s; 0 for none
+    growth         largest rate at which one grows, 1/s; 0 for none
+    frequency      largest, rad/s; 0 for none
+    natural_time   slowest period, or the time a motion through the mechanism's size takes, s
+    contacts       each contact
+    fastest        rate that limits explicit steps, 1/s
+    fastest_is     what it is the rate of, in words; "" for nothing
+    explicit_step  largest stable step of rk4, s; null where nothing limits it
+    end            of the run, s; null where the scenario has none
+    """
+
+    eigenvalues: list[list[Number]]
+    zeros: int
+    decay: Number
+    growth: Number
+    frequency: Number
+    natural_time: Number
+    contacts: list[ContactScale]
+    fastest: Number
+    fastest_is: str
+    explicit_step: Number
+    end: Number
+
+
+class Checked(TypedDict):
+    """What a scenario is once assembled, and what a run of it will meet.
+
+    file               as given
+    title              of the scenario
+    bodies             names
+    joints             name -> type
+    drives             names
+    forces             name -> type
+    contacts           names of joints and stops
+    planar             whether the motion stays in a plane
+    planar_assumed     whether nothing but the start says so
+    unknowns           velocities
+    constraints        rows kept, drives included
+    mobility           degrees of freedom by rank, drives counted as constraints
+    mobility_by_count  unknowns less all rows
+    redundant          rows dropped
+    singular           rows that depend on others only as drawn
+    unique             reactions that the motion determines
+    not_unique         reactions that it does not determine
+    release            what to let go of a mechanism with redundant rows; null without them
+    notes              what looks wrong
+    start              where a run would start
+    scales             stiffness and time scales
+    skipped            what a run leaves out, and why
+    """
+
+    file: str
+    title: str
+    bodies: list[str]
+    joints: dict[str, str]
+    drives: list[str]
+    forces: dict[str, str]
+    contacts: list[str]
+    planar: bool
+    planar_assumed: bool
+    unknowns: int
+    constraints: int
+    mobility: int
+    mobility_by_count: int
+    redundant: list[str]
+    singular: list[str]
+    unique: list[str]
+    not_unique: list[str]
+    release: Release | None
+    notes: list[str]
+    start: Start
+    scales: Scales
+    skipped: list[str]
+
+
+class Check(Document):
+    """trsim check.
+
+    scenarios  those without errors, in the order given
+    """
+
+    scenarios: list[Checked]
