@@ -277,6 +277,12 @@ def gaps(s, t):
 
 
 @equation
+def corners(s, t):
+    """Distance from the corners of every law that has some, at the poses of the last evaluation."""
+    call_all(s, s.corners, t)
+
+
+@equation
 def kinetic(s, y):
     """Kinetic energy, J."""
     T = 0.0

@@ -6,24 +6,22 @@ it is done, or when it cannot go on, and can be called again with the same recor
 
 from math import isfinite
 
-import numpy as np
 from numba import types
 
-from trsim.assemble.equations import (
-    evaluate,
-    gaps,
-)
+from trsim.assemble.equations import corners, evaluate, gaps
 from trsim.assemble.outputs import measure
 from trsim.elements.calls import caller
-from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
-from trsim.elements.packed import A1, I1, f8, i8
+from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
+from trsim.elements.packed import A1, I1, I2, f8, i8
 from trsim.elements.vectors import all_finite, clear_table, copy_table, copy_to, internal
+from trsim.solve.auto import choose
 from trsim.solve.calls import call_dense, call_interpolate, call_step
-from trsim.solve.events import NONE as NO_EVENT
-from trsim.solve.events import SAME, any_suspicious, first_event, flip, hertz_step
+from trsim.solve.corners import look
+from trsim.solve.events import any_suspicious, first_event
 from trsim.solve.land import land
 from trsim.solve.norm import grow, units, weights
 from trsim.solve.peaks import near_peak, peaks_inside, refine
+from trsim.solve.phases import change_phases, latch
 from trsim.solve.record import (
     AFTER_REJECTION,
     BUFFERS,
@@ -31,34 +29,32 @@ from trsim.solve.record import (
     DENSE_BUILT,
     DONE,
     ENERGY_0,
-    EVENT_ANGLE,
-    EVENT_KIND,
-    EVENT_ROW,
     EVENT_ROWS,
-    EVENT_SPEED,
-    EVENT_TIME,
-    EVENTS,
     EVERY,
     FIXED_STEP,
     FULL,
     H_MAX,
+    HISTORY,
+    JACOBIAN,
     LARGEST_ENERGY,
     LARGEST_RESIDUAL,
-    LAST_EVENT,
+    LENGTH,
     LOCATE,
+    METHOD,
     NEXT_ROW,
     NOT_FINITE,
-    ONSET,
+    OLD,
+    OLD_H,
+    PAST_ERROR,
+    PAST_H,
     PAUSE,
     PEAK_MAX,
     PEAK_MIN,
-    PEAK_T1,
     PEAK_V2,
     RECORD,
     REJECTED,
     ROWS,
     SAME_TIME,
-    SEPARATION,
     STEP_ROWS,
     STEP_TOO_SMALL,
     STEPS,
@@ -69,10 +65,14 @@ from trsim.solve.record import (
     T,
 )
 
-SMOOTH_STEP, WITH_EVENT, WORTHLESS = 0, 1, 2  # what `complete` made of a trial step
-LAST_AT, COMPLETE_AT = 3, 4  # in `method`, after the addresses of step, dense, interpolate
+# what `complete` made of a trial step
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
+# a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
+# of K holds the last derivative, the power of h its error estimate falls with, whether implicit
+STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
 MAX_SAME_TIME = 1000  # events without progress: chatter
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
+EXACT = 5  # secant steps to the end of a step that an event cuts
 
 
 #                       scene   record  buffers  settings method h built
@@ -80,19 +80,21 @@ COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
 call_complete = caller(COMPLETE)
 
 
-def method_table(step, dense, interpolate, last):
-    """What the march must know of a method: addresses of its functions, the last row of its K.
+def method_table(method):
+    """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march.
     """
-    return np.array([step, dense, interpolate, last, complete.address()], np.int64)
+    called = (method.step.address(), method.dense.address(), method.interpolate.address())
+    return (*called, complete.address(), method.LAST, method.ESTIMATE, int(method.IMPLICIT))
 
 
-@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I1, i8))
-def march(s, r, b, setting, method, most):
+@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
+def march(s, r, b, setting, methods, most):
     """Advance the record until it is done, a buffer is full, or `most` steps were accepted.
 
-    method: see `method_table`.  Returns DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE or CHATTER.
+    methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
+    march changes between them.  Returns DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE or CHATTER.
     """
     accepted = 0
     while r.clock[T] < setting[T_END]:
@@ -100,19 +102,22 @@ def march(s, r, b, setting, method, most):
             return FULL
         if accepted >= most:
             return PAUSE
-        t = r.clock[T]
+        t, method = r.clock[T], methods[r.count[METHOD]]
         h = next_step(r, b, setting)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
             return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
         weights(s, r, b, setting)
         copy_to(b.K[0], r.yd)
-        error = call_step(method[0], s, b.K, t, r.y, h, b.y1, b.weight)
+        for c in range(s.contact.size):
+            s.left[s.contact[c]] = -1.0
+        error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
             r.count[AFTER_REJECTION] = 1 if isfinite(error) else 2
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
-            r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if isfinite(error) else 0.1)
+            shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
+            r.clock[H] = h * (shorter if isfinite(error) else 0.1)
             continue
         outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
         if outcome == WORTHLESS:
@@ -123,7 +128,9 @@ def march(s, r, b, setting, method, most):
             r.clock[H] = 0.1 * h
             continue
         accepted += 1
-        control(r, setting, h, error, outcome == WITH_EVENT)
+        control(r, setting, method, h, error, outcome != SMOOTH_STEP)
+        if methods.shape[0] > 1:
+            choose(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
     return DONE
@@ -134,7 +141,8 @@ def complete(s, r, b, setting, method, h, built):
     """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
 
     built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
-    step was cut at a contact event) or WORTHLESS (values not finite; nothing was changed).
+    step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch) or
+    WORTHLESS (values not finite; nothing was changed).
     """
     last, t = method[LAST_AT], r.clock[T]
     t1 = setting[T_END] if t + h >= setting[T_END] else t + h
@@ -144,15 +152,19 @@ def complete(s, r, b, setting, method, h, built):
     event = False
     if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
         if built == 0:
-            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
-            r.count[DENSE_BUILT] += 1
+            build(s, r, b, method, t, h)
             built = 1
-        theta = first_event(s, r, b, t, h, method[2])
+        theta = first_event(s, r, b, t, h, method[INTERPOLATE_AT])
         event = theta <= 1.0
         if event and theta < 1.0:
-            call_interpolate(method[2], b.P, r.y, theta, b.y2)
-            copy_to(b.y1, b.y2)
-            t1 = t + theta * h
+            shorter = exact(s, r, b, setting, method, t, h, theta)
+            if shorter > 0.0:
+                h, built = shorter, 0
+                t1 = t + h
+            else:
+                call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
+                copy_to(b.y1, b.y2)
+                t1 = t + theta * h
             projected = land(s, r, b, t1, b.y1, b.K[last])
         else:
             # the search left other poses in the workspace
@@ -160,20 +172,61 @@ def complete(s, r, b, setting, method, h, built):
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     copy_to(b.out, s.out)
     near = near_peak(s, r, b, t1, t1 - t, last)
+    inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
+    if built == 0 and (near or inside or method[IMPLICIT_AT] > 0):
+        build(s, r, b, method, t, h)
     if near or due(r, setting, t1):
-        if built == 0 and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
-            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
-            r.count[DENSE_BUILT] += 1
-        if not rows_until(s, r, b, setting, method[2], t, h, t1, projected):
+        if not rows_until(s, r, b, setting, method[INTERPOLATE_AT], t, h, t1, projected):
             return WORTHLESS
         if near:
-            peaks_inside(s, r, b, method[2], t, h, t1)
+            peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
     accept(s, r, b, t1, projected, last)
+    if method[IMPLICIT_AT] > 0:
+        for k in range(r.past.shape[0]):
+            copy_to(r.past[k], b.P[k])
+        r.clock[PAST_H], r.count[HISTORY] = h, 1
     if event:
-        change_phases(s, r, b, setting, t, t1)
-    elif setting[LOCATE] == 0.0:
+        return WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
+    if setting[LOCATE] == 0.0:
         latch(s, r)
-    return WITH_EVENT if event else SMOOTH_STEP
+    return SMOOTH_STEP
+
+
+@internal
+def build(s, r, b, method, t, h):
+    """The dense output of the step, into b.P."""
+    call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
+    r.count[DENSE_BUILT] += 1
+
+
+@internal
+def exact(s, r, b, setting, method, t, h, theta):
+    """The step that ends on the event found at theta, for methods with a poor interpolant.
+
+    A gap at its end is brought to zero by Newton's method; a corner is good enough as found.
+    Returns its length, its end in b.y1; 0 where the interpolant serves.
+    """
+    if method[STEP_AT] == 0:
+        return 0.0
+    gap_of = -1
+    for c in range(s.contact.size):
+        if b.root[c] <= theta:
+            gap_of = c
+    h1 = theta * h
+    for _ in range(EXACT):
+        if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
+            return 0.0
+        error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
+        if not isfinite(error):
+            return 0.0
+        if gap_of < 0:
+            break
+        land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
+        gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
+        if abs(gap) <= 1e-3 * setting[TOLERANCE] * r.clock[LENGTH] or rate == 0.0:
+            break
+        h1 -= gap / rate
+    return h1
 
 
 @internal
@@ -247,6 +300,7 @@ def accept(s, r, b, t1, projected, last):
     copy_to(r.y, b.y1)
     copy_to(r.yd, b.K[last])
     copy_table(r.gap, b.gap1)
+    copy_to(r.corner, b.corner1)
     copy_to(r.branch, b.branch1)
     r.count[STEPS] += 1
     for c in range(s.contact.size):
@@ -269,68 +323,21 @@ def accept(s, r, b, t1, projected, last):
 
 
 @internal
-def change_phases(s, r, b, setting, t, t1):
-    """Switch every contact whose event is the one just stepped to; latch impact speeds."""
-    first = NO_EVENT
-    for c in range(s.contact.size):
-        first = min(first, b.root[c])
-    h = 1e300
-    for c in range(s.contact.size):
-        if b.root[c] > first + SAME:
-            continue
-        e = s.contact[c]
-        r.mem[e, PHASE] = flip(r.mem[e, PHASE])
-        r.count[EVENTS] += 1
-        line = b.events[r.count[EVENT_ROWS]]
-        r.count[EVENT_ROWS] += 1
-        onset = r.mem[e, PHASE] == CONTACT
-        line[EVENT_TIME], line[EVENT_ROW] = t1, e
-        line[EVENT_KIND] = ONSET if onset else SEPARATION
-        line[EVENT_SPEED] = r.gap[c, 1]
-        line[EVENT_ANGLE] = np.nan  # a stop has no angle
-        o = s.wanted[e] + s.contact_angle[c]
-        if s.contact_angle[c] >= 0 and s.wanted[e] >= 0:
-            line[EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
-        if onset:
-            speed = max(r.gap[c, 1], s.contact_par[c, 4])
-            r.mem[e, IMPACT_SPEED] = speed
-            if s.contact_state[c] >= 0:
-                r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
-            speed = max(speed, 1e-12)
-            h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
-                                  speed, setting[TOLERANCE]))  # fmt: skip
-        else:
-            r.mem[e, IMPACT_SPEED] = 0.0
-    r.clock[LAST_EVENT] = t1
-    evaluate(s, t1, r.y, r.yd)
-    for k in range(s.n_out):
-        r.peak[k, PEAK_T1] = t1  # no parabola across an event
-    for c in range(s.contact.size):
-        if s.mem[s.contact[c], PHASE] == FLIGHT:
-            r.slope[c] = 0.0
-        elif b.root[c] <= first + SAME:
-            r.slope[c] = 1.0  # a touch: the force grows from here
-    if h < 1e300:
-        r.clock[H] = min(r.clock[H], h)
-
-
-@internal
-def latch(s, r):
-    """Methods that locate nothing: remember the approach speed of a running contact."""
-    for c in range(s.contact.size):
-        e = s.contact[c]
-        if r.gap[c, 0] <= 0.0:
-            r.mem[e, IMPACT_SPEED] = 0.0
-        elif r.mem[e, IMPACT_SPEED] == 0.0:
-            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])
-
-
-@internal
-def control(r, setting, h, error, event):
+def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
     if setting[FIXED_STEP] > 0.0:
         return
-    factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error ** (-1 / 8)))
+    power = 1.0 / method[ESTIMATE_AT]
+    factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error**-power))
+    if method[IMPLICIT_AT] > 0:
+        # predictive: the error as it changed from the step before              [Gustafsson1994]
+        past = max(r.clock[PAST_ERROR], 1e-2)
+        if r.clock[PAST_ERROR] > 0.0 and not event:
+            factor = min(factor, 0.9 * h / r.clock[OLD_H] * (past / error**2) ** power)
+            factor = max(factor, 0.2)
+        r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
+        if 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:
+            factor = 1.0  # its factors stay good
     if r.count[AFTER_REJECTION] > 0:
         factor = min(factor, 1.0)
     r.count[AFTER_REJECTION] = 0
@@ -353,6 +360,13 @@ def begin(s, r, b, setting):
         r.gap[c, 1] = s.gap[s.contact[c], 1]
     for k in range(s.n_s):
         r.branch[k] = s.S[k, 0]
+    if setting[LOCATE] > 0.0:
+        for c in range(s.contact.size):
+            look(s, c)
+        evaluate(s, 0.0, r.y, r.yd)
+        corners(s, 0.0)
+        for c in range(s.contact.size):
+            r.corner[c] = s.corner[s.contact[c], 0]
     units(s, r)
     measure(s, 0.0, r.y, 0.0, 0.0)
     copy_to(b.out, s.out)

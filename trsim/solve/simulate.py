@@ -28,7 +28,12 @@ from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
-COMPILED = ("dop853", "rk4")  # each a file of this folder
+COMPILED = {  # word -> files of this folder
+    "dop853": ("dop853",),
+    "rk4": ("rk4",),
+    "radau": ("radau",),
+    "auto": ("dop853", "radau"),
+}
 VISIT = 5000  # steps between two looks at the outside world
 
 REASONS = {
@@ -54,24 +59,24 @@ def simulate(
         from trsim.solve.scipy_ivp import simulate as by_scipy
 
         return by_scipy(scenario, mechanism)
-    return compiled(scenario, mechanism, import_module(f"trsim.solve.{method}"), checkpoint)
+    used = [import_module(f"trsim.solve.{name}") for name in COMPILED[method]]
+    return compiled(scenario, mechanism, used, checkpoint)
 
 
 def compiled(
-    scenario: Any, mechanism: Mechanism, method: Any, checkpoint: State | None
+    scenario: Any, mechanism: Mechanism, used: list[Any], checkpoint: State | None
 ) -> Generator[Block, None, Outcome]:
-    """The march of march.py with one of the compiled methods."""
+    """The march of march.py with a compiled method, or an explicit and an implicit one."""
     work = scene(mechanism.model)
-    setting = settings(scenario, mechanism, method.ADAPTIVE)
+    setting = settings(scenario, mechanism, used[0].ADAPTIVE)
     located = setting[rec.LOCATE] > 0.0
     begun = begun_at(checkpoint) if checkpoint else start(scenario, mechanism, located)
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
-    r = new_record(work, begun)
-    b = fresh_buffers(work, r.y.size, method.STAGES, method.DENSE_ROWS, 2 + width, spanned)
-    addresses = method_table(
-        method.step.address(), method.dense.address(), method.interpolate.address(), method.LAST
-    )
+    r = new_record(work, begun, implicit=any(method.IMPLICIT for method in used))
+    stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
+    b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned)
+    methods = np.array([method_table(method) for method in used], np.int64)
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
@@ -81,7 +86,7 @@ def compiled(
     limit = scenario.solver.max_steps or 2**62
     while True:
         most = min(VISIT, limit - int(r.count[rec.STEPS]))
-        reason = march(work, r, b, setting, addresses, most)
+        reason = march(work, r, b, setting, methods, most)
         cpu, paused = time.process_time() - clock0, reason in (rec.FULL, rec.PAUSE)
         block = emptied(r, b)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block

@@ -17,7 +17,17 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian
-from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
+from trsim.elements.contract import (
+    BRANCH,
+    CONTACT,
+    FLIGHT,
+    IMPACT_SPEED,
+    N_BOOK,
+    N_MEM,
+    PHASE,
+    UNLOCATED,
+    WHOLE,
+)
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, with_scene
@@ -215,7 +225,8 @@ def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
 
 def phases(model: Model, y: Array, located: bool) -> Array:
     """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
-    mem = np.zeros((len(model.con), 2))
+    mem = np.zeros((len(model.con), N_MEM))
+    mem[:, BRANCH] = WHOLE  # until the march has looked
     w = workspace(model)
     poses(w, y)
     gaps(w, 0.0)

@@ -16,7 +16,7 @@ from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, number, vector
 from trsim.spec.text import Tree
 
-METHODS = ("dop853", "rk4", "scipy:BDF", "scipy:Radau", "scipy:RK45")
+METHODS = ("auto", "dop853", "radau", "rk4", "scipy:BDF", "scipy:Radau", "scipy:RK45")
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
