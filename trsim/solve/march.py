@@ -72,7 +72,8 @@ SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
 MAX_SAME_TIME = 1000  # events without progress: chatter
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
-EXACT = 5  # secant steps to the end of a step that an event cuts
+EXACT = 5  # Newton steps to the end of a step that an event cuts
+PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 
 
 #                       scene   record  buffers  settings method h built
@@ -223,7 +224,7 @@ def exact(s, r, b, setting, method, t, h, theta):
             break
         land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
         gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
-        if abs(gap) <= 1e-3 * setting[TOLERANCE] * r.clock[LENGTH] or rate == 0.0:
+        if abs(gap) <= PRECISE * setting[TOLERANCE] * r.clock[LENGTH] or rate == 0.0:
             break
         h1 -= gap / rate
     return h1

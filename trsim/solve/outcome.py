@@ -87,7 +87,8 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
             "`every` is the time between two rows; at most 1e9 rows are written",
             ("output", "every"),
         )
-    s[rec.LOCATE] = float(adaptive and len(mechanism.model.contact) > 0)
+    located = adaptive if solver.locate_events is None else solver.locate_events
+    s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
     return s
 
 

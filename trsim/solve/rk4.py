@@ -7,9 +7,10 @@
     ----+---------------------
         | 1/6  1/3  1/3  1/6                      [HairerNorsettWanner1993]
 
-Contact onset is not located: a contact acts in every stage in which the bodies overlap, and its
-impact speed is latched at the end of the first step that finds them overlapping.  Between the ends
-of a step the solution is the cubic Hermite polynomial (order 3).
+Unless `locate_events: true` says otherwise, contact onset is not located: a contact acts in every
+stage in which the bodies overlap, and its impact speed is latched at the end of the first step that
+finds them overlapping.  Between the ends of a step the solution is the cubic Hermite polynomial
+(order 3).
 """
 
 from trsim.assemble.equations import evaluate

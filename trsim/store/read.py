@@ -37,7 +37,7 @@ class Events(NamedTuple):
     """Onsets and separations of contacts."""
 
     time: Array  # s
-    kind: NDArray[Any]  # onset, separation
+    kind: NDArray[Any]  # onset, separation; of the element `solver`: to implicit, to explicit
     element: NDArray[Any]
     speed: Array  # m/s
     angle: Array  # rad

@@ -7,7 +7,7 @@ import h5py
 from trsim.store.grow import Field, Growing
 
 EXPECTED = 256  # rows of the tables whose length nobody knows
-KINDS = ("", "onset", "separation")  # of events, by number
+KINDS = ("", "onset", "separation", "to implicit", "to explicit")  # of events, by number
 
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
@@ -35,7 +35,7 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
         time_field,
         Field("kind", "", "what happened", 1, words=KINDS),
         Field("element", "", "where", 2, words=names or ("-",)),
-        Field("speed", "m/s", "rate of penetration", 3),
+        Field("speed", "m/s", "rate of penetration; of the solver: largest eigenvalue, 1/s", 3),
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
     return Growing(file["events"], fields, 5, EXPECTED)
