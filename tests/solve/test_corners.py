@@ -76,7 +76,7 @@ def test_a_loaded_journal_creeps_at_the_balance_of_friction():
     assert numbers["steps"] < 3000
     radius = 0.01 - 1e-4  # the journal's
     F = abs(r["pin.friction_force"][-1])
-    assert F == pytest.approx(0.5 / radius, rel=1e-3)
+    assert abs(F * radius - 0.5) < 5e-4
     N = r["pin.normal_force"][-1]
     assert np.hypot(N, F) == pytest.approx(500.0, rel=1e-3)
     speed = abs(r["pin.sliding_speed"][-1])

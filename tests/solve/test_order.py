@@ -13,10 +13,11 @@ STEPS = {
     "rk4": (64, 91, 128, 181, 256),
     "dop853": (7, 8, 10, 12, 14),
     "radau": (32, 45, 64, 91, 128),
+    "generalized_alpha": (128, 181, 256, 362, 512),
 }
 # loose enough to accept every step of the given length, tight enough for Newton's method
-TOLERANCE = {"dop853": 0.1, "radau": 1e-3}
-SPREAD = {"rk4": 0.15, "dop853": 0.3, "radau": 0.15}
+TOLERANCE = {"dop853": 0.1, "radau": 1e-3, "generalized_alpha": 1e-2}
+SPREAD = {"rk4": 0.15, "dop853": 0.3, "radau": 0.15, "generalized_alpha": 0.15}
 
 
 def equal_steps(method, h):
@@ -86,7 +87,8 @@ def error_after_rebound(method, count):
 @pytest.mark.parametrize("method", STEPS)
 def test_order_is_kept_through_located_events(method):
     counts = {"rk4": (96, 136, 192, 272, 384), "dop853": (16, 19, 23, 27, 32, 38),
-              "radau": (64, 91, 128, 181, 256)}[method]  # fmt: skip
+              "radau": (64, 91, 128, 181, 256),
+              "generalized_alpha": (192, 272, 384, 543, 768)}[method]  # fmt: skip
     claimed = importlib.import_module(f"trsim.solve.{method}").ORDER
     errors = [error_after_rebound(method, count) for count in counts]
     observed = order(counts, errors)

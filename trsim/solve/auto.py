@@ -13,7 +13,7 @@ from math import sqrt
 
 from trsim.elements.vectors import internal
 from trsim.solve import dop853_tableau
-from trsim.solve.jacobian import active
+from trsim.solve.displacements import active
 from trsim.solve.record import (
     EVENT_ANGLE,
     EVENT_KIND,

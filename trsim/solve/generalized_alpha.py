@@ -1,17 +1,17 @@
 """Generalised-alpha, order 2, with numerical damping of what a step cannot resolve.
 
-    (1 - a_m) b_1 + a_m b_0 = (1 - a_f) f(t_1, y_1) + a_f f(t_0, y_0)              [ChungHulbert1993]
-    w_1 = w_0 + h ((1 - gamma) b_0 + gamma b_1)                                    [ArnoldBruls2007]
+    (1 - a_m) b_1 + a_m b_0 = (1 - a_f) f(t_1, y_1) + a_f f(t_0, y_0)        [ChungHulbert1993]
+    w_1 = w_0 + h ((1 - gamma) b_0 + gamma b_1)                              [ArnoldBruls2007]
     x_1 = x_0 + h v_0 + h^2 ((1/2 - beta) b_0 + beta b_1)
 
-b is the filtered derivative of w = (v, states of elements); its part for v moves the places x, turns
-as body-axes rotation vectors.  The spectral radius at infinity is RADIUS.  On the index-1 equations
-of motion, positions and velocities projected after each step like every other method's: index 3
-with both stabilised, one right-hand side for all.  Meant where two or three digits are enough and
-the motion is stiff: beams, hard springs.
+b is the filtered derivative of w = (v, states of elements); its part for v moves the places x,
+turns as body-axes rotation vectors.  The spectral radius at infinity is RADIUS.  On the index-1
+equations of motion, positions and velocities projected after each step like every other method's:
+index 3 with both stabilised, one right-hand side for all.  Meant where two or three digits are
+enough and the motion is stiff: beams, hard springs.
 """
 
-from math import cos, isfinite, sin, sqrt
+from math import isfinite, sqrt
 
 import numpy as np
 
@@ -21,7 +21,8 @@ from trsim.elements.vectors import all_finite, internal
 from trsim.solve import hermite
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
-from trsim.solve.jacobian import active, jacobian, w_index
+from trsim.solve.displacements import active, turn, w_index
+from trsim.solve.jacobian import jacobian
 from trsim.solve.record import (
     FACTORED_H,
     FRESH,
@@ -38,7 +39,7 @@ ORDER = 2
 ESTIMATE = 3  # the error estimate falls with h^3
 STAGES = 7
 LAST = 2
-DENSE_ROWS = hermite.ROWS
+DENSE_ROWS = hermite.ROWS + 2
 ADAPTIVE, IMPLICIT = True, True
 
 RADIUS = 0.8
@@ -48,7 +49,7 @@ GAMMA = 0.5 - A_M + A_F
 BETA = 0.25 * (1.0 - A_M + A_F) ** 2
 
 B1, NEW, SCRATCH, MOVE = 3, 4, 5, 6  # rows of K: b_1, f at the end, two of scratch
-FILTERED, BEFORE = 0, 1  # rows of `past`: b_0, f at the start of the step before
+FILTERED, BEFORE = hermite.ROWS, hermite.ROWS + 1  # rows of `past`: b_0, f one step before
 MOST_ITERATIONS = 10
 KAPPA = 0.02  # of the error allowed: what Newton may leave
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
@@ -120,20 +121,6 @@ def arrive(s, r, b, h):
 
 
 @internal
-def turn(y, y1, p, u, v, w):
-    """Quaternion y1[p:] = y[p:] turned by the rotation vector (u, v, w) in body axes."""
-    angle = sqrt(u * u + v * v + w * w)
-    c = cos(0.5 * angle)
-    k = sin(0.5 * angle) / angle if angle > 1e-8 else 0.5
-    e0, e1, e2, e3 = y[p], y[p + 1], y[p + 2], y[p + 3]
-    u, v, w = k * u, k * v, k * w
-    y1[p] = e0 * c - e1 * u - e2 * v - e3 * w
-    y1[p + 1] = e1 * c + e0 * u + e2 * w - e3 * v
-    y1[p + 2] = e2 * c + e0 * v + e3 * u - e1 * w
-    y1[p + 3] = e3 * c + e0 * w + e1 * v - e2 * u
-
-
-@internal
 def newton(s, r, b, t, h):
     """Solve for b_1.  1: converged, 0: not, -1: a value is not finite."""
     K, y, weight, n_w = b.K, r.y, b.weight, active(s)
@@ -166,9 +153,9 @@ def newton(s, r, b, t, h):
             moved += (h * GAMMA * K[SCRATCH, i] * weight[c]) ** 2
         for k in range(N_BOOK):  # feeds nothing back: its equation is explicit
             c = s.n_q + s.n_v + k
-            K[B1, c] = (
-                (1.0 - A_F) * K[NEW, c] + A_F * r.yd[c] - A_M * r.past[FILTERED, c]
-            ) / (1.0 - A_M)
+            K[B1, c] = ((1.0 - A_F) * K[NEW, c] + A_F * r.yd[c] - A_M * r.past[FILTERED, c]) / (
+                1.0 - A_M
+            )
         moved = sqrt(moved / max(counted, 1))
         if not isfinite(moved):
             return -1
@@ -209,6 +196,8 @@ def estimate(s, r, b, h):
 @compiled(DENSE)
 def dense(scene, K, t, y, h, y1, P):
     hermite.build(K[0], K[LAST], h, y, y1, P)
+    for c in range(y.size):  # not for the dense output: for the next step
+        P[FILTERED, c], P[BEFORE, c] = K[B1, c], K[0, c]
 
 
 @compiled(INTERPOLATE)

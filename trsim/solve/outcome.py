@@ -41,7 +41,6 @@ class Outcome(NamedTuple):
     start: Start
 
 
-PAST_ROWS = 3  # of a dense output that implicit methods draw on
 EASY, PROPORTION = 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
@@ -100,10 +99,13 @@ def first_step(scenario: Any, record: Record) -> float:
     return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
 
 
-def new_record(model: Scene, begun: Start, implicit: bool = False) -> Record:
-    """A record at the start; memory and branches are the scene's own arrays."""
-    n_v = model.n_v if implicit else 0
-    n_w = n_v + model.n_z - N_BOOK if implicit else 0
+def new_record(model: Scene, begun: Start, past_rows: int = 0) -> Record:
+    """A record at the start; memory and branches are the scene's own arrays.
+
+    past_rows: of the dense output an implicit method draws on; 0 for explicit ones.
+    """
+    n_v = model.n_v if past_rows else 0
+    n_w = n_v + model.n_z - N_BOOK if past_rows else 0
     model.mem[:] = begun.mem
     model.branch[:] = begun.branch
     record = Record(
@@ -122,7 +124,7 @@ def new_record(model: Scene, begun: Start, implicit: bool = False) -> Record:
         by_rate=np.zeros((n_w, n_w)),
         lu=np.zeros((3 * n_w, n_w)),
         pivot=np.zeros((2, n_w), np.int64),
-        past=np.zeros((PAST_ROWS if implicit else 0, begun.y.size)),
+        past=np.zeros((past_rows, begun.y.size)),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
     return record

@@ -21,7 +21,8 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
-from trsim.solve.jacobian import active, jacobian, w_index
+from trsim.solve.displacements import active, moved_by, twisted, w_index
+from trsim.solve.jacobian import jacobian
 from trsim.solve.record import (
     AFTER_REJECTION,
     FACTORED_H,
@@ -208,46 +209,6 @@ def newton(s, r, b, t, h):
             return 1
         before = moved
     return 0
-
-
-@internal
-def twisted(s, r, k, source):
-    """The k-th displacement that a change `source` of the generalised coordinates means."""
-    if s.d == 3:
-        return source[k]
-    f, a = k // 6, k % 6
-    q = 7 * f
-    if a < 3:
-        return source[q + a]
-    y = r.y
-    e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
-    d0, d1, d2, d3 = source[q + 3], source[q + 4], source[q + 5], source[q + 6]
-    if a == 3:
-        return 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
-    if a == 4:
-        return 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
-    return 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
-
-
-@internal
-def moved_by(s, r, q, w):
-    """Rate of the q-th generalised coordinate when the velocities are w."""
-    if s.d == 3:
-        return w[q]
-    f, a = q // 7, q % 7
-    v = 6 * f
-    if a < 3:
-        return w[v + a]
-    y, p = r.y, 7 * f
-    e0, e1, e2, e3 = y[p + 3], y[p + 4], y[p + 5], y[p + 6]
-    o0, o1, o2 = w[v + 3], w[v + 4], w[v + 5]
-    if a == 3:
-        return 0.5 * (-e1 * o0 - e2 * o1 - e3 * o2)
-    if a == 4:
-        return 0.5 * (e0 * o0 + e2 * o2 - e3 * o1)
-    if a == 5:
-        return 0.5 * (e0 * o1 + e3 * o0 - e1 * o2)
-    return 0.5 * (e0 * o2 + e1 * o1 - e2 * o0)
 
 
 @internal

@@ -15,12 +15,13 @@ finds them overlapping.  Between the ends of a step the solution is the cubic He
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import compiled
+from trsim.solve import hermite
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 
 ORDER = 4
 STAGES = 5
 LAST = 4
-DENSE_ROWS = 3
+DENSE_ROWS = hermite.ROWS
 ESTIMATE = 4  # of no use: the step is fixed
 ADAPTIVE, IMPLICIT = False, False
 
@@ -40,15 +41,9 @@ def step(scene, r, b, setting, t, h):
 
 @compiled(DENSE)
 def dense(scene, K, t, y, h, y1, P):
-    for c in range(y.size):
-        delta = y1[c] - y[c]
-        P[0, c] = delta
-        P[1, c] = h * K[0, c] - delta
-        P[2, c] = delta - h * K[4, c] - P[1, c]
+    hermite.build(K[0], K[LAST], h, y, y1, P)
 
 
 @compiled(INTERPOLATE)
 def interpolate(P, y, theta, out):
-    rest = 1.0 - theta
-    for c in range(y.size):
-        out[c] = y[c] + theta * (P[0, c] + rest * (P[1, c] + theta * P[2, c]))
+    hermite.value(P, y, theta, out)

@@ -20,7 +20,8 @@ from trsim.elements.contract import compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.calls import INTERPOLATE
-from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete
+from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
+from trsim.solve.march import begin
 from trsim.solve.norm import weigh
 from trsim.solve.outcome import Outcome, emptied, first_step, new_record, settings, statistics
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers

@@ -32,6 +32,7 @@ COMPILED = {  # word -> files of this folder
     "dop853": ("dop853",),
     "rk4": ("rk4",),
     "radau": ("radau",),
+    "generalized_alpha": ("generalized_alpha",),
     "auto": ("dop853", "radau"),
 }
 VISIT = 5000  # steps between two looks at the outside world
@@ -73,8 +74,9 @@ def compiled(
     begun = begun_at(checkpoint) if checkpoint else start(scenario, mechanism, located)
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
-    r = new_record(work, begun, implicit=any(method.IMPLICIT for method in used))
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
+    implicit = any(method.IMPLICIT for method in used)
+    r = new_record(work, begun, dense_rows if implicit else 0)
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned)
     methods = np.array([method_table(method) for method in used], np.int64)
     clock0 = time.process_time()

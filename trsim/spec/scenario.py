@@ -16,7 +16,8 @@ from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, number, vector
 from trsim.spec.text import Tree
 
-METHODS = ("auto", "dop853", "radau", "rk4", "scipy:BDF", "scipy:Radau", "scipy:RK45")
+METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
+           "scipy:BDF", "scipy:Radau", "scipy:RK45")  # fmt: skip
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
@@ -77,8 +78,9 @@ class Baumgarte(Spec):
 class SolverSpec(Spec):
     """How, how far and how exactly the motion is integrated.
 
-    method         auto takes dop853 and, where the motion is stiff, radau; these two have adaptive
-                   steps, rk4 fixed ones; scipy's are independent checks
+    method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
+                   two or three digits of stiff motion; rk4 has fixed steps; scipy's are
+                   independent checks
     end            time at which the run ends; needed by `run`, not by `check`
     step           of rk4
     tolerance      error of a step, relative to the size of clearances or of the mechanism

@@ -52,7 +52,6 @@ class Impacts:
 
     def update(self, events: Any) -> None:
         for _, kind, e, speed, _ in events.tolist():
-            self.events += kind <= 2.0  # the others are the solver's
             if kind == 1.0:
                 contact = self.of[int(e)]
                 contact[self.ONSETS] += 1.0
