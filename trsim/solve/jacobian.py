@@ -6,8 +6,8 @@ elements), so what an implicit method needs of them is small:
     w' = g(t, x, w)        by_place = dg/dx (n_w, n_v),        by_rate = dg/dw (n_w, n_w)
 
 Displacements are those of displacements.py.  Forward differences, each step a small part of the
-unit of its entry in the error norm: the stiff part comes from contacts, and the unit is the smallest
-penetration that matters.
+unit of its entry in the error norm: the stiff part comes from contacts, and the unit is the
+smallest penetration that matters.
 """
 
 from trsim.assemble.equations import evaluate
