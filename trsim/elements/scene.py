@@ -38,6 +38,7 @@ class Model(Packed):
     n_s: i8  # entries of S
     n_out: i8  # output columns
     size: f8  # m, the mechanism's
+    reach: f8  # m, the largest arm of a body
     mass: A1  # (n)
     inertia: A2  # (n, 9) body axes
     mass_inverse: A1  # (n) 0 for the ground

@@ -83,7 +83,7 @@ class SolverSpec(Spec):
                    independent checks
     end            time at which the run ends; needed by `run`, not by `check`
     step           of rk4
-    tolerance      error of a step, relative to the size of clearances or of the mechanism
+    tolerance      error of a step, relative to the size of clearances or of bodies
     stabilisation  how joints are kept closed
     baumgarte      rates of that stabilisation
     first_step     found out unless given
