@@ -32,7 +32,7 @@ def main() -> None:
     at_bound: dict[int, Point | None] = {}
     for n in SIZES:
         print(f"  N = {n}")
-        few = {"starts": (None, 0.8, 1.25), "repeats": 2} if n == 40 else {}
+        few = {"starts": (None, 1.25), "repeats": 2} if n == 40 else {}
         problem = Problem(of_text(windows(n)), energy_error, (), partial(place_error, n=n))
         found = table(problem, "J", "B0 m", tolerances=TOLERANCES, **few)
         at_bounds(found, (BOUND,), "J")
