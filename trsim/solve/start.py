@@ -241,9 +241,9 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     """First units of the error norm, and the penetration each contact may expect.
 
     With contacts: what the largest force at the start (or an impact at the slowest speed) would
-    press in.  Without: the reach of a body (not of the mechanism: a chain of many links would be held
-    to less), the largest of its speeds, of the speed its accelerations give over that length, and
-    of that length per run.
+    press in.  Without: the reach of a body (not of the mechanism: a chain of many links would be
+    held to less), the largest of its speeds, of the speed its accelerations give over that length,
+    and of that length per run.
     """
     w, reach = workspace(model), model.reach
     yd = np.zeros_like(y)
