@@ -11,9 +11,9 @@ from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from benchmarks.measure import Run, run
+from trsim.analyse.precision import slope as of_errors
+from trsim.analyse.trajectory import changed, own_first_step
 
 TOLERANCES = tuple(10.0**-k for k in range(2, 11))
 FIRST_STEPS = (None, 0.6, 0.8, 1.25, 1.7)  # times the solver's own
@@ -75,7 +75,8 @@ def points(
     run(lean, of_lean)  # what is compiled or loaded once
     for tolerance in tolerances:
         errors, others, cpu, counts = [], [], [], []
-        own = first_step(run(varied(full, tolerance), of_full), tolerance)
+        begun = run(varied(full, tolerance), of_full).outcome
+        own = own_first_step(begun, tolerance, end)
         for factor in starts:
             h = None if factor is None else min(factor * own, end)
             r = run(varied(full, tolerance, h), of_full)
@@ -92,21 +93,13 @@ def points(
 
 def varied(scenario: Any, tolerance: float, first: float | None = None) -> Any:
     """The scenario at another tolerance and with another first step."""
-    solver = scenario.solver.model_copy(update={"tolerance": tolerance, "first_step": first})
-    return scenario.model_copy(update={"solver": solver})
-
-
-def first_step(of: Run, tolerance: float) -> float:
-    """About what the solver starts with: a hundredth of the natural time scale."""
-    begun = of.outcome.start
-    return 0.01 * begun.length / begun.speed * tolerance ** (1 / 8)
+    return changed(scenario, "solver", tolerance=tolerance, first_step=first)
 
 
 def slope(found: Sequence[Point], low: float, high: float) -> float:
     """Of log error against log tolerance between two tolerances; 1 is error as asked for."""
     inside = [p for p in found if low <= p.tolerance * 1.0001 and p.tolerance <= high * 1.0001]
-    return float(np.polyfit(np.log([p.tolerance for p in inside]),
-                            np.log([max(p.error, 1e-300) for p in inside]), 1)[0])  # fmt: skip
+    return of_errors([p.tolerance for p in inside], [p.error for p in inside])
 
 
 def cheapest(found: Sequence[Point], bound: float) -> Point | None:

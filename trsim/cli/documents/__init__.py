@@ -4,6 +4,7 @@ Nothing here is imported when a command runs.  A number that is not finite is nu
 that did not end with 0 may leave out what its document has beyond `Document`.
 """
 
+from trsim.cli.documents.bench import Bench, Measured, Reference
 from trsim.cli.documents.common import Document, Error
 from trsim.cli.documents.files import Export, Provenance, Recover, Report, Show, Solver, Summary
 from trsim.cli.documents.runs import (
@@ -20,6 +21,7 @@ from trsim.cli.documents.runs import (
 from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema, SectionPage
 
 __all__ = [
+    "Bench",
     "Channel",
     "Check",
     "Checked",
@@ -30,9 +32,11 @@ __all__ = [
     "Explain",
     "Export",
     "Key",
+    "Measured",
     "Provenance",
     "Ran",
     "Recover",
+    "Reference",
     "Report",
     "Results",
     "Run",
