@@ -110,9 +110,8 @@ def test_a_reference_that_fails_is_an_error():
 def test_a_second_reference_that_fails_leaves_the_uncertainty_open():
     of = problem(loads(TEXT, ["solver.max_steps=100"]))
     to = reference(of, Setting("dop853", 1e-9))
-    assert (to.other, to.reason) == ("radau", "more than 100 steps, at t = " + to.reason[-10:]) or (
-        to.reason.startswith("more than 100 steps")
-    )
+    assert to.other == "radau"
+    assert to.reason.startswith("more than 100 steps, at t = ")
     assert np.isnan(to.uncertainty)
     assert not point(of, to, Setting("dop853", 1e-4), repeats=1).unresolved
 
@@ -136,8 +135,8 @@ def test_quantities():
     crank = loads(small.SLIDER_CRANK)
     names = [q.name for q in problem(crank).quantities]
     assert names == ["stroke", "stroke.rate", "crank_angle", "crank_angle.rate"]
-    assert [q.name for q in problem(crank, ["*.position"]).quantities] == [
-        "crank.position", "rod.position", "slider.position"
+    assert [q.name for q in problem(crank, ["rod.[pv]*", "stroke"]).quantities] == [
+        "rod.position", "rod.velocity", "stroke"
     ]  # fmt: skip
     assert problem(crank).contacts.keys() == {"B"}
     with pytest.raises(UsageError, match="no channel fits 'strke'"):

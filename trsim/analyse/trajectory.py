@@ -90,20 +90,23 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
 
 
 def chosen(mechanism: Any, patterns: Sequence[str]) -> list[Any]:
-    """The columns that are compared."""
+    """The columns that are compared; a channel's own name is no name of an element."""
     from trsim.assemble.layout import matches
 
+    def fits(name: str, pattern: str) -> bool:
+        return name == pattern if pattern in names else matches(name, (pattern,))
+
+    names = [column.name for column in mechanism.columns]
     if not patterns:
         parts = [(i.section, i.name) for i in mechanism.instances]
         sensors = [name for section, name in parts if section == "sensors"]
         patterns = [f"{name}{rate}" for name in sensors for rate in ("", ".rate")]
         patterns = patterns or [f"{n}.position" for section, n in parts if section == "bodies"]
         return [column for column in mechanism.columns if column.name in patterns]
-    names = [column.name for column in mechanism.columns]
     for pattern in patterns:
-        if not any(matches(name, (pattern,)) for name in names):
+        if not any(fits(name, pattern) for name in names):
             raise UsageError(f"no channel fits '{pattern}'", known(pattern, names))
-    return [column for column in mechanism.columns if matches(column.name, tuple(patterns))]
+    return [column for column in mechanism.columns if any(fits(column.name, p) for p in patterns)]
 
 
 def changed(scenario: Any, section: str, **values: Any) -> Any:
