@@ -8,7 +8,7 @@ import pytest
 
 from tests import mechanisms, small
 from trsim.analyse import precision
-from trsim.analyse.precision import Setting, errors, point, points, reference, slope, slopes
+from trsim.analyse.precision import Point, Setting, errors, point, points, reference, slope, slopes
 from trsim.analyse.trajectory import problem, trajectory
 from trsim.errors import SolverError, UsageError
 from trsim.spec.load import loads
@@ -76,9 +76,15 @@ def test_an_error_below_the_uncertainty_is_marked(pendulum):
 def test_slopes(pendulum, tight):
     """An error proportional to the tolerance; to the fourth power of the step of rk4."""
     settings = precision.plan(["radau", "rk4"], TOLERANCES, [4e-3, 2e-3, 1e-3])
-    fitted = slopes(list(points(pendulum, tight, settings, repeats=1)))
+    fitted = slopes(list(points(pendulum, tight, settings, repeats=1)), tight)
     assert 0.8 < fitted["radau"] < 1.3
     assert fitted["rk4"] == pytest.approx(4.0, abs=0.3)
+
+
+def test_slopes_are_of_peaks_where_the_references_part(tight):
+    found = [Point(Setting("radau", 10.0**-k), 0.1, peak_error=10.0 ** (-2 * k)) for k in (3, 4)]
+    assert slopes(found, tight)["radau"] == pytest.approx(0.0)
+    assert slopes(found, replace(tight, apart=0.1))["radau"] == pytest.approx(2.0)
 
 
 def test_slope_of_a_power():
@@ -98,7 +104,7 @@ def test_a_method_that_fails_is_a_row():
     assert np.isnan(failed.error)
     assert not good.reason
     assert 0.0 < good.peak_error < 1e-3
-    assert slopes([failed, good]).keys() == {"rk4", "dop853"}
+    assert slopes([failed, good], to).keys() == {"rk4", "dop853"}
 
 
 def test_a_reference_that_fails_is_an_error():

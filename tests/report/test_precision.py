@@ -22,7 +22,7 @@ def study():
     to = precision.reference(of, Setting("radau", 1e-7))
     settings = precision.plan(["dop853", "radau", "rk4"], [1e-3, 1e-5], [5e-5])
     found = tuple(precision.points(of, to, settings, repeats=1))
-    return Study(scenario.title, to, found, precision.slopes(found))
+    return Study(scenario.title, to, found, precision.slopes(found, to))
 
 
 def test_figure_and_table_are_written(study, tmp_path):
@@ -54,5 +54,5 @@ def test_axes_are_labelled(study):
 
 def test_a_study_in_which_all_fail_is_drawn(study, tmp_path):
     failed = study.points[-1:]
-    alone = Study("", study.reference, failed, precision.slopes(failed))
+    alone = Study("", study.reference, failed, precision.slopes(failed, study.reference))
     assert len(draw(alone, tmp_path)) == 2

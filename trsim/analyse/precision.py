@@ -80,7 +80,7 @@ class Study:
     title: str
     reference: Reference
     points: tuple[Point, ...]
-    slopes: dict[str, float]  # method -> of log error over log tolerance, or step
+    slopes: dict[str, float]  # method -> of log error over log tolerance, or step; see `slopes`
 
 
 def plan(
@@ -217,11 +217,17 @@ def slope(x: Sequence[float], error: Sequence[float]) -> float:
     return float(np.polyfit(np.log(x), np.log(np.maximum(error, 1e-300)), 1)[0])
 
 
-def slopes(found: Sequence[Point]) -> dict[str, float]:
-    """Of every method, over its points whose error is resolved."""
+def slopes(found: Sequence[Point], to: Reference) -> dict[str, float]:
+    """Of every method, over its points whose error is resolved.
+
+    Where the references part, of the peak error: pointwise errors before that are saturated.
+    """
+    peaks = to.apart is not None
     fitted = {}
     for method in dict.fromkeys(p.setting.method for p in found):
-        good = [p for p in found if p.setting.method == method and not (p.reason or p.unresolved)]
+        mine = [p for p in found if p.setting.method == method and not p.reason]
+        good = [p for p in mine if not (p.peak_unresolved if peaks else p.unresolved)]
+        good = [p for p in good if not (peaks and np.isnan(p.peak_error))]
         x = [p.setting.tolerance or p.setting.step or np.nan for p in good]
-        fitted[method] = slope(x, [p.error for p in good])
+        fitted[method] = slope(x, [p.peak_error if peaks else p.error for p in good])
     return fitted

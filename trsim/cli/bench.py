@@ -105,7 +105,8 @@ def measured(
         answer.say(f"interrupted: {len(found)} of {len(settings)} settings were measured")
     finally:
         Stop.patient = False
-    return precision.Study(scenario.title, reference, tuple(found), precision.slopes(found))
+    slopes = precision.slopes(found, reference)
+    return precision.Study(scenario.title, reference, tuple(found), slopes)
 
 
 def look() -> None:
@@ -223,10 +224,11 @@ def lines(study: Any) -> list[str]:
     out += ["", HEAD, *map(row, study.points), ""]
     if any(p.unresolved or p.peak_unresolved for p in study.points):
         out.append(f"{MARK}: not above the uncertainty of the reference")
+    of = "error" if r.apart is None else "peak error"
     for method, value in study.slopes.items():
         over = "step" if method == "rk4" else "tolerance"
         told = f"{value:.2f}" if value == value else "- (fewer than two resolved errors)"
-        out.append(f"slope of error over {over}, {method}: {told}")
+        out.append(f"slope of {of} over {over}, {method}: {told}")
     return out
 
 

@@ -75,7 +75,8 @@ def curves(axes: Any, study: "Study", field: str, below: str, uncertainty: float
         y = np.array([1e3 * p.cpu for p in there])
         filled = np.array([not getattr(p, below) for p in there], bool)
         over = "step" if method == "rk4" else "tolerance"
-        label = f"{method}, error ~ {over}$^{{{slope:.2f}}}$" if np.isfinite(slope) else method
+        of = "error" if study.reference.apart is None else "peak error"
+        label = f"{method}, {of} ~ {over}$^{{{slope:.2f}}}$" if np.isfinite(slope) else method
         label += "" if there else " (nothing to show)"
         axes.plot(x, y, color=colour(k))
         mark, size = MARKS[k % len(MARKS)], 4.5
@@ -85,7 +86,19 @@ def curves(axes: Any, study: "Study", field: str, below: str, uncertainty: float
     if uncertainty > 0.0:
         axes.axvline(uncertainty, color="0.5", ls="--",
                      label="uncertainty of the reference; hollow: not above it")  # fmt: skip
+    decades(axes)
     axes.invert_xaxis()
+
+
+def decades(axes: Any) -> None:
+    """Whole decades of error, so that ticks have room."""
+    from matplotlib.ticker import NullFormatter
+
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    low, high = np.log10(axes.dataLim.intervalx)
+    if np.isfinite(low) and np.isfinite(high):
+        low = np.floor(low)
+        axes.set_xlim(10.0**low, 10.0 ** max(np.ceil(high), low + 1.0))
 
 
 def shown(p: "Point", field: str) -> bool:

@@ -76,8 +76,8 @@ class Bench(Document):
     folder     of the figure and the table
     reference  what errors are taken against
     points     methods at their settings, in the order measured; after a signal, those until then
-    slopes     method -> slope of log error over log tolerance (or step), resolved errors alone;
-               null of fewer than two
+    slopes     method -> slope of log error over log tolerance (or step), resolved errors alone, of
+               peak errors where the references part; null of fewer than two
     files      written, in that folder
     """
 
