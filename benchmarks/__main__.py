@@ -3,7 +3,10 @@
 import sys
 from importlib import import_module
 
-NAMES = ("startup", "slider_crank", "reverser")
+NAMES = (
+    *("startup", "memory", "reverser"),
+    *("slider_crank", "andrews", "pendulum", "windows", "chain"),
+)
 
 
 def main() -> None:

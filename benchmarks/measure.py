@@ -31,15 +31,10 @@ class Run(NamedTuple):
 
 def run(scenario: Any, mechanism: Any) -> Run:
     """March a scenario to its end."""
-    from trsim.solve.simulate import simulate
+    from trsim.analyse.trajectory import marched
 
-    rows, blocks = [], simulate(scenario, mechanism)
-    while True:
-        try:
-            rows.append(next(blocks).rows.copy())
-        except StopIteration as stop:
-            columns = {c.name: c.start for c in mechanism.columns}
-            return Run(np.vstack(rows), columns, stop.value)
+    rows, outcome = marched(scenario, mechanism)
+    return Run(rows, {c.name: c.start for c in mechanism.columns}, outcome)
 
 
 def median(measure: Callable[[], float], repeats: int = 5) -> float:

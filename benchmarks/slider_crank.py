@@ -1,38 +1,63 @@
-"""P1: slider-crank with a clearance pin, 3 ms: error of the slider's velocity against CPU time."""
+"""P1: slider-crank with a clearance pin, 3 ms: largest error of the slider's velocity / 30 m/s."""
+
+from statistics import median
 
 import numpy as np
 
-from benchmarks.measure import ROOT, SCENARIOS, median, run
+from benchmarks.measure import ROOT, Run
+from benchmarks.problems import VALIDATION
+from benchmarks.work_precision import Point, Problem, at_bounds, cheapest, of_file, slope, table
 
 DATA = ROOT / "tests" / "data"
-TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9)
+TOLERANCES = tuple(10.0**-k for k in range(2, 11))
+FRICTION = {"frictionless": 0.0, "friction": 0.01}
+BOUNDS = (3e-4, 1e-5, 1e-7)
+
+
+def by_hand(reference: np.ndarray, coefficient: float) -> list[Point]:
+    """The hand-written program's points, medians over first steps."""
+    from benchmarks.minimal import run
+
+    none, found = np.zeros(0), []
+    for tolerance in TOLERANCES:
+        errors, cpu, steps = [], [], 0
+        for first in (0.6e-6, 0.8e-6, 1e-6, 1.25e-6, 1.7e-6):
+            r = run(tolerance, coefficient, reference["t"], first)
+            errors.append(np.max(np.abs(r.velocity - reference["slider_v"])) / 30.0)
+            cpu += [run(tolerance, coefficient, none, first).cpu for _ in range(5)]
+            steps = r.steps
+        found.append(Point(tolerance, median(errors), max(errors), median(cpu), steps,
+                           12 * steps, 0.0))  # fmt: skip
+    return found
 
 
 def main() -> None:
-    from trsim.assemble.assemble import assemble
-    from trsim.spec.load import load
+    from benchmarks.peers import compare
 
-    for variant in ("frictionless", "friction"):
-        path = SCENARIOS / "validation" / f"slider_crank_{variant}.yaml"
+    for variant, coefficient in FRICTION.items():
         reference = np.genfromtxt(
             DATA / f"p1_{variant}.csv", delimiter=",", names=True, skip_header=3
         )
-        print(f"  {variant}\n  tolerance   max |dv| / 30 m/s   CPU ms   evaluations   events")
-        errors = []
-        for tolerance in TOLERANCES:
-            scenario = load(path, [f"solver.tolerance={tolerance}", "solver.end=3 ms"])
-            mechanism = assemble(scenario)
-            result = run(scenario, mechanism)
-            velocity = np.interp(
-                reference["t"], result.rows[:, 0], result.channel("slider.velocity")
-            )
-            errors.append(np.max(np.abs(velocity - reference["slider_v"])) / 30.0)
-            quiet = load(path, [f"solver.tolerance={tolerance}", "solver.end=3 ms",
-                                "output.every=3 ms"])  # fmt: skip
-            lean = assemble(quiet)
-            cpu = median(lambda q=quiet, m=lean: run(q, m).outcome.statistics["integration_cpu"])
-            numbers = result.outcome.statistics
-            print(f"  {tolerance:9.0e}   {errors[-1]:17.1e}   {1e3 * cpu:6.2f}   "
-                  f"{numbers['evaluations']:11d}   {numbers['events']:6d}")  # fmt: skip
-        slope = np.polyfit(np.log(TOLERANCES), np.log(errors), 1)[0]
-        print(f"  slope of error against tolerance: {slope:.2f}\n")
+
+        def error(r: Run, known: np.ndarray = reference) -> float:
+            velocity = np.interp(known["t"], r.rows[:, 0], r.channel("slider.velocity"))
+            return float(np.max(np.abs(velocity - known["slider_v"]))) / 30.0
+
+        print(f"  {variant}")
+        path = VALIDATION / f"slider_crank_{variant}.yaml"
+        rows = ("output.every=4e-6", 'output.channels=["slider.velocity"]')
+        found = table(Problem(of_file(path, "solver.end=3 ms"), error, rows), "-")
+        at_bounds(found, BOUNDS, "")
+        hand = by_hand(reference, coefficient)
+        print("  by hand, two degrees of freedom (benchmarks/minimal.py)")
+        for p in hand:
+            print(f"  {p.tolerance:9.0e}   {p.error:11.1e}   {p.worst:7.1e} {1e3 * p.cpu:8.3f} "
+                  f"{p.steps:7d}")  # fmt: skip
+        print(f"  slope {slope(hand, 1e-9, 1e-3):.2f} over 1e-09..1e-03")
+        for bound in BOUNDS:
+            ours, theirs = cheapest(found, bound), cheapest(hand, bound)
+            if ours and theirs:
+                print(f"  error <= {bound:.0e}: {ours.cpu / theirs.cpu:.1f} times by hand")
+        if variant == "frictionless":
+            compare("slider_crank", found, "")
+        print()

@@ -32,6 +32,10 @@ GOOD = {
     "recover": ("x.h5",),
     "explain": ("drive",),
     "schema": ("run",),
+    "bench": (
+        *("crank.yaml", "--methods", "dop853,radau", "--tolerances", "1e-3"),
+        *("--reference", "dop853:1e-5", "--repeats", "1"),
+    ),
 }
 SEAMS = {  # what a command calls to do its work
     "run": "trsim.cli.run.one",
@@ -42,6 +46,7 @@ SEAMS = {  # what a command calls to do its work
     "recover": "trsim.store.recover.recover",
     "explain": "trsim.spec.explain.explained",
     "schema": "trsim.cli.published.published",
+    "bench": "trsim.cli.bench.one",
 }
 USAGE = {  # beside wrong options
     "run": ("crank.yaml", "-o", "crank.yaml"),
@@ -50,6 +55,7 @@ USAGE = {  # beside wrong options
     "recover": ("x.h5", "-o", "x.h5"),
     "explain": ("drvie",),
     "schema": ("rnu",),
+    "bench": ("crank.yaml", "--methods", "dop583"),
 }
 NO_FILE = {
     "run": ("crank.yaml", "-o", "crank.yaml/x.h5"),
@@ -59,6 +65,7 @@ NO_FILE = {
     "export": ("x.h5", "--csv", "-o", "crank.yaml/x.csv"),
     "recover": ("none.h5.part",),
     "schema": ("-o", "crank.yaml/x.json"),
+    "bench": ("crank.yaml", "-o", "crank.yaml/x"),
 }
 WRONG = {  # exit code -> text of the scenario, and what it is replaced by
     3: ("clearance: 0.5 mm", "clearance: 0.5 kg"),
@@ -118,6 +125,8 @@ def test_document(command, code, folder, document, monkeypatch):
     elif code == 2:
         document(command, "--nonsense", code=2)
         arguments = USAGE.get(command, ())
+    elif (command, code) == ("bench", 5):  # the method of the scenario counts for nothing there
+        arguments = (*arguments, "--set", "solver.max_steps=3")
     elif code in WRONG:
         (folder / "crank.yaml").write_text(small.SLIDER_CRANK.replace(*WRONG[code]))
     elif code == 7 and command in NO_FILE:

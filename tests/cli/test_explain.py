@@ -75,7 +75,7 @@ def test_meanings_of_docstrings():
         ("gravity", ["E = -m g . r", "a section: [x, y] or [x, y, z], m/s^2"]),
         ("rigid_body", ["inertia: number >= 0 or 3 numbers or 6 numbers, kg*m^2, required"]),
         ("drive", ["velocity: number, expression or table, m/s or rad/s", "compliance.mass: numb"]),
-        ("solver", ["method: dop853 | rk4 | scipy:BDF", "tolerance: number >= 1e-14, <= 0.1, def",
+        ("solver", ["method: auto | dop853 | radau | g", "tolerance: number >= 1e-14, <= 0.1, d",
                     "force: true or false, default false", "max_steps: whole number > 0"]),
         ("contact_laws", ["K = 4/(3 (s_i + s_j))", "stiffness: internal | paper | cylinder or numb",
                           "friction.law: none | coulomb"]),

@@ -11,7 +11,15 @@ import numpy as np
 
 from trsim.assemble.equations import constraints, forces, poses, stored_energy
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.contract import IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
+from trsim.elements.contract import (
+    BRANCH,
+    IMPACT_SPEED,
+    N_BOOK,
+    N_MEM,
+    PHASE,
+    UNLOCATED,
+    WHOLE,
+)
 from trsim.elements.scene import scene
 
 from ..runs import built
@@ -116,8 +124,8 @@ def bench(
     p = rng.normal(size=(n, 4))
     p /= np.linalg.norm(p, axis=1)[:, None]
     r[0], V[0], p[0] = 0.0, 0.0, (1.0, 0.0, 0.0, 0.0)
-    mem = np.zeros((len(mechanism.model.con), 2))
-    mem[:, PHASE], mem[:, IMPACT_SPEED] = UNLOCATED, 0.8
+    mem = np.zeros((len(mechanism.model.con), N_MEM))
+    mem[:, PHASE], mem[:, IMPACT_SPEED], mem[:, BRANCH] = UNLOCATED, 0.8, WHOLE
     z = np.zeros(mechanism.model.n_z)
     return Bench(mechanism, r, p, V, z, mem)
 

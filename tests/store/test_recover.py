@@ -7,7 +7,7 @@ import pytest
 from tests.sizes import size
 from tests.store import outside
 from trsim.errors import FileError
-from trsim.store import hdf5
+from trsim.store import hdf5, salvage
 from trsim.store.plain import Plain, checksum
 from trsim.store.read import read, verify
 from trsim.store.recover import copy, recover
@@ -158,3 +158,12 @@ def test_what_cannot_be_recovered(result, tmp_path):
     with pytest.raises(FileError, match="could not read it within 0 s"):
         recover(result.path, tmp_path / "x.h5", patience=0.01)
     assert [p.name for p in tmp_path.iterdir()] == ["p"]
+
+
+def test_an_event_without_an_angle_is_not_an_unwritten_row(tmp_path):
+    """A stop has no angle: NaN there is what was written."""
+    with h5py.File(tmp_path / "events.h5", "w") as file:
+        file["time"], file["angle"] = [0.1, 0.2, 0.3], [np.nan, 0.5, np.nan]
+        file["speed"] = [1.0, 2.0, np.nan]
+        piece = salvage._piece(file, ["time", "angle", "speed"], 0, 0.0)
+    assert piece["time"].tolist() == [0.1, 0.2]

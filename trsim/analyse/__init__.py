@@ -1,1 +1,1 @@
-"""Analyses of stored runs, each one file: arrays in, numbers out."""
+"""Analyses of runs, each one file: arrays in, numbers out."""

@@ -27,6 +27,7 @@ from trsim.assemble.tables import (
     eccentricity,
     extent,
     kernels,
+    levers,
     masses,
     norm,
     tables,
@@ -214,4 +215,5 @@ def build(
         column_energy=-1,
         n_out=0,
         size=size,
+        reach=min(size, max(levers(at, size)[1:], default=size)),
     )

@@ -274,6 +274,12 @@ def gaps(s, t):
     call_all(s, s.gaps, t)
 
 
+@compiled(AT)
+def corners(s, t):
+    """Distance from the corners of every law that has some, at the poses of the last evaluation."""
+    call_all(s, s.corners, t)
+
+
 @compiled(float64(SCENE, A1))
 def kinetic(s, y):
     """Kinetic energy, J."""

@@ -147,14 +147,19 @@ def extent(at: Addresses) -> float:
     return size if size > 0.0 else 1.0
 
 
+def levers(at: Addresses, size: float) -> list[float]:
+    """Largest arm of every frame; the mechanism's size where nothing is fixed to it, m."""
+    arms = [0.0] * len(at.frames)
+    for i, s in at.points:
+        arms[i] = max(arms[i], float(np.linalg.norm(s)))
+    return [a if a > 0.0 else size for a in arms]
+
+
 def norm(at: Addresses, d: int, size: float) -> tuple[NDArray[np.int64], Array]:
     """Unit of every entry of y in the error norm, and the lever of rotations."""
     kind: list[int] = []
     lever: list[float] = []
-    arms = [0.0] * len(at.frames)
-    for i, s in at.points:
-        arms[i] = max(arms[i], float(np.linalg.norm(s)))
-    arms = [a if a > 0.0 else size for a in arms]
+    arms = levers(at, size)
     for arm in arms[1:]:
         kind += [scales.LENGTH] * (2 if d == 3 else 3) + [scales.ANGLE] * (1 if d == 3 else 4)
         lever += [1.0] * (2 if d == 3 else 3) + ([arm] if d == 3 else [2.0 * arm] * 4)

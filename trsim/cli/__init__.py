@@ -12,7 +12,7 @@ from trsim.cli.frame import EXIT_CODES, Answer
 from trsim.version import __version__
 
 # each a module of this package
-COMMANDS = ("run", "report", "check", "show", "export", "recover", "explain", "schema")
+COMMANDS = ("run", "report", "check", "show", "export", "recover", "explain", "schema", "bench")
 EPILOG = f"Exit codes: {', '.join(f'{code} {told}' for code, told in EXIT_CODES.items())}."
 
 

@@ -30,5 +30,5 @@ def command(answer: Answer, part: str, output: str | None) -> None:
     answer.put(found["file"])
     answer.say(
         f"{found['file']}: recovered until t = {found['time']:.6g} s, {found['rows']} rows, "
-        f"{found['events']} contact events; the run was '{found['was']}'"
+        f"{found['events']} events; the run was '{found['was']}'"
     )

@@ -145,5 +145,5 @@ def line(summary: dict[str, Any]) -> str:
     steps = summary["statistics"].get("steps", 0)
     return (
         f"{summary['file']}: {summary['status']} at t = {summary['time']:.6g} s, "
-        f"{summary['rows']} rows, {steps} steps, {summary['events']} contact events"
+        f"{summary['rows']} rows, {steps} steps, {summary['events']} events"
     )

@@ -20,12 +20,15 @@ from typing import Annotated, ClassVar
 from annotated_types import Ge
 
 from trsim.elements.contract import (
+    BRANCH,
+    CONTACT,
     CONTACTS,
     FLIGHT,
     FRICTION,
     IMPACT_SPEED,
     IMPACTS,
     PHASE,
+    WHOLE,
     Channel,
     Contact,
     Element,
@@ -55,7 +58,16 @@ from trsim.laws.contact import (
     normal_force,
     stored,
 )
-from trsim.laws.friction import CODES, N_PARAMETERS, PARAMETERS, friction_force
+from trsim.laws.friction import (
+    CODES,
+    N_PARAMETERS,
+    PARAMETERS,
+    beyond,
+    branch_of,
+    friction_force,
+    neighbour,
+    on_branch,
+)
 
 
 class ClearanceJoint(Revolute):
@@ -74,6 +86,8 @@ class ClearanceJoint(Revolute):
 # par, after the 22 of joint.py
 R_B, C, STIFFNESS, EXPONENT, FORM, CHI, SLOWEST, FRICTION_PAR = 22, 23, 24, 25, 26, 27, 28, 29
 AXIAL, TILT_1, TILT_2, STATE, FRICTION_LAW = 3, 4, 5, 6, 7  # con
+MU, V0, V1 = FRICTION_PAR, FRICTION_PAR + 1, FRICTION_PAR + 2  # of modified_coulomb
+CORNERED = CODES["modified_coulomb"]
 
 
 def normal_numbers(law, c):
@@ -187,20 +201,43 @@ def play(X, V, con, par, e):
 
 
 @helper
-def contact_forces(scene, e):
-    """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
-    X, V, z, con, par, mem = scene.X, scene.V, scene.z, scene.con, scene.par, scene.mem
-    p_i, p_j, d, n, tangent, depth, rate = play(X, V, con, par, e)
-    i, j = con[e, 0], con[e, 1]
-    # the contact point, seen from both centres of mass; it lies a bearing radius outside the
-    # circle of the journal centre, at the end of the bearing's radius plus the penetration
-    reach = par[e, R_B] - par[e, C]
+def touching(p_i, p_j, d, n, reach):
+    """The contact point seen from both centres of mass.
+
+    It lies a bearing radius outside the circle of the journal centre, at the end of the bearing's
+    radius plus the penetration; reach: the journal's radius.
+    """
     c_j = (p_j[0] + reach * n[0], p_j[1] + reach * n[1], p_j[2] + reach * n[2])
     c_i = (
         p_i[0] + d[0] + reach * n[0],
         p_i[1] + d[1] + reach * n[1],
         p_i[2] + d[2] + reach * n[2],
     )
+    return c_i, c_j
+
+
+@helper
+def slip(V, i, c_i, j, c_j, tangent):
+    """Sliding speed of the journal against the bearing at the contact point, m/s."""
+    v_i, v_j = velocity(V, i, c_i), velocity(V, j, c_j)
+    return dot(tangent, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+
+
+@helper
+def sliding(X, V, con, par, e):
+    """The sliding speed of instance e, m/s."""
+    p_i, p_j, d, n, tangent, _, _ = play(X, V, con, par, e)
+    c_i, c_j = touching(p_i, p_j, d, n, par[e, R_B] - par[e, C])
+    return slip(V, con[e, 0], c_i, con[e, 1], c_j, tangent)
+
+
+@helper
+def contact_forces(scene, e):
+    """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
+    X, V, z, con, par, mem = scene.X, scene.V, scene.z, scene.con, scene.par, scene.mem
+    p_i, p_j, d, n, tangent, depth, rate = play(X, V, con, par, e)
+    i, j = con[e, 0], con[e, 1]
+    c_i, c_j = touching(p_i, p_j, d, n, par[e, R_B] - par[e, C])
     if mem[e, PHASE] == FLIGHT or depth <= 0.0:
         return 0.0, 0.0, 0.0, 0.0, c_i, c_j, n, tangent, depth, rate
     first = mem[e, IMPACT_SPEED]
@@ -208,21 +245,26 @@ def contact_forces(scene, e):
         first = max(rate, par[e, SLOWEST])
     F_n = normal_force(depth, rate, first, par[e, STIFFNESS], par[e, EXPONENT], par[e, C],
                        int(par[e, FORM]), par[e, CHI])  # fmt: skip
-    v_i, v_j = velocity(V, i, c_i), velocity(V, j, c_j)
-    v_t = dot(tangent, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    v_t = slip(V, i, c_i, j, c_j, tangent)
     state = con[e, STATE]
     w = z[state] if state >= 0 else 0.0
-    F_t, w_dot = friction_force(con[e, FRICTION_LAW], F_n, v_t, w, par[e], FRICTION_PAR)
+    branch = mem[e, BRANCH]
+    if con[e, FRICTION_LAW] == CORNERED and branch != WHOLE:
+        F_t, w_dot = on_branch(branch, F_n, v_t, par[e, MU], par[e, V0], par[e, V1]), 0.0
+    else:
+        F_t, w_dot = friction_force(con[e, FRICTION_LAW], F_n, v_t, w, par[e], FRICTION_PAR)
     return F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate
 
 
 @kernel
 def force(t, scene, a, b):
-    con, par, mem, F, zd = scene.con, scene.par, scene.mem, scene.F, scene.zd
+    con, par, mem, F, zd, left = scene.con, scene.par, scene.mem, scene.F, scene.zd, scene.left
     for e in range(a, b):
         if mem[e, PHASE] == FLIGHT:
             continue
         F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
+        if con[e, FRICTION_LAW] == CORNERED and mem[e, BRANCH] != WHOLE:
+            left[e] = max(left[e], beyond(mem[e, BRANCH], v_t, par[e, V0], par[e, V1]))
         if depth <= 0.0:
             continue
         f = (
@@ -246,6 +288,21 @@ def gap(t, scene, a, b):
         _, _, _, _, _, depth, rate = play(X, V, con, par, e)
         g[e, 0] = depth
         g[e, 1] = rate
+
+
+@kernel
+def corners(t, scene, a, b):
+    X, V, con, par, mem, out = scene.X, scene.V, scene.con, scene.par, scene.mem, scene.corner
+    for e in range(a, b):
+        out[e, 0] = -1.0
+        if con[e, FRICTION_LAW] != CORNERED or mem[e, PHASE] != CONTACT:
+            continue
+        v_t = sliding(X, V, con, par, e)
+        v0, v1, branch = par[e, V0], par[e, V1], mem[e, BRANCH]
+        if branch == WHOLE:
+            out[e, 1] = branch_of(v_t, v0, v1)
+        else:
+            out[e, 0], out[e, 1] = beyond(branch, v_t, v0, v1), neighbour(branch, v_t, v0, v1)
 
 
 @kernel
@@ -307,12 +364,13 @@ ELEMENT = Element(
         Channel("eccentricity_y_rate", "m/s", "its rate in the axes of the bearing's body"),
         Channel("force", "N", "contact force on the journal's body, world axes", 3),
     ),
-    n_mem=2,
+    n_mem=3,
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,
         "force": force,
         "gaps": gap,
+        "corners": corners,
         "energy": energy,
         "measure": measure,
     },

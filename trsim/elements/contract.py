@@ -15,6 +15,9 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
     constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma
     coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to
     gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s)
+    corners     corner[e] = how far the element has left the branch in mem[e, BRANCH] of a law with
+                corners (< 0: inside), and the branch to go on with; `force` keeps the largest
+                such value it meets in left[e]
     energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
     measure     out[wanted[e] + c] = channel c; wanted[e] < 0 when nobody asked.  May also read
                 the accelerations A = V' and the multipliers lam
@@ -31,14 +34,15 @@ from trsim.elements.machine import Compiled
 from trsim.elements.scene import Scene
 from trsim.elements.signatures import Signature, f8, i8, void
 
-KINDS = ("force", "constraint", "coordinate", "gaps", "energy", "measure")
+KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "measure")
 
 # con: the first columns of every element that joins two frames
 I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
 # mem: the first columns of every element with a gap
-PHASE, IMPACT_SPEED = 0, 1
+PHASE, IMPACT_SPEED, BRANCH, N_MEM = 0, 1, 2, 3
 FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
+WHOLE = 9.0  # BRANCH: the law with all its branches
 
 # z: the energy book, power flowing into the mechanism (W), in front of the elements' own states
 DRIVES, LOADS, DAMPERS, IMPACTS, FRICTION, N_BOOK = 0, 1, 2, 3, 4, 5

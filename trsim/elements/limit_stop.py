@@ -5,7 +5,8 @@
 Point on wall: d = -(p - w) . n with n the allowed side, fixed in the wall's body; F n acts at the
 point, -F n on the wall's body at the same place.  Joint: d = max(lower - x, x - upper), F acts
 along the axis of the joint.  The damping fades in over the ramp, so there is no jump at the touch
-and no memory of the impact speed; soft impacts are right, where Lankarani-Nikravesh is not.
+and no memory of the impact speed; soft impacts are right, where Lankarani-Nikravesh is not.  In the
+phase of contact the spring is drawn on to d < 0, where no accepted step ever is.
 """
 
 from typing import Annotated, ClassVar
@@ -14,6 +15,7 @@ from annotated_types import Ge, Gt
 from pydantic import model_validator
 
 from trsim.elements.contract import (
+    CONTACT,
     CONTACTS,
     FLIGHT,
     IMPACTS,
@@ -156,10 +158,11 @@ def force(t, scene, a, b):
         if mem[e, PHASE] == FLIGHT:
             continue
         d, d_dot, n = touch(X, V, S, con, par, e)
-        if d <= 0.0:
+        if d <= 0.0 and mem[e, PHASE] != CONTACT:
             continue
         i, j, k = con[e, 0], con[e, 1], par[e, 9]
-        f = ramped_damping(d, d_dot, k, par[e, 10], par[e, 11])
+        # a trial step past the separation goes on smoothly; it is cut at the root of d
+        f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, par[e, 10], par[e, 11])
         on_j, on_i = (f * n[0], f * n[1], f * n[2]), (-f * n[0], -f * n[1], -f * n[2])
         if con[e, 3] == ON_ANGLE:
             twist(F, j, on_j)

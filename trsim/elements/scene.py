@@ -35,6 +35,7 @@ class Model(Packed):
     n_s: i8  # entries of S
     n_out: i8  # output columns
     size: f8  # m, the mechanism's
+    reach: f8  # m, the largest arm of a body
     mass: A1  # (n)
     inertia: A2  # (n, 9) body axes
     mass_inverse: A1  # (n) 0 for the ground
@@ -48,6 +49,7 @@ class Model(Packed):
     constraint: I2
     coordinate: I2
     gaps: I2
+    corners: I2
     energy: I2
     measure: I2
     row_start: I1  # (m+1) slots of a row: one per moving frame it touches   assemble/pattern.py
@@ -110,6 +112,8 @@ class Scene(Model):
     r2: A1  # (m)
     free: A2  # (n, 6) accelerations without constraints, axes of the solve
     gap: A2  # (N, 2) penetration and its rate
+    corner: A2  # (N, 2) how far an element has left its branch, and the branch it goes to
+    left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
     out: A1  # (n_out) one output row
     status: I1  # [0] the last factorisation met a small pivot, [1] evaluations, [2] factorisations
@@ -123,6 +127,8 @@ def workspace(model: Model) -> Scene:
 def scene(model: Model) -> Scene:
     """Fresh workspace for a model."""
     import numpy as np
+
+    from trsim.elements.contract import N_MEM
 
     n, m, slots = model.n, model.m, len(model.slot_frame)
     X = np.zeros((n, 12))
@@ -138,7 +144,7 @@ def scene(model: Model) -> Scene:
         branch=np.zeros(max(model.n_s, 1)),
         z=np.zeros(model.n_z),
         zd=np.zeros(model.n_z),
-        mem=np.zeros((len(model.con), 2)),
+        mem=np.zeros((len(model.con), N_MEM)),
         F=np.zeros((n, 6)),
         phi=np.zeros(m),
         phi_t=np.zeros(m),
@@ -155,6 +161,8 @@ def scene(model: Model) -> Scene:
         r2=np.zeros(m),
         free=np.zeros((n, 6)),
         gap=np.zeros((len(model.con), 2)),
+        corner=np.full((len(model.con), 2), -1.0),
+        left=np.full(len(model.con), -1.0),
         E=np.zeros(N_STORED),
         out=np.zeros(max(model.n_out, 1)),
         status=np.zeros(4, np.int64),

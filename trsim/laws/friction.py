@@ -80,6 +80,52 @@ def modified_coulomb(F_n, v_t, mu, v0, v1):
 
 
 @law
+def branch_of(v_t, v0, v1):
+    """The branch of `modified_coulomb` at a speed: 0 dead band, 1 ramp, 2 full; with its sign."""
+    s = abs(v_t)
+    if s <= v0:
+        return 0.0
+    size = 1.0 if s < v1 else 2.0
+    return size if v_t > 0.0 else -size
+
+
+@law
+def on_branch(branch, F_n, v_t, mu, v0, v1):
+    """`modified_coulomb` with one branch drawn on beyond its ends, so that it has no corner.
+
+    Between the corners the two are equal; a solver that locates the corners steps through smooth
+    functions only.  branch: as of `branch_of`.  Returns the force on the moving body, N.
+    """
+    if branch == 0.0:
+        return 0.0
+    if abs(branch) == 1.0:
+        return -mu * F_n * (v_t - branch * v0) / (v1 - v0)
+    return -mu * F_n if branch > 0.0 else mu * F_n
+
+
+@law
+def beyond(branch, v_t, v0, v1):
+    """How far a speed has left its branch, m/s: negative inside, zero at a corner."""
+    size = abs(branch)
+    s = v_t if branch > 0.0 else -v_t
+    if size == 0.0:
+        return abs(v_t) - v0
+    return max(v0 - s, s - v1) if size == 1.0 else v1 - s
+
+
+@law
+def neighbour(branch, v_t, v0, v1):
+    """The branch on the other side of the nearest corner."""
+    size = abs(branch)
+    if size == 0.0:
+        return 1.0 if v_t > 0.0 else -1.0
+    sign = 1.0 if branch > 0.0 else -1.0
+    if size == 2.0:
+        return sign
+    return 2.0 * sign if sign * v_t - v0 > v1 - sign * v_t else 0.0
+
+
+@law
 def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     """Load-proportional bristle friction, which sticks.                   [CanudasDeWit1995]
 

@@ -14,8 +14,9 @@ from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 ORDER = 8
 STAGES = 16  # 12 of a step, the new point, 3 of the dense output
 LAST = 12  # K[LAST] = y' at the end of the step
+ESTIMATE = 8  # the error estimate falls with h^8
 DENSE_ROWS = 7
-ADAPTIVE = True
+ADAPTIVE, IMPLICIT = True, False
 
 A, C, D, E3, E5 = tableau.A, tableau.C, tableau.D, tableau.E3, tableau.E5
 
@@ -36,7 +37,8 @@ def stage(K, y, h, s, out):
 
 
 @compiled(STEP)
-def step(scene, K, t, y, h, y1, weight):
+def step(scene, r, b, setting, t, h):
+    K, y, y1, weight = b.K, r.y, b.y1, b.weight
     for s in range(1, 12):
         stage(K, y, h, s, y1)
         evaluate(scene, t + C[s] * h, y1, K[s])

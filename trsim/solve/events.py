@@ -10,6 +10,7 @@ from trsim.assemble.equations import gaps, poses
 from trsim.elements.contract import CONTACT, FLIGHT, PHASE
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
+from trsim.solve.corners import any_left, corner_root
 
 NONE = 2.0  # a root beyond the step
 SAME = 1e-12  # roots closer than this part of a step are one event
@@ -111,13 +112,14 @@ def first_event(s, r, b, t, h, interpolate):
     first = NONE
     for c in range(s.contact.size):
         b.root[c] = NONE
+        b.corner_root[c] = corner_root(s, r, b, t, h, c, interpolate)
         phase = r.mem[s.contact[c], PHASE]
         d0, r0, d1, r1 = r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1]
         if suspicious(phase, d0, r0, d1, r1, h):
             b.root[c] = root(
                 s, b.P, r.y, t, h, c, phase, d0, r0, d1, r1, b.y2, interpolate
             )  # fmt: skip
-        first = min(first, b.root[c])
+        first = min(first, b.root[c], b.corner_root[c])
     return first
 
 
@@ -128,7 +130,7 @@ def any_suspicious(s, r, b, h):
         phase = r.mem[s.contact[c], PHASE]
         if suspicious(phase, r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1], h):
             return True
-    return False
+    return any_left(s, r, b)
 
 
 @internal

@@ -1,6 +1,6 @@
 """The end of a trial step: brought to the constraints, evaluated, its work booked."""
 
-from trsim.assemble.equations import evaluate, gaps, kinetic, poses
+from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.elements.scene import PROJECTION
 from trsim.elements.vectors import internal
@@ -37,7 +37,9 @@ def land(s, r, b, t, y, yd):
         done += position_work(s, b.y2, y)
     if s.contact.size > 0:
         gaps(s, t)
+        corners(s, t)
         for c in range(s.contact.size):
+            b.corner1[c] = s.corner[s.contact[c], 0]
             b.gap1[c, 0] = s.gap[s.contact[c], 0]
             b.gap1[c, 1] = s.gap[s.contact[c], 1]
     for k in range(s.n_s):

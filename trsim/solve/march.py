@@ -1,4 +1,4 @@
-"""The only time loop: step, project, look for events, write what was asked for, accept.
+"""The only time loop: step, accept (complete.py), choose the next step and its method.
 
 Everything the loop changes is in the Record; it returns to its caller when a buffer is full, when
 it is done, or when it cannot go on, and can be called again with the same record.
@@ -6,93 +6,82 @@ it is done, or when it cannot go on, and can be called again with the same recor
 
 from math import isfinite
 
-import numpy as np
-
-from trsim.assemble.equations import (
-    evaluate,
-    gaps,
-)
+from trsim.assemble.equations import corners, evaluate, gaps
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
-from trsim.elements.calls import caller
-from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, PHASE, SCENE, compiled
-from trsim.elements.packed import A1, I1, f8, i8
-from trsim.elements.vectors import all_finite, clear_table, copy_table, copy_to, internal
-from trsim.solve.calls import call_dense, call_interpolate, call_step
-from trsim.solve.events import NONE as NO_EVENT
-from trsim.solve.events import SAME, any_suspicious, first_event, flip, hertz_step
-from trsim.solve.land import land
-from trsim.solve.norm import grow, units, weights
-from trsim.solve.peaks import near_peak, peaks_inside, refine
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.packed import A1, I2, i8
+from trsim.elements.vectors import clear_table, copy_to, internal
+from trsim.solve.auto import choose
+from trsim.solve.calls import call_step
+from trsim.solve.complete import (
+    COMPLETE_AT,
+    ESTIMATE_AT,
+    IMPLICIT_AT,
+    SMALLEST,
+    SMOOTH_STEP,
+    STEP_AT,
+    WITH_EVENT,
+    WORTHLESS,
+    call_complete,
+    complete,
+)
+from trsim.solve.corners import look
+from trsim.solve.norm import units, weights
 from trsim.solve.record import (
     AFTER_REJECTION,
     BUFFERS,
     CHATTER,
-    DENSE_BUILT,
     DONE,
     ENERGY_0,
-    EVENT_ANGLE,
-    EVENT_KIND,
-    EVENT_ROW,
     EVENT_ROWS,
-    EVENT_SPEED,
-    EVENT_TIME,
-    EVENTS,
     EVERY,
     FIXED_STEP,
     FULL,
     H_MAX,
-    LARGEST_ENERGY,
-    LARGEST_RESIDUAL,
-    LAST_EVENT,
+    JACOBIAN,
+    LOAD,
     LOCATE,
+    METHOD,
     NEXT_ROW,
     NOT_FINITE,
-    ONSET,
+    OLD,
+    OLD_H,
+    PAST_ERROR,
     PAUSE,
     PEAK_MAX,
     PEAK_MIN,
-    PEAK_T1,
     PEAK_V2,
     RECORD,
     REJECTED,
     ROWS,
     SAME_TIME,
-    SEPARATION,
     STEP_ROWS,
     STEP_TOO_SMALL,
-    STEPS,
     T_END,
-    TOLERANCE,
-    WORK_PROJECTION,
     H,
     T,
 )
 
-SMOOTH_STEP, WITH_EVENT, WORTHLESS = 0, 1, 2  # what `complete` made of a trial step
-LAST_AT, COMPLETE_AT = 3, 4  # in `method`, after the addresses of step, dense, interpolate
 MAX_SAME_TIME = 1000  # events without progress: chatter
-SMALLEST = 16.0  # ulp of t: a smaller step is no step
 
 
-#                       scene   record  buffers  settings method h built
-COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
-call_complete = caller(COMPLETE)
-
-
-def method_table(step, dense, interpolate, last):
-    """What the march must know of a method: addresses of its functions, the last row of its K.
+def method_table(method):
+    """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march.
     """
-    return np.array([step, dense, interpolate, last, complete.address()], np.int64)
+    called = (method.step.address(), method.dense.address(), method.interpolate.address())
+    return (*called, complete.address(), method.LAST, method.ESTIMATE, int(method.IMPLICIT))
 
 
-@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I1, i8))
-def march(s, r, b, setting, method, most):
+@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
+def march(s, r, b, setting, methods, most):
     """Advance the record until it is done, a buffer is full, or `most` steps were accepted.
 
-    method: see `method_table`.  Returns DONE, FULL, PAUSE, STEP_TOO_SMALL, NOT_FINITE or CHATTER.
+    methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
+    march changes between them; the implicit one is asked for (LOAD) when it is first needed.
+    Returns DONE, FULL, PAUSE, LOAD, STEP_TOO_SMALL, NOT_FINITE or CHATTER.
     """
     accepted = 0
     while r.clock[T] < setting[T_END]:
@@ -100,19 +89,24 @@ def march(s, r, b, setting, method, most):
             return FULL
         if accepted >= most:
             return PAUSE
-        t = r.clock[T]
+        t, method = r.clock[T], methods[r.count[METHOD]]
+        if method[STEP_AT] == 0:
+            return LOAD
         h = next_step(r, b, setting)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
             return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
         weights(s, r, b, setting)
         copy_to(b.K[0], r.yd)
-        error = call_step(method[0], s, b.K, t, r.y, h, b.y1, b.weight)
+        for c in range(s.contact.size):
+            s.left[s.contact[c]] = -1.0
+        error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
             r.count[AFTER_REJECTION] = 1 if isfinite(error) else 2
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
-            r.clock[H] = h * (max(0.2, 0.9 * error ** (-1 / 8)) if isfinite(error) else 0.1)
+            shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
+            r.clock[H] = h * (shorter if isfinite(error) else 0.1)
             continue
         outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
         if outcome == WORTHLESS:
@@ -123,57 +117,12 @@ def march(s, r, b, setting, method, most):
             r.clock[H] = 0.1 * h
             continue
         accepted += 1
-        control(r, setting, h, error, outcome == WITH_EVENT)
+        control(r, setting, method, h, error, outcome != SMOOTH_STEP)
+        if methods.shape[0] > 1:
+            choose(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
     return DONE
-
-
-@compiled(COMPLETE)
-def complete(s, r, b, setting, method, h, built):
-    """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
-
-    built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
-    step was cut at a contact event) or WORTHLESS (values not finite; nothing was changed).
-    """
-    last, t = method[LAST_AT], r.clock[T]
-    t1 = setting[T_END] if t + h >= setting[T_END] else t + h
-    projected = land(s, r, b, t1, b.y1, b.K[last])
-    if not all_finite(b.y1) or not all_finite(b.K[last]):
-        return WORTHLESS
-    event = False
-    if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
-        if built == 0:
-            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
-            r.count[DENSE_BUILT] += 1
-            built = 1
-        theta = first_event(s, r, b, t, h, method[2])
-        event = theta <= 1.0
-        if event and theta < 1.0:
-            call_interpolate(method[2], b.P, r.y, theta, b.y2)
-            copy_to(b.y1, b.y2)
-            t1 = t + theta * h
-            projected = land(s, r, b, t1, b.y1, b.K[last])
-        else:
-            # the search left other poses in the workspace
-            evaluate(s, t1, b.y1, b.K[last])
-    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
-    copy_to(b.out, s.out)
-    near = near_peak(s, r, b, t1, t1 - t, last)
-    if near or due(r, setting, t1):
-        if built == 0 and (near or setting[EVERY] * r.count[NEXT_ROW] < t1):
-            call_dense(method[1], s, b.K, t, r.y, h, b.y1, b.P)
-            r.count[DENSE_BUILT] += 1
-        if not rows_until(s, r, b, setting, method[2], t, h, t1, projected):
-            return WORTHLESS
-        if near:
-            peaks_inside(s, r, b, method[2], t, h, t1)
-    accept(s, r, b, t1, projected, last)
-    if event:
-        change_phases(s, r, b, setting, t, t1)
-    elif setting[LOCATE] == 0.0:
-        latch(s, r)
-    return WITH_EVENT if event else SMOOTH_STEP
 
 
 @internal
@@ -203,134 +152,21 @@ def next_step(r, b, setting):
 
 
 @internal
-def due(r, setting, t1):
-    """Whether an output time lies at or before t1."""
-    return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
-
-
-@internal
-def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
-    """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
-
-    Returns False, and writes none of them, where a value is not finite.
-    """
-    rows, next_row = r.count[ROWS], r.count[NEXT_ROW]
-    while r.count[ROWS] < b.rows.shape[0]:
-        t_o = setting[EVERY] * r.count[NEXT_ROW]
-        if t_o > t1 * (1.0 + 1e-15):
-            break
-        row = b.rows[r.count[ROWS]]
-        row[0] = t_o
-        if abs(t_o - (t + h)) <= 1e-15 * abs(t_o) and t1 >= t + h:
-            copy_to(row[1:], b.out)
-        else:
-            theta = (t_o - t) / h
-            call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-            evaluate(s, t_o, b.y2, b.K[1])
-            done = r.clock[WORK_PROJECTION] + theta * projected
-            measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
-            copy_to(row[1:], s.out)
-        if not all_finite(row):
-            r.count[ROWS], r.count[NEXT_ROW] = rows, next_row
-            return False
-        r.count[ROWS] += 1
-        r.count[NEXT_ROW] += 1
-    return True
-
-
-@internal
-def accept(s, r, b, t1, projected, last):
-    """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
-    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if t1 <= r.clock[T] else 0
-    r.clock[T] = t1
-    r.clock[WORK_PROJECTION] += projected
-    copy_to(r.y, b.y1)
-    copy_to(r.yd, b.K[last])
-    copy_table(r.gap, b.gap1)
-    copy_to(r.branch, b.branch1)
-    r.count[STEPS] += 1
-    for c in range(s.contact.size):
-        e = s.contact[c]
-        if r.mem[e, PHASE] != FLIGHT and r.gap[c, 0] > 0.0:
-            grow(s, r, c)
-            if s.wanted[e] >= 0 and b.steps.shape[1] > 2:
-                line = b.steps[r.count[STEP_ROWS]]
-                line[0], line[1] = t1, e
-                for k in range(line.size - 2):
-                    line[2 + k] = b.out[s.wanted[e] + k] if s.wanted[e] + k < s.n_out else 0.0
-                r.count[STEP_ROWS] += 1
-    if s.column_energy >= 0:
-        for c in range(s.column_energy, s.n_out - 1):
-            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], abs(b.out[c]))
-        residual = abs(b.out[s.n_out - 1])
-        r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
-    refine(s, r, b.out, t1)
-    copy_to(r.slope, b.slope1)
-
-
-@internal
-def change_phases(s, r, b, setting, t, t1):
-    """Switch every contact whose event is the one just stepped to; latch impact speeds."""
-    first = NO_EVENT
-    for c in range(s.contact.size):
-        first = min(first, b.root[c])
-    h = 1e300
-    for c in range(s.contact.size):
-        if b.root[c] > first + SAME:
-            continue
-        e = s.contact[c]
-        r.mem[e, PHASE] = flip(r.mem[e, PHASE])
-        r.count[EVENTS] += 1
-        line = b.events[r.count[EVENT_ROWS]]
-        r.count[EVENT_ROWS] += 1
-        onset = r.mem[e, PHASE] == CONTACT
-        line[EVENT_TIME], line[EVENT_ROW] = t1, e
-        line[EVENT_KIND] = ONSET if onset else SEPARATION
-        line[EVENT_SPEED] = r.gap[c, 1]
-        line[EVENT_ANGLE] = np.nan  # a stop has no angle
-        o = s.wanted[e] + s.contact_angle[c]
-        if s.contact_angle[c] >= 0 and s.wanted[e] >= 0:
-            line[EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
-        if onset:
-            speed = max(r.gap[c, 1], s.contact_par[c, 4])
-            r.mem[e, IMPACT_SPEED] = speed
-            if s.contact_state[c] >= 0:
-                r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
-            speed = max(speed, 1e-12)
-            h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
-                                  speed, setting[TOLERANCE]))  # fmt: skip
-        else:
-            r.mem[e, IMPACT_SPEED] = 0.0
-    r.clock[LAST_EVENT] = t1
-    evaluate(s, t1, r.y, r.yd)
-    for k in range(s.n_out):
-        r.peak[k, PEAK_T1] = t1  # no parabola across an event
-    for c in range(s.contact.size):
-        if s.mem[s.contact[c], PHASE] == FLIGHT:
-            r.slope[c] = 0.0
-        elif b.root[c] <= first + SAME:
-            r.slope[c] = 1.0  # a touch: the force grows from here
-    if h < 1e300:
-        r.clock[H] = min(r.clock[H], h)
-
-
-@internal
-def latch(s, r):
-    """Methods that locate nothing: remember the approach speed of a running contact."""
-    for c in range(s.contact.size):
-        e = s.contact[c]
-        if r.gap[c, 0] <= 0.0:
-            r.mem[e, IMPACT_SPEED] = 0.0
-        elif r.mem[e, IMPACT_SPEED] == 0.0:
-            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])
-
-
-@internal
-def control(r, setting, h, error, event):
+def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
     if setting[FIXED_STEP] > 0.0:
         return
-    factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error ** (-1 / 8)))
+    power = 1.0 / method[ESTIMATE_AT]
+    factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error**-power))
+    if method[IMPLICIT_AT] > 0:
+        # predictive: the error as it changed from the step before              [Gustafsson1994]
+        past = max(r.clock[PAST_ERROR], 1e-2)
+        if r.clock[PAST_ERROR] > 0.0 and not event:
+            factor = min(factor, 0.9 * h / r.clock[OLD_H] * (past / error**2) ** power)
+            factor = max(factor, 0.2)
+        r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
+        if 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:
+            factor = 1.0  # its factors stay good
     if r.count[AFTER_REJECTION] > 0:
         factor = min(factor, 1.0)
     r.count[AFTER_REJECTION] = 0
@@ -353,6 +189,13 @@ def begin(s, r, b, setting):
         r.gap[c, 1] = s.gap[s.contact[c], 1]
     for k in range(s.n_s):
         r.branch[k] = s.S[k, 0]
+    if setting[LOCATE] > 0.0:
+        for c in range(s.contact.size):
+            look(s, c)
+        evaluate(s, 0.0, r.y, r.yd)
+        corners(s, 0.0)
+        for c in range(s.contact.size):
+            r.corner[c] = s.corner[s.contact[c], 0]
     units(s, r)
     measure(s, 0.0, r.y, 0.0, 0.0)
     copy_to(b.out, s.out)

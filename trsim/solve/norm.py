@@ -2,7 +2,7 @@
 
 Lengths are weighed by the smallest gap or penetration that matters, not by the distance from the
 origin; rotations by that length over the body's arm; velocities by that length times the frequency
-of the contact.  Without contacts the length is the size of the mechanism.
+of the contact.  Without contacts the length is the reach of its largest body.
 """
 
 import numpy as np

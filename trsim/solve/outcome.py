@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
+from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import Scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
@@ -40,13 +41,19 @@ class Outcome(NamedTuple):
     start: Start
 
 
+EASY, PROPORTION = 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 MOST_ROWS = 10_000  # output rows one fixed step may span
 
 
 def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
-    """The constants of the march."""
+    """The constants of the march.
+
+    The error of a run grows like tolerance^0.75..0.88 where each step keeps to the tolerance.  So
+    that ten times the tolerance means about ten times the error, steps are held to
+    EASY (tolerance / EASY)^PROPORTION.
+    """
     solver, output = scenario.solver, scenario.output
     if solver.end is None:
         raise ScenarioError(
@@ -60,7 +67,7 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
         )
     s = np.zeros(rec.N_SETTINGS)
     s[rec.T_END] = solver.end
-    s[rec.TOLERANCE] = solver.tolerance
+    s[rec.TOLERANCE] = EASY * (solver.tolerance / EASY) ** PROPORTION
     s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
     s[rec.H_MAX] = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:
@@ -79,7 +86,8 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
             "`every` is the time between two rows; at most 1e9 rows are written",
             ("output", "every"),
         )
-    s[rec.LOCATE] = float(adaptive and len(mechanism.model.contact) > 0)
+    located = adaptive if solver.locate_events is None else solver.locate_events
+    s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
     return s
 
 
@@ -91,8 +99,13 @@ def first_step(scenario: Any, record: Record) -> float:
     return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
 
 
-def new_record(model: Scene, begun: Start) -> Record:
-    """A record at the start; memory and branches are the scene's own arrays."""
+def new_record(model: Scene, begun: Start, past_rows: int = 0) -> Record:
+    """A record at the start; memory and branches are the scene's own arrays.
+
+    past_rows: of the dense output an implicit method draws on; 0 for explicit ones.
+    """
+    n_v = model.n_v if past_rows else 0
+    n_w = n_v + model.n_z - N_BOOK if past_rows else 0
     model.mem[:] = begun.mem
     model.branch[:] = begun.branch
     record = Record(
@@ -101,11 +114,17 @@ def new_record(model: Scene, begun: Start) -> Record:
         mem=model.mem,
         branch=model.branch,
         gap=np.zeros((len(model.contact), 2)),
+        corner=np.zeros(len(model.contact)),
         clock=np.zeros(rec.N_CLOCK),
         count=np.zeros(rec.N_COUNT, np.int64),
         peak=np.zeros((model.n_out, rec.N_PEAK)),
         impact=begun.depth.copy(),
         slope=np.zeros(len(model.contact)),
+        by_place=np.zeros((n_w, n_v)),
+        by_rate=np.zeros((n_w, n_w)),
+        lu=np.zeros((3 * n_w, n_w)),
+        pivot=np.zeros((2, n_w), np.int64),
+        past=np.zeros((past_rows, begun.y.size)),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
     return record
@@ -136,6 +155,10 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "factorisations": int(work.status[2]),
         "dense_outputs": int(r.count[rec.DENSE_BUILT]),
         "events": int(r.count[rec.EVENTS]),
+        "corners": int(r.count[rec.CORNERS]),
+        "method_switches": int(r.count[rec.SWITCHES]),
+        "jacobians": int(r.count[rec.JACOBIANS]),
+        "newton_iterations": int(r.count[rec.ITERATIONS]),
         "position_residual": float(r.clock[rec.WORST_PHI]),
         "velocity_residual": float(r.clock[rec.WORST_PHI_DOT]),
         "start_position_residual": begun.moved,

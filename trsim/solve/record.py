@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trsim.elements.packed import A1, A2, I1, Packed
+from trsim.elements.packed import A1, A2, I1, I2, Packed
 from trsim.elements.scene import Model
 
 # clock: floating-point state of the march
@@ -18,14 +18,20 @@ from trsim.elements.scene import Model
     LARGEST_ENERGY,  # J, largest entry of the energy book so far: the scale of its residual
     LARGEST_RESIDUAL,  # J
     LAST_EVENT,  # s
+    PAST_H,  # s, length of the step whose polynomial is in `past`
+    PAST_ERROR,  # error of the last step, for the controller; 0 after an event
+    OLD_H,  # s, its length
+    FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
+    NEWTON_RATE,  # contraction of the last Newton iterations
     N_CLOCK,
-) = range(12)
+) = range(17)
 
 # count: integer state of the march
 (
     STEPS,
     REJECTED,
     EVENTS,
+    CORNERS,  # of laws, met
     NEXT_ROW,  # index of the next output time
     ROWS,  # filled rows of the buffers
     STEP_ROWS,
@@ -33,8 +39,18 @@ from trsim.elements.scene import Model
     DENSE_BUILT,
     AFTER_REJECTION,  # 1 the last trial was rejected, 2 because it was not finite
     SAME_TIME,  # events in a row without time passing
+    METHOD,  # which of the methods makes the steps
+    SWITCHES,  # changes of method
+    STIFF,  # steps in a row that looked stiff to an explicit method, or not to an implicit one
+    NOT_STIFF,  # steps in a row that speak against it
+    HISTORY,  # 1: `past` holds the polynomial of the step before
+    JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, OLD, FRESH
+    JACOBIANS,  # made so far
+    ITERATIONS,  # of Newton, so far
     N_COUNT,
-) = range(11)
+) = range(20)
+
+NO_JACOBIAN, OLD, FRESH = 0, 1, 2
 
 # settings: constants of the march
 (
@@ -49,11 +65,17 @@ from trsim.elements.scene import Model
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
+LOAD = 6  # a method is wanted whose row in `methods` is still empty
 
 # columns of the event buffer
 EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE = range(5)
-ONSET, SEPARATION = 1.0, 2.0
-EVENT_NAMES = {ONSET: "onset", SEPARATION: "separation"}
+ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT = 1.0, 2.0, 3.0, 4.0
+EVENT_NAMES = {
+    ONSET: "onset",
+    SEPARATION: "separation",
+    TO_IMPLICIT: "to implicit",
+    TO_EXPLICIT: "to explicit",
+}
 
 
 class Record(Packed):
@@ -64,11 +86,18 @@ class Record(Packed):
     mem: A2  # (N, n_mem) the scene's own
     branch: A1  # (n_s) turn every angle is on; the scene's own
     gap: A2  # (n_contacts, 2) penetration and rate at y
+    corner: A1  # (n_contacts) how far each has left the branch of its law at y
     clock: A1
     count: I1
     peak: A2  # (n_out, N_PEAK) extremes of every channel, and the last two values
     impact: A1  # (n_contacts) largest penetration so far
     slope: A1  # (n_contacts) rate of the first contact channel (the normal force) at y
+    # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
+    by_place: A2  # (n_w, n_v) w' against displacements
+    by_rate: A2  # (n_w, n_w) w' against w
+    lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
+    pivot: I2  # (2, n_w)
+    past: A2  # (dense rows, n_y) dense output of the step before
 
 
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)
@@ -87,8 +116,10 @@ class Buffers(Packed):
     weight: A1
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts, 2)
+    corner1: A1  # (n_contacts)
     slope1: A1  # (n_contacts)
-    root: A1  # (n_contacts) where in the step its event lies, 2 for none
+    root: A1  # (n_contacts) where in the step its phase changes, 2 for nowhere
+    corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
 
 
@@ -111,8 +142,10 @@ def fresh_buffers(
         weight=np.zeros(n_y),
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts, 2)),
+        corner1=np.zeros(contacts),
         slope1=np.zeros(contacts),
         root=np.zeros(contacts),
+        corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
     )
 

@@ -7,24 +7,28 @@
     ----+---------------------
         | 1/6  1/3  1/3  1/6                      [HairerNorsettWanner1993]
 
-Contact onset is not located: a contact acts in every stage in which the bodies overlap, and its
-impact speed is latched at the end of the first step that finds them overlapping.  Between the ends
-of a step the solution is the cubic Hermite polynomial (order 3).
+Unless `locate_events: true` says otherwise, contact onset is not located: a contact acts in every
+stage in which the bodies overlap, and its impact speed is latched at the end of the first step that
+finds them overlapping.  Between the ends of a step the solution is the cubic Hermite polynomial
+(order 3).
 """
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import compiled
+from trsim.solve import hermite
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 
 ORDER = 4
 STAGES = 5
 LAST = 4
-DENSE_ROWS = 3
-ADAPTIVE = False
+DENSE_ROWS = hermite.ROWS
+ESTIMATE = 4  # of no use: the step is fixed
+ADAPTIVE, IMPLICIT = False, False
 
 
 @compiled(STEP)
-def step(scene, K, t, y, h, y1, weight):
+def step(scene, r, b, setting, t, h):
+    K, y, y1 = b.K, r.y, b.y1
     for s in range(1, 4):
         part = h if s == 3 else 0.5 * h
         for c in range(y.size):
@@ -37,15 +41,9 @@ def step(scene, K, t, y, h, y1, weight):
 
 @compiled(DENSE)
 def dense(scene, K, t, y, h, y1, P):
-    for c in range(y.size):
-        delta = y1[c] - y[c]
-        P[0, c] = delta
-        P[1, c] = h * K[0, c] - delta
-        P[2, c] = delta - h * K[4, c] - P[1, c]
+    hermite.build(K[0], K[LAST], h, y, y1, P)
 
 
 @compiled(INTERPOLATE)
 def interpolate(P, y, theta, out):
-    rest = 1.0 - theta
-    for c in range(y.size):
-        out[c] = y[c] + theta * (P[0, c] + rest * (P[1, c] + theta * P[2, c]))
+    hermite.value(P, y, theta, out)

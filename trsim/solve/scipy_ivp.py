@@ -20,7 +20,8 @@ from trsim.elements.contract import compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.calls import INTERPOLATE
-from trsim.solve.march import SMOOTH_STEP, WORTHLESS, begin, complete, method_table
+from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
+from trsim.solve.march import begin
 from trsim.solve.norm import weigh
 from trsim.solve.outcome import Outcome, emptied, first_step, new_record, settings, statistics
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
@@ -63,7 +64,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     b = fresh_buffers(
         s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0))
     )
-    method = method_table(0, 0, interpolate.address(), LAST)
+    method = np.array((0, 0, interpolate.address(), complete.address(), LAST, 1, 0), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)

@@ -12,6 +12,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import scene
 from trsim.solve import record as rec
 from trsim.solve.checkpoint import State, begun_at, put_back, state
+from trsim.solve.complete import METHOD_WIDTH
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.outcome import (
     Block,
@@ -28,7 +29,13 @@ from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
-COMPILED = ("dop853", "rk4")  # each a file of this folder
+COMPILED = {  # word -> files of this folder
+    "dop853": ("dop853",),
+    "rk4": ("rk4",),
+    "radau": ("radau",),
+    "generalized_alpha": ("generalized_alpha",),
+    "auto": ("dop853", "radau"),
+}
 VISIT = 5000  # steps between two looks at the outside world
 
 REASONS = {
@@ -54,24 +61,26 @@ def simulate(
         from trsim.solve.scipy_ivp import simulate as by_scipy
 
         return by_scipy(scenario, mechanism)
-    return compiled(scenario, mechanism, import_module(f"trsim.solve.{method}"), checkpoint)
+    used = [import_module(f"trsim.solve.{name}") for name in COMPILED[method]]
+    return compiled(scenario, mechanism, used, checkpoint)
 
 
 def compiled(
-    scenario: Any, mechanism: Mechanism, method: Any, checkpoint: State | None
+    scenario: Any, mechanism: Mechanism, used: list[Any], checkpoint: State | None
 ) -> Generator[Block, None, Outcome]:
-    """The march of march.py with one of the compiled methods."""
+    """The march of march.py with a compiled method, or an explicit and an implicit one."""
     work = scene(mechanism.model)
-    setting = settings(scenario, mechanism, method.ADAPTIVE)
+    setting = settings(scenario, mechanism, used[0].ADAPTIVE)
     located = setting[rec.LOCATE] > 0.0
     begun = begun_at(checkpoint) if checkpoint else start(scenario, mechanism, located)
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
-    r = new_record(work, begun)
-    b = fresh_buffers(work, r.y.size, method.STAGES, method.DENSE_ROWS, 2 + width, spanned)
-    addresses = method_table(
-        method.step.address(), method.dense.address(), method.interpolate.address(), method.LAST
-    )
+    stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
+    implicit = any(method.IMPLICIT for method in used)
+    r = new_record(work, begun, dense_rows if implicit else 0)
+    b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned)
+    methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
+    methods[0] = method_table(used[0])
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
@@ -81,8 +90,11 @@ def compiled(
     limit = scenario.solver.max_steps or 2**62
     while True:
         most = min(VISIT, limit - int(r.count[rec.STEPS]))
-        reason = march(work, r, b, setting, addresses, most)
-        cpu, paused = time.process_time() - clock0, reason in (rec.FULL, rec.PAUSE)
+        reason = march(work, r, b, setting, methods, most)
+        cpu, paused = time.process_time() - clock0, reason in (rec.FULL, rec.PAUSE, rec.LOAD)
+        if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
+            methods[:] = [method_table(method) for method in used]
+            clock0 = time.process_time() - cpu
         block = emptied(r, b)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block
         if not paused:

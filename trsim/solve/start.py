@@ -17,7 +17,17 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian
-from trsim.elements.contract import CONTACT, FLIGHT, IMPACT_SPEED, N_BOOK, PHASE, UNLOCATED
+from trsim.elements.contract import (
+    BRANCH,
+    CONTACT,
+    FLIGHT,
+    IMPACT_SPEED,
+    N_BOOK,
+    N_MEM,
+    PHASE,
+    UNLOCATED,
+    WHOLE,
+)
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, with_scene
@@ -218,7 +228,8 @@ def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
 
 def phases(model: Model, y: Array, located: bool) -> Array:
     """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
-    mem = np.zeros((len(model.con), 2))
+    mem = np.zeros((len(model.con), N_MEM))
+    mem[:, BRANCH] = WHOLE  # until the march has looked
     w = workspace(model)
     poses(w, y)
     gaps(w, 0.0)
@@ -233,10 +244,11 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     """First units of the error norm, and the penetration each contact may expect.
 
     With contacts: what the largest force at the start (or an impact at the slowest speed) would
-    press in.  Without: the size of the mechanism, and the largest of its speeds, of the speed its
-    accelerations give over its size, and of its size per run.
+    press in.  Without: the reach of a body (not of the mechanism: a chain of many links would be
+    held to less), the largest of its speeds, of the speed its accelerations give over that length,
+    and of that length per run.
     """
-    w = workspace(model)
+    w, reach = workspace(model), model.reach
     yd = np.zeros_like(y)
     w.mem[:] = mem
     derivative(w, 0.0, y, yd)
@@ -248,8 +260,8 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
         touch = ((n + 1.0) * mass * max(slowest, 1e-3) ** 2 / (2.0 * K)) ** (1.0 / (n + 1.0))
         depth.append(min(max((force / K) ** (1.0 / n), touch), c))
     speed = float(np.linalg.norm(w.V[:, :3], axis=1).max(initial=0.0))
-    speed = max(speed, float(np.abs(w.V[:, 3:]).max(initial=0.0)) * model.size)
+    speed = max(speed, float(np.abs(w.V[:, 3:]).max(initial=0.0)) * reach)
     pull = float(np.linalg.norm(w.A[:, :3], axis=1).max(initial=0.0))
-    pull = max(pull, float(np.abs(w.A[:, 3:]).max(initial=0.0)) * model.size)
-    speed = max(speed, np.sqrt(pull * model.size), model.size / max(scenario.solver.end, 1e-300))
-    return model.size, speed, np.array(depth)
+    pull = max(pull, float(np.abs(w.A[:, 3:]).max(initial=0.0)) * reach)
+    speed = max(speed, np.sqrt(pull * reach), reach / max(scenario.solver.end, 1e-300))
+    return reach, speed, np.array(depth)

@@ -246,7 +246,7 @@ def _fixed_step(scenario: Any) -> Iterator[str]:
                     f"joints.{name}: friction rises by {slope:.3g} N*s/m even at the slowest "
                     f"impact ({force:.3g} N), settles in {mass / slope:.1e} s; rk4 with a step of "
                     f"{h:.1e} s is unstable above {STABLE * mass / slope:.1e} s: take that, a "
-                    "larger v1, or `method: dop853`"
+                    "larger v1, or `method: auto`"
                 )
 
 
@@ -254,5 +254,5 @@ def _unresolved(where: str, h: float, period: float) -> Iterator[str]:
     if h > period / STEPS:
         yield (
             f"{where}: a contact lasts {period:.1e} s at most, {period / h:.3g} steps of rk4; take "
-            f"a step of {period / STEPS:.1e} s or less, or `method: dop853`"
+            f"a step of {period / STEPS:.1e} s or less, or `method: auto`"
         )

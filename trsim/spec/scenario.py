@@ -16,7 +16,8 @@ from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, number, vector
 from trsim.spec.text import Tree
 
-METHODS = ("dop853", "rk4", "scipy:BDF", "scipy:Radau", "scipy:RK45")
+METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
+           "scipy:BDF", "scipy:Radau", "scipy:RK45")  # fmt: skip
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
@@ -77,20 +78,23 @@ class Baumgarte(Spec):
 class SolverSpec(Spec):
     """How, how far and how exactly the motion is integrated.
 
-    method         dop853 has adaptive steps, rk4 fixed ones; scipy's are independent checks
+    method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
+                   two or three digits of stiff motion; rk4 has fixed steps; scipy's are
+                   independent checks
     end            time at which the run ends; needed by `run`, not by `check`
     step           of rk4
-    tolerance      error of a step, relative to the size of clearances or of the mechanism
+    tolerance      error of a step, relative to the size of clearances or of bodies
     stabilisation  how joints are kept closed
     baumgarte      rates of that stabilisation
     first_step     found out unless given
     max_step       largest step; a pulse shorter than a 200th of the run needs it
     max_steps      the run fails after as many
+    locate_events  end steps exactly where contacts open or close; rk4 does so only if told
     force          go on where a fixed step is known to be too large
     """
 
     type: ClassVar[str] = "solver"
-    method: Literal[METHODS] = "dop853"  # type: ignore[valid-type]
+    method: Literal[METHODS] = "auto"  # type: ignore[valid-type]
     end: Seconds | None = None
     step: Seconds | None = None
     tolerance: Annotated[float, Interval(ge=1e-14, le=1e-1), Unit("-")] = 1e-8
@@ -99,6 +103,7 @@ class SolverSpec(Spec):
     first_step: Seconds | None = None
     max_step: Seconds | None = None
     max_steps: Annotated[int, Gt(0)] | None = None
+    locate_events: Flag | None = None
     force: Flag = False
 
     @model_validator(mode="after")

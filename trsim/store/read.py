@@ -18,6 +18,7 @@ from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import split
+from trsim.store.tables import MAY_BE_NAN
 
 FORMAT, VERSION = "trsim run", 1
 SWMR = 0x04  # in byte 11 of the file: open for one writer, or its writer was killed
@@ -37,7 +38,7 @@ class Events(NamedTuple):
     """Onsets and separations of contacts."""
 
     time: Array  # s
-    kind: NDArray[Any]  # onset, separation
+    kind: NDArray[Any]  # onset, separation; of the element `solver`: to implicit, to explicit
     element: NDArray[Any]
     speed: Array  # m/s
     angle: Array  # rad
@@ -254,6 +255,8 @@ def _written(datasets: list[h5py.Dataset]) -> int:
     if datasets[0].file.attrs["status"] != "running":
         return n
     for dataset in datasets:
+        if dataset.name.rsplit("/", 1)[-1] in MAY_BE_NAN:
+            continue
         while n and dataset.dtype.kind == "f":
             begin = max(n - LONGEST, 0)
             filled = ~np.isnan(dataset[begin:n].reshape(n - begin, -1)).any(axis=1)

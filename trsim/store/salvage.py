@@ -8,6 +8,7 @@ import numpy as np
 from trsim.store.grow import AXES, Array
 from trsim.store.peaks import Peak
 from trsim.store.peaks import store as store_peaks
+from trsim.store.tables import MAY_BE_NAN
 
 ROWS = 1 << 14  # rows handled together
 LETTERS = "xyz"
@@ -163,7 +164,9 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
     n = max(end - begin, 0)
     time = piece["time"][:n]
     n = _first(~(np.diff(time, prepend=last) > 0.0), n)
-    for values in piece.values():
+    for name, values in piece.items():
+        if name in MAY_BE_NAN:
+            continue
         rows = values[:n].reshape(n, int(np.prod(values.shape[1:])))
         # a row that was never written; a text is empty then, see tables.KINDS
         unwritten = np.isnan(rows) if values.dtype.kind == "f" else rows == b""

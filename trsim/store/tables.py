@@ -7,7 +7,8 @@ import h5py
 from trsim.store.grow import Field, Growing
 
 EXPECTED = 256  # rows of the tables whose length nobody knows
-KINDS = ("", "onset", "separation")  # of events, by number
+MAY_BE_NAN = {"angle"}  # of an event: a stop has none
+KINDS = ("", "onset", "separation", "to implicit", "to explicit")  # of events, by number
 
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
@@ -29,13 +30,13 @@ def force_column(instance: Any) -> int:
 
 
 def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
-    """The table of onsets and separations."""
-    names = tuple(instance.name or "-" for instance in mechanism.instances)
+    """The table of onsets and separations, and of changes of method."""
+    names = (*(instance.name or "-" for instance in mechanism.instances), "solver")
     fields = [
         time_field,
         Field("kind", "", "what happened", 1, words=KINDS),
-        Field("element", "", "where", 2, words=names or ("-",)),
-        Field("speed", "m/s", "rate of penetration", 3),
+        Field("element", "", "where", 2, words=names),
+        Field("speed", "m/s", "rate of penetration; of the solver: largest eigenvalue, 1/s", 3),
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
     return Growing(file["events"], fields, 5, EXPECTED)

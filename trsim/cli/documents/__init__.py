@@ -4,6 +4,7 @@ Nothing here is imported when a command runs.  A number that is not finite is nu
 that did not end with 0 may leave out what its document has beyond `Document`.
 """
 
+from trsim.cli.documents.bench import Bench, Measured, Reference
 from trsim.cli.documents.checks import (
     Check,
     Checked,
@@ -26,6 +27,7 @@ from trsim.cli.documents.runs import (
 from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema, SectionPage
 
 __all__ = [
+    "Bench",
     "Channel",
     "Check",
     "Checked",
@@ -37,10 +39,12 @@ __all__ = [
     "Explain",
     "Export",
     "Key",
+    "Measured",
     "Projection",
     "Provenance",
     "Ran",
     "Recover",
+    "Reference",
     "Release",
     "Report",
     "Results",

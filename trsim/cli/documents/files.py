@@ -39,7 +39,7 @@ class Summary(TypedDict, total=False):
 
     time      simulated until, s
     rows      output rows
-    events    contact events
+    events    of contacts and of the solver
     contacts  by name
     """
 

@@ -33,7 +33,11 @@ class Statistics(TypedDict, total=False):
     evaluations               right-hand sides
     factorisations            of the constraint matrix
     dense_outputs             interpolants made
-    events                    contact events located
+    events                    onsets and separations located
+    corners                   of friction laws, passed
+    method_switches           between the explicit and the implicit method
+    jacobians                 made by the implicit method
+    newton_iterations         of the implicit method
     position_residual         largest of the constraints, m or rad
     velocity_residual         largest of the constraints, m/s or rad/s
     start_position_residual   removed by closing the joints at the start, m or rad
@@ -49,6 +53,10 @@ class Statistics(TypedDict, total=False):
     factorisations: int
     dense_outputs: int
     events: int
+    corners: int
+    method_switches: int
+    jacobians: int
+    newton_iterations: int
     position_residual: Number
     velocity_residual: Number
     start_position_residual: Number
@@ -72,7 +80,7 @@ class Results(TypedDict):
 
     time      simulated until, s
     rows      output rows
-    events    contact events
+    events    of contacts and of the solver
     contacts  by name
     """
 

@@ -1,0 +1,136 @@
+"""The scenarios of the problems that come in sizes: four-bar windows (P4) and chains (P5).
+
+`python -m benchmarks.problems` writes the smallest of each into scenarios/validation.
+"""
+
+from math import cos, sin
+from typing import NamedTuple
+
+from benchmarks.measure import SCENARIOS
+
+VALIDATION = SCENARIOS / "validation"
+
+# --- P4 ----------------------------------------------------------------------------------------
+
+WINDOWS = """\
+# P4: {n} four-bar windows side by side: {bodies} links of 1 m and 1 kg, one degree of freedom.  It
+# starts upright with the upper pins at 1 m/s along x and turns over and over; every half turn all
+# pins lie on one line and the Jacobian loses rank.
+# Expected: all uprights share one angle, theta'' = k sin(theta) with k = {k:.9f} 1/s^2
+# (tests/data/p4_windows.json); energy is conserved.
+title: Four-bar windows, N = {n}
+planar: true
+gravity: [0, -9.81, 0]
+"""
+
+
+def windows(n: int) -> str:
+    """N four-bars in a row: pins A0..AN on the ground, B0..BN above them."""
+    k = 9.81 * ((n + 1) / 2 + n) / ((n + 1) / 3 + n)
+    rod = f"mass: 1, inertia: {1 / 12!r}"
+    lines = [WINDOWS.format(n=n, bodies=2 * n + 1, k=k) + "bodies:"]
+    for i in range(n + 1):
+        lines.append(f"  upright{i}: {{{rod}, at: [{i}, 0.5], velocity: [0.5, 0], "
+                     "angular_velocity: [0, 0, -1]}")  # fmt: skip
+    for i in range(n):
+        lines.append(f"  bar{i}: {{{rod}, at: [{i + 0.5}, 1], velocity: [1, 0]}}")
+    lines.append("joints:")
+    for i in range(n + 1):
+        lines.append(f"  A{i}: {{type: revolute, bodies: [ground, upright{i}], at: [{i}, 0]}}")
+    for i in range(n):
+        for end, x in (("left", i), ("right", i + 1)):
+            lines.append(f"  B{x}_{end}: {{type: revolute, bodies: [upright{x}, bar{i}], "
+                         f"at: [{x}, 1]}}")  # fmt: skip
+    lines.append("sensors: {theta: {joint: A0, sign: -1}}")
+    lines.append("solver: {end: 10 s, tolerance: 1e-7}")
+    lines.append('output: {every: 10 ms, channels: ["upright0.*", "theta*", "energy.*"]}')
+    return "\n".join(lines) + "\n"
+
+
+# --- P5 ----------------------------------------------------------------------------------------
+
+LENGTH, MASS, RADIUS = 0.1, 0.1, 0.005  # of a rod: m, kg, m
+ABOUT = 0.5 * MASS * RADIUS**2  # kg m^2 about the rod's axis
+ACROSS = MASS * LENGTH**2 / 12 + MASS * RADIUS**2 / 4  # kg m^2
+
+
+class Rod(NamedTuple):
+    """How a rod starts."""
+
+    angle: float  # rad, in the plane z = 0 from +x
+    turn: float  # rad/s about y
+    spin: float  # rad/s about itself
+
+
+CHAIN = """\
+# P5: an open chain of {n} rods of 0.1 m and 0.1 kg, radius 5 mm, on spherical joints; the first one
+# holds on to the origin.  It starts as one straight line along +x that turns about y at 1 rad/s;
+# gravity is along -y.
+# Expected: the tip after 0.2 s as in tests/data/p5_chains.json; energy is conserved.
+title: Open chain of {n} rods
+"""
+
+BENT = """\
+# P5, bending: an open chain of {n} rods of 0.1 m and 0.1 kg, radius 5 mm, on spherical joints; the
+# first one holds on to the origin.  It starts as a zigzag in the plane z = 0, rods at +0.3 and
+# -0.3 rad to +x in turn, the first at +0.3; each rod turns about y at 1 or 3 rad/s in turn and all
+# spin at 40 rad/s about themselves, so every joint bends from the start; gravity is along -y.
+# Expected: the tip after 0.2 s as in tests/data/p5_chains.json; energy is conserved.
+title: Bending chain of {n} rods
+"""
+
+
+def chain(n: int) -> str:
+    """An open chain that starts as one rigid line."""
+    return _chain(CHAIN, straight_rods(n))
+
+
+def bending_chain(n: int) -> str:
+    """An open chain that starts as a zigzag, every joint turning."""
+    return _chain(BENT, zigzag_rods(n))
+
+
+def straight_rods(n: int) -> list[Rod]:
+    return [Rod(0.0, 1.0, 0.0)] * n
+
+
+def zigzag_rods(n: int) -> list[Rod]:
+    return [Rod(0.3, 1.0, 40.0) if i % 2 == 0 else Rod(-0.3, 3.0, 40.0) for i in range(n)]
+
+
+def _chain(head: str, rods: list[Rod]) -> str:
+    """The text of a chain; velocities follow from rod to rod:  v_end = v_start + omega x L d."""
+    n = len(rods)
+    lines = [head.format(n=n) + "planar: false", "gravity: [0, -9.81, 0]"]
+    lines += [f"parameters: {{about: {ABOUT!r}, across: {ACROSS!r}}}", "bodies:"]
+    joints, outer = [], "ground"
+    at, velocity = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for i, (angle, turn, spin) in enumerate(rods):
+        d = (cos(angle), sin(angle), 0.0)
+        omega = (spin * d[0], turn + spin * d[1], 0.0)
+        sweep = (0.0, 0.0, -turn * d[0])  # omega x d
+        lines.append(
+            f"  rod{i}: {{mass: {MASS}, inertia: [about, across, across], "
+            f"at: {_ahead(at, d, 0.5)}, angle: {angle}, "
+            f"velocity: {_ahead(velocity, sweep, 0.5)}, angular_velocity: {list(omega)}}}"
+        )
+        joints.append(f"  ball{i}: {{type: spherical, bodies: [{outer}, rod{i}], at: {list(at)}}}")
+        at, velocity = tuple(_ahead(at, d, 1.0)), tuple(_ahead(velocity, sweep, 1.0))
+        outer = f"rod{i}"
+    lines += ["joints:", *joints, "solver: {end: 0.2 s, tolerance: 1e-8}"]
+    lines.append(f'output: {{every: 10 ms, channels: ["rod{n - 1}.*", "energy.*"]}}')
+    return "\n".join(lines) + "\n"
+
+
+def _ahead(start: tuple, direction: tuple, part: float) -> list[float]:
+    return [a + part * LENGTH * b for a, b in zip(start, direction, strict=True)]
+
+
+def main() -> None:
+    (VALIDATION / "windows_2.yaml").write_text(windows(2))
+    (VALIDATION / "chain_10.yaml").write_text(chain(10))
+    (VALIDATION / "bending_chain_10.yaml").write_text(bending_chain(10))
+
+
+if __name__ == "__main__":
+    main()

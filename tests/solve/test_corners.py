@@ -1,0 +1,83 @@
+"""Friction passes its corners at located points, and nowhere else."""
+
+import numpy as np
+import pytest
+
+from trsim.laws.friction import beyond, branch_of, modified_coulomb, neighbour, on_branch
+
+from ..mechanisms import p1_slider_crank
+from ..runs import run
+
+V0, V1, MU = 1e-4, 1e-3, 0.3
+
+
+@pytest.mark.parametrize("v", [-2e-3, -V1, -5e-4, -V0, -5e-5, 0.0, 5e-5, V0, 5e-4, V1, 2e-3])
+def test_branches_are_the_law(v):
+    branch = branch_of(v, V0, V1)
+    assert on_branch(branch, 7.0, v, MU, V0, V1) == pytest.approx(
+        modified_coulomb(7.0, v, MU, V0, V1), abs=1e-15
+    )
+    assert beyond(branch, v, V0, V1) <= 0.0
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("corner, below, above", [(V0, 0.0, 1.0), (V1, 1.0, 2.0)])
+def test_a_corner_leads_to_the_neighbour(corner, below, above, sign):
+    v = sign * corner
+    assert beyond(sign * below, v, V0, V1) == pytest.approx(0.0, abs=1e-18)
+    assert beyond(sign * above, v, V0, V1) == pytest.approx(0.0, abs=1e-18)
+    assert neighbour(sign * below, v, V0, V1) == sign * above
+    assert neighbour(sign * above, v, V0, V1) == sign * below
+    # the two branches meet there, so nothing jumps
+    assert on_branch(sign * below, 7.0, v, MU, V0, V1) == pytest.approx(
+        on_branch(sign * above, 7.0, v, MU, V0, V1), abs=1e-12
+    )
+
+
+def test_methods_meet_the_same_corners():
+    """Two methods of different kind and order pass the same corners and agree."""
+    runs = [
+        run(p1_slider_crank(friction=True, tolerance=1e-8), f"solver.method={method}")
+        for method in ("dop853", "radau")
+    ]
+    corners = [r.outcome.statistics["corners"] for r in runs]
+    assert corners[0] == corners[1] > 0
+    v = [r["slider.velocity"][:, 0] for r in runs]
+    assert np.abs(v[0] - v[1]).max() < 1e-5 * np.abs(v[0]).max()
+
+
+LOADED = """
+planar: true
+bodies: {journal: {mass: 0.5, inertia: 1e-3, at: [0, 0]}}
+joints: {pin: {type: revolute, bodies: [ground, journal], at: [0, 0], clearance: 0.1 mm,
+               contact: steel}}
+contact_laws:
+  steel: {normal: lankarani_nikravesh, stiffness: 1e10, bearing_radius: 10 mm, restitution: 0.9,
+          friction: {law: modified_coulomb, coefficient: 0.3, v0: 1e-4, v1: 1e-3}}
+forces:
+  load: {type: applied_load, body: journal, at: [0, 0], direction: [0, -1],
+         force: "500*smoothstep(t/0.02)"}
+  turn: {type: applied_load, body: journal, direction: [0, 0, 1],
+         torque: "0.5*smoothstep((t - 0.05)/0.05)"}
+solver: {end: 0.2 s, tolerance: 1e-6}
+output: {every: 1 ms}
+"""
+
+
+def test_a_loaded_journal_creeps_at_the_balance_of_friction():
+    """The slow slip at which friction balances the load: a stiff rest, for `auto` to find.
+
+    The journal settles where tangential force and torque are in balance: the friction force is
+    torque / radius, and its speed lies on the ramp.
+    """
+    r = run(LOADED)
+    numbers = r.outcome.statistics
+    assert numbers["method_switches"] >= 1, "an explicit method would need a million steps"
+    assert numbers["steps"] < 3000
+    radius = 0.01 - 1e-4  # the journal's
+    F = abs(r["pin.friction_force"][-1])
+    assert abs(F * radius - 0.5) < 5e-4
+    N = r["pin.normal_force"][-1]
+    assert np.hypot(N, F) == pytest.approx(500.0, rel=1e-3)
+    speed = abs(r["pin.sliding_speed"][-1])
+    assert speed == pytest.approx(V0 + (V1 - V0) * F / (MU * N), rel=1e-2)

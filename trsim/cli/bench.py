@@ -1,0 +1,251 @@
+"""trsim bench: work against precision of a scenario, method by method."""
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from trsim.cli.frame import Answer, Stop, framed
+from trsim.cli.source import loaded, stem
+from trsim.errors import FileError, ScenarioError, TrsimError, UsageError, known
+
+METHODS = "auto,dop853,radau"
+MARK = "<"  # beside an error that the reference does not resolve
+
+
+@click.command("bench")
+@click.argument("scenario", type=click.Path())
+@click.option("--methods", default=METHODS, metavar="A,B", help=f"[default: {METHODS}]")
+@click.option("--tolerances", metavar="X,Y", help="[default: 1e-3,1e-4 ... 1e-8]")
+@click.option("--steps", metavar="X,Y", help="Of rk4.  [default: end/1000 ... end/30000]")
+@click.option(
+    "--reference", metavar="METHOD:TOL",
+    help="[default: radau, or dop853 for radau alone, 100 times tighter than the tightest]",
+)  # fmt: skip
+@click.option(
+    "--quantity", "quantities", multiple=True, metavar="CHANNEL",
+    help="Name or pattern of channels compared; repeatable.  "
+    "[default: sensors and their rates, or else positions of bodies]",
+)  # fmt: skip
+@click.option("--repeats", type=click.IntRange(min=1), default=3, show_default=True)
+@click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
+@click.option("-o", "--output", type=click.Path(), help="Folder of the figure and the table.")
+@framed
+def command(answer: Answer, scenario: str, output: str | None, **options: Any) -> None:
+    """Measure error and CPU time of methods and tolerances on SCENARIO.
+
+    Writes work_precision.png and work_precision.csv into runs/NAME.bench, or the folder of -o.
+    Errors are against a reference, whose own uncertainty is told.  Ctrl-C ends the measurement and
+    keeps what was measured.
+    """
+    folder = Path(output or f"runs/{stem(scenario)}.bench")
+    study = one(answer, scenario, folder, **options)
+    answer.data |= {"file": scenario, "folder": str(folder), **described(study)}
+    for text in lines(study):
+        answer.put(text)
+    if study.points:
+        from trsim.report.precision import draw
+
+        written = draw(study, folder)
+        answer.data["files"] = [str(path) for path in written]
+        for path in written:
+            answer.put(str(path))
+    if Stop.number:
+        raise KeyboardInterrupt
+
+
+def one(
+    answer: Answer, source: str, folder: Path, methods: str, tolerances: str | None,
+    steps: str | None, reference: str | None, quantities: tuple[str, ...], repeats: int,
+    sets: tuple[str, ...],
+) -> Any:  # fmt: skip
+    """The study of a scenario; what was measured until a signal, if one came."""
+    from trsim.cli.progress import compiling
+    from trsim.cli.run import placed
+
+    scenario = loaded(source, sets)
+    if scenario.solver.end is None:
+        what = "field required: end (s)"
+        raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
+    compiling(answer, "march.march")
+    from trsim.analyse import precision
+
+    named = [known_method(name) for name in methods.split(",")]
+    asked = [tolerance(x) for x in tolerances.split(",")] if tolerances else precision.TOLERANCES
+    ends = [scenario.solver.end / n for n in precision.FIXED]
+    fixed = [seconds(x) for x in steps.split(",")] if steps else ends
+    against = chosen(reference) if reference else precision.reference_setting(named, asked)
+    made(folder)
+    try:
+        return measured(answer, scenario, precision.plan(named, asked, fixed), against,
+                        quantities, repeats)  # fmt: skip
+    except TrsimError as error:
+        raise placed(error, scenario) from None
+
+
+def measured(
+    answer: Answer, scenario: Any, settings: list[Any], against: Any, quantities: tuple[str, ...],
+    repeats: int,
+) -> Any:  # fmt: skip
+    """The study, told row by row while it grows; a signal ends it between two blocks of a run."""
+    from trsim.analyse import precision
+    from trsim.analyse.trajectory import problem
+
+    of = problem(scenario, quantities)
+    found: list[Any] = []
+    Stop.patient = True
+    try:
+        reference = precision.reference(of, against, look)
+        for point in precision.points(of, reference, settings, repeats, look):
+            found.append(point)
+            answer.say(f"{len(found)} of {len(settings)}: {row(point)}")
+    except KeyboardInterrupt:
+        if not found:
+            raise
+        answer.say(f"interrupted: {len(found)} of {len(settings)} settings were measured")
+    finally:
+        Stop.patient = False
+    slopes = precision.slopes(found, reference)
+    return precision.Study(scenario.title, reference, tuple(found), slopes)
+
+
+def look() -> None:
+    """End a measurement when a signal asked for it."""
+    if Stop.number:
+        raise KeyboardInterrupt
+
+
+# --- what the options say --------------------------------------------------------------------
+
+
+def known_method(name: str) -> str:
+    from trsim.spec.scenario import METHODS as words
+
+    if name.strip() not in words:
+        raise UsageError(f"no method '{name}'", known(name, words))
+    return name.strip()
+
+
+def tolerance(text: str) -> float:
+    from trsim.analyse.precision import LOOSEST, TIGHTEST
+
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not TIGHTEST <= value <= LOOSEST:
+        told = f"a tolerance is a number from {TIGHTEST:g} to {LOOSEST:g}"
+        raise UsageError(f"'{text}' is no tolerance", f"{told}, for example 1e-6.")
+    return value
+
+
+def seconds(text: str) -> float:
+    from trsim.fields import number
+
+    try:
+        value = number(text, ("s",))
+    except ScenarioError as error:
+        raise UsageError(f"'{text}' is no step: {error.what}", error.hint) from None
+    if value <= 0.0:
+        raise UsageError(f"'{text}' is no step", "A step is positive, for example 1e-6 or '1 us'.")
+    return value
+
+
+def chosen(reference: str) -> Any:
+    """METHOD:TOLERANCE; the method may have a colon of its own."""
+    from trsim.analyse.trajectory import Setting
+
+    method, _, value = reference.rpartition(":")
+    if method == "rk4":
+        raise UsageError("rk4 has no tolerance", "Name an adaptive method: --reference radau:1e-10")
+    if not method:
+        raise UsageError(f"'{reference}' is no reference", "Write for example radau:1e-10.")
+    return Setting(known_method(method), tolerance(value))
+
+
+def made(folder: Path) -> None:
+    """Make the folder before anything is measured."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{folder}: {error.strerror or error}") from None
+
+
+# --- what is told ----------------------------------------------------------------------------
+
+
+def described(study: Any) -> dict[str, Any]:
+    """The study as a document."""
+    r = study.reference
+    return {
+        "title": study.title,
+        "reference": {
+            "method": r.setting.method,
+            "tolerance": r.setting.tolerance,
+            "second_method": r.other,
+            "second_failed": r.reason,
+            "uncertainty": r.uncertainty,
+            "peak_uncertainty": r.peak_uncertainty,
+            "apart": r.apart,
+            "ranges": r.ranges,
+            "still": list(r.still),
+        },
+        "points": [
+            {
+                **p.setting._asdict(),
+                "status": "failed" if p.reason else "done",
+                "reason": p.reason,
+                **{key: getattr(p, key) for key in NUMBERS},
+                "errors": p.errors or {},
+            }
+            for p in study.points
+        ],
+        "slopes": study.slopes,
+        "files": [],
+    }
+
+
+NUMBERS = ("error", "worst", "peak_error", "unresolved", "peak_unresolved", "cpu", "steps",
+           "evaluations")  # fmt: skip
+
+
+def lines(study: Any) -> list[str]:
+    """The table for a reader, and what is to be known about it."""
+    r = study.reference
+    first = f"reference  {r.setting.method}, tolerance {r.setting.tolerance:.0e}"
+    out = [first + (f"; {r.other} failed: {r.reason}" if r.reason else f", beside {r.other}")]
+    out.append(f"  uncertainty {size(r.uncertainty)}, of peaks {size(r.peak_uncertainty)}")
+    out += [f"  compared    {', '.join(r.ranges)}"]
+    out += [f"  left out    {', '.join(r.still)}: no motion"] if r.still else []
+    if r.apart is not None:
+        out.append(f"  from t = {r.apart:.6g} s on the two references differ by more than 1 %: "
+                   "pointwise errors mean nothing there")  # fmt: skip
+        out.append("  errors below are over the rows before that; compare the peaks")
+    out += ["", HEAD, *map(row, study.points), ""]
+    if any(p.unresolved or p.peak_unresolved for p in study.points):
+        out.append(f"{MARK}: not above the uncertainty of the reference")
+    of = "error" if r.apart is None else "peak error"
+    for method, value in study.slopes.items():
+        over = "step" if method == "rk4" else "tolerance"
+        told = f"{value:.2f}" if value == value else "- (fewer than two resolved errors)"
+        out.append(f"slope of {of} over {over}, {method}: {told}")
+    return out
+
+
+HEAD = (f"{'method':<18} {'tolerance':>9} {'step s':>9}   {'error':>8}    {'worst':>8}   "
+        f"{'peaks':>8}     {'CPU ms':>9} {'steps':>8} {'evaluations':>11}")  # fmt: skip
+
+
+def row(p: Any) -> str:
+    """One line of the table."""
+    setting = p.setting
+    text = f"{setting.method:<18} {size(setting.tolerance):>9} {size(setting.step):>9}   "
+    if p.reason:
+        return f"{text}failed: {p.reason}"
+    mark, peak_mark = (MARK if below else " " for below in (p.unresolved, p.peak_unresolved))
+    return (f"{text}{size(p.error):>8} {mark}  {size(p.worst):>8}   {size(p.peak_error):>8} "
+            f"{peak_mark}   {1e3 * p.cpu:9.3f} {p.steps:8d} {p.evaluations:11d}")  # fmt: skip
+
+
+def size(value: float | None) -> str:
+    return "-" if value is None or value != value else f"{value:.1e}"

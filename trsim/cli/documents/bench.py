@@ -1,0 +1,90 @@
+"""The document of measurements of work against precision."""
+
+from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
+
+from trsim.cli.documents.common import Document, Number
+from trsim.statuses import Ended
+
+
+class Reference(TypedDict):
+    """What errors are taken against.
+
+    method            of the run
+    tolerance         of its steps
+    second_method     of another run, at the same tolerance
+    second_failed     why that one did not reach its end, or ""
+    uncertainty       error of the second run
+    peak_uncertainty  peak error of the second run; null without contacts
+    apart             s; from here on the two differ by more than 1 % of a range, and errors are
+                      taken over the rows before; null where they never do
+    ranges            quantity -> its largest less its smallest value, SI
+    still             quantities that do not move, and are left out
+    """
+
+    method: str
+    tolerance: float
+    second_method: str
+    second_failed: str
+    uncertainty: Number
+    peak_uncertainty: Number
+    apart: Number
+    ranges: dict[str, Number]
+    still: list[str]
+
+
+class Measured(TypedDict):
+    """One method at one setting.
+
+    method           as in a scenario
+    tolerance        of its steps; null with fixed ones
+    step             s; null without fixed ones
+    status           how the runs ended; nothing is measured of one that failed
+    reason           why it failed, or ""
+    error            largest difference to the reference over the range, of all quantities; median
+                     over first steps
+    worst            of the first steps
+    peak_error       largest relative difference of a contact's largest force; null without any
+    unresolved       whether the error is not above the uncertainty of the reference
+    peak_unresolved  the same of the peak error
+    cpu              s, of the integration without output rows; median
+    steps            accepted, median
+    evaluations      right-hand sides, median
+    errors           quantity -> error
+    """
+
+    method: str
+    tolerance: Number
+    step: Number
+    status: Ended
+    reason: str
+    error: Number
+    worst: Number
+    peak_error: Number
+    unresolved: bool
+    peak_unresolved: bool
+    cpu: Number
+    steps: int
+    evaluations: int
+    errors: dict[str, Number]
+
+
+class Bench(Document):
+    """trsim bench.
+
+    file       as given
+    title      of the scenario
+    folder     of the figure and the table
+    reference  what errors are taken against
+    points     methods at their settings, in the order measured; after a signal, those until then
+    slopes     method -> slope of log error over log tolerance (or step), resolved errors alone, of
+               peak errors where the references part; null of fewer than two
+    files      written, in that folder
+    """
+
+    file: str
+    title: str
+    folder: str
+    reference: Reference
+    points: list[Measured]
+    slopes: dict[str, Number]
+    files: list[str]

@@ -1,0 +1,106 @@
+"""Work against precision as a figure and a table: error to the right, CPU time upwards."""
+
+import csv
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trsim.errors import FileError
+
+if TYPE_CHECKING:
+    from trsim.analyse.precision import Point, Study
+
+NAME = "work_precision"
+MARKS = "osD^vP*X"
+FIELDS = ("error", "worst", "peak_error", "unresolved", "peak_unresolved", "cpu", "steps",
+          "evaluations", "reason")  # fmt: skip
+
+
+def draw(study: "Study", folder: Path) -> list[Path]:
+    """work_precision.png and work_precision.csv; raises FileError."""
+    from trsim.report.style import look, save
+
+    try:
+        with look():
+            picture = save(figure(study), folder / f"{NAME}.png")
+        return [picture, write(study, folder / f"{NAME}.csv")]
+    except OSError as error:
+        raise FileError(f"{folder}: {error.strerror or error}") from None
+
+
+def write(study: "Study", path: Path) -> Path:
+    """The table as CSV, SI units, numbers in full."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        heads = [f"{name} [s]" if name == "cpu" else name for name in FIELDS]
+        table.writerow(["method", "tolerance", "step [s]", *heads])
+        for p in study.points:
+            values = [*p.setting, *(getattr(p, name) for name in FIELDS)]
+            table.writerow([repr(v) if isinstance(v, float) else v for v in values])
+    return path
+
+
+def figure(study: "Study") -> Any:
+    """Errors of the motion and, where there are contacts, of their peaks; hollow: unresolved."""
+    from trsim.report.style import WIDTH, panels
+
+    peaks = any(np.isfinite(p.peak_error) for p in study.points)
+    made, axes = panels(1, 1 + peaks, height=3.6, width=WIDTH, sharey=True)
+    to = study.reference
+    end = "" if to.apart is None else f", until {to.apart:.4g} s"
+    curves(axes[0, 0], study, "error", "unresolved", to.uncertainty)
+    axes[0, 0].set_xlabel(f"largest error / range{end} (-)")
+    axes[0, 0].set_ylabel("CPU time of the integration (ms)")
+    if peaks:
+        curves(axes[0, 1], study, "peak_error", "peak_unresolved", to.peak_uncertainty)
+        axes[0, 1].set_xlabel("relative error of peak contact forces (-)")
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    made.legend(handles, labels, loc="outside lower center", ncols=2)
+    head = textwrap.fill("Work against precision" + (study.title and f": {study.title}"), 74)
+    told = f"reference {to.setting.method}, tolerance {to.setting.tolerance:.0e}"
+    made.suptitle(f"{head}\n{told}", fontsize=10)
+    return made
+
+
+def curves(axes: Any, study: "Study", field: str, below: str, uncertainty: float) -> None:
+    """A curve per method, from its loosest setting to its tightest."""
+    from trsim.report.style import colour
+
+    axes.set(xscale="log", yscale="log")
+    for k, (method, slope) in enumerate(study.slopes.items()):
+        there = [p for p in study.points if p.setting.method == method and shown(p, field)]
+        x = np.array([getattr(p, field) for p in there])
+        y = np.array([1e3 * p.cpu for p in there])
+        filled = np.array([not getattr(p, below) for p in there], bool)
+        over = "step" if method == "rk4" else "tolerance"
+        of = "error" if study.reference.apart is None else "peak error"
+        label = f"{method}, {of} ~ {over}$^{{{slope:.2f}}}$" if np.isfinite(slope) else method
+        label += "" if there else " (nothing to show)"
+        axes.plot(x, y, color=colour(k))
+        mark, size = MARKS[k % len(MARKS)], 4.5
+        axes.plot(x[~filled], y[~filled], mark, ms=size, color=colour(k), mfc="white")
+        axes.plot(x[filled], y[filled], mark, ms=size, color=colour(k))
+        axes.plot([], [], f"{mark}-", ms=size, color=colour(k), label=label)
+    if uncertainty > 0.0:
+        axes.axvline(uncertainty, color="0.5", ls="--",
+                     label="uncertainty of the reference; hollow: not above it")  # fmt: skip
+    decades(axes)
+    axes.invert_xaxis()
+
+
+def decades(axes: Any) -> None:
+    """Whole decades of error, so that ticks have room."""
+    from matplotlib.ticker import NullFormatter
+
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    low, high = np.log10(axes.dataLim.intervalx)
+    if np.isfinite(low) and np.isfinite(high):
+        low = np.floor(low)
+        axes.set_xlim(10.0**low, 10.0 ** max(np.ceil(high), low + 1.0))
+
+
+def shown(p: "Point", field: str) -> bool:
+    """Whether a point has a place on logarithmic axes."""
+    return not p.reason and bool(getattr(p, field) > 0.0) and p.cpu > 0.0

@@ -1,0 +1,134 @@
+"""Explicit or implicit: which of two methods makes the next step.
+
+An explicit method whose steps are held at its limit of stability,
+
+    h rho > 6.1,    rho = |f(y_1) - f(Y_12)| / |y_1 - Y_12|                 [HairerWanner1996]
+
+with Y_12 the last stage of DOP853 (both at t + h), for 15 steps gives way to the implicit one.  The
+implicit one gives back after an event, or when its own steps, with the largest eigenvalue of its
+matrices by a few vector iterations, would be stable for the explicit one as well.
+"""
+
+from math import sqrt
+
+from trsim.elements.vectors import internal
+from trsim.solve import dop853_tableau
+from trsim.solve.displacements import active
+from trsim.solve.record import (
+    EVENT_ANGLE,
+    EVENT_KIND,
+    EVENT_ROW,
+    EVENT_ROWS,
+    EVENT_SPEED,
+    EVENT_TIME,
+    FACTORED_H,
+    HISTORY,
+    JACOBIAN,
+    METHOD,
+    NO_JACOBIAN,
+    NOT_STIFF,
+    PAST_ERROR,
+    STIFF,
+    SWITCHES,
+    TO_EXPLICIT,
+    TO_IMPLICIT,
+    H,
+    T,
+)
+
+A = dop853_tableau.A
+EXPLICIT, IMPLICIT = 0, 1  # rows of `methods`
+STABLE = 6.1  # h rho of DOP853 on the negative real axis
+STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
+EASY = 3.0  # h rho at which the explicit method takes steps of the same length
+ITERATIONS = 12  # of the vector iteration
+
+
+@internal
+def choose(s, r, b, h, event):
+    """Change r.count[METHOD] where the steps so far say so; leaves a line among the events."""
+    if r.count[METHOD] == EXPLICIT:
+        if event:
+            return
+        load = h * explicit_rate(s, r, b, h)
+        if load > STABLE:
+            r.count[STIFF] += 1
+            r.count[NOT_STIFF] = 0
+            if r.count[STIFF] >= STIFF_STEPS:
+                change(s, r, b, IMPLICIT, load)
+        else:
+            r.count[NOT_STIFF] += 1
+            if r.count[NOT_STIFF] >= RELIEF:
+                r.count[STIFF] = 0
+        return
+    if event:
+        change(s, r, b, EXPLICIT, 0.0)
+        return
+    load = h * implicit_rate(s, r, b)
+    r.count[STIFF] = r.count[STIFF] + 1 if load < EASY else 0
+    if r.count[STIFF] >= CHEAP_STEPS:
+        change(s, r, b, EXPLICIT, load)
+
+
+@internal
+def change(s, r, b, method, load):
+    """Go on with the other method; the line says how stiff the last step was."""
+    r.count[METHOD] = method
+    r.count[STIFF], r.count[NOT_STIFF] = 0, 0
+    r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+    r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
+    r.count[SWITCHES] += 1
+    line = b.events[r.count[EVENT_ROWS]]
+    r.count[EVENT_ROWS] += 1
+    line[EVENT_TIME], line[EVENT_ROW] = r.clock[T], s.con.shape[0]
+    line[EVENT_KIND] = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
+    line[EVENT_SPEED] = load / r.clock[H] if r.clock[H] > 0.0 else 0.0
+    line[EVENT_ANGLE] = load
+
+
+@internal
+def explicit_rate(s, r, b, h):
+    """rho, 1/s: how much the derivative changes with the state, in the units of the error."""
+    K, weight = b.K, b.weight
+    top = bottom = 0.0
+    for c in range(r.y.size):
+        if weight[c] > 0.0:
+            # r.y is the end of the step by now: the difference to the last stage is in K alone
+            away = 0.0
+            for k in range(12):
+                away += (A[12, k] - A[11, k]) * K[k, c]
+            top += ((K[12, c] - K[11, c]) * weight[c]) ** 2
+            bottom += (h * away * weight[c]) ** 2
+    return sqrt(top / bottom) if bottom > 0.0 else 0.0
+
+
+@internal
+def implicit_rate(s, r, b):
+    """Largest eigenvalue of the linearised motion, 1/s, by vector iteration on (dx, dw)."""
+    n, n_v = active(s), s.n_v
+    x, w, u = b.K[3], b.K[4], b.K[5]
+    for k in range(n_v):
+        x[k] = 1.0 if k % 2 == 0 else -0.7
+    for k in range(n):
+        w[k] = 1.0 if k % 3 == 0 else 0.6
+    product = 1.0
+    for turn in range(ITERATIONS):
+        before = size = 0.0
+        for i in range(n):
+            total = 0.0
+            for k in range(n_v):
+                total += r.by_place[i, k] * x[k]
+            for k in range(n):
+                total += r.by_rate[i, k] * w[k]
+            u[i] = total
+            size = max(size, abs(total))
+            before = max(before, abs(w[i]))
+        if size == 0.0 or before == 0.0:
+            return 0.0
+        for k in range(n_v):
+            x[k] = w[k] / size
+        for i in range(n):
+            w[i] = u[i] / size
+        if turn >= ITERATIONS - 4:  # an oscillation grows by rho^2 in two turns
+            product *= size / before
+    return sqrt(sqrt(product))

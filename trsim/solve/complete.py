@@ -1,0 +1,216 @@
+"""A trial step made an accepted one: projected, searched for events, its results written.
+
+What is found on the interpolant is made exact; only then the record changes.
+"""
+
+from math import isfinite
+
+from trsim.assemble.equations import evaluate
+from trsim.assemble.outputs import measure
+from trsim.elements import signatures as types
+from trsim.elements.calls import caller
+from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
+from trsim.elements.packed import A1, I1, f8, i8
+from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
+from trsim.solve.calls import call_dense, call_interpolate, call_step
+from trsim.solve.events import any_suspicious, first_event
+from trsim.solve.land import land
+from trsim.solve.norm import grow
+from trsim.solve.peaks import near_peak, peaks_inside, refine
+from trsim.solve.phases import change_phases, latch
+from trsim.solve.record import (
+    BUFFERS,
+    DENSE_BUILT,
+    ENERGY_0,
+    EVERY,
+    HISTORY,
+    LARGEST_ENERGY,
+    LARGEST_RESIDUAL,
+    LENGTH,
+    LOCATE,
+    NEXT_ROW,
+    PAST_H,
+    RECORD,
+    ROWS,
+    SAME_TIME,
+    STEP_ROWS,
+    STEPS,
+    T_END,
+    TOLERANCE,
+    WORK_PROJECTION,
+    T,
+)
+
+# what `complete` made of a trial step
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
+# a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
+# of K holds the last derivative, the power of h its error estimate falls with, whether implicit
+STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
+METHOD_WIDTH = 7
+SMALLEST = 16.0  # ulp of t: a smaller step is no step
+EXACT = 5  # Newton steps to the end of a step that an event cuts
+PRECISE = 1e-6  # of the error allowed: what is left of a gap there
+
+#                       scene   record  buffers  settings method h built
+COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+call_complete = caller(COMPLETE)
+
+
+@compiled(COMPLETE)
+def complete(s, r, b, setting, method, h, built):
+    """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
+
+    built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
+    step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch) or
+    WORTHLESS (values not finite; nothing was changed).
+    """
+    last, t = method[LAST_AT], r.clock[T]
+    t1 = setting[T_END] if t + h >= setting[T_END] else t + h
+    projected = land(s, r, b, t1, b.y1, b.K[last])
+    if not all_finite(b.y1) or not all_finite(b.K[last]):
+        return WORTHLESS
+    event = False
+    if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
+        if built == 0:
+            build(s, r, b, method, t, h)
+            built = 1
+        theta = first_event(s, r, b, t, h, method[INTERPOLATE_AT])
+        event = theta <= 1.0
+        if event and theta < 1.0:
+            shorter = exact(s, r, b, setting, method, t, h, theta)
+            if shorter > 0.0:
+                h, built = shorter, 0
+                t1 = t + h
+            else:
+                call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
+                copy_to(b.y1, b.y2)
+                t1 = t + theta * h
+            projected = land(s, r, b, t1, b.y1, b.K[last])
+        else:
+            # the search left other poses in the workspace
+            evaluate(s, t1, b.y1, b.K[last])
+    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+    copy_to(b.out, s.out)
+    near = near_peak(s, r, b, t1, t1 - t, last)
+    inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
+    if built == 0 and (near or inside or method[IMPLICIT_AT] > 0):
+        build(s, r, b, method, t, h)
+    if near or due(r, setting, t1):
+        if not rows_until(s, r, b, setting, method[INTERPOLATE_AT], t, h, t1, projected):
+            return WORTHLESS
+        if near:
+            peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
+    accept(s, r, b, t1, projected, last)
+    if method[IMPLICIT_AT] > 0:
+        for k in range(r.past.shape[0]):
+            copy_to(r.past[k], b.P[k])
+        r.clock[PAST_H], r.count[HISTORY] = h, 1
+    if event:
+        return WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
+    if setting[LOCATE] == 0.0:
+        latch(s, r)
+    return SMOOTH_STEP
+
+
+@internal
+def build(s, r, b, method, t, h):
+    """The dense output of the step, into b.P."""
+    call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
+    r.count[DENSE_BUILT] += 1
+
+
+@internal
+def exact(s, r, b, setting, method, t, h, theta):
+    """The step that ends on the event found at theta, for methods with a poor interpolant.
+
+    A gap at its end is brought to zero by Newton's method; a corner is good enough as found.
+    Returns its length, its end in b.y1; 0 where the interpolant serves.
+    """
+    if method[STEP_AT] == 0:
+        return 0.0
+    gap_of = -1
+    for c in range(s.contact.size):
+        if b.root[c] <= theta:
+            gap_of = c
+    h1 = theta * h
+    for _ in range(EXACT):
+        if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
+            return 0.0
+        error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
+        if not isfinite(error):
+            return 0.0
+        if gap_of < 0:
+            break
+        land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
+        gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
+        if abs(gap) <= PRECISE * setting[TOLERANCE] * r.clock[LENGTH] or rate == 0.0:
+            break
+        h1 -= gap / rate
+    return h1
+
+
+@internal
+def due(r, setting, t1):
+    """Whether an output time lies at or before t1."""
+    return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
+
+
+@internal
+def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
+    """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
+
+    Returns False, and writes none of them, where a value is not finite.
+    """
+    rows, next_row = r.count[ROWS], r.count[NEXT_ROW]
+    while r.count[ROWS] < b.rows.shape[0]:
+        t_o = setting[EVERY] * r.count[NEXT_ROW]
+        if t_o > t1 * (1.0 + 1e-15):
+            break
+        row = b.rows[r.count[ROWS]]
+        row[0] = t_o
+        if abs(t_o - (t + h)) <= 1e-15 * abs(t_o) and t1 >= t + h:
+            copy_to(row[1:], b.out)
+        else:
+            theta = (t_o - t) / h
+            call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+            evaluate(s, t_o, b.y2, b.K[1])
+            done = r.clock[WORK_PROJECTION] + theta * projected
+            measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
+            copy_to(row[1:], s.out)
+        if not all_finite(row):
+            r.count[ROWS], r.count[NEXT_ROW] = rows, next_row
+            return False
+        r.count[ROWS] += 1
+        r.count[NEXT_ROW] += 1
+    return True
+
+
+@internal
+def accept(s, r, b, t1, projected, last):
+    """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
+    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if t1 <= r.clock[T] else 0
+    r.clock[T] = t1
+    r.clock[WORK_PROJECTION] += projected
+    copy_to(r.y, b.y1)
+    copy_to(r.yd, b.K[last])
+    copy_table(r.gap, b.gap1)
+    copy_to(r.corner, b.corner1)
+    copy_to(r.branch, b.branch1)
+    r.count[STEPS] += 1
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        if r.mem[e, PHASE] != FLIGHT and r.gap[c, 0] > 0.0:
+            grow(s, r, c)
+            if s.wanted[e] >= 0 and b.steps.shape[1] > 2:
+                line = b.steps[r.count[STEP_ROWS]]
+                line[0], line[1] = t1, e
+                for k in range(line.size - 2):
+                    line[2 + k] = b.out[s.wanted[e] + k] if s.wanted[e] + k < s.n_out else 0.0
+                r.count[STEP_ROWS] += 1
+    if s.column_energy >= 0:
+        for c in range(s.column_energy, s.n_out - 1):
+            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], abs(b.out[c]))
+        residual = abs(b.out[s.n_out - 1])
+        r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
+    refine(s, r, b.out, t1)
+    copy_to(r.slope, b.slope1)

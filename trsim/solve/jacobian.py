@@ -1,0 +1,47 @@
+"""Derivatives of the accelerations, for implicit methods.
+
+The equations of motion are of second order in the places x and of first order in w = (v, states of
+elements), so what an implicit method needs of them is small:
+
+    w' = g(t, x, w)        by_place = dg/dx (n_w, n_v),        by_rate = dg/dw (n_w, n_w)
+
+Displacements are those of displacements.py.  Forward differences, each step a small part of the
+unit of its entry in the error norm: the stiff part comes from contacts, and the unit is the
+smallest penetration that matters.
+"""
+
+from trsim.assemble.equations import evaluate
+from trsim.elements.vectors import copy_to, internal
+from trsim.solve.displacements import active, displace, place_of, w_index
+from trsim.solve.record import FRESH, JACOBIAN, JACOBIANS, TOLERANCE
+
+PART = 3e-4  # of an entry's unit: the step of a difference
+
+
+@internal
+def jacobian(s, r, b, setting, t, trial, rates):
+    """Fill by_place and by_rate at (t, r.y), where y' is r.yd.  trial, rates: scratch (n_y)."""
+    n_w, tolerance = active(s), setting[TOLERANCE]
+    for k in range(s.n_v):
+        # the unit of a displacement is that of the velocity's partner: same arm, length for speed
+        unit = 1.0 / (b.weight[place_of(s, k)] * tolerance)
+        if s.d == 6 and k % 6 > 2:
+            unit *= 2.0  # half a turn vector makes a quaternion
+        copy_to(trial, r.y)
+        displace(s, trial, k, PART * unit)
+        evaluate(s, t, trial, rates)
+        for row in range(n_w):
+            i = w_index(s, row)
+            r.by_place[row, k] = (rates[i] - r.yd[i]) / (PART * unit)
+    for k in range(n_w):
+        i = w_index(s, k)
+        unit = 1.0 / (b.weight[i] * tolerance) if b.weight[i] > 0.0 else 1.0
+        copy_to(trial, r.y)
+        trial[i] += PART * unit
+        part = trial[i] - r.y[i]
+        evaluate(s, t, trial, rates)
+        for row in range(n_w):
+            i = w_index(s, row)
+            r.by_rate[row, k] = (rates[i] - r.yd[i]) / part
+    r.count[JACOBIAN] = FRESH
+    r.count[JACOBIANS] += 1

@@ -1,0 +1,106 @@
+"""What changes at a contact event: the phase of the contact, its memory, the next step."""
+
+import numpy as np
+
+from trsim.assemble.equations import corners, evaluate, poses
+from trsim.elements.contract import BRANCH, CONTACT, FLIGHT, IMPACT_SPEED, PHASE
+from trsim.elements.vectors import internal
+from trsim.solve.corners import look
+from trsim.solve.events import NONE, SAME, flip, hertz_step
+from trsim.solve.record import (
+    CORNERS,
+    EVENT_ANGLE,
+    EVENT_KIND,
+    EVENT_ROW,
+    EVENT_ROWS,
+    EVENT_SPEED,
+    EVENT_TIME,
+    EVENTS,
+    HISTORY,
+    JACOBIAN,
+    LAST_EVENT,
+    NO_JACOBIAN,
+    ONSET,
+    PEAK_T1,
+    SEPARATION,
+    TOLERANCE,
+    H,
+)
+
+TINY = 1e-300
+
+
+@internal
+def change_phases(s, r, b, setting, t1):
+    """Switch every contact whose event is the one just stepped to; latch impact speeds.
+
+    Returns whether a contact opened or closed; otherwise a law met a corner.
+    """
+    first = NONE
+    for c in range(s.contact.size):
+        first = min(first, b.root[c], b.corner_root[c])
+    poses(s, r.y)
+    corners(s, t1)
+    for c in range(s.contact.size):
+        if b.corner_root[c] <= first + SAME:
+            s.mem[s.contact[c], BRANCH] = s.corner[s.contact[c], 1]
+            r.count[CORNERS] += 1
+    touched = False
+    h = 1e300
+    for c in range(s.contact.size):
+        if b.root[c] > first + SAME:
+            continue
+        touched = True
+        e = s.contact[c]
+        r.mem[e, PHASE] = flip(r.mem[e, PHASE])
+        r.count[EVENTS] += 1
+        line = b.events[r.count[EVENT_ROWS]]
+        r.count[EVENT_ROWS] += 1
+        onset = r.mem[e, PHASE] == CONTACT
+        line[EVENT_TIME], line[EVENT_ROW] = t1, e
+        line[EVENT_KIND] = ONSET if onset else SEPARATION
+        line[EVENT_SPEED] = r.gap[c, 1]
+        line[EVENT_ANGLE] = np.nan  # a stop has no angle
+        o = s.wanted[e] + s.contact_angle[c]
+        if s.contact_angle[c] >= 0 and s.wanted[e] >= 0:
+            line[EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
+        if onset:
+            speed = max(r.gap[c, 1], s.contact_par[c, 4])
+            r.mem[e, IMPACT_SPEED] = speed
+            look(s, c)
+            if s.contact_state[c] >= 0:
+                r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
+            speed = max(speed, 1e-12)
+            h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
+                                  speed, setting[TOLERANCE]))  # fmt: skip
+        else:
+            r.mem[e, IMPACT_SPEED] = 0.0
+    if touched:
+        r.clock[LAST_EVENT] = t1
+    r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+    evaluate(s, t1, r.y, r.yd)
+    corners(s, t1)
+    for c in range(s.contact.size):
+        # inside its new branch, whatever rounding says
+        r.corner[c] = min(s.corner[s.contact[c], 0], -TINY)
+    for k in range(s.n_out):
+        r.peak[k, PEAK_T1] = t1  # no parabola across an event
+    for c in range(s.contact.size):
+        if s.mem[s.contact[c], PHASE] == FLIGHT:
+            r.slope[c] = 0.0
+        elif b.root[c] <= first + SAME:
+            r.slope[c] = 1.0  # a touch: the force grows from here
+    if h < 1e300:
+        r.clock[H] = min(r.clock[H], h)
+    return touched
+
+
+@internal
+def latch(s, r):
+    """Methods that locate nothing: remember the approach speed of a running contact."""
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        if r.gap[c, 0] <= 0.0:
+            r.mem[e, IMPACT_SPEED] = 0.0
+        elif r.mem[e, IMPACT_SPEED] == 0.0:
+            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])

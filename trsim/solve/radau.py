@@ -1,0 +1,312 @@
+"""Radau IIA, three stages, order 5, implicit, L-stable, on the index-1 equations of motion.
+
+    Z_i = h sum_j a_ij f(t + c_j h, y + Z_j)        y_1 = y + Z_3        [HairerWanner1996]
+
+A^-1 is brought to one real and one complex eigenvalue; a Newton step then solves, with mu one of
+them over h, (mu - J) dW = r.  The equations are of second order: with x' = v the displacements are
+eliminated,
+
+    (mu - by_rate - by_place / mu) dw = r_w + by_place r_x / mu,     dx = (r_x + dv) / mu
+
+so the systems have n_w unknowns instead of two for each.  The energy book feeds nothing back and
+needs no matrix.  Dense output: the collocation polynomial, order 3; it starts the next Newton.
+"""
+
+from math import isfinite, sqrt
+
+import numpy as np
+
+from trsim.assemble.equations import evaluate
+from trsim.elements.contract import N_BOOK, compiled
+from trsim.elements.vectors import all_finite, internal
+from trsim.solve.calls import DENSE, INTERPOLATE, STEP
+from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
+from trsim.solve.displacements import active, moved_by, twisted, w_index
+from trsim.solve.jacobian import jacobian
+from trsim.solve.record import (
+    AFTER_REJECTION,
+    FACTORED_H,
+    FRESH,
+    HISTORY,
+    ITERATIONS,
+    JACOBIAN,
+    NEWTON_RATE,
+    NO_JACOBIAN,
+    OLD,
+    PAST_H,
+)
+
+ORDER = 5
+ESTIMATE = 4  # the error estimate falls with h^4
+STAGES = 14
+LAST = 2
+DENSE_ROWS = 4
+ADAPTIVE, IMPLICIT = True, True
+
+_S6 = sqrt(6.0)
+C = np.array([(4.0 - _S6) / 10.0, (4.0 + _S6) / 10.0, 1.0])
+A = np.array(
+    [
+        [(88.0 - 7.0 * _S6) / 360.0, (296.0 - 169.0 * _S6) / 1800.0, (-2.0 + 3.0 * _S6) / 225.0],
+        [(296.0 + 169.0 * _S6) / 1800.0, (88.0 + 7.0 * _S6) / 360.0, (-2.0 - 3.0 * _S6) / 225.0],
+        [(16.0 - _S6) / 36.0, (16.0 + _S6) / 36.0, 1.0 / 9.0],
+    ]
+)
+
+
+def _transformed():
+    """Real basis T with T^-1 A^-1 T = diag(gamma, [[alpha, -beta], [beta, alpha]])."""
+    values, vectors = np.linalg.eig(np.linalg.inv(A))
+    real = int(np.argmin(np.abs(values.imag)))
+    pair = int(np.argmax(values.imag))
+    # columns Re u, -Im u of A^-1 u = (alpha + i beta) u give that block
+    T = np.column_stack([vectors[:, real].real, vectors[:, pair].real, -vectors[:, pair].imag])
+    return T, np.linalg.inv(T), values[real].real, values[pair].real, values[pair].imag
+
+
+T, T_INVERSE, GAMMA, ALPHA, BETA = _transformed()
+E = np.array([-13.0 - 7.0 * _S6, -13.0 + 7.0 * _S6, -1.0]) / 3.0  # of the error estimate
+
+Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
+MOST_ITERATIONS = 8
+KAPPA = 0.01  # of the error allowed: what Newton may leave
+QUICK = 0.02  # contraction with which a matrix is kept for the next step
+HALVE = 10.0  # an error that says: Newton failed, take about half the step
+
+
+@compiled(STEP)
+def step(s, r, b, setting, t, h):
+    for attempt in range(3):
+        if r.count[JACOBIAN] == NO_JACOBIAN or (attempt > 0 and r.count[JACOBIAN] == OLD):
+            jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
+            r.clock[FACTORED_H] = 0.0
+        elif attempt > 0:
+            return HALVE
+        if r.clock[FACTORED_H] != h and not factorised(s, r, h):
+            r.clock[FACTORED_H] = 0.0
+            return HALVE
+        guess(s, r, b, h)
+        converged = newton(s, r, b, t, h)
+        if converged > 0:
+            break
+        if converged < 0 and r.count[JACOBIAN] == FRESH:
+            return np.inf
+    else:
+        return HALVE
+    n = r.y.size
+    for c in range(n):
+        b.y1[c] = r.y[c] + b.K[Z + 2, c]
+    error = estimate(s, r, b, t, h)
+    if error <= 1.0:  # the state moves on; its matrix is good for as long as Newton is quick
+        r.count[JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    return error
+
+
+@internal
+def factorised(s, r, h):
+    """Factors of mu - by_rate - by_place / mu for the real and the complex mu."""
+    n = active(s)
+    if n == 0:
+        r.clock[FACTORED_H] = h
+        return True
+    real, re, im = r.lu[:n], r.lu[n : 2 * n], r.lu[2 * n :]
+    g, a, c = GAMMA / h, ALPHA / h, BETA / h
+    size = a * a + c * c
+    for i in range(n):
+        for k in range(n):
+            B = r.by_place[i, k] if k < s.n_v else 0.0
+            real[i, k] = -r.by_rate[i, k] - B / g
+            re[i, k] = -r.by_rate[i, k] - B * a / size
+            im[i, k] = B * c / size
+        real[i, i] += g
+        re[i, i] += a
+        im[i, i] += c
+    if not factorise_real(real, r.pivot[0], n):
+        return False
+    if not factorise_complex(re, im, r.pivot[1], n):
+        return False
+    r.clock[FACTORED_H] = h
+    return True
+
+
+@internal
+def guess(s, r, b, h):
+    """Start Newton from the polynomial of the step before, drawn on; W = T^-1 Z."""
+    K, n = b.K, r.y.size
+    if r.count[HISTORY] > 0:
+        ratio = h / r.clock[PAST_H]
+        for i in range(3):
+            theta = C[i] * ratio
+            for c in range(n):
+                K[Z + i, c] = polynomial(r.past, c, theta)
+    else:
+        for i in range(3):
+            for c in range(n):
+                K[Z + i, c] = 0.0
+    for i in range(3):
+        for c in range(n):
+            K[W + i, c] = (
+                T_INVERSE[i, 0] * K[Z, c]
+                + T_INVERSE[i, 1] * K[Z + 1, c]
+                + T_INVERSE[i, 2] * K[Z + 2, c]
+            )
+
+
+@internal
+def newton(s, r, b, t, h):
+    """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite."""
+    K, n, weight = b.K, r.y.size, b.weight
+    g, a, c = GAMMA / h, ALPHA / h, BETA / h
+    counted, floor = 0, 0.0
+    for k in range(n):
+        if weight[k] > 0.0:
+            counted += 1
+            floor = max(floor, 2.0e-15 * abs(r.y[k]) * weight[k])
+    kappa = max(KAPPA, floor)
+    before, rate = 0.0, 1.0
+    for iteration in range(MOST_ITERATIONS):
+        r.count[ITERATIONS] += 1
+        for i in range(3):
+            for k in range(n):
+                b.y1[k] = r.y[k] + K[Z + i, k]
+            evaluate(s, t + C[i] * h, b.y1, K[F + i])
+            if not all_finite(K[F + i]):
+                return -1
+        for k in range(n):  # F <- right-hand sides
+            f0, f1, f2 = K[F, k], K[F + 1, k], K[F + 2, k]
+            w1, w2 = K[W + 1, k], K[W + 2, k]
+            p = T_INVERSE[0, 0] * f0 + T_INVERSE[0, 1] * f1 + T_INVERSE[0, 2] * f2
+            u = T_INVERSE[1, 0] * f0 + T_INVERSE[1, 1] * f1 + T_INVERSE[1, 2] * f2
+            v = T_INVERSE[2, 0] * f0 + T_INVERSE[2, 1] * f1 + T_INVERSE[2, 2] * f2
+            K[F, k] = p - g * K[W, k]
+            K[F + 1, k] = u - (a * w1 - c * w2)
+            K[F + 2, k] = v - (c * w1 + a * w2)
+        corrected(s, r, K[F], K[DX], K[DW], g)
+        corrected_pair(s, r, K[F + 1], K[F + 2], K[DX], K[DW], a, c)
+        moved = 0.0
+        for i in range(3):
+            for k in range(n):
+                moved += (K[F + i, k] * weight[k]) ** 2
+                K[W + i, k] += K[F + i, k]
+        moved = sqrt(moved / max(3 * counted, 1))
+        for i in range(3):
+            for k in range(n):
+                K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
+        if not isfinite(moved):
+            return -1
+        if iteration > 0:
+            rate = moved / before if before > 0.0 else 0.0
+            if rate >= 2.0 and moved > kappa:
+                return 0
+            left = MOST_ITERATIONS - 1 - iteration
+            if rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa:
+                return 0
+        r.clock[NEWTON_RATE] = rate
+        if moved == 0.0 or (iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa):
+            return 1
+        if moved < 0.1 * kappa:
+            r.clock[NEWTON_RATE] = min(rate, 1e-4)
+            return 1
+        before = moved
+    return 0
+
+
+@internal
+def corrected(s, r, f, x, w, mu):
+    """f <- (mu - J)^-1 f with the real factors; x, w: scratch."""
+    n = active(s)
+    for k in range(s.n_v):
+        x[k] = twisted(s, r, k, f) / mu
+    for i in range(n):
+        total = f[w_index(s, i)]
+        for k in range(s.n_v):
+            total += r.by_place[i, k] * x[k]
+        w[i] = total
+    solve_real(r.lu[:n], r.pivot[0], w, n)
+    for q in range(s.n_q):
+        f[q] = (f[q] + moved_by(s, r, q, w)) / mu
+    for i in range(n):
+        f[w_index(s, i)] = w[i]
+    for k in range(N_BOOK):
+        f[s.n_q + s.n_v + k] /= mu
+
+
+@internal
+def corrected_pair(s, r, f, g, x, w, a, c):
+    """f + i g <- (a + i c - J)^-1 (f + i g) with the complex factors; x, w: scratch."""
+    n, size = active(s), a * a + c * c
+    for i in range(n):
+        x[i], w[i] = f[w_index(s, i)], g[w_index(s, i)]
+    for k in range(s.n_v):
+        p, q = twisted(s, r, k, f), twisted(s, r, k, g)
+        u, v = (p * a + q * c) / size, (q * a - p * c) / size  # (p + i q) / (a + i c)
+        for i in range(n):
+            x[i] += r.by_place[i, k] * u
+            w[i] += r.by_place[i, k] * v
+    solve_complex(r.lu[n : 2 * n], r.lu[2 * n :], r.pivot[1], x, w, n)
+    for q in range(s.n_q):
+        u, v = f[q] + moved_by(s, r, q, x), g[q] + moved_by(s, r, q, w)
+        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+    for i in range(n):
+        f[w_index(s, i)], g[w_index(s, i)] = x[i], w[i]
+    for k in range(N_BOOK):
+        q = s.n_q + s.n_v + k
+        u, v = f[q], g[q]
+        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+
+
+@internal
+def estimate(s, r, b, t, h):
+    """Error of order 3: (GAMMA/h - J)^-1 (f(y) + sum E_i Z_i / h), filtered once more if large."""
+    K, n, weight = b.K, r.y.size, b.weight
+    e = K[F]
+    for c in range(n):
+        e[c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
+        K[F + 1, c] = e[c]
+        e[c] += r.yd[c]
+    corrected(s, r, e, K[DX], K[DW], GAMMA / h)
+    error = norm(e, weight)
+    if error >= 1.0 and (r.count[HISTORY] == 0 or r.count[AFTER_REJECTION] > 0):
+        for c in range(n):
+            K[F + 2, c] = r.y[c] + e[c]
+        evaluate(s, t, K[F + 2], e)
+        for c in range(n):
+            e[c] += K[F + 1, c]
+        corrected(s, r, e, K[DX], K[DW], GAMMA / h)
+        error = norm(e, weight)
+    return max(error, 1e-10)
+
+
+@internal
+def norm(e, weight):
+    """Root mean square of the weighed entries."""
+    total, counted = 0.0, 0
+    for c in range(e.size):
+        if weight[c] > 0.0:
+            counted += 1
+            total += (e[c] * weight[c]) ** 2
+    return sqrt(total / max(counted, 1))
+
+
+@compiled(DENSE)
+def dense(scene, K, t, y, h, y1, P):
+    """Divided differences of the collocation polynomial, through the end as accepted."""
+    for c in range(y.size):
+        z0, z1, z2 = K[Z, c], K[Z + 1, c], y1[c] - y[c]
+        P[0, c] = (z1 - z2) / (C[1] - 1.0)
+        slope = (z0 - z1) / (C[0] - C[1])
+        P[1, c] = (slope - P[0, c]) / (C[0] - 1.0)
+        P[2, c] = P[1, c] - (slope - z0 / C[0]) / C[1]
+        P[3, c] = z2
+
+
+@internal
+def polynomial(P, c, s):
+    """Entry c of the solution at t + h + s h, from that at t + h."""
+    return s * (P[0, c] + (s - C[1] + 1.0) * (P[1, c] + (s - C[0] + 1.0) * P[2, c]))
+
+
+@compiled(INTERPOLATE)
+def interpolate(P, y, theta, out):
+    for c in range(y.size):
+        out[c] = y[c] + P[3, c] + polynomial(P, c, theta - 1.0)
