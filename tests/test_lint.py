@@ -42,7 +42,11 @@ def test_silent():
 
 @pytest.mark.parametrize("path", sorted(FOLDER.rglob("*.yaml")), ids=lambda p: p.stem)
 def test_silent_on_the_repository(path):
-    assert lint(load(path)) == ()
+    notes = lint(load(path))
+    if path.stem == "pendulum_a01":  # a point mass is meant, and told from a slip it cannot be
+        assert len(notes) == 1 and "radius of gyration" in notes[0]
+    else:
+        assert notes == ()
 
 
 CASES = [

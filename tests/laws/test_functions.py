@@ -147,7 +147,9 @@ def test_random_trees_have_consistent_derivatives(node, t):
     for k in (0, 1):
         slopes = np.diff(rows[:, k]) / h
         assume(np.ptp(slopes) < 1e-4)
-        assert rows[2, k + 1] == pytest.approx(slopes.mean(), abs=1e-4)
+        # beside t: two corners may cancel at t itself, as those of min(abs(t), -t) do at 0
+        for beside in (1, 3):
+            assert rows[beside, k + 1] == pytest.approx(slopes.mean(), abs=1e-4)
 
 
 def test_rate_goes_through_sensors():

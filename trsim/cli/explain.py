@@ -83,7 +83,8 @@ def key(one: dict[str, Any], name: str, indent: int) -> Iterator[str]:
     facts += [one["unit"]] if one["unit"] not in (None, "-") else []
     facts += ["required"] if one["required"] else []
     facts += [f"default {told(one['default'])}"] if one["default"] not in (None, "") else []
-    yield f"{' ' * indent}{name}: {', '.join(facts)}"
+    told_of = _wrapped(f"{name}: {', '.join(facts)}", indent)
+    yield from (line if k == 0 else f"{' ' * INDENT}{line}" for k, line in enumerate(told_of))
     yield from _wrapped(one["meaning"], indent + INDENT)
 
 
