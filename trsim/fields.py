@@ -9,13 +9,9 @@ pydantic's validation context: {"parameters": {"speed": 0.5}}.
 """
 
 import math
-import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal, get_args
-
-# pydantic would look for plugins in every package installed
-os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
 from pydantic_core import core_schema

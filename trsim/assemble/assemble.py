@@ -12,14 +12,7 @@ from trsim.assemble.equations import derivative
 from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.pattern import pattern
-from trsim.assemble.reduce import (
-    IN_PLANE,
-    OUT_OF_PLANE,
-    jacobian,
-    unique_reactions,
-    weights,
-)
-from trsim.assemble.rows import all_rows, check_inertias, choose_rows, in_solve, planarity
+from trsim.assemble.rows import all_rows, check_inertias, choose_rows, planarity, reactions
 from trsim.assemble.tables import (
     contact_numbers,
     contact_states,
@@ -64,17 +57,9 @@ def assemble(
     model = build(scenario, at, instances, kept, d)
     y0 = drawn(scenario, at, d)
     model, columns = layout(scenario, model, instances, at, planar)
-    names = {k: f"{r.element}.{r.axis}" for k, r in enumerate(all_rows(instances))}
-    _, _, J = jacobian(full, 0.0, y6)
-    plane = IN_PLANE if planar else [*IN_PLANE, *OUT_OF_PLANE]
-    keep = [6 * f + c for f in range(full.n - 1) for c in plane]
-    inside = in_solve(J, planar)
-    unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
     rows = all_rows(instances)
-
-    def named(which: NDArray[np.bool_]) -> tuple[str, ...]:
-        return tuple(names[k] for k in np.flatnonzero(inside)[which].tolist())
-
+    names = [f"{r.element}.{r.axis}" for r in rows]
+    unique, not_unique = reactions(full, y6, planar)
     return Mechanism(
         model=model,
         y0=y0,
@@ -84,12 +69,12 @@ def assemble(
         timed=at.timed,
         planar_assumed=assumed,
         mobility=model.n_v - model.m,
-        mobility_by_count=model.n_v - int(inside.sum()),
+        mobility_by_count=model.n_v - len(unique) - len(not_unique),
         redundant=tuple(names[f.row] for f in found if f.everywhere),
         singular=tuple(names[f.row] for f in found if not f.everywhere),
-        unique=named(unique),
-        not_unique=named(~unique),
-        rows=tuple(f"{r.element}.{r.axis}" for r in rows if r in kept),
+        unique=tuple(names[k] for k in unique),
+        not_unique=tuple(names[k] for k in not_unique),
+        rows=tuple(name for name, r in zip(names, rows, strict=True) if r in kept),
         follows=tuple(follow for _, follow in at.states),
         coordinates=at.coordinates,
         frames=at.frames,

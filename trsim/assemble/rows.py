@@ -13,6 +13,8 @@ from trsim.assemble.reduce import (
     dependences,
     is_planar,
     jacobian,
+    unique_reactions,
+    weights,
 )
 from trsim.elements.contract import PHASE, UNLOCATED
 from trsim.elements.scene import Model, scene
@@ -40,6 +42,16 @@ def in_solve(J: Array, planar: bool) -> NDArray[np.bool_]:
         return np.ones(len(J), bool)
     blocks = J.reshape(len(J), J.shape[1] // 6, 6)[:, :, IN_PLANE]
     return np.abs(blocks).max(axis=(1, 2), initial=0.0) > 1e-9
+
+
+def reactions(full: Model, y6: Array, planar: bool) -> tuple[list[int], list[int]]:
+    """Rows of the solve whose reaction the motion determines, and those where it does not."""
+    J = jacobian(full, 0.0, y6)[2]
+    plane = IN_PLANE if planar else [*IN_PLANE, *OUT_OF_PLANE]
+    keep = [6 * f + c for f in range(full.n - 1) for c in plane]
+    inside = np.flatnonzero(in_solve(J, planar))
+    unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
+    return inside[unique].tolist(), inside[~unique].tolist()
 
 
 def choose_rows(

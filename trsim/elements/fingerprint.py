@@ -14,7 +14,7 @@ from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any
 
 from trsim.elements.signatures import Signature
-from trsim.laws import Lazy
+from trsim.laws import COMPILED, UNWRAPPED, Lazy
 
 LENGTH = 20  # hexadecimal digits
 EXTENDED_ARG, LOAD_GLOBAL = opmap["EXTENDED_ARG"], opmap["LOAD_GLOBAL"]
@@ -37,7 +37,8 @@ def _surroundings() -> str:
     here = Path(__file__).parent
     files = [hashlib.sha256((here / name).read_bytes()).hexdigest() for name in COMPILER]
     processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
-    return repr((files, version("numba"), llvm.llvm_version_info, processor))
+    options = COMPILED, UNWRAPPED
+    return repr((files, options, version("numba"), llvm.llvm_version_info, processor))
 
 
 @cache

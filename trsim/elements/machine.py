@@ -172,8 +172,11 @@ def _write(path: Path, symbol: str, objects: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.{os.getpid()}")
     name = symbol.encode()
-    part.write_bytes(b"\n".join([_digest(name, objects), name, objects]))
-    part.replace(path)
+    try:
+        part.write_bytes(b"\n".join([_digest(name, objects), name, objects]))
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _digest(symbol: bytes, objects: bytes) -> bytes:
