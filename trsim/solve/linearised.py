@@ -1,15 +1,15 @@
 """The motion close to a start, on the constraints: M xi'' + C xi' + K xi = 0.
 
-    dq = Z xi + O(xi^2),   Phi(q) = 0           J Z = 0,   Z^T M Z = 1
+    dx = Z xi,             J Z = 0,   Z^T M Z = 1       world-axes twists of all bodies
     dv = Z eta + ...,      J v + Phi_t = 0
-    xi'  = eta - Z^T M (omega x) Z xi           spatial rotations in body axes; 0 in a plane
-    eta' = Z^T M v'(q, v, s),                   s: states of elements, such as bristles
+    xi'  = eta + Z^T M (omega x) Z xi                   small rotations of a body that spins
+    eta' = Z^T M v'(x, v, s),                           s: states of elements, such as bristles
 
 A is the Jacobian of the right-hand sides against (xi, eta, s), by central differences of the full
-equations of motion: every probe is brought back to the constraints by Newton steps with the
-pseudoinverse of the start, so nothing of the constraints' own stiffness gets into A.  Exact for
-small motions about an equilibrium; where the start moves it is the Jacobian frozen there.
-Time stands still: what drives prescribe, and their states, are held.
+equations of motion: the velocities of every probe are brought back to the constraints by Newton
+steps with the pseudoinverse of the start, so that no constraint is violated to first order.  Exact
+for small motions about an equilibrium or a steady rotation; where the start moves otherwise it is
+the Jacobian frozen there.  Time stands still: what drives prescribe, and their states, are held.
 """
 
 from dataclasses import dataclass
@@ -27,6 +27,7 @@ from trsim.elements.scene import Model, Scene, scene
 from trsim.errors import ModelError
 from trsim.laws.friction import CODES
 from trsim.solve.start import Start
+from trsim.solve.velocities import with_velocities
 
 Array = NDArray[np.float64]
 
@@ -35,7 +36,7 @@ FASTEST = 1e-2  # m/s: a run of next to no time makes its unit of speed as large
 PRESSED = 1e-3  # of a penetration: a probe must not leave the contact
 TOUCHING = 1e-12  # of the mechanism's size: contacts pressed in by less count as open
 FREE = 1e-10  # relative singular value of J below which a motion is free
-CORRECTIONS = 4  # Newton steps of a probe; two reach rounding
+CORRECTIONS = 3  # Newton steps of a probe; two reach rounding
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,7 @@ class Linearised:
 
     M is the identity: the columns of Z are M-orthonormal.  Frequencies are the square roots of the
     eigenvalues of K where C vanishes; in general the eigenvalues of A are those of the motion, 1/s.
+    Where bodies spin in space xi' is not eta, and A alone is complete.
     """
 
     M: Array  # (f, f)
@@ -130,28 +132,27 @@ class Probe:
         self.scales(begun)
 
     def basis(self) -> None:
-        """Z, the M-weighted pseudoinverse of J, and Z in world axes."""
+        """Z, M Z and the M-weighted pseudoinverse of J; in world axes and those of the solve."""
         work = self.work
         J = jacobian(work, 0.0, self.y)[2]
-        turn = [work.X[f, 3:].reshape(3, 3).copy() for f in range(1, work.n)]
+        self.given = work.V[1:].ravel().copy()
         # columns: what a unit of every velocity of the solve does to the world-axes twists
         T = np.zeros((6 * (work.n - 1), self.n_v))
-        for f, R in enumerate(turn):
+        for f, R in enumerate(work.X[1:, 3:].reshape(-1, 3, 3)):
             if work.d == 3:
                 T[[6 * f + c for c in IN_PLANE], range(3 * f, 3 * f + 3)] = 1.0
             else:
                 T[6 * f : 6 * f + 3, 6 * f : 6 * f + 3] = np.eye(3)
                 T[6 * f + 3 : 6 * f + 6, 6 * f + 3 : 6 * f + 6] = R
-        self.M = mass_matrix(work)
-        back = np.linalg.inv(np.linalg.cholesky(self.M)).T  # M = L L^T, back = L^-T
+        M = mass_matrix(work)
+        back = np.linalg.inv(np.linalg.cholesky(M)).T  # M = L L^T, back = L^-T
+        self.pseudo, self.Z = np.zeros((self.n_v, 0)), back
         if work.m:
             u, s, vt = np.linalg.svd(J @ T @ back, full_matrices=True)
             rank = int(np.sum(s > FREE * s.max(initial=0.0)))
             self.pseudo = back @ vt[:rank].T @ (u[:, :rank] / s[:rank]).T
             self.Z = back @ vt[rank:].T
-        else:
-            self.pseudo, self.Z = np.zeros((self.n_v, 0)), back
-        self.twists = T @ self.Z
+        self.twists, self.momenta = T @ self.Z, T @ M @ self.Z
 
     def scales(self, begun: Start) -> None:
         """How far probes go: m and m/s of the point that moves most."""
@@ -179,16 +180,10 @@ class Probe:
         return (self.length, self.speed)[kind] / float(self.most[place])
 
     def rates(self, xi: Array, eta: Array, states: Array) -> Array:
-        """(eta', s') at a state brought to the constraints."""
+        """(eta', s') at a state a little away, its velocities brought to the constraints."""
         work, y, n = self.work, self.y.copy(), self.n_q
-        move_all(work, y, self.Z @ xi)
-        for _ in range(CORRECTIONS):
-            poses(work, y)
-            constraints(work, 0.0)
-            if np.max(np.abs(work.phi), initial=0.0) < 1e-15 * work.size:
-                break
-            move_all(work, y, -self.pseudo @ work.phi)
-        y[n : n + self.n_v] += self.Z @ eta
+        move_all(work, y, self.Z @ xi)  # leaves the joints by xi^2, alike on both sides
+        y = with_velocities(work, y, self.given + self.twists @ eta)
         for _ in range(CORRECTIONS):
             poses(work, y)
             constraints(work, 0.0)
@@ -196,7 +191,7 @@ class Probe:
         y[self.own] += states
         yd = np.zeros_like(y)
         derivative(work, 0.0, y, yd)
-        return np.concatenate([self.Z.T @ self.M @ yd[n : n + self.n_v], yd[self.own]])
+        return np.concatenate([self.momenta.T @ work.A[1:].ravel(), yd[self.own]])
 
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
@@ -207,12 +202,9 @@ class Probe:
         )
 
     def turning(self) -> Array:
-        """- Z^T M (omega x) Z: a body that spins carries its small rotations along."""
-        G = np.zeros((self.n_v, self.n_v))
-        if self.work.d == 6:
-            for f in range(1, self.work.n):
-                o = self.n_q + 6 * (f - 1) + 3
-                x, y, z = self.y[o : o + 3]
-                k = 6 * (f - 1) + 3
-                G[k : k + 3, k : k + 3] = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]
-        return -self.Z.T @ self.M @ G @ self.Z
+        """Z^T M (omega x) Z: a body that spins carries its small rotations along."""
+        turned = self.twists.reshape(self.work.n - 1, 6, -1).copy()
+        spin = self.given.reshape(-1, 6)[:, 3:]
+        turned[:, 3:] = np.cross(spin[:, :, None], turned[:, 3:], axis=1)
+        turned[:, :3] = 0.0
+        return np.asarray(self.momenta.T @ turned.reshape(self.twists.shape))
