@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError
+from trsim.solve import statics
 from trsim.solve.start import start
 from trsim.solve.statics import static_forces
 from trsim.spec.load import load
@@ -84,6 +85,16 @@ def test_indifferent_equilibrium_is_refused():
     assert caught.value.exit_code == 4
     assert caught.value.path == ("initial", "equilibrium")
     assert "'rod'" in str(caught.value)
+
+
+def test_a_search_that_does_not_move_is_given_up(monkeypatch):
+    """A pivot at 10^9 m: the steps of a journal in its clearance are below the rounding there."""
+    seen, balance = [], statics.balance
+    monkeypatch.setattr(statics, "balance", lambda *given: seen.append(0) or balance(*given))
+    with pytest.raises(ModelError, match="no static equilibrium") as caught:
+        begun("clearance_ab_0.3mm", "joints.Q.at.1=1e9")
+    assert caught.value.path == ("initial", "equilibrium")
+    assert len(seen) < 60
 
 
 def test_initial_value_moves_the_linkage_on_its_branch():

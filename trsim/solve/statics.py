@@ -22,7 +22,9 @@ Array = NDArray[np.float64]
 
 BALANCED = 1e-11  # of the largest force
 ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from none
-STEPS = 400
+STEPS = 200
+STALLED = 1e-3  # of the force: a smaller change, step after step, is none
+PATIENCE = 30  # steps without a change, and those that cross the widest clearance
 INDIFFERENT = 1e-6  # of the largest eigenvalue scale: see `equilibrium`
 
 
@@ -80,6 +82,14 @@ def stiffness(model: Model, y: Array, Z: Array, lam: Array, J_of_lam: Array, ste
     return 0.5 * (K + K.T)
 
 
+def balance(
+    model: Model, y: Array, free: NDArray[np.bool_], mass: Array
+) -> tuple[Array, Array, Array]:
+    """Forces F, Jacobian J of the constraints, and the motions Z they allow, at y."""
+    F, J = static_forces(model, y), jacobian(model, 0.0, y)[2]
+    return F, J, free_motions(J, free, mass)
+
+
 def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     """The equilibrium reached from y, drives held at t = 0; and the force left, N."""
     model = workspace(mechanism.model)
@@ -87,11 +97,12 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     free, mass = movable(model), mass_matrix(model, y)
     gaps = [c for c in model.contact_par[:, 3] if np.isfinite(c)]
     reach = min([0.2 * c for c in gaps], default=0.02 * model.size)
+    patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach
     probe = 1e-9 * model.size if not gaps else min(1e-9 * model.size, 1e-5 * min(gaps))
     push, scale = 0.0, 1e-300
+    changed, before = 0, 0.0  # the step at which the force last changed, and to what
+    F, J, Z = balance(model, y, free, mass)
     for count in range(STEPS):
-        F, J = static_forces(model, y), jacobian(model, 0.0, y)[2]
-        Z = free_motions(J, free, mass)
         if Z.shape[1] == 0:
             return y, 0.0
         lam: Array = np.zeros(0)
@@ -109,6 +120,10 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
             return y, left
         if count == 0:
             push = max(abs(values[0]), size / reach)
+        if abs(size - before) > STALLED * before:
+            changed, before = count, size
+        if count - changed > patience:
+            break
         # Newton where the stiffness is positive, downhill where it is not
         curvature = np.maximum(np.abs(values), 1e-12 * np.abs(values).max()) + push
         dx = Z @ (vectors @ ((vectors.T @ r) / curvature))
@@ -121,14 +136,14 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         limit = min(1.0, reach / max(longest, turned, 1e-300))
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
         # against the motions allowed there: the old ones would see the constraints' forces
-        Z_new = free_motions(jacobian(model, 0.0, y_new)[2], free, mass)
-        r_new = np.linalg.norm(Z_new.T @ static_forces(model, y_new))
+        there = balance(model, y_new, free, mass)
+        r_new = np.linalg.norm(there[2].T @ there[0])
         # a journal crosses its clearance under a constant force, and on the way down from an
         # unstable place the force grows before it fades
         push *= 0.3 if r_new < 1.000001 * size or values[0] < 0.0 else 4.0
         push = max(push, 1e-14 * float(np.abs(values).max()))
         if r_new < 20.0 * size or limit < 1.0:
-            y = y_new
+            y, (F, J, Z) = y_new, there
     raise ModelError(
         f"no static equilibrium found: a force of {left:.3g} N stays unbalanced",
         "is there a load that nothing holds? drop `equilibrium` to start as drawn",
