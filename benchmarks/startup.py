@@ -8,6 +8,7 @@ import os
 import resource
 import statistics
 import subprocess
+import sys
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -59,6 +60,7 @@ def main() -> None:
         wrong.write_text(REVERSER.parent.joinpath("mechanism.yaml").read_text() + "\nsolvr: {}\n")
         run = trsim("run", str(REVERSER), "-q", "--json", "-o", f"{folder}/run.h5")
         print(f"  {'':44s} {'wall s':>8s} {'CPU s':>8s}  overhead s")
+        told("python -c pass, for the speed of the machine", median([sys.executable, "-c", "pass"]))
         told("trsim --help", median(trsim("--help")))
         told("a schema error", median(trsim("check", str(wrong)), 3))
         told("trsim check, reverser", median(trsim("check", str(REVERSER))))
