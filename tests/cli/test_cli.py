@@ -133,7 +133,12 @@ WRONG = {  # text replaced, replacement, exit code, message
         4,
         "moves a coordinate that",
     ),
-    "solver": ("method: dop853", "method: rk4, step: 0.05 ms", 5, "the solver failed at t ="),
+    "solver": (
+        "method: dop853",
+        "method: rk4, force: true, step: 0.05 ms",
+        5,
+        "the solver failed at t =",
+    ),
 }
 
 

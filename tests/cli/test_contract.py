@@ -70,7 +70,7 @@ NO_FILE = {
 WRONG = {  # exit code -> text of the scenario, and what it is replaced by
     3: ("clearance: 0.5 mm", "clearance: 0.5 kg"),
     4: ("drives:", "drives:\n  twin: {joint: O, velocity: 1 rpm}"),
-    5: ("method: dop853", "method: rk4, step: 0.05 ms"),
+    5: ("method: dop853", "method: rk4, force: true, step: 0.05 ms"),
 }
 
 

@@ -58,7 +58,7 @@ solver: {end: 1 s, tolerance: 1e-6}
 
 
 def test_failed_run_is_reported_as_far_as_it_came(tmp_path):
-    text = small.SLIDER_CRANK.replace("method: dop853", "method: rk4, step: 0.05 ms")
+    text = small.SLIDER_CRANK.replace("method: dop853", "method: rk4, force: true, step: 0.05 ms")
     small.run(tmp_path / "run.h5", text=text)
     assert len(report(tmp_path / "run.h5", tmp_path / "figures")) > 5
     [shown] = compared([read(tmp_path / "run.h5")])

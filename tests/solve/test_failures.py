@@ -49,6 +49,37 @@ def test_reason_says_that_a_value_is_not_finite():
     assert "not finite" in r.outcome.reason
 
 
+@pytest.mark.parametrize("law", ["1/(0.1 - t)**2", "10*exp(1e4*t)"])
+@pytest.mark.parametrize("method", [*METHODS.values(), "method: radau", "method: 'scipy:RK45'"])
+@pytest.mark.filterwarnings("ignore:overflow:RuntimeWarning")
+def test_what_runs_away_is_not_followed(law, method):
+    free = PUSHED.replace("hinge: {{type: revolute, bodies", "guide: {{type: prismatic, bodies")
+    text = free.replace("at: [0, 0]}}", "at: [0, 0], axis: [0, 1]}}").format(
+        FORCE.format(law), method
+    )
+    r = run(text, fails=True)
+    assert r.outcome.time < 0.1001
+    assert r.outcome.statistics["evaluations"] < 4e6  # near the pole the rounding of t is felt
+    told = ("'rod' is faster", "without bound", "fixed step is too large")
+    assert any(words in r.outcome.reason for words in told)
+
+
 def test_step_limit():
     r = run(PUSHED.format("", "max_steps: 3, max_step: 1e-6"), fails=True)
     assert "3 steps" in r.outcome.reason
+
+
+UNEQUAL = """
+gravity: [0, -9.81]
+bodies: {{bob: {{mass: 1, inertia: {}, at: [1, 0]}}}}
+joints: {{pivot: {{type: revolute, bodies: [ground, bob], at: [0, 0]}}}}
+solver: {{end: 2, tolerance: 1e-7}}
+"""
+
+
+def test_rows_the_arithmetic_cannot_tell_apart_are_not_passed():
+    """At 1e-12 kg*m^2 and 1 m of arm the pivot's two rows differ by 1e-12 of themselves."""
+    r = run(UNEQUAL.format(1e-12), fails=True)
+    assert "unequal" in r.outcome.reason
+    assert r.outcome.statistics["energy_residual"] < 1e-6
+    assert run(UNEQUAL.format(1e-6)).outcome.statistics["energy_residual"] < 1e-5

@@ -5,6 +5,7 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
+from trsim.errors import ScenarioError
 from trsim.solve.projected import projected
 from trsim.solve.scales import scales
 from trsim.solve.skipped import skipped
@@ -40,12 +41,23 @@ def test_frequency_and_decay():
 def test_rk4_is_stable_below_the_bound_and_not_above(damping):
     text = oscillator(2.0, 45.0, damping).replace("inertia", "velocity: [1, 0], inertia")
     h = scales(*begun(text + END)).explicit_step
-    largest = []
+    largest, steps = [], 400 if damping else 3000
     for factor in (0.99, 1.01):
-        solver = f"solver: {{method: rk4, step: {factor * h!r}, end: {3000 * h!r}}}"
-        r = run(text + solver)
+        rk4 = f"method: rk4, force: true, step: {factor * h!r}, end: {steps * h!r}"
+        r = run(text + f"output: {{every: {3 * h!r}}}\nsolver: {{{rk4}}}")
         largest.append(np.abs(r["mass.velocity"]).max())
     assert largest[0] < 1.001 < 3.0 < largest[1]  # the spring is linear up to 5
+
+
+def test_a_step_beyond_the_bound_is_refused_by_name():
+    text = oscillator(2.0, 45.0, 0.1).replace("inertia", "velocity: [1, 0], inertia") + END
+    h = scales(*begun(text)).explicit_step
+    rk4 = ("solver.method=rk4", "solver.end=1", f"solver.step={1.01 * h!r}")
+    with pytest.raises(ScenarioError, match="not stable: rk4 needs at most") as caught:
+        run(text, *rk4)
+    assert caught.value.path == ("solver", "step")
+    assert run(text, *rk4, "solver.force=true").outcome.time == 1.0
+    assert run(text, *rk4[:2], f"solver.step={0.99 * h!r}").outcome.status == "done"
 
 
 def test_contact_of_a_slider():

@@ -189,7 +189,7 @@ def test_failed_solver_leaves_a_complete_file(scenario, mechanism, tmp_path):
 
 
 def test_failed_outcome_leaves_a_complete_file(tmp_path):
-    text = small.SLIDER_CRANK.replace("method: dop853", "method: rk4, step: 0.05 ms")
+    text = small.SLIDER_CRANK.replace("method: dop853", "method: rk4, force: true, step: 0.05 ms")
     summary = small.run(tmp_path / "run.h5", text=text)
     assert summary["status"] == "failed"
     assert "not finite" in summary["reason"]

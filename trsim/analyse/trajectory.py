@@ -118,6 +118,7 @@ def changed(scenario: Any, section: str, **values: Any) -> Any:
 def varied(scenario: Any, setting: Setting, first: float | None = None) -> Any:
     """The scenario by another method or at another tolerance, and with a first step (s)."""
     values = {"method": setting.method, "first_step": first, "step": setting.step}
+    values["force"] = True  # the table shows what too long a step does
     values |= {} if setting.tolerance is None else {"tolerance": setting.tolerance}
     return changed(scenario, "solver", **values)
 

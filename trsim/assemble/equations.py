@@ -10,9 +10,9 @@ M is block diagonal, so the multipliers come from the small sparse matrix S = J 
 and the reactions on the bodies are -J^T lam.  `derivative` is the table of contents of the physics.
 """
 
-from math import cos, sin
+from math import cos, nan, sin
 
-from trsim.assemble.linear import factorise, solve
+from trsim.assemble.linear import contradictory, factorise, solve
 from trsim.elements.calls import call_kernel, caller
 from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.elements.scene import BAUMGARTE
@@ -39,6 +39,9 @@ def derivative(s, t, y, yd):
         factorise(s)
         right_hand_side(s)
         solve(s, s.x)
+        if contradictory(s, s.x):
+            s.status[3] += 1
+            s.x[0] = nan
         for k in range(s.m):
             s.lam[k] = s.x[k]
             # a moving constraint is a drive: the power it gives to the mechanism

@@ -3,14 +3,19 @@
 A pivot that falls below TINY of its diagonal before elimination belongs to a row that depends on
 the others here and now: a dead centre, a parallelogram lying flat.  Then, and only then, S is
 shifted by a small multiple of its diagonal and the solution refined (the proximal point iteration),
-which converges to the minimum-norm multipliers of the consistent system.
+which converges to the minimum-norm multipliers of the consistent system.  What it leaves over tells
+a row that depends on the others from one that the arithmetic cannot tell from them: see
+`contradictory`.
 """
+
+from math import sqrt
 
 from trsim.elements.vectors import copy_to, internal
 
 TINY = 1e-10  # of the diagonal: a smaller pivot is a dependent row
 SHIFT = 1e-9  # of the diagonal, added to a singular S
 REFINEMENTS = 6
+LEFT_OVER = 1e-3  # of the right-hand side: more shows that the rows ask for different things
 
 
 @internal
@@ -97,3 +102,22 @@ def residual(s, x, r):
             i, entry = s.below_row[p], s.original[s.below[p]]
             r[i] -= entry * x[row]
             r[row] -= entry * x[i]
+
+
+@internal
+def contradictory(s, x):
+    """Whether x, just found for a singular S, leaves a part of the right-hand side unmet.
+
+    Rows that depend on each other then want different accelerations: a mechanism that jams; or
+    they do not depend, but bodies of very unequal mass make them look so: nothing here is right.
+    """
+    if s.status[0] == 0:
+        return False
+    copy_to(s.r2, s.r)
+    residual(s, x, s.r2)
+    left, whole = 0.0, 0.0
+    for k in range(s.m):
+        row = s.order[k]
+        left = max(left, abs(s.r2[row]) / sqrt(s.first[k]))
+        whole = max(whole, abs(s.r[row]) / sqrt(s.first[k]))
+    return left > LEFT_OVER * whole

@@ -116,7 +116,9 @@ class Scene(Model):
     left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
     out: A1  # (n_out) one output row
-    status: I1  # [0] the last factorisation met a small pivot, [1] evaluations, [2] factorisations
+    # [0] the last factorisation met a small pivot, [1] evaluations, [2] factorisations,
+    # [3] evaluations with contradictory constraints since the last accepted step
+    status: I1
 
 
 def workspace(model: Model) -> Scene:

@@ -188,6 +188,7 @@ def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
 @internal
 def accept(s, r, b, t1, projected, last):
     """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
+    s.status[3] = 0
     r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if t1 <= r.clock[T] else 0
     r.clock[T] = t1
     r.clock[WORK_PROJECTION] += projected

@@ -32,10 +32,13 @@ from trsim.solve.record import (
     AFTER_REJECTION,
     BUFFERS,
     CHATTER,
+    CRAWL,
+    CRAWLED,
     DONE,
     ENERGY_0,
     EVENT_ROWS,
     EVERY,
+    FASTEST,
     FIXED_STEP,
     FULL,
     H_MAX,
@@ -59,11 +62,13 @@ from trsim.solve.record import (
     STEP_ROWS,
     STEP_TOO_SMALL,
     T_END,
+    TOO_FAST,
     H,
     T,
 )
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
+CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 
 
 def method_table(method):
@@ -81,7 +86,7 @@ def march(s, r, b, setting, methods, most):
 
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
-    Returns DONE, FULL, PAUSE, LOAD, STEP_TOO_SMALL, NOT_FINITE or CHATTER.
+    Returns DONE, FULL, PAUSE, LOAD, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST or CRAWL.
     """
     accepted = 0
     while r.clock[T] < setting[T_END]:
@@ -95,6 +100,8 @@ def march(s, r, b, setting, methods, most):
         h = next_step(r, b, setting)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
             return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
+        if crawls(r, setting, h):
+            return CRAWL
         weights(s, r, b, setting)
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):
@@ -117,12 +124,31 @@ def march(s, r, b, setting, methods, most):
             r.clock[H] = 0.1 * h
             continue
         accepted += 1
+        if too_fast(s, r):
+            return TOO_FAST
         control(r, setting, method, h, error, outcome != SMOOTH_STEP)
         if methods.shape[0] > 1:
             choose(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
     return DONE
+
+
+@internal
+def crawls(r, setting, h):
+    """Whether step after step is so short that 10^11 of them would be needed."""
+    short = setting[FIXED_STEP] == 0.0 and h < CRAWLING * setting[T_END]
+    r.count[CRAWLED] = r.count[CRAWLED] + 1 if short else 0
+    return r.count[CRAWLED] > CRAWLED_MOST
+
+
+@internal
+def too_fast(s, r):
+    """Whether a body moves faster than anything does."""
+    fastest = 0.0
+    for k in range(s.n_q, s.n_q + s.n_v):
+        fastest = max(fastest, abs(r.y[k]))
+    return fastest > FASTEST
 
 
 @internal

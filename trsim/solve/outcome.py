@@ -145,6 +145,20 @@ def emptied(r: Record, b: rec.Buffers) -> Block:
     return block
 
 
+def runaway(mechanism: Mechanism, r: Record) -> str:
+    """Which body is faster than anything is, if one is: the reason such a run is ended."""
+    model = mechanism.model
+    speeds = np.abs(r.y[model.n_q : model.n_q + model.n_v])
+    if not np.max(speeds, initial=0.0) > rec.FASTEST:
+        return ""
+    frame = int(np.argmax(speeds)) // model.d + 1
+    body = next(name for name, f in mechanism.frames.items() if f == frame)
+    return (
+        f"'{body}' is faster than {rec.FASTEST:.0e} m/s or rad/s: does a load run away, "
+        "is a stiffness or a damping negative?"
+    )
+
+
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
     """Counts, residuals and the energy book's error."""
     scale = max(float(r.clock[rec.LARGEST_ENERGY]), 1e-300)

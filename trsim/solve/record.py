@@ -47,8 +47,9 @@ from trsim.elements.scene import Model
     JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, OLD, FRESH
     JACOBIANS,  # made so far
     ITERATIONS,  # of Newton, so far
+    CRAWLED,  # trial steps in a row that were vanishingly short
     N_COUNT,
-) = range(20)
+) = range(21)
 
 NO_JACOBIAN, OLD, FRESH = 0, 1, 2
 
@@ -66,6 +67,9 @@ NO_JACOBIAN, OLD, FRESH = 0, 1, 2
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
 LOAD = 6  # a method is wanted whose row in `methods` is still empty
+CRAWL = 8  # so many steps so short that the end will not be reached
+TOO_FAST = 7  # a body is faster than FASTEST
+FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
 
 # columns of the event buffer
 EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE = range(5)

@@ -23,7 +23,15 @@ from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
-from trsim.solve.outcome import Outcome, emptied, first_step, new_record, settings, statistics
+from trsim.solve.outcome import (
+    Outcome,
+    emptied,
+    first_step,
+    new_record,
+    runaway,
+    settings,
+    statistics,
+)
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
 from trsim.statuses import Ended
@@ -81,6 +89,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         outcome = complete(s, r, b, setting, method, solver.t - solver.t_old, 1)
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
+            break
+        if reason := runaway(mechanism, r):
+            status = "failed"
             break
         if outcome == SMOOTH_STEP:
             nudge(solver, r)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import scene
+from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
@@ -20,11 +21,12 @@ from trsim.solve.outcome import (
     emptied,
     first_step,
     new_record,
+    runaway,
     settings,
     statistics,
 )
 from trsim.solve.record import fresh_buffers
-from trsim.solve.start import start
+from trsim.solve.start import Start, start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -38,9 +40,16 @@ COMPILED = {  # word -> files of this folder
 }
 VISIT = 5000  # steps between two looks at the outside world
 
+NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
 REASONS = {
-    -2: "a value is not finite: the fixed step is too large for the stiffest contact",
+    NO_STEPS_LEFT: "more than {} steps",
+    STEP_TOO_LARGE: "a value is not finite, or grew beyond bounds: the fixed step is too large for "
+    "the stiffest contact",
+    CONTRADICTORY: "the constraints contradict one another here: a mechanism that jams, or bodies "
+    "of masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time",
+    rec.CRAWL: "50 000 steps in a row were shorter than 1e-11 of the run, which would need 1e11 of "
+    "them: a force that grows without bound, or a tolerance below the rounding of the state",
     rec.NOT_FINITE: "a force or an acceleration is not finite",
     rec.CHATTER: "contacts open and close without time passing (chatter)",
 }
@@ -65,6 +74,24 @@ def simulate(
     return compiled(scenario, mechanism, used, checkpoint)
 
 
+def check_step(scenario: Any, mechanism: Mechanism, begun: Start) -> None:
+    """Refuse a fixed step that is not stable.
+
+    Raises ScenarioError with the bound and what sets it.
+    """
+    from trsim.solve.scales import scales
+
+    found, step = scales(scenario, mechanism, begun), scenario.solver.step
+    if step > found.explicit_step:
+        raise ScenarioError(
+            f"a step of {step:g} s is not stable: rk4 needs at most {found.explicit_step:.3g} s, "
+            f"for {found.fastest_is} ({found.fastest:.3g}/s)",
+            f"`step: {0.5 * found.explicit_step:.2g} s`, or `method: auto`; "
+            "`force: true` tries it all the same",
+            ("solver", "step"),
+        )
+
+
 def compiled(
     scenario: Any, mechanism: Mechanism, used: list[Any], checkpoint: State | None
 ) -> Generator[Block, None, Outcome]:
@@ -75,6 +102,8 @@ def compiled(
     begun = begun_at(checkpoint) if checkpoint else start(scenario, mechanism, located)
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
+    if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
+        check_step(scenario, mechanism, begun)
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
     implicit = any(method.IMPLICIT for method in used)
     r = new_record(work, begun, dense_rows if implicit else 0)
@@ -100,11 +129,13 @@ def compiled(
         if not paused:
             break
         if r.count[rec.STEPS] >= limit:
-            reason = -1
+            reason = NO_STEPS_LEFT
             break
     status: Ended = "done" if reason == rec.DONE else "failed"
-    if reason == rec.NOT_FINITE and setting[rec.FIXED_STEP] > 0.0:
-        reason = -2
-    text = REASONS.get(reason, f"more than {limit} steps" if reason == -1 else "")
+    if reason == rec.NOT_FINITE and work.status[3] > 0:
+        reason = CONTRADICTORY
+    elif reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
+        reason = STEP_TOO_LARGE
+    text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun)  # fmt: skip

@@ -131,6 +131,11 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
                 "is an expression outside its range: log or sqrt of something negative, 1/0?",
                 (instance.section, instance.name),
             )
+    if w.status[3]:
+        raise ModelError(
+            "the constraints contradict one another at the start",
+            "does the mechanism jam there?  are masses and inertias very unequal?",
+        )
     raise ModelError("an acceleration is not a finite number at t = 0", "check masses and inertias")
 
 
