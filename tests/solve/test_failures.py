@@ -83,3 +83,33 @@ def test_rows_the_arithmetic_cannot_tell_apart_are_not_passed():
     assert "unequal" in r.outcome.reason
     assert r.outcome.statistics["energy_residual"] < 1e-6
     assert run(UNEQUAL.format(1e-6)).outcome.statistics["energy_residual"] < 1e-5
+
+
+LOCKING = """
+bodies:
+  crank: {{mass: 1, inertia: 0.01, at: [0.1, 0.0]}}
+  coupler: {{mass: 2, inertia: 0.05, at: [0.25, 0.1]}}
+  rocker: {{mass: 2, inertia: 0.05, at: [0.4, 0.1]}}
+joints:
+  A: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  B: {{type: revolute, bodies: [crank, coupler], at: [0.2, 0]}}
+  C: {{type: revolute, bodies: [coupler, rocker], at: [0.4, 0.2]}}
+  D: {{type: revolute, bodies: [ground, rocker], at: [0.4, 0]}}
+drives: {{motor: {{joint: A, velocity: 1 rad/s}}}}
+solver: {{end: 10 s, {}}}
+"""
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "rk4, step: 1e-3", "generalized_alpha"])
+def test_a_crank_that_cannot_turn_through(method):
+    """It locks where coupler (0.2828 m) and rocker (0.2 m) lie stretched between crank and D."""
+    r = run(LOCKING.format(f"method: {method}"), fails=True)
+    stretched = 0.2 + np.hypot(0.2, 0.2)
+    angle = np.arccos((0.2**2 + 0.4**2 - stretched**2) / (2 * 0.2 * 0.4))
+    assert r.outcome.time == pytest.approx(angle, abs=2e-3 if "rk4" in method else 1e-5)
+    assert r.outcome.statistics["position_residual"] < 1e-2
+    if "rk4" not in method:
+        assert "the mechanism locks here: " in r.outcome.reason
+        assert "motor" in r.outcome.reason and "D" in r.outcome.reason
+    else:
+        assert "jams" in r.outcome.reason or "locks" in r.outcome.reason

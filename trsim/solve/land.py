@@ -1,5 +1,7 @@
 """The end of a trial step: brought to the constraints, evaluated, its work booked."""
 
+from math import nan
+
 from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.elements.scene import PROJECTION
@@ -7,6 +9,8 @@ from trsim.elements.vectors import internal
 from trsim.solve.record import WORST_PHI, WORST_PHI_DOT
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
+PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
+NEWTON = 8
 
 
 @internal
@@ -14,19 +18,26 @@ def land(s, r, b, t, y, yd):
     """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
 
     Returns the work done by the projection (J): the change of kinetic energy, and minus the work
-    of the applied forces on the small displacement.
+    of the applied forces on the small displacement.  Where no position is found y and y' are not
+    finite.
     """
     done = 0.0
     normalise(s, y)
     if s.stabilisation == PROJECTION and s.m > 0:
         for k in range(s.n_q):
             b.y2[k] = y[k]
-        for k in range(8):
+        first = 0.0
+        for k in range(NEWTON):
             worst = project_positions(s, t, y)
             if k == 0:
-                r.clock[WORST_PHI] = max(r.clock[WORST_PHI], worst)
+                first = worst
             if not worst > PHI_SMALL * s.size:
                 break
+        if not worst <= PHI_LOST * s.size:
+            s.status[3] += 1
+            y[0] = nan
+        else:
+            r.clock[WORST_PHI] = max(r.clock[WORST_PHI], first)
         T0 = kinetic(s, y)
         poses(s, y)
         worst = project_velocities(s, y)

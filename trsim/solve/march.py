@@ -34,6 +34,8 @@ from trsim.solve.record import (
     CHATTER,
     CRAWL,
     CRAWLED,
+    CRAWLED_MOST,
+    CRAWLING,
     DONE,
     ENERGY_0,
     EVENT_ROWS,
@@ -68,7 +70,6 @@ from trsim.solve.record import (
 )
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
-CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 
 
 def method_table(method):

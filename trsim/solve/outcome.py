@@ -41,6 +41,10 @@ class Outcome(NamedTuple):
     start: Start
 
 
+CRAWLS = (
+    "thousands of steps in a row were shorter than 1e-11 of the run, which would need 1e11 of "
+    "them: a force that grows without bound, or a tolerance below the rounding of the state"
+)
 EASY, PROPORTION = 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 LOOK_ROWS = 5.0  # and never longer than this many output intervals

@@ -69,6 +69,7 @@ DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
 LOAD = 6  # a method is wanted whose row in `methods` is still empty
 CRAWL = 8  # so many steps so short that the end will not be reached
 TOO_FAST = 7  # a body is faster than FASTEST
+CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
 
 # columns of the event buffer

@@ -21,9 +21,11 @@ from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
+from trsim.solve.locked import locked
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
 from trsim.solve.outcome import (
+    CRAWLS,
     Outcome,
     emptied,
     first_step,
@@ -41,6 +43,7 @@ Array = NDArray[np.float64]
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 8)  # Chebyshev-Lobatto on 0..1
 SIGNS = np.array([0.5, -1, 1, -1, 1, -1, 1, -1, 0.5])  # their barycentric weights
 LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
+SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
 
@@ -78,7 +81,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     r.clock[rec.H] = first_step(scenario, r)
     status: Ended = "done"
     reason = ""
-    limit = scenario.solver.max_steps or 2**62
+    limit, crawled = scenario.solver.max_steps or 2**62, 0
     solver = restarted(scenario, s, r, b, setting)
     while r.clock[rec.T] < setting[rec.T_END]:
         reason = stopped(solver)
@@ -90,7 +93,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break
-        if reason := runaway(mechanism, r):
+        crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
+        reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
+        if reason:
             status = "failed"
             break
         if outcome == SMOOTH_STEP:
@@ -106,6 +111,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     yield emptied(r, b)
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
+    if status == "failed":
+        reason = locked(mechanism, float(r.clock[rec.T]), r.y) or reason
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
 
 

@@ -14,8 +14,10 @@ from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
+from trsim.solve.locked import locked
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.outcome import (
+    CRAWLS,
     Block,
     Outcome,
     emptied,
@@ -48,8 +50,7 @@ REASONS = {
     CONTRADICTORY: "the constraints contradict one another here: a mechanism that jams, or bodies "
     "of masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time",
-    rec.CRAWL: "50 000 steps in a row were shorter than 1e-11 of the run, which would need 1e11 of "
-    "them: a force that grows without bound, or a tolerance below the rounding of the state",
+    rec.CRAWL: CRAWLS,
     rec.NOT_FINITE: "a force or an acceleration is not finite",
     rec.CHATTER: "contacts open and close without time passing (chatter)",
 }
@@ -137,5 +138,7 @@ def compiled(
     elif reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
+    if status == "failed" and reason != NO_STEPS_LEFT:
+        text = locked(mechanism, float(r.clock[rec.T]), r.y) or text
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun)  # fmt: skip
