@@ -1,5 +1,6 @@
 """Machine code kept between runs: the right one, an undamaged one, or a fresh one."""
 
+import gc
 import os
 import subprocess
 import sys
@@ -9,13 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numba.core.errors import NumbaError
+from numba.core.registry import cpu_target
+from numba.core.types.functions import BaseFunction
 
-from trsim.elements import fingerprint
+from trsim.elements import fingerprint, machine
 from trsim.elements.contract import compiled
 from trsim.elements.machine import Compiled, folder
 from trsim.elements.packed import Packed
 from trsim.elements.signatures import A1, A2, Kind, f8, float64, i8, int64, void
 from trsim.elements.vectors import internal
+from trsim.laws import law
 
 ROOT = Path(__file__).parents[2]
 FACTOR = 2.0
@@ -91,6 +95,50 @@ def test_what_cannot_be_kept_is_refused(cache):
 
     with pytest.raises(NumbaError):
         allocates.address()
+
+
+def test_what_another_process_compiled_meanwhile_is_taken(cache, monkeypatch):
+    Compiled(total, TOTAL).address()
+    seen, read = [], machine._read
+
+    def later(path):  # as if it were not there at first
+        seen.append(path)
+        return read(path) if len(seen) > 1 else None
+
+    monkeypatch.setattr(machine, "_read", later)
+    monkeypatch.setitem(sys.modules, "trsim.elements.compiler", None)
+    assert Compiled(total, TOTAL)(*arguments()) == pytest.approx(expected(), rel=1e-15)
+
+
+@pytest.mark.parametrize("first", ["Python", "compiled code"])
+def test_a_law_called_from_both_sides(first, cache):
+    @law
+    def inside(x):
+        return min(x, 2.0) + 1.0
+
+    @law
+    def outside(x):
+        return 2.0 * inside(x)
+
+    @compiled(float64(f8))
+    def kernel(x):
+        return outside(x)
+
+    order = [outside, kernel] if first == "Python" else [kernel, outside]
+    assert [call(x) for call in order for x in (1.0, 3.0)] == [4.0, 6.0, 4.0, 6.0]
+
+
+def test_numba_is_left_as_it_was(cache):
+    def state():
+        typing, target = cpu_target.typing_context, cpu_target.target_context
+        inside = "refresh" in vars(typing), "refresh" in vars(target), gc.isenabled()
+        return BaseFunction.get_call_type, target.codegen()._library_class, inside
+
+    Compiled(total, TOTAL).address()
+    before = state()
+    with pytest.raises(NumbaError):
+        Compiled(lambda x: x.nothing, float64(f8)).address()
+    assert state() == before and before[2] == (False, False, True)
 
 
 def test_results():

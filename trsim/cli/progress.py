@@ -20,18 +20,21 @@ def compiling(answer: Answer, method: str = "") -> None:
     """
     from trsim.assemble.equations import derivative
 
-    needed, later = derivative, ["trsim.solve.march", f"trsim.solve.{method}"]
+    needed, later = derivative, []
     if method.startswith("scipy:"):
-        later[1] = "trsim.solve.scipy_ivp"
+        later = ["scipy_ivp"]
     elif method:
-        from trsim.solve.march import march as needed
+        from trsim.solve.complete import complete as needed
+        from trsim.solve.simulate import COMPILED
+
+        later = ["complete", "march", *COMPILED[method]]
     if needed.file.exists():
         return
     answer.say("compiling (once per installation, about half a minute)")
-    if method:
+    if later:
         from trsim.elements import ahead
 
-        ahead.begin(*later)
+        ahead.begin(*(f"trsim.solve.{name}" for name in later))
 
 
 def watched(

@@ -1,16 +1,22 @@
-"""Compiling ahead, in a second process, what is needed after what is compiled here.
+"""Compiling in two processes, each function by one of them.
 
-The solver calls the equations and the elements by address, so it does not wait for them: on two
+The solver and its equations call each other by address, so they are compiled independently: on two
 processors a first run takes little more than half the time.  `python -m trsim.elements.ahead
-MODULE...` compiles every function of some modules and leaves their machine code in the cache.
+MODULE...` compiles the functions of some modules that nobody else is at, and leaves their machine
+code in the cache.  It ends with the process that began it.
 """
 
+import fcntl
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from importlib import import_module
+from pathlib import Path
+from threading import Thread
 
-_at_work: dict[str, subprocess.Popen] = {}  # module -> the process that compiles it
+_at_work: list[subprocess.Popen] = []  # kept: the other end of their standard input
 
 
 def begin(*modules: str) -> None:
@@ -19,27 +25,59 @@ def begin(*modules: str) -> None:
         return
     command = [sys.executable, "-m", "trsim.elements.ahead", *modules]
     quiet = subprocess.DEVNULL
-    process = subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet)  # noqa: S603
-    _at_work.update(dict.fromkeys(modules, process))
+    _at_work.append(
+        subprocess.Popen(  # noqa: S603
+            command, stdin=subprocess.PIPE, stdout=quiet, stderr=quiet, start_new_session=True
+        )
+    )
 
 
-def finished(module: str) -> bool:
-    """Wait for a module that is being compiled; False where it is not."""
-    process = _at_work.pop(module, None)
-    if process is None:
+@contextmanager
+def turn(lock: Path, key: str, wait: bool = True) -> Iterator[bool]:
+    """While one process is at a key the others wait; True: the turn is ours.
+
+    The system takes the lock, a byte of a file, from a process that dies.  Where files cannot be
+    locked everybody compiles for himself.
+    """
+    try:
+        lock.parent.mkdir(parents=True, exist_ok=True)
+        handle = os.open(lock, os.O_RDWR | os.O_CREAT, 0o600)
+    except OSError:
+        yield True
+        return
+    try:
+        yield _locked(handle, int(key[:15], 16), wait)
+    finally:
+        os.close(handle)
+
+
+def _locked(handle: int, place: int, wait: bool) -> bool:
+    """Whether one byte of a file is ours, or cannot be anybody's."""
+    try:
+        fcntl.lockf(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), 1, place)
+    except (BlockingIOError, PermissionError):
         return False
-    process.wait()
+    except OSError:
+        return True
     return True
+
+
+def _end_with_parent() -> None:
+    """End when standard input does, in the middle of compiling or not."""
+    with suppress(OSError):
+        sys.stdin.buffer.read()
+    os._exit(0)
 
 
 def main() -> None:
     """Compile the modules named on the command line."""
     from trsim.elements.machine import Compiled
 
+    Thread(target=_end_with_parent, daemon=True).start()
     for module in map(import_module, sys.argv[1:]):
         for value in vars(module).values():
             if isinstance(value, Compiled) and value.python.__module__ == module.__name__:
-                value.address()
+                value.keep()
 
 
 if __name__ == "__main__":

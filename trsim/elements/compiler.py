@@ -5,12 +5,13 @@ the wrappers that let Python call them: their machine code needs nothing but the
 be kept in a file (machine.py).
 """
 
+import hashlib
 from functools import cache
 from types import FunctionType
 from typing import Any, NamedTuple
 
 from llvmlite import ir
-from numba import njit, types
+from numba import types
 from numba.core import cgutils
 from numba.core.datamodel import models
 from numba.core.registry import cpu_target
@@ -21,7 +22,8 @@ from numba.np.arrayobj import populate_array
 import trsim.elements.numba_quick  # noqa: F401
 from trsim.elements.packed import WORDS
 from trsim.elements.signatures import Kind, Signature
-from trsim.laws import COMPILED, UNWRAPPED
+from trsim.laws import inner
+from trsim.laws.pipeline import quick, refresh, translated
 
 NUMBERS = {"float64": types.float64, "int64": types.int64}
 
@@ -54,24 +56,26 @@ def dispatcher(python: Any, key: str) -> Any:
     named = FunctionType(python.__code__, python.__globals__, python.__name__,
                          python.__defaults__, python.__closure__)  # fmt: skip
     named.__qualname__, named.__module__ = f"{python.__name__}_{key}", python.__module__
-    return njit(**COMPILED, **UNWRAPPED)(named)
+    return inner(named)
 
 
 def machine_code(compiled: Any, signature: Signature) -> Code:
     """Compile a dispatcher, and all it calls, for a signature."""
     wanted = numba_signature(signature)
-    compiled.compile(wanted)
-    result = compiled.overloads[wanted.args]
-    functions = result.library._final_module.functions
+    with quick():
+        compiled.compile(wanted)
+        result = compiled.overloads[wanted.args]
+        symbol = result.fndesc.llvm_func_name
+        module, objects = translated(result.library, symbol)
+    functions = module.functions
     needs = [f.name for f in functions if f.is_declaration and not f.name.startswith("llvm.")]
-    return Code(result.fndesc.llvm_func_name, result.library._get_compiled_object(), tuple(needs))
+    return Code(symbol, objects, tuple(needs))
 
 
 def type_of(value: Any) -> Any:
     """What numba takes a global of a function for."""
-    context = cpu_target.typing_context
-    context.refresh()  # it may be new
-    return context.resolve_value_type(value)
+    refresh()  # it may be new
+    return cpu_target.typing_context.resolve_value_type(value)
 
 
 def caller(signature: Signature) -> Any:
@@ -108,7 +112,8 @@ class PackedType(types.Type):
         self.fields = tuple((field, numba_type(inner)) for field, inner in kind.fields)
         self.index = {field: k for k, (field, _) in enumerate(self.fields)}
         listed = ",".join(f"{field}:{inner.name}" for field, inner in kind.fields)
-        super().__init__(name=f"{kind.name}({listed})")
+        digest = hashlib.sha256(listed.encode()).hexdigest()[:8]  # it stands in every symbol
+        super().__init__(name=f"{kind.name}_{digest}")
 
 
 @register_model(PackedType)

@@ -18,7 +18,7 @@ from trsim.laws import COMPILED, UNWRAPPED, Lazy
 
 LENGTH = 20  # hexadecimal digits
 EXTENDED_ARG, LOAD_GLOBAL = opmap["EXTENDED_ARG"], opmap["LOAD_GLOBAL"]
-COMPILER = ("compiler.py", "numba_quick.py", "machine.py")
+COMPILER = ("compiler.py", "numba_quick.py", "machine.py", "../laws/pipeline.py")
 
 
 def of(python: Callable, signature: Signature) -> str:

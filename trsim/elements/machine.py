@@ -43,6 +43,11 @@ def folder() -> Path:
     return home / "trsim" / "code"
 
 
+def lock() -> Path:
+    """The file that tells who is compiling what (ahead.py)."""
+    return folder().with_name("lock")
+
+
 class Compiled(Lazy):
     """A function with a fixed signature that compiles, or is loaded, on first use."""
 
@@ -56,7 +61,7 @@ class Compiled(Lazy):
         return fingerprint.of(self.python, self.signature)
 
     @cached_property
-    def dispatcher(self) -> Any:
+    def inner(self) -> Any:
         """For compiled functions that call this one directly, and to compile it."""
         from trsim.elements.compiler import dispatcher
 
@@ -72,19 +77,28 @@ class Compiled(Lazy):
     def entry(self) -> int:
         """Where the machine code starts."""
         kept = _read(self.file)
-        if kept is None and ahead.finished(self.python.__module__):
-            kept = _read(self.file)
-        if kept is not None:
-            return _loaded(*kept)
+        if kept is None:
+            with ahead.turn(lock(), self.key):  # another process may be compiling it
+                kept = _read(self.file) or self._compiled()
+        return _loaded(*kept)
+
+    def keep(self) -> None:
+        """Have the machine code in the cache, unless another process is at it."""
+        with ahead.turn(lock(), self.key, wait=False) as ours:
+            if ours and _read(self.file) is None:
+                self._compiled()
+
+    def _compiled(self) -> tuple[str, bytes]:
+        """Symbol and object file, just compiled; they are kept where that is possible."""
         from trsim.elements.compiler import machine_code
 
-        code = machine_code(self.dispatcher, self.signature)
+        code = machine_code(self.inner, self.signature)
         foreign = set(code.needs) - LIBRARY
         if foreign:
             raise RuntimeError(f"{self.file.stem} needs {sorted(foreign)} of others")
         with suppress(OSError):  # a folder that cannot be written to: compiled again next time
             _write(self.file, code.symbol, code.objects)
-        return _loaded(code.symbol, code.objects)
+        return code.symbol, code.objects
 
     def address(self) -> int:
         """Where the machine code starts."""

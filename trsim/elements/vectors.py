@@ -6,12 +6,12 @@ Slice assignments of numba carry shape checks and their error texts: a second of
 from collections.abc import Callable
 from math import isfinite
 
-from trsim.laws import UNWRAPPED, Lazy
+from trsim.laws import Lazy
 
 
 def internal(python: Callable) -> Lazy:
-    """Decorator of functions that only compiled code calls: no wrappers for Python are made."""
-    return Lazy(python, **UNWRAPPED)
+    """Decorator of functions that only compiled code calls."""
+    return Lazy(python)
 
 
 @internal
