@@ -153,3 +153,16 @@ solver: {end: 0.1, tolerance: 1e-9}
 """)
     assert r["slide.velocity"][:, 0] == pytest.approx(0.5, abs=1e-9)
     assert r["cylinder.force"] == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("more", [(), ("joints.B.clearance=0.01mm",),
+                                  ("contact_laws.pin.youngs_modulus=2e14",)])  # fmt: skip
+def test_a_stroke_is_reached_with_clearance(more, monkeypatch):
+    """Far from the drawing, in balance, in a few hundred looks: the way there is by ideal joints."""
+    seen, balance = [], statics.balance
+    monkeypatch.setattr(statics, "balance", lambda *given: seen.append(0) or balance(*given))
+    mechanism, s = begun("clearance_b_0.3mm", "initial.guide=0.1", *more)
+    assert s.residual < 1e-3  # N: what the rounding of a position is to the stiffest contact
+    assert len(seen) < 600
+    x = mechanism.coordinates["guide"]
+    assert mechanism.model.n > 0 and s.branch[x.entry] == pytest.approx(0.1, abs=1e-9)

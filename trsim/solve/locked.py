@@ -2,7 +2,8 @@
 
 At a dead centre that a drive or the motion runs into, the rows of the constraints come to depend on
 each other: speeds and reactions grow without bound before it, like 1/sqrt(t* - t), and behind it
-there is no position at all.  It shows in the singular values of J with angles times the mechanism's size, rows of unit length.
+there is no position at all.  It shows in the singular values of J, its rows of unit length, angles
+taken times the mechanism's size.
 """
 
 import numpy as np

@@ -162,13 +162,39 @@ def positions(
     residual = 0.0
     targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
     settle = bool(initial.equilibrium)
+    there = None
+    if settle and targets and playing:
+        there = by_ideal_joints(scenario, initial, frozenset(playing), held)
     if settle:
-        y, residual = equilibrium(held, y)
-    if targets:
+        y, residual = equilibrium(held, y if there is None else there)
+    if targets and there is None:
         y, residual = approach(held, y, targets, settle)
     remember(held.model, y)
     angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
     return back(mechanism, held, y), residual, angles
+
+
+def by_ideal_joints(
+    scenario: Any, initial: Any, playing: frozenset[str], held: Any
+) -> Array | None:
+    """y of `held` where all joints are ideal and `initial` is reached; None where it is not.
+
+    A journal would leave its bearing with every step of the way, and be pressed back through it.
+    """
+    try:
+        bare = with_scene(assemble(scenario, playing, holding_drives(scenario, initial)))
+        y, _ = equilibrium(bare, follow(bare, carried(bare, bare)))
+        targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
+        y, _ = approach(bare, y, targets, True)
+    except ModelError:
+        return None
+    remember(bare.model, y)
+    for name in held.coordinates.keys() & bare.coordinates.keys():
+        angle = bare.model.S[bare.coordinates[name].entry, 0]
+        held.model.branch[held.coordinates[name].entry] = angle
+    there = carried(bare, held)
+    there[: held.model.n_q] = y[: held.model.n_q]
+    return follow(held, there)
 
 
 def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:

@@ -99,7 +99,7 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     reach = min([0.2 * c for c in gaps], default=0.02 * model.size)
     patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach
     probe = 1e-9 * model.size if not gaps else min(1e-9 * model.size, 1e-5 * min(gaps))
-    push, scale = 0.0, 1e-300
+    push, scale, load = 0.0, 1e-300, 1e-300
     changed, before = 0, 0.0  # the step at which the force last changed, and to what
     F, J, Z = balance(model, y, free, mass)
     for count in range(STEPS):
@@ -112,14 +112,15 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         K = stiffness(model, y, Z, lam, J, probe)
         values, vectors = np.linalg.eigh(K)
         # bodies in balance have no net force left: the largest one met is the scale
-        scale = max(scale, float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
+        acting = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
+        scale = max(scale, acting)
         size = float(np.linalg.norm(r))
         left = float(np.linalg.norm((Z @ r) * mass))
         if left <= BALANCED * scale or size == 0.0:
-            check_stable(mechanism, values, Z @ vectors, scale, model)
+            check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
             return y, left
         if count == 0:
-            push = max(abs(values[0]), size / reach)
+            push, load = max(abs(values[0]), size / reach), acting
         if abs(size - before) > STALLED * before:
             changed, before = count, size
         if count - changed > patience:
@@ -131,7 +132,7 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
         # a stiff contact turns the rounding of a position into a force: no step is left to take
         if max(longest, turned) < ROUNDING * model.size and left < 1e-6 * scale:
-            check_stable(mechanism, values, Z @ vectors, scale, model)
+            check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
@@ -152,13 +153,16 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
 
 
 def check_stable(
-    mechanism: Mechanism, values: Array, motions: Array, scale: float, model: Model
+    mechanism: Mechanism, values: Array, motions: Array, load: float, model: Model
 ) -> None:
-    """Refuse an equilibrium in which some motion meets no stiffness at all."""
+    """Refuse an equilibrium in which some motion meets no stiffness at all.
+
+    load: N, of the forces as drawn or in balance; on the way they may have been far larger.
+    """
     for value, motion in zip(values, motions.T, strict=True):
         along = motion / np.max(np.abs(motion))
         restoring = abs(value) / np.max(np.abs(motion)) ** 2  # N/m or N*m/rad of that motion
-        if restoring < INDIFFERENT * scale / model.size:
+        if restoring < INDIFFERENT * load / model.size:
             body = int(np.argmax(np.abs(along))) // 6 + 1
             name = next(n for n, f in mechanism.frames.items() if f == body)
             raise ModelError(
