@@ -64,7 +64,7 @@ class Case:
             changes[f"joints.{pin}.contact"] = law
         if file is CRANK:
             turn = self.speed / CRANK_RADIUS  # rad/s
-            end = min(0.05, 1.5 / turn)
+            end = 1.5 / turn
             changes["drives.motor.velocity"] = turn
             changes[f"contact_laws.{law}.slowest_impact"] = 0.01 * min(1.0, self.speed)
         else:
