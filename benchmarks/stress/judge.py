@@ -1,8 +1,8 @@
 """One case by all methods: run, compare with the truth, and say what became of each.
 
-The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin of it at
-half its tolerance and with another first step (0.93 of the step, for rk4) part where they stop being
-predictable; before that *horizon* the largest force of every contact is compared.
+The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin of it, at
+half its tolerance and with another first step (0.93 of the step, for rk4), part where they are no
+longer predictable; before that *horizon* the largest force of every contact is compared.
 """
 
 from dataclasses import asdict, dataclass, replace

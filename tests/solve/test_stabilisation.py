@@ -32,3 +32,6 @@ def test_three_ways():
     for r in (projected, baumgarte):
         assert r["coupler.position"] == pytest.approx(exact["coupler.position"], abs=2e-4)
     assert energy_error(projected) < 1e-6
+    for r in (baumgarte, free):  # what a run says of itself
+        assert r.outcome.statistics["position_residual"] >= drift(r) > 0.0
+        assert r.outcome.statistics["joints_open_relative"] > 0.0

@@ -13,6 +13,8 @@ from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
 
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
+GIVEN = 1e-2  # of it: more done by projection says so too
+OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
@@ -116,6 +118,19 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
         answer.say(
             f"{source}: warning: the energy book does not close, by {100 * lost:.2g} % of the "
             "largest energy exchanged; tighten `tolerance`; does the velocity of a drive jump?"
+        )
+    given = summary["statistics"].get("work_of_projection_relative", 0.0)
+    if given > GIVEN and summary["status"] == "done":
+        answer.say(
+            f"{source}: warning: bringing the mechanism back to its joints and drives did "
+            f"{100 * given:.2g} % of the largest energy exchanged; does a drive jump?  Else tighten "
+            "`tolerance` or the step"
+        )
+    apart = summary["statistics"].get("joints_open_relative", 0.0)
+    if apart > OPEN:
+        answer.say(
+            f"{source}: warning: joints were open by up to {apart:.2g} of the mechanism's size; "
+            "`stabilisation: projection` closes them"
         )
     if (identical := same(source, summary)) is not None:
         summary["identical"] = identical

@@ -2,7 +2,7 @@
 
 from math import nan
 
-from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
+from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses, velocity_residual
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.elements.scene import PROJECTION
 from trsim.elements.vectors import internal
@@ -46,6 +46,11 @@ def land(s, r, b, t, y, yd):
     evaluate(s, t, y, yd)
     if s.stabilisation == PROJECTION and s.m > 0:
         done += position_work(s, b.y2, y)
+    else:
+        for k in range(s.m):
+            r.clock[WORST_PHI] = max(r.clock[WORST_PHI], abs(s.phi[k]))
+            off = abs(velocity_residual(s, k))
+            r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], off)
     if s.contact.size > 0:
         gaps(s, t)
         corners(s, t)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
-from trsim.elements.scene import Scene
+from trsim.elements.scene import PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.record import Record
@@ -166,6 +166,7 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
     """Counts, residuals and the energy book's error."""
     scale = max(float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
+    held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
     return {
         "steps": int(r.count[rec.STEPS]),
         "rejected_steps": int(r.count[rec.REJECTED]),
@@ -184,5 +185,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "energy_residual": float(r.clock[rec.LARGEST_RESIDUAL]),
         "energy_residual_relative": float(r.clock[rec.LARGEST_RESIDUAL]) / scale,
         "work_of_projection": float(r.clock[rec.WORK_PROJECTION]),
+        "work_of_projection_relative": abs(float(r.clock[rec.WORK_PROJECTION])) / scale,
+        "joints_open_relative": 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size,
         "integration_cpu": cpu,
     }

@@ -45,6 +45,8 @@ class Statistics(TypedDict, total=False):
     energy_residual           largest error of the energy book, J
     energy_residual_relative  the same over the largest energy exchanged
     work_of_projection        J
+    work_of_projection_relative  its size over the largest energy exchanged
+    joints_open_relative      largest open constraint over the mechanism's size, without projection
     """
 
     steps: int
@@ -64,6 +66,8 @@ class Statistics(TypedDict, total=False):
     energy_residual: Number
     energy_residual_relative: Number
     work_of_projection: Number
+    work_of_projection_relative: Number
+    joints_open_relative: Number
 
 
 class RunStatistics(Statistics, total=False):
