@@ -117,6 +117,9 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
             f"{source}: warning: the energy book does not close, by {100 * lost:.2g} % of the "
             "largest energy exchanged; tighten `tolerance`; does the velocity of a drive jump?"
         )
+    for name, times in summary["fired"].items():
+        if times == 0 and summary["status"] == "done":
+            answer.say(f"{source}: note: the event '{name}' never happened")
     if (identical := same(source, summary)) is not None:
         summary["identical"] = identical
         answer.say(f"the content {'is identical to' if identical else 'differs from'} {source}")
@@ -143,7 +146,8 @@ def placed(error: TrsimError, scenario: Any) -> TrsimError:
 def line(summary: dict[str, Any]) -> str:
     """The result in one line."""
     steps = summary["statistics"].get("steps", 0)
+    why = f" ({summary['reason']})" if summary["reason"] else ""
     return (
-        f"{summary['file']}: {summary['status']} at t = {summary['time']:.6g} s, "
+        f"{summary['file']}: {summary['status']} at t = {summary['time']:.6g} s{why}, "
         f"{summary['rows']} rows, {steps} steps, {summary['events']} events"
     )
