@@ -116,6 +116,22 @@ def test_every_method_goes_on_with_other_equations(method, bound):
     assert names(r) == ["hold", "go"]
 
 
+COARSE = {
+    "dop853": "method: dop853, tolerance: 1e-3",
+    "rk4": "method: rk4, step: 30 ms",
+    "generalized_alpha": "method: generalized_alpha, tolerance: 1e-3",
+}
+
+
+@pytest.mark.parametrize("solver", COARSE.values(), ids=COARSE)
+def test_coarse_steps_end_on_the_value(solver):
+    """The step is made again until it does, whatever its interpolant thinks."""
+    text = SWING.replace("end: 1, tolerance: 1e-10", f"end: 3, {solver}")
+    r = run(text + "  half: {when: x, value: 50 mm, crosses: down, do: {end: true}}")
+    assert r.outcome.record.y[0] == pytest.approx(0.05, abs=1e-9)  # 1e-6 of the error allowed
+    assert r.outcome.time == pytest.approx(pi / 12, abs=3e-3)
+
+
 def test_scipy_is_refused():
     with pytest.raises(ScenarioError, match="scipy:BDF knows no events"):
         run(FLIGHT + "  e: {when: x, value: 1, do: {end: true}}", "solver.method=scipy:BDF")
