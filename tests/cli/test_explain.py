@@ -35,6 +35,19 @@ def test_example_runs_and_records_what_is_said(page):
             break
 
 
+def test_example_of_events_runs():
+    [page] = explained("events")["sections"]
+    scenario = loads(page["example"])
+    blocks = simulate(scenario, assemble(scenario))
+    while True:
+        try:
+            next(blocks)
+        except StopIteration as end:
+            assert end.value.reason == "event 'over' ended the run"
+            assert end.value.fired == {"jettison": 1, "over": 1}
+            break
+
+
 @pytest.mark.parametrize("spec", [*specs(Scenario), *SPECS], ids=lambda spec: spec.__name__)
 def test_every_key_has_a_meaning(spec):
     assert set(meanings(spec)) == set(spec.model_fields)

@@ -17,7 +17,22 @@ SPATIAL = (
 )
 RK4 = ("solver.method=rk4", "solver.step=1us", "solver.end=0.6ms")
 FRICTION = "contact_laws.pin.friction={law: modified_coulomb, coefficient: 0.1, v0: 1e-4, v1: 1e-3}"
-KINDS = [(), SPATIAL, RK4, (*RK4, *SPATIAL), (FRICTION,)]
+EVENTS = (
+    "events={turned: {when: crank_angle, value: 0.4, do: {set: {motor: {velocity: 600 - 1e5*t}}}}, "
+    "caught: {when: stroke, value: -5 mm, crosses: down, do: {release: [motor], lock: [O]}}, "
+    "again: {when: t, value: 1.1 ms, do: {unlock: [O], record: true}}}",
+)
+KINDS = [
+    (),
+    SPATIAL,
+    RK4,
+    (*RK4, *SPATIAL),
+    (FRICTION,),
+    EVENTS,
+    (*RK4, *EVENTS, "solver.end=1.2ms"),
+]
+IMPLICIT = (*EVENTS, "solver.method=radau")
+TABLES = ("rows", "steps", "events", "recorded")
 KEPT = {"mem", "branch", "status"}  # of a scene: the record's, and counters
 
 
@@ -34,13 +49,13 @@ def blocks(sets, checkpoint=None):
             block = next(running)
         except StopIteration as stop:
             return found, stop.value
-        tables = {n: getattr(block, n).copy() for n in ("rows", "steps", "events")}
+        tables = {n: getattr(block, n).copy() for n in TABLES}
         found.append(block._replace(**tables))
 
 
 def assert_same(found, outcome, expected, unbroken):
     """The tables, extremes and statistics of two runs, bit by bit; cpu times apart."""
-    for name in ("rows", "steps", "events"):
+    for name in TABLES:
         together = [np.concatenate([getattr(b, name) for b in run]) for run in (found, expected)]
         np.testing.assert_array_equal(*together)
     np.testing.assert_array_equal(outcome.peaks, unbroken.peaks)
@@ -49,7 +64,7 @@ def assert_same(found, outcome, expected, unbroken):
     assert statistics[0] == statistics[1]
 
 
-@pytest.mark.parametrize("sets", KINDS, ids=named)
+@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT], ids=named)
 def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     unbroken, outcome = blocks(sets)
     monkeypatch.setattr(module, "VISIT", 5)
@@ -61,7 +76,7 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
 
-@pytest.mark.parametrize("sets", KINDS[:4], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS], ids=named)
 def test_nothing_but_the_record_lasts(sets, monkeypatch):
     """Workspace as new and buffers full of NaN at every step: they carry nothing along."""
     unbroken, outcome = blocks(sets)

@@ -158,7 +158,7 @@ solver: {end: 0.1, tolerance: 1e-9}
 @pytest.mark.parametrize("more", [(), ("joints.B.clearance=0.01mm",),
                                   ("contact_laws.pin.youngs_modulus=2e14",)])  # fmt: skip
 def test_a_stroke_is_reached_with_clearance(more, monkeypatch):
-    """Far from the drawing, in balance, in a few hundred looks: the way there is by ideal joints."""
+    """Far from the drawing, in balance, in a few hundred looks: it goes there by ideal joints."""
     seen, balance = [], statics.balance
     monkeypatch.setattr(statics, "balance", lambda *given: seen.append(0) or balance(*given))
     mechanism, s = begun("clearance_b_0.3mm", "initial.guide=0.1", *more)

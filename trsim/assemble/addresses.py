@@ -40,6 +40,7 @@ class Addresses:
     n_s: int = 0
     timed: bool = False  # something depends on t explicitly
     notes: list[str] = field(default_factory=list)
+    switches: Any = None  # of user events, once all elements are packed
 
     def __post_init__(self) -> None:
         self.frames = {"ground": 0}

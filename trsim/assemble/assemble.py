@@ -13,6 +13,8 @@ from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.pattern import pattern
 from trsim.assemble.rows import all_rows, check_inertias, choose_rows, planarity, reactions
+from trsim.assemble.stages import Stages
+from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
     contact_numbers,
     contact_states,
@@ -25,6 +27,7 @@ from trsim.assemble.tables import (
     norm,
     tables,
     turns,
+    watched,
 )
 from trsim.elements.contract import (
     N_BOOK,
@@ -48,16 +51,16 @@ def assemble(
     of the scenario's; coordinates: joints whose coordinate is needed though nobody asks for it.
     """
     at, instances = pack(scenario, ideal, drives, coordinates)
-    full = scene(build(scenario, at, instances, all_rows(instances), 6))  # one workspace for all
+    rows = all_rows(instances)
+    full = scene(build(scenario, at, instances, rows, 6))  # one workspace for all
     y6 = drawn(scenario, at, 6)
     planar, assumed = planarity(scenario, full, y6)
     check_inertias(scenario, planar)
-    kept, found = choose_rows(full, y6, instances, planar)
+    kept, found = choose_rows(full, y6, instances, planar, rows)
     d = 3 if planar else 6
     model = build(scenario, at, instances, kept, d)
     y0 = drawn(scenario, at, d)
     model, columns = layout(scenario, model, instances, at, planar)
-    rows = all_rows(instances)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     return Mechanism(
@@ -79,7 +82,21 @@ def assemble(
         coordinates=at.coordinates,
         frames=at.frames,
         notes=(*notes(scenario, assumed), *at.notes),
+        stages=stages(scenario, at, instances, model, planar),
     )
+
+
+def stages(
+    scenario: Any, at: Addresses, instances: list[Instance], first: Model, planar: bool
+) -> Stages:
+    """What user events make of the mechanism; planarity is that of the start."""
+
+    def built(instances: list[Instance], rows: list[RowName]) -> tuple[Model, list[RowName]]:
+        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(scenario, at, 6)
+        kept, _ = choose_rows(full, y6, instances, planar, rows)
+        return build(scenario, at, instances, kept, 3 if planar else 6), kept
+
+    return Stages(at.switches, instances, first, built)
 
 
 def notes(scenario: Any, assumed: bool) -> tuple[str, ...]:
@@ -111,6 +128,8 @@ def pack(  # type: ignore[no-untyped-def]
     if drives is not None:
         sections["drives"] = drives
     sections["forces"] = scenario.forces
+    if drives is None:
+        sections[SECTION] = dict(locks(scenario))
     for section, members in sections.items():
         for name, spec in members.items():
             key = spec.type
@@ -135,6 +154,7 @@ def pack(  # type: ignore[no-untyped-def]
             raise error.at(section, name) from None
         except ValueError as error:
             raise ScenarioError(str(error), path=(section, name)) from None
+    at.switches = switches(scenario, at, instances) if drives is None else Switches()
     for name in coordinates:
         if at.elements["joints", name].coordinate:
             at.coordinate(name)
@@ -199,6 +219,7 @@ def build(
         joint_out=np.zeros((0, 4), np.int64),
         column_energy=-1,
         n_out=0,
+        **watched(at.switches, size),
         size=size,
         reach=min(size, max(levers(at, size)[1:], default=size)),
     )

@@ -1,11 +1,12 @@
 """Which channels a run records, and the columns they stand in."""
 
+from collections.abc import Iterable
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from trsim.assemble.outputs import ENERGY_COLUMNS
+from trsim.assemble.outputs import energy_columns
 from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import Model
 from trsim.errors import ScenarioError, known
@@ -38,19 +39,22 @@ def unit(instance: "Instance", channel: Channel, at: "Addresses") -> str:
     if channel.unit == channel.unit_on("rad") == channel.unit_on("m"):
         return channel.unit
     spec = getattr(at.scenario, instance.section).get(instance.name)
+    if instance.element.key == "drive":  # also one made for the start of a run, or for a lock
+        *_, rotates, _ = instance.row.con
+        return channel.unit_on("rad" if rotates == 1 else "m")
     x = at.coordinate(spec.joint) if spec and spec.joint else None
-    # no joint: a stop of a point on a wall, or a drive made for the start of a run
+    # no joint: a stop of a point on a wall
     return channel.unit_on("rad" if x is not None and x.kind == "angle" else "m")
 
 
-def all_names(instances: list["Instance"]) -> list[str]:
+def all_names(instances: Iterable["Instance"], jumps: int) -> list[str]:
     """Every channel one may ask for, and the elements that have some."""
     names = []
     for instance in instances:
         recorded = (*instance.element.channels, *instance.element.reactions)
         channels = [f"{instance.name}.{c.name}" for c in recorded if c.name]
         names += [instance.name, *channels] if channels else []
-    return names + [f"energy.{name}" for name in ENERGY_COLUMNS]
+    return names + [f"energy.{name}" for name in energy_columns(jumps)]
 
 
 def layout(
@@ -88,13 +92,13 @@ def layout(
             for name, channel in zip(names, instance.element.reactions, strict=True):
                 add(name, channel.unit, channel.meaning, channel.size)
     energy = width
-    for name in ENERGY_COLUMNS:
+    for name in energy_columns(model.jumps):
         add(f"energy.{name}", "J", "energy book", 1)
     unused = [p for p in patterns if not any(matches(c.name, (p,)) for c in columns)]
     if unused:
         raise ScenarioError(
             f"no channel matches '{unused[0]}'",
-            known(unused[0], all_names(instances)),
+            known(unused[0], all_names(instances, model.jumps)),
             ("output", "channels", patterns.index(unused[0])),
         )
     filled = model.replaced(

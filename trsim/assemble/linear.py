@@ -13,6 +13,7 @@ from math import sqrt
 from trsim.elements.vectors import copy_to, internal
 
 TINY = 1e-10  # of the diagonal: a smaller pivot is a dependent row
+PLAIN = 1e-6  # the same, of J J^T: whether the rows depend on each other, whatever the masses
 SHIFT = 1e-9  # of the diagonal, added to a singular S
 REFINEMENTS = 6
 LEFT_OVER = 1e-3  # of the right-hand side: more shows that the rows ask for different things
@@ -29,25 +30,25 @@ def factorise(s):
     for k in range(s.m):
         s.first[k] = s.value[s.diagonal[k]]
     copy_to(s.original, s.value)
-    if eliminate(s) > 0:
+    if eliminate(s, TINY) > 0:
         s.status[0] = 1
         copy_to(s.value, s.original)
         for k in range(s.m):
             s.value[s.diagonal[k]] += SHIFT * s.first[k]
-        eliminate(s)
+        eliminate(s, TINY)
 
 
 @internal
-def eliminate(s):
-    """Right-looking elimination; returns the number of pivots below TINY."""
+def eliminate(s, tiny):
+    """Right-looking elimination; returns the number of pivots below `tiny` of their diagonal."""
     value, small = s.value, 0
     diagonal, update, update_start = s.diagonal, s.update, s.update_start
     below, below_start = s.below, s.below_start
     for k in range(s.m):
         D = value[diagonal[k]]
-        if TINY * s.first[k] >= D:
+        if tiny * s.first[k] >= D:
             small += 1
-            D = TINY * s.first[k]
+            D = tiny * s.first[k]
             if D == 0.0:
                 D = 1.0
             value[diagonal[k]] = D
@@ -106,11 +107,7 @@ def residual(s, x, r):
 
 @internal
 def contradictory(s, x):
-    """Whether x, just found for a singular S, leaves a part of the right-hand side unmet.
-
-    Rows that depend on each other then want different accelerations: a mechanism that jams; or
-    they do not depend, but bodies of very unequal mass make them look so: nothing here is right.
-    """
+    """Whether x, just found for a singular S, leaves a part of the right-hand side unmet."""
     if s.status[0] == 0:
         return False
     copy_to(s.r2, s.r)
@@ -121,3 +118,11 @@ def contradictory(s, x):
         left = max(left, abs(s.r2[row]) / sqrt(s.first[k]))
         whole = max(whole, abs(s.r[row]) / sqrt(s.first[k]))
     return left > LEFT_OVER * whole
+
+
+@internal
+def independent(s):
+    """Whether the rows whose J J^T was just filled into s.value do not depend on each other."""
+    for k in range(s.m):
+        s.first[k] = s.value[s.diagonal[k]]
+    return eliminate(s, PLAIN) == 0

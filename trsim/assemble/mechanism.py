@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from trsim.assemble.layout import Column
 from trsim.elements.contract import Element, Row
 from trsim.elements.scene import Model
+
+if TYPE_CHECKING:
+    from trsim.assemble.stages import Stages
 
 Array = NDArray[np.float64]
 
@@ -58,3 +61,4 @@ class Mechanism:
     coordinates: Mapping[str, Any]  # joint -> JointCoordinate
     frames: Mapping[str, int]
     notes: tuple[str, ...]
+    stages: "Stages"  # what user events make of it

@@ -14,13 +14,17 @@ from trsim.elements.contract import BOOK, N_BOOK, STORED
 from trsim.elements.frames import arm
 from trsim.elements.scene import N_STORED
 
-ENERGY_COLUMNS = (
-    "kinetic",
-    *(f"stored.{name}" for name in STORED),
-    *(f"work.{name}" for name in BOOK),
-    "work.projection",
-    "residual",
-)
+
+def energy_columns(jumps):
+    """Names of the energy book; where there are user events, with a line of their work."""
+    return (
+        "kinetic",
+        *(f"stored.{name}" for name in STORED),
+        *(f"work.{name}" for name in BOOK),
+        *(["work.events"] if jumps >= 0 else []),
+        "work.projection",
+        "residual",
+    )
 
 
 @equation
@@ -39,8 +43,13 @@ def measure(s, t, y, work_projection, energy_0):
     for c in range(N_BOOK):
         out[o + c] = s.z[c]
         total -= s.z[c]
-    out[o + N_BOOK] = work_projection
-    out[o + N_BOOK + 1] = total
+    o += N_BOOK
+    if s.jumps >= 0:
+        out[o] = s.z[s.jumps]
+        total -= s.z[s.jumps]
+        o += 1
+    out[o] = work_projection
+    out[o + 1] = total
 
 
 @equation

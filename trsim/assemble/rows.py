@@ -1,5 +1,6 @@
 """Which constraint rows are solved: those in the plane of a planar scene, no redundant ones."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -23,13 +24,18 @@ from trsim.errors import ModelError
 Array = NDArray[np.float64]
 
 
-def all_rows(instances: list[Instance]) -> list[RowName]:
-    """Every constraint row of the elements, in three dimensions."""
+def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowName]:
+    """Every constraint row of the elements, in three dimensions.
+
+    held: the locks of user events that are closed; as drawn they are open.
+    """
     rows = []
     for n, instance in enumerate(instances):
         i, j = instance.row.con[0], instance.row.con[1] if len(instance.row.con) > 1 else 0
         if instance.element.key == "drive" and instance.row.par[9] > 0.0:
             continue  # a compliant drive is a force
+        if instance.section == "events" and instance.name not in held:
+            continue
         for index, axis in enumerate(instance.element.rows):
             turns = axis.startswith(("tilt", "turn"))
             rows.append(RowName(instance.name, axis, n, index, (i, j), turns))
@@ -55,20 +61,21 @@ def reactions(full: Model, y6: Array, planar: bool) -> tuple[list[int], list[int
 
 
 def choose_rows(
-    full: Model, y6: Array, instances: list[Instance], planar: bool
+    full: Model, y6: Array, instances: list[Instance], planar: bool, rows: list[RowName]
 ) -> tuple[list[RowName], list[Dependence]]:
     """Rows of the solve: in the plane where the scene is planar, the redundant ones dropped."""
-    rows = all_rows(instances)
     _, _, J = jacobian(full, 0.0, y6)
     candidates = np.flatnonzero(in_solve(J, planar)).tolist()
     is_drive = [instances[r.instance].element.key == "drive" for r in rows]
-    # translations first: where a choice is left, moments go rather than forces; drives last
-    order = sorted(candidates, key=lambda k: (is_drive[k], rows[k].rotation, k))
+    is_lock = [instances[r.instance].section == "events" for r in rows]
+    # translations first: where a choice is left, moments go rather than forces; then locks, which
+    # may hold what is held already, and drives last
+    order = sorted(candidates, key=lambda k: (is_drive[k], not is_lock[k], rows[k].rotation, k))
     columns = IN_PLANE if planar else [0, 1, 2, 3, 4, 5]
     geometric = [k for k in candidates if not is_drive[k]]
     found = dependences(full, y6, columns, order, geometric)
     for f in found:
-        if is_drive[f.row] and f.everywhere:
+        if is_drive[f.row] and not is_lock[f.row] and f.everywhere:
             name = rows[f.row].element
             raise ModelError(
                 "moves a coordinate that joints or another drive already fix",

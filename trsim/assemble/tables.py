@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
 from trsim.errors import ModelError
@@ -176,6 +177,19 @@ def norm(at: Addresses, d: int, size: float) -> tuple[NDArray[np.int64], Array]:
             kind.append(scales.MAGNITUDE if scale else scales.OUTSIDE)
             lever.append(scale or 1.0)
     return np.array(kind, np.int64), np.array(lever)
+
+
+def watched(switches: Switches, size: float) -> dict[str, Any]:
+    """What user events watch, and where their work is booked."""
+    events = switches.events
+    watch = [(e.entry, e.direction, e.most) for e in events]
+    scale = {"angle": 1.0, "stroke": size, "time": 0.0}
+    at = [(e.value, BAND * scale[e.kind]) for e in events]
+    return {
+        "watch": np.array(watch, np.int64).reshape(-1, 3),
+        "watch_at": np.array(at, float).reshape(-1, 2),
+        "jumps": switches.jumps,
+    }
 
 
 def contact_numbers(

@@ -69,6 +69,8 @@ def section(page: dict[str, Any]) -> Iterator[str]:
     if page["elements"]:
         yield from ("", "elements:", *_wrapped("  ".join(page["elements"]), INDENT))
     yield from keys(page)
+    if page["example"]:
+        yield from ("", "example:", textwrap.indent(page["example"], " " * INDENT))
 
 
 def keys(page: dict[str, Any]) -> Iterator[str]:

@@ -123,8 +123,8 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
     if given > GIVEN and summary["status"] == "done":
         answer.say(
             f"{source}: warning: bringing the mechanism back to its joints and drives did "
-            f"{100 * given:.2g} % of the largest energy exchanged; does a drive jump?  Else tighten "
-            "`tolerance` or the step"
+            f"{100 * given:.2g} % of the largest energy exchanged; does a drive jump?  "
+            "Else `tolerance` or the step is too coarse"
         )
     apart = summary["statistics"].get("joints_open_relative", 0.0)
     if apart > OPEN:
@@ -132,6 +132,9 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
             f"{source}: warning: joints were open by up to {apart:.2g} of the mechanism's size; "
             "`stabilisation: projection` closes them"
         )
+    for name, times in summary["fired"].items():
+        if times == 0 and summary["status"] == "done":
+            answer.say(f"{source}: note: the event '{name}' never happened")
     if (identical := same(source, summary)) is not None:
         summary["identical"] = identical
         answer.say(f"the content {'is identical to' if identical else 'differs from'} {source}")
@@ -158,7 +161,8 @@ def placed(error: TrsimError, scenario: Any) -> TrsimError:
 def line(summary: dict[str, Any]) -> str:
     """The result in one line."""
     steps = summary["statistics"].get("steps", 0)
+    why = f" ({summary['reason']})" if summary["reason"] else ""
     return (
-        f"{summary['file']}: {summary['status']} at t = {summary['time']:.6g} s, "
+        f"{summary['file']}: {summary['status']} at t = {summary['time']:.6g} s{why}, "
         f"{summary['rows']} rows, {steps} steps, {summary['events']} events"
     )

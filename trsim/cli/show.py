@@ -25,6 +25,7 @@ def command(answer: Answer, run: str) -> None:
         "provenance": found.group("provenance"),
         "phase": list(found.phase),
         "poincare": {name: len(points.x) for name, points in found.poincare.items()},
+        "fired": found.fired,
     }
     for text in lines(found, answer.data):
         answer.put(text)
@@ -52,6 +53,7 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
             f"  contact   {name}: {contact['impacts']} impacts, peak {contact['peak_force']:.5g} "
             f"at {contact['peak_time']:.5g} s"
         )
+    out += user_events(run, data["fired"])
     sections = [f"{name} ({count} points)" for name, count in data["poincare"].items()]
     out.append(f"  phase     {', '.join(data['phase']) or '-'}")
     out.append(f"  poincare  {', '.join(sections) or '-'}")
@@ -59,3 +61,21 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
     width = max((len(name) for name in run.names), default=0)
     out += [f"    {name:<{width}}  {run.units[name]}" for name in run.names]
     return out
+
+
+SHOWN = 20  # lines of user events
+
+
+def user_events(run: Any, fired: dict[str, int]) -> list[str]:
+    """What the scenario's events did, one line for each time, and those that did not happen."""
+    events = run.events
+    told = [
+        f"  event     {name}: {did} at {time:.9g} s" + (f", work {work:.5g} J" if work else "")
+        for name, kind, did, time, work in zip(
+            events.element, events.kind, events.did, events.time, events.work, strict=False
+        )
+        if kind == "user"
+    ]
+    more = [f"            and {len(told) - SHOWN} more"] if len(told) > SHOWN else []
+    never = [f"  event     {name}: never" for name, times in fired.items() if not times]
+    return [*told[:SHOWN], *more, *never]

@@ -40,9 +40,11 @@ KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "meas
 I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
 # mem: the first columns of every element with a gap
-PHASE, IMPACT_SPEED, BRANCH, N_MEM = 0, 1, 2, 3
+PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
 FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
 WHOLE = 9.0  # BRANCH: the law with all its branches
+# and of every drive
+SINCE, N_MEM = 3, 4  # s: when its prescribed motion began, see elements/event.py
 
 # z: the energy book, power flowing into the mechanism (W), in front of the elements' own states
 DRIVES, LOADS, DAMPERS, IMPACTS, FRICTION, N_BOOK = 0, 1, 2, 3, 4, 5

@@ -16,6 +16,7 @@ from pydantic import model_validator
 from trsim.elements.contract import (
     DAMPERS,
     DRIVES,
+    SINCE,
     SPRINGS,
     Channel,
     Element,
@@ -110,7 +111,7 @@ def rates_at(tab, offset, t, out):
 
 @helper
 def prescribed(t, z, tab, state, offset):
-    """f, f', f''."""
+    """f, f', f'' at the time t since the motion began."""
     f, f_dot, f_ddot = motion(tab, offset, t)
     if state < 0:
         return f, f_dot, f_ddot
@@ -119,7 +120,7 @@ def prescribed(t, z, tab, state, offset):
 
 @kernel
 def constraint(t, scene, a, b):
-    X, V, S, z, con = scene.X, scene.V, scene.S, scene.z, scene.con
+    X, V, S, z, con, mem = scene.X, scene.V, scene.S, scene.z, scene.con, scene.mem
     par, tab, phi, phi_t, J, gamma = (
         scene.par,
         scene.tab,
@@ -133,7 +134,7 @@ def constraint(t, scene, a, b):
         if k < 0:
             continue
         i, j = con[e, 0], con[e, 1]
-        f, f_dot, f_ddot = prescribed(t, z, tab, con[e, STATE], con[e, MOTION])
+        f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
         axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         o_i, o_j = spin(V, i), spin(V, j)
         if con[e, ROTATES] == 1:
@@ -155,13 +156,13 @@ def constraint(t, scene, a, b):
 
 @kernel
 def force(t, scene, a, b):
-    X, S, z, con = scene.X, scene.S, scene.z, scene.con
+    X, S, z, con, mem = scene.X, scene.S, scene.z, scene.con, scene.mem
     par, tab, F, zd = scene.par, scene.tab, scene.F, scene.zd
     for e in range(a, b):
         state, k = con[e, STATE], par[e, K]
         if k == 0.0 and state < 0:
             continue
-        f, f_dot, _ = prescribed(t, z, tab, state, con[e, MOTION])
+        f, f_dot, _ = prescribed(t - mem[e, SINCE], z, tab, state, con[e, MOTION])
         if state >= 0:
             zd[state] = f_dot
         if k > 0.0:
@@ -193,22 +194,23 @@ def act(X, F, i, j, rotates, par, e, axis, pull):
 
 @kernel
 def energy(t, scene, a, b):
-    S, z, con, par, tab, E = scene.S, scene.z, scene.con, scene.par, scene.tab, scene.E
+    S, z, con, mem = scene.S, scene.z, scene.con, scene.mem
+    par, tab, E = scene.par, scene.tab, scene.E
     for e in range(a, b):
         if par[e, K] > 0.0:
-            f, _, _ = prescribed(t, z, tab, con[e, STATE], con[e, MOTION])
+            f, _, _ = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
             slip = S[con[e, 2], 0] - f
             E[SPRINGS] += 0.5 * par[e, K] * slip * slip
 
 
 @kernel
 def measure(t, scene, a, b):
-    S, z, lam, con = scene.S, scene.z, scene.lam, scene.con
+    S, z, lam, con, mem = scene.S, scene.z, scene.lam, scene.con, scene.mem
     par, tab, col, out = scene.par, scene.tab, scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        f, f_dot, _ = prescribed(t, z, tab, con[e, STATE], con[e, MOTION])
+        f, f_dot, _ = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
         s = con[e, 2]
         if con[e, 3] >= 0:
             pull = -lam[con[e, 3]]

@@ -77,6 +77,11 @@ class Model(Packed):
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1
     wanted: I1  # (N) first output column of a row, or -1
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
+    watch: I2  # (n_w, 3) user events: entry of S or -1 for t, direction, how often   events.py
+    watch_at: (
+        A2  # (n_w, 2) the value that is crossed; how far it must be left before it counts again
+    )
+    jumps: i8  # entry of z with the work done at user events, or -1
     column_energy: i8  # first output column of the energy book
 
     def replaced(self, **changes: Any) -> Model:
@@ -169,3 +174,10 @@ def scene(model: Model) -> Scene:
         out=np.zeros(max(model.n_out, 1)),
         status=np.zeros(4, np.int64),
     )
+
+
+def carried(work: Scene, model: Model) -> Scene:
+    """A scene of another stage of the same run: memory, branches and counters go on in it."""
+    fresh = scene(model)
+    values = {name: getattr(fresh, name) for name, _ in Scene.kind.fields}
+    return Scene(**{**values, "mem": work.mem, "branch": work.branch, "status": work.status})

@@ -8,6 +8,7 @@ import numpy as np
 
 from trsim.report import style
 from trsim.report.display import Shown, short
+from trsim.report.marks import happened, spaced
 from trsim.report.orbits import orbit, section
 from trsim.report.style import colour, legend, look, panels, save, thinned, titled
 from trsim.store.grow import Array
@@ -90,6 +91,7 @@ def motion(runs: list[Shown], sensor: str) -> Any:
         a.margins(x=0.01)
         largest = max(float(np.max(np.abs(s.values(channel)))) for s in some(runs, channel))
         style.apart(a, noise)
+        happened(a, runs)
         # what rounding of this value over the length of the run may look like in its rate
         noise = 1e-9 * largest / max(float(one.run.time[-1]), 1e-300)
     axes[-1, 0].set_xlabel(runs[0].time_label)
@@ -126,6 +128,7 @@ def drive_force(runs: list[Shown], drive: str) -> Any:
     channel = f"{drive}.force"
     figure, axes = panels(1, height=2.9)
     a = axes[0, 0]
+    happened(a, runs)
     for k, shown in enumerate(runs):
         if not shown.has(channel):
             continue
@@ -275,8 +278,3 @@ def portrait(runs: list[Shown], name: str) -> Any:
     titled(figure, runs, f"Phase portrait {name}, dot: start")
     legend(figure, a, runs)
     return figure
-
-
-def spaced(name: str) -> str:
-    """A channel as words: door_angle.rate -> door angle, rate."""
-    return name.replace(".", ", ").replace("_", " ")

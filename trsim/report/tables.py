@@ -28,13 +28,33 @@ class Load(NamedTuple):
 
 
 def draw(runs: list[Shown], folder: Path) -> list[Path]:
-    """peaks.csv and peaks.png."""
+    """peaks.csv and peaks.png; events.csv where the scenario has events."""
     loads = [load for shown in runs for load in peak_loads(shown)]
+    happened = user_events(runs, folder / "events.csv")
     if not loads:
-        return []
+        return happened
     table = write(loads, folder / "peaks.csv")
     with look():
-        return [table, save(picture(runs, loads), folder / "peaks.png")]
+        return [table, save(picture(runs, loads), folder / "peaks.png"), *happened]
+
+
+def user_events(runs: list[Shown], path: Path) -> list[Path]:
+    """When the events of the scenario happened, and what they did (s, J); those that did not."""
+    lines: list[list[Any]] = []
+    for shown in runs:
+        events = shown.run.events
+        columns = (events.element, events.did, events.time, events.work)
+        told = zip(*(column.tolist() for column in columns), strict=False)
+        user = [line for line, kind in zip(told, events.kind, strict=False) if kind == "user"]
+        lines += [[shown.label, *line] for line in user]
+        lines += [
+            [shown.label, name, "never", "", ""] for name, n in shown.run.fired.items() if not n
+        ]
+    if not lines:
+        return []
+    with path.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([["run", "event", "did", "time", "work"], *lines])
+    return [path]
 
 
 def peak_loads(shown: Shown) -> list[Load]:
@@ -73,6 +93,7 @@ def load_name(shown: Shown, element: str, channel: str, extreme: str) -> str:
         name = {"reaction": "reaction", "reaction_moment": "moment"}.get(channel, "")
         return f"{name} (not unique)" if name and loose else name
     names = {"contact_force": "contact force", "torque": "torque", "magnitude": "load"}
+    names["lock.force"] = "lock"
     if part.section == "drives" or part.type == "spring_damper":
         names["force"] = "force"
     if part.type == "limit_stop":

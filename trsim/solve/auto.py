@@ -21,6 +21,7 @@ from trsim.solve.record import (
     EVENT_ROWS,
     EVENT_SPEED,
     EVENT_TIME,
+    EVENT_WORK,
     FACTORED_H,
     HISTORY,
     JACOBIAN,
@@ -83,7 +84,7 @@ def change(s, r, b, method, load):
     line[EVENT_TIME], line[EVENT_ROW] = r.clock[T], s.con.shape[0]
     line[EVENT_KIND] = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
     line[EVENT_SPEED] = load / r.clock[H] if r.clock[H] > 0.0 else 0.0
-    line[EVENT_ANGLE] = load
+    line[EVENT_ANGLE], line[EVENT_WORK] = load, 0.0
 
 
 @internal

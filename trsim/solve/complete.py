@@ -40,6 +40,7 @@ from trsim.solve.record import (
     WORK_PROJECTION,
     T,
 )
+from trsim.solve.watch import crossing, may_cross, take_sides
 
 # what `complete` made of a trial step
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
@@ -65,26 +66,26 @@ def complete(s, r, b, setting, method, h, built):
     WORTHLESS (values not finite; nothing was changed).
     """
     last, t = method[LAST_AT], r.clock[T]
-    t1 = setting[T_END] if t + h >= setting[T_END] else t + h
+    t1 = reached(setting, t + h)
     projected = land(s, r, b, t1, b.y1, b.K[last])
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
     event = False
-    if setting[LOCATE] > 0.0 and any_suspicious(s, r, b, h):
+    if (setting[LOCATE] > 0.0 or s.watch.shape[0] > 0) and to_search(s, r, b, h):
         if built == 0:
             build(s, r, b, method, t, h)
             built = 1
-        theta = first_event(s, r, b, t, h, method[INTERPOLATE_AT])
+        theta = earliest(s, r, b, t, h, method[INTERPOLATE_AT])
         event = theta <= 1.0
         if event and theta < 1.0:
             shorter = exact(s, r, b, setting, method, t, h, theta)
             if shorter > 0.0:
                 h, built = shorter, 0
-                t1 = t + h
+                t1 = reached(setting, t + h)
             else:
                 call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
-                t1 = t + theta * h
+                t1 = reached(setting, t + theta * h)
             projected = land(s, r, b, t1, b.y1, b.K[last])
         else:
             # the search left other poses in the workspace
@@ -101,15 +102,43 @@ def complete(s, r, b, setting, method, h, built):
         if near:
             peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
     accept(s, r, b, t1, projected, last)
+    take_sides(s, r)
     if method[IMPLICIT_AT] > 0:
         for k in range(r.past.shape[0]):
             copy_to(r.past[k], b.P[k])
         r.clock[PAST_H], r.count[HISTORY] = h, 1
-    if event:
-        return WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
     if setting[LOCATE] == 0.0:
         latch(s, r)
+    if event:
+        return WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
     return SMOOTH_STEP
+
+
+@internal
+def reached(setting, t):
+    """t, or the end of the run where no step would be left before it."""
+    left = setting[T_END] - t
+    return t if left > 2.0 * SMALLEST * 2.2e-16 * setting[T_END] else setting[T_END]
+
+
+@internal
+def to_search(s, r, b, h):
+    """Whether something may happen inside the step."""
+    for k in range(s.watch.shape[0]):
+        if may_cross(s, r, b, k, h):
+            return True
+    return any_suspicious(s, r, b, h)
+
+
+@internal
+def earliest(s, r, b, t, h, interpolate):
+    """Fill b.root for contacts and user events; the first, corners of laws included."""
+    first = first_event(s, r, b, t, h, interpolate)
+    for k in range(s.watch.shape[0]):
+        root = crossing(s, r, b, t, h, k, interpolate)
+        b.root[s.contact.size + k] = root
+        first = min(first, root)
+    return first
 
 
 @internal
@@ -123,13 +152,14 @@ def build(s, r, b, method, t, h):
 def exact(s, r, b, setting, method, t, h, theta):
     """The step that ends on the event found at theta, for methods with a poor interpolant.
 
-    A gap at its end is brought to zero by Newton's method; a corner is good enough as found.
+    A gap, or what is watched, is brought to zero at its end by Newton's method; a corner is good
+    enough as found.
     Returns its length, its end in b.y1; 0 where the interpolant serves.
     """
     if method[STEP_AT] == 0:
         return 0.0
     gap_of = -1
-    for c in range(s.contact.size):
+    for c in range(b.root.size):
         if b.root[c] <= theta:
             gap_of = c
     h1 = theta * h

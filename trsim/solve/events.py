@@ -7,7 +7,7 @@ two points in flight, a separation between two points in contact).
 """
 
 from trsim.assemble.equations import gaps, poses
-from trsim.elements.contract import CONTACT, FLIGHT, PHASE
+from trsim.elements.contract import CONTACT, FLIGHT, PHASE, UNLOCATED
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
 from trsim.solve.corners import any_left, corner_root
@@ -35,10 +35,15 @@ def turning_value(d0, r0, d1, r1, h):
 
 
 @internal
-def gap_inside(s, P, y, t, h, theta, c, scratch, interpolate):
-    """Penetration and rate of contact c at t + theta h."""
+def inside(s, P, y, t, h, theta, c, scratch, interpolate):
+    """Penetration and rate of contact c at t + theta h; counted on, what is watched (watch.py)."""
     call_interpolate(interpolate, P, y, theta, scratch)
     poses(s, scratch)
+    if c >= s.contact.size:
+        entry, value = s.watch[c - s.contact.size, 0], s.watch_at[c - s.contact.size, 0]
+        if entry < 0:
+            return t + theta * h - value, 1.0
+        return s.S[entry, 0] - value, s.S[entry, 1]
     gaps(s, t + theta * h)
     e = s.contact[c]
     return s.gap[e, 0], s.gap[e, 1]
@@ -46,12 +51,12 @@ def gap_inside(s, P, y, t, h, theta, c, scratch, interpolate):
 
 @internal
 def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, rising):
-    """Where gap (column 0) or rate (column 1) of contact c changes sign between low and high.
+    """Where the value (column 0) or rate (1) of `inside` changes sign between low and high.
 
     rising: the sign at `high` is positive.  Illinois steps, safeguarded by bisection.
     """
-    f_low = gap_inside(s, P, y, t, h, low, c, scratch, interpolate)[column]
-    f_high = gap_inside(s, P, y, t, h, high, c, scratch, interpolate)[column]
+    f_low = inside(s, P, y, t, h, low, c, scratch, interpolate)[column]
+    f_high = inside(s, P, y, t, h, high, c, scratch, interpolate)[column]
     side = 0
     for k in range(200):
         if high - low <= 4e-16 * max(1.0, high):
@@ -61,7 +66,7 @@ def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, ri
             middle = high - f_high * (high - low) / (f_high - f_low)
             if not low < middle < high:
                 middle = 0.5 * (low + high)
-        f = gap_inside(s, P, y, t, h, middle, c, scratch, interpolate)[column]
+        f = inside(s, P, y, t, h, middle, c, scratch, interpolate)[column]
         if f == 0.0:
             return middle
         if (f > 0.0) == rising:
@@ -88,7 +93,7 @@ def root(s, P, y, t, h, c, phase, d0, r0, d1, r1, scratch, interpolate):
         if not (sign * r0 > 0.0 > sign * r1):
             return NONE
         high = bracketed_root(s, P, y, t, h, c, scratch, interpolate, 0.0, 1.0, 1, r1 > 0.0)
-        top = gap_inside(s, P, y, t, h, high, c, scratch, interpolate)[0]
+        top = inside(s, P, y, t, h, high, c, scratch, interpolate)[0]
         if sign * top <= 0.0:
             return NONE
     if sign * d0 >= 0.0:
@@ -98,7 +103,7 @@ def root(s, P, y, t, h, c, phase, d0, r0, d1, r1, scratch, interpolate):
         f = 1.0
         for _ in range(60):  # from the end backwards to a point on the right side
             f *= 0.5
-            if sign * gap_inside(s, P, y, t, h, f * high, c, scratch, interpolate)[0] < 0.0:
+            if sign * inside(s, P, y, t, h, f * high, c, scratch, interpolate)[0] < 0.0:
                 low = f * high
                 break
         if low == 0.0:
@@ -112,6 +117,9 @@ def first_event(s, r, b, t, h, interpolate):
     first = NONE
     for c in range(s.contact.size):
         b.root[c] = NONE
+        if r.mem[s.contact[c], PHASE] == UNLOCATED:
+            b.corner_root[c] = NONE
+            continue
         b.corner_root[c] = corner_root(s, r, b, t, h, c, interpolate)
         phase = r.mem[s.contact[c], PHASE]
         d0, r0, d1, r1 = r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1]
@@ -128,7 +136,9 @@ def any_suspicious(s, r, b, h):
     """Whether the step must be searched at all."""
     for c in range(s.contact.size):
         phase = r.mem[s.contact[c], PHASE]
-        if suspicious(phase, r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1], h):
+        if phase != UNLOCATED and suspicious(
+            phase, r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1], h
+        ):
             return True
     return any_left(s, r, b)
 

@@ -7,6 +7,7 @@ from trsim.assemble.projection import normalise, project_positions, project_velo
 from trsim.elements.scene import PROJECTION
 from trsim.elements.vectors import internal
 from trsim.solve.record import WORST_PHI, WORST_PHI_DOT
+from trsim.solve.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
@@ -58,6 +59,7 @@ def land(s, r, b, t, y, yd):
             b.corner1[c] = s.corner[s.contact[c], 0]
             b.gap1[c, 0] = s.gap[s.contact[c], 0]
             b.gap1[c, 1] = s.gap[s.contact[c], 1]
+    watch(s, t, b.gap1)
     for k in range(s.n_s):
         b.branch1[k] = s.S[k, 0]
     return done

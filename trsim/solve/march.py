@@ -6,7 +6,6 @@ it is done, or when it cannot go on, and can be called again with the same recor
 
 from math import isfinite
 
-from trsim.assemble.equations import corners, evaluate, gaps
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
@@ -26,9 +25,10 @@ from trsim.solve.complete import (
     call_complete,
     complete,
 )
-from trsim.solve.corners import look
 from trsim.solve.norm import units, weights
+from trsim.solve.phases import evaluate_all
 from trsim.solve.record import (
+    ACT,
     AFTER_REJECTION,
     BUFFERS,
     CHATTER,
@@ -41,12 +41,12 @@ from trsim.solve.record import (
     EVENT_ROWS,
     EVERY,
     FASTEST,
+    FIRED,
     FIXED_STEP,
     FULL,
     H_MAX,
     JACOBIAN,
     LOAD,
-    LOCATE,
     METHOD,
     NEXT_ROW,
     NOT_FINITE,
@@ -68,6 +68,7 @@ from trsim.solve.record import (
     H,
     T,
 )
+from trsim.solve.watch import take_sides
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
 
@@ -87,7 +88,7 @@ def march(s, r, b, setting, methods, most):
 
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
-    Returns DONE, FULL, PAUSE, LOAD, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST or CRAWL.
+    Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST or CRAWL.
     """
     accepted = 0
     while r.clock[T] < setting[T_END]:
@@ -132,6 +133,8 @@ def march(s, r, b, setting, methods, most):
             choose(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
+        if r.count[FIRED] > 0:
+            return ACT
     return DONE
 
 
@@ -155,11 +158,11 @@ def too_fast(s, r):
 @internal
 def full(s, r, b):
     """Hardly room for what the next step may add."""
-    contacts = s.contact.size
+    contacts, watched = s.contact.size, s.watch.shape[0]
     return (
         r.count[ROWS] > b.rows.shape[0] // 2
         or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
-        or r.count[EVENT_ROWS] + contacts >= b.events.shape[0]
+        or r.count[EVENT_ROWS] + contacts + watched >= b.events.shape[0]
     )
 
 
@@ -209,20 +212,8 @@ def control(r, setting, method, h, error, event):
 @compiled(types.void(SCENE, RECORD, BUFFERS, A1))
 def begin(s, r, b, setting):
     """First row, energy and gaps of a record whose y and mem were just set."""
-    evaluate(s, 0.0, r.y, r.yd)
-    gaps(s, 0.0)
-    for c in range(s.contact.size):
-        r.gap[c, 0] = s.gap[s.contact[c], 0]
-        r.gap[c, 1] = s.gap[s.contact[c], 1]
-    for k in range(s.n_s):
-        r.branch[k] = s.S[k, 0]
-    if setting[LOCATE] > 0.0:
-        for c in range(s.contact.size):
-            look(s, c)
-        evaluate(s, 0.0, r.y, r.yd)
-        corners(s, 0.0)
-        for c in range(s.contact.size):
-            r.corner[c] = s.corner[s.contact[c], 0]
+    evaluate_all(s, r, setting, 0.0)
+    take_sides(s, r)
     units(s, r)
     measure(s, 0.0, r.y, 0.0, 0.0)
     copy_to(b.out, s.out)

@@ -1,5 +1,6 @@
 """What a run needs around its march, whatever makes the steps: settings, record, outcome."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,10 +23,11 @@ class Block(NamedTuple):
 
     rows: Array  # (n, 1 + n_out) time, channels
     steps: Array  # (n, 2 + n) time, row of the contact, its channels
-    events: Array  # (n, 5) see record.py
+    events: Array  # (n, N_EVENT) see record.py
     time: float
     step: float
     n_events: int
+    recorded: Array  # (n, 2 + n_out) time, user event, channels
     state: dict[str, NDArray[Any]] | None = None  # after it, see checkpoint.py; None: cannot go on
 
 
@@ -39,6 +41,7 @@ class Outcome(NamedTuple):
     peaks: Array  # (n_out, 4) largest, its time, smallest, its time
     record: Record | None
     start: Start
+    fired: Mapping[str, int] = {}  # user event -> how often it happened
 
 
 CRAWLS = (
@@ -103,10 +106,11 @@ def first_step(scenario: Any, record: Record) -> float:
     return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
 
 
-def new_record(model: Scene, begun: Start, past_rows: int = 0) -> Record:
+def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0) -> Record:
     """A record at the start; memory and branches are the scene's own arrays.
 
     past_rows: of the dense output an implicit method draws on; 0 for explicit ones.
+    switches: what user events can switch, see assemble/stages.py.
     """
     n_v = model.n_v if past_rows else 0
     n_w = n_v + model.n_z - N_BOOK if past_rows else 0
@@ -117,7 +121,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0) -> Record:
         yd=np.zeros_like(begun.y),
         mem=model.mem,
         branch=model.branch,
-        gap=np.zeros((len(model.contact), 2)),
+        gap=np.zeros((len(model.contact) + len(model.watch), 2)),
         corner=np.zeros(len(model.contact)),
         clock=np.zeros(rec.N_CLOCK),
         count=np.zeros(rec.N_COUNT, np.int64),
@@ -129,13 +133,15 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0) -> Record:
         lu=np.zeros((3 * n_w, n_w)),
         pivot=np.zeros((2, n_w), np.int64),
         past=np.zeros((past_rows, begun.y.size)),
+        watch=np.zeros((len(model.watch), rec.N_WATCH)),
+        stage=np.zeros(switches, np.int64),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
     return record
 
 
-def emptied(r: Record, b: rec.Buffers) -> Block:
-    """What the buffers hold; they count as empty afterwards."""
+def emptied(r: Record, b: rec.Buffers, recorded: Array | None = None) -> Block:
+    """What the buffers hold, and what user events recorded; they count as empty afterwards."""
     block = Block(
         b.rows[: r.count[rec.ROWS]],
         b.steps[: r.count[rec.STEP_ROWS]],
@@ -143,6 +149,7 @@ def emptied(r: Record, b: rec.Buffers) -> Block:
         float(r.clock[rec.T]),
         float(r.clock[rec.H]),
         int(r.count[rec.EVENTS]),
+        np.zeros((0, 1 + b.rows.shape[1])) if recorded is None else recorded,
     )
     for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
         r.count[counter] = 0

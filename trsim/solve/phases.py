@@ -2,30 +2,54 @@
 
 import numpy as np
 
-from trsim.assemble.equations import corners, evaluate, poses
-from trsim.elements.contract import BRANCH, CONTACT, FLIGHT, IMPACT_SPEED, PHASE
+from trsim.assemble.equations import corners, evaluate, gaps, poses
+from trsim.assemble.outputs import measure
+from trsim.elements.contract import (
+    BRANCH,
+    CONTACT,
+    FLIGHT,
+    IMPACT_SPEED,
+    PHASE,
+    SCENE,
+    compiled,
+)
+from trsim.elements.packed import A1
+from trsim.elements.signatures import void
 from trsim.elements.vectors import internal
 from trsim.solve.corners import look
 from trsim.solve.events import NONE, SAME, flip, hertz_step
+from trsim.solve.peaks import extreme
 from trsim.solve.record import (
+    BUFFERS,
     CORNERS,
+    ENERGY_0,
     EVENT_ANGLE,
     EVENT_KIND,
     EVENT_ROW,
     EVENT_ROWS,
     EVENT_SPEED,
     EVENT_TIME,
+    EVENT_WORK,
     EVENTS,
+    FACTORED_H,
     HISTORY,
     JACOBIAN,
     LAST_EVENT,
+    LOCATE,
     NO_JACOBIAN,
+    NOT_STIFF,
     ONSET,
+    PAST_ERROR,
     PEAK_T1,
+    RECORD,
     SEPARATION,
+    STIFF,
     TOLERANCE,
+    WORK_PROJECTION,
     H,
+    T,
 )
+from trsim.solve.watch import fire, watch
 
 TINY = 1e-300
 
@@ -34,18 +58,21 @@ TINY = 1e-300
 def change_phases(s, r, b, setting, t1):
     """Switch every contact whose event is the one just stepped to; latch impact speeds.
 
-    Returns whether a contact opened or closed; otherwise a law met a corner.
+    Returns whether a contact opened or closed or a user event happened; otherwise a law met a
+    corner.
     """
     first = NONE
+    for c in range(b.root.size):
+        first = min(first, b.root[c])
     for c in range(s.contact.size):
-        first = min(first, b.root[c], b.corner_root[c])
+        first = min(first, b.corner_root[c])
     poses(s, r.y)
     corners(s, t1)
     for c in range(s.contact.size):
         if b.corner_root[c] <= first + SAME:
             s.mem[s.contact[c], BRANCH] = s.corner[s.contact[c], 1]
             r.count[CORNERS] += 1
-    touched = False
+    touched = fire(s, r, b, first) > 0
     h = 1e300
     for c in range(s.contact.size):
         if b.root[c] > first + SAME:
@@ -57,7 +84,7 @@ def change_phases(s, r, b, setting, t1):
         line = b.events[r.count[EVENT_ROWS]]
         r.count[EVENT_ROWS] += 1
         onset = r.mem[e, PHASE] == CONTACT
-        line[EVENT_TIME], line[EVENT_ROW] = t1, e
+        line[EVENT_TIME], line[EVENT_ROW], line[EVENT_WORK] = t1, e, 0.0
         line[EVENT_KIND] = ONSET if onset else SEPARATION
         line[EVENT_SPEED] = r.gap[c, 1]
         line[EVENT_ANGLE] = np.nan  # a stop has no angle
@@ -104,3 +131,35 @@ def latch(s, r):
             r.mem[e, IMPACT_SPEED] = 0.0
         elif r.mem[e, IMPACT_SPEED] == 0.0:
             r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])
+
+
+@internal
+def evaluate_all(s, r, setting, t):
+    """What the record holds besides the state, at its state: y', gaps, angles, branches of laws."""
+    evaluate(s, t, r.y, r.yd)
+    gaps(s, t)
+    for c in range(s.contact.size):
+        r.gap[c, 0] = s.gap[s.contact[c], 0]
+        r.gap[c, 1] = s.gap[s.contact[c], 1]
+    watch(s, t, r.gap)
+    for k in range(s.n_s):
+        r.branch[k] = s.S[k, 0]
+    if setting[LOCATE] > 0.0:
+        for c in range(s.contact.size):
+            look(s, c)
+        evaluate(s, t, r.y, r.yd)
+        corners(s, t)
+        for c in range(s.contact.size):
+            r.corner[c] = s.corner[s.contact[c], 0]
+
+
+@compiled(void(SCENE, RECORD, BUFFERS, A1))
+def settle(s, r, b, setting):
+    """Go on with other equations: nothing that was learnt from the old ones counts any more."""
+    evaluate_all(s, r, setting, r.clock[T])
+    r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+    r.count[STIFF], r.count[NOT_STIFF] = 0, 0
+    r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
+    measure(s, r.clock[T], r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+    for c in range(s.n_out):
+        extreme(r.peak[c], r.clock[T], s.out[c])  # the other side of a jump

@@ -48,8 +48,9 @@ from trsim.elements.scene import Model
     JACOBIANS,  # made so far
     ITERATIONS,  # of Newton, so far
     CRAWLED,  # trial steps in a row that were vanishingly short
+    FIRED,  # user events at the end of the last step, not yet acted on
     N_COUNT,
-) = range(21)
+) = range(22)
 
 NO_JACOBIAN, OLD, FRESH = 0, 1, 2
 
@@ -71,15 +72,17 @@ CRAWL = 8  # so many steps so short that the end will not be reached
 TOO_FAST = 7  # a body is faster than FASTEST
 CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
+ACT = 9  # a user event happened: the caller does what it says
 
 # columns of the event buffer
-EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE = range(5)
-ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT = 1.0, 2.0, 3.0, 4.0
+EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, N_EVENT = range(7)
+ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER = 1.0, 2.0, 3.0, 4.0, 5.0
 EVENT_NAMES = {
     ONSET: "onset",
     SEPARATION: "separation",
     TO_IMPLICIT: "to implicit",
     TO_EXPLICIT: "to explicit",
+    USER: "user",
 }
 
 
@@ -90,7 +93,7 @@ class Record(Packed):
     yd: A1  # (n_y) derivative at y, the first stage of the next step
     mem: A2  # (N, n_mem) the scene's own
     branch: A1  # (n_s) turn every angle is on; the scene's own
-    gap: A2  # (n_contacts, 2) penetration and rate at y
+    gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
     corner: A1  # (n_contacts) how far each has left the branch of its law at y
     clock: A1
     count: I1
@@ -103,9 +106,14 @@ class Record(Packed):
     lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
     pivot: I2  # (2, n_w)
     past: A2  # (dense rows, n_y) dense output of the step before
+    watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
+    stage: I1  # (n_switches) what user events have switched   assemble/stages.py
 
 
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)
+
+
+SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
 
 
 class Buffers(Packed):
@@ -113,17 +121,17 @@ class Buffers(Packed):
 
     rows: A2  # (n, 1 + n_out) time, channels
     steps: A2  # (n, 2 + n_contact_columns) time, row e, contact channels
-    events: A2  # (n, 5)
+    events: A2  # (n, N_EVENT)
     K: A2  # stages of the integrator
     P: A2  # dense output
     y1: A1
     y2: A1
     weight: A1
     out: A1  # (n_out) channels at the end of the step
-    gap1: A2  # (n_contacts, 2)
+    gap1: A2  # (n_contacts + n_w, 2)
     corner1: A1  # (n_contacts)
     slope1: A1  # (n_contacts)
-    root: A1  # (n_contacts) where in the step its phase changes, 2 for nowhere
+    root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
 
@@ -135,21 +143,21 @@ def fresh_buffers(
     model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0
 ) -> Buffers:
     """Buffers for a model and a method; step_rows: output rows a fixed step may span."""
-    contacts = len(model.contact)
+    contacts, watched = len(model.contact), len(model.watch)
     return Buffers(
         rows=np.zeros((max(1024, 2 * step_rows + 16), 1 + model.n_out)),
         steps=np.zeros((max(1024, 8 * contacts), n_steps)),
-        events=np.zeros((max(256, 8 * contacts), 5)),
+        events=np.zeros((max(256, 8 * (contacts + watched)), N_EVENT)),
         K=np.zeros((stages, n_y)),
         P=np.zeros((dense_rows, n_y)),
         y1=np.zeros(n_y),
         y2=np.zeros(n_y),
         weight=np.zeros(n_y),
         out=np.zeros(max(model.n_out, 1)),
-        gap1=np.zeros((contacts, 2)),
+        gap1=np.zeros((contacts + watched, 2)),
         corner1=np.zeros(contacts),
         slope1=np.zeros(contacts),
-        root=np.zeros(contacts),
+        root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
     )

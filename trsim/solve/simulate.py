@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.scene import scene
+from trsim.elements.scene import Scene, carried, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
+from trsim.solve.act import act
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
 from trsim.solve.locked import locked
@@ -27,7 +28,7 @@ from trsim.solve.outcome import (
     settings,
     statistics,
 )
-from trsim.solve.record import fresh_buffers
+from trsim.solve.record import Record, fresh_buffers
 from trsim.solve.start import Start, start
 from trsim.statuses import Ended
 
@@ -40,6 +41,7 @@ COMPILED = {  # word -> files of this folder
     "generalized_alpha": ("generalized_alpha",),
     "auto": ("dop853", "radau"),
 }
+GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again after these
 VISIT = 5000  # steps between two looks at the outside world
 
 NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
@@ -47,8 +49,8 @@ REASONS = {
     NO_STEPS_LEFT: "more than {} steps",
     STEP_TOO_LARGE: "a value is not finite, or grew beyond bounds: the fixed step is too large for "
     "the stiffest contact",
-    CONTRADICTORY: "the constraints contradict one another here: a mechanism that jams, or bodies "
-    "of masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
+    CONTRADICTORY: "no position or acceleration meets all constraints here: a mechanism that jams, "
+    "or masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time",
     rec.CRAWL: CRAWLS,
     rec.NOT_FINITE: "a force or an acceleration is not finite",
@@ -107,38 +109,58 @@ def compiled(
         check_step(scenario, mechanism, begun)
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
     implicit = any(method.IMPLICIT for method in used)
-    r = new_record(work, begun, dense_rows if implicit else 0)
+    switches = mechanism.stages.switches
+    r = new_record(work, begun, dense_rows if implicit else 0, len(switches.names))
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
     methods[0] = method_table(used[0])
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
+        if np.any(r.stage):
+            work = carried(work, mechanism.stages.model(r.stage))
     else:
         begin(work, r, b, setting)
         r.clock[rec.H] = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
+    ended = None  # by a user event
     while True:
         most = min(VISIT, limit - int(r.count[rec.STEPS]))
         reason = march(work, r, b, setting, methods, most)
-        cpu, paused = time.process_time() - clock0, reason in (rec.FULL, rec.PAUSE, rec.LOAD)
+        recorded = None
+        if reason == rec.ACT:
+            before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
+            if work is not before:  # other equations
+                r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
+        cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
             methods[:] = [method_table(method) for method in used]
             clock0 = time.process_time() - cpu
-        block = emptied(r, b)
+        block = emptied(r, b, recorded)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block
         if not paused:
             break
         if r.count[rec.STEPS] >= limit:
             reason = NO_STEPS_LEFT
             break
-    status: Ended = "done" if reason == rec.DONE else "failed"
+    status, text = ended or ending(reason, limit, setting, mechanism, work, r)
+    fired = {e.name: int(n) for e, n in zip(switches.events, r.watch[:, rec.TIMES], strict=True)}
+    return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
+                   r.peak[:, :4].copy(), r, begun, fired)  # fmt: skip
+
+
+def ending(
+    reason: int, limit: int, setting: Array, mechanism: Mechanism, work: Scene, r: Record
+) -> tuple[Ended, str]:
+    """Status and reason of a run that no event ended."""
+    if reason == rec.DONE:
+        return "done", ""
     if reason == rec.NOT_FINITE and work.status[3] > 0:
         reason = CONTRADICTORY
     elif reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
-    if status == "failed" and reason != NO_STEPS_LEFT:
-        text = locked(mechanism, float(r.clock[rec.T]), r.y) or text
-    return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
-                   r.peak[:, :4].copy(), r, begun)  # fmt: skip
+    if reason != NO_STEPS_LEFT:
+        at = mechanism.stages.mechanism(mechanism, r.stage)
+        text = locked(at, float(r.clock[rec.T]), r.y) or text
+    return "failed", text

@@ -69,7 +69,9 @@ def _start(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
 def _channels(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     """Channels nobody asked for."""
     wanted = {c.name for c in mechanism.columns if c.wanted}
-    every = [n for n in all_names(list(mechanism.instances)) if "." in n or n in wanted]
+    every = [
+        n for n in all_names(mechanism.instances, mechanism.model.jumps) if "." in n or n in wanted
+    ]
     missing = [name for name in every if name not in wanted]
     if missing:
         yield f"{len(missing)} of {len(every)} channels: `output.channels` does not ask for them"

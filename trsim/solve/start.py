@@ -133,8 +133,9 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
             )
     if w.status[3]:
         raise ModelError(
-            "the constraints contradict one another at the start",
-            "does the mechanism jam there?  are masses and inertias very unequal?",
+            "masses and inertias are so unequal that the arithmetic cannot tell the constraints of "
+            "the joints apart",
+            "give every body the mass and inertia it has, or join light bodies to heavy ones",
         )
     raise ModelError("an acceleration is not a finite number at t = 0", "check masses and inertias")
 

@@ -25,7 +25,7 @@ from trsim.spec.text import LARGEST, Tree, decoded, read
 
 DEEPEST = 8  # levels of extends
 MOST = 40  # files
-NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws")  # sections by name
+NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws", "events")  # by name
 
 
 def expand(path: str | os.PathLike, sets: Iterable[str] = ()) -> tuple[Tree, str]:

@@ -74,7 +74,8 @@ def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
     [key] = _keys("", {"properties": {word: rule}}, {}, Scenario)
     held = _held(Scenario, word)
     keys = _keys(word, of[held.__name__], of, held) if held else _keys(word, rule, of)
-    law = sys.modules[held.__module__].__doc__ if held and _is_element(held) else ""
+    module = sys.modules[held.__module__] if held and _is_element(held) else None
+    law = module.__doc__ if module else ""
     return {
         "word": word,
         "about": key["meaning"],
@@ -83,6 +84,7 @@ def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
         "unit": key["unit"],
         "elements": [kind for kind, of in elements.ELEMENTS.items() if of == word],
         "keys": list(keys),
+        "example": getattr(module, "EXAMPLE", "").strip(),
     }
 
 

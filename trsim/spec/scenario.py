@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from trsim import elements
 from trsim.elements.contact_law import ContactLaw
+from trsim.elements.event import Crosses, Event
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, number, vector
 from trsim.spec.text import Tree
@@ -150,7 +151,7 @@ class PoincareSection(Spec):
 
     type: ClassVar[str] = "poincare_section"
     when: str
-    crosses: Literal["up", "down", "both"] = "up"
+    crosses: Crosses = "up"
     plot: tuple[str, str]
 
 
@@ -214,6 +215,7 @@ class Scenario(Spec):
     output           what is recorded, and how often
     phase_portraits  one channel against another
     poincare         two channels at the times a third one crosses zero
+    events           what happens where a sensor, or the time, crosses a value
     phases           kept for load steps; not used yet
     cases            kept for named overrides; not used yet
     sweep            values of keys to vary, by dotted path; not used by `run`
@@ -235,6 +237,7 @@ class Scenario(Spec):
     output: OutputSpec = OutputSpec()
     phase_portraits: dict[str, PhasePortrait] = EMPTY
     poincare: dict[str, PoincareSection] = EMPTY
+    events: dict[str, Event] = EMPTY
     phases: Any = None
     cases: dict[str, Any] = EMPTY
     sweep: dict[str, Any] = EMPTY

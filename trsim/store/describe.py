@@ -51,7 +51,7 @@ class Impacts:
                 self.of[e, self.FORCE], self.of[e, self.WHEN] = lines[k, column], lines[k, 0]
 
     def update(self, events: Any) -> None:
-        for _, kind, e, speed, _ in events.tolist():
+        for _, kind, e, speed, *_ in events.tolist():
             if kind == 1.0:
                 contact = self.of[int(e)]
                 contact[self.ONSETS] += 1.0
@@ -141,6 +141,7 @@ def summary(
         "time": float(outcome.time if outcome else run.time),
         "rows": run.rows.n,
         "events": run.events.n,
+        "fired": dict(outcome.fired) if outcome else {},
         "contacts": contacts,
         "statistics": dict(outcome.statistics) if outcome else {},
     }

@@ -193,7 +193,9 @@ class Running:
         }
         self.force = {e: tables.force_column(self.mechanism.instances[e]) for e in self.contacts}
         self.events = tables.events(file, self.mechanism, time_field)
+        self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
         self.tables = [self.rows, self.events, *self.contacts.values()]
+        self.tables += [self.recorded] if self.recorded else []
         points.declare(file, self.planned)
 
     def take(self, block: Any) -> None:
@@ -210,6 +212,8 @@ class Running:
                 self.impacts.press(e, lines, self.force[e])
         self.events.append(block.events)
         self.impacts.update(block.events)
+        if self.recorded:
+            self.recorded.append(block.recorded)
         self.time, self.state = block.time, block.state
         now = time.monotonic()
         if self.every and self.state is not None and now - self.saved > self.every:

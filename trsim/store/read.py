@@ -42,6 +42,8 @@ class Events(NamedTuple):
     element: NDArray[Any]
     speed: Array  # m/s
     angle: Array  # rad
+    did: NDArray[Any]  # by a user event, in words; empty where the scenario has none
+    work: Array  # J, done by it
 
 
 class Points(NamedTuple):
@@ -103,8 +105,24 @@ class Run:
     def events(self) -> Events:
         with opened(self.path) as file:
             table = _table(file["events"])
-        words = {name: table[name].astype(str) for name in ("kind", "element")}
+        none: dict[str, Any] = {"did": np.array([], "S1"), "work": np.array([])}
+        table = {**none, **table}
+        words = {name: table[name].astype(str) for name in ("kind", "element", "did")}
         return Events(**{**table, **words})
+
+    @property
+    def fired(self) -> dict[str, int]:
+        """How often each user event of the scenario happened."""
+        with opened(self.path) as file:
+            names = [str(name) for name in file["events"].attrs.get("user", ())]
+            happened = _table(file["events"])["element"].astype(str).tolist()
+        return {name: happened.count(name) for name in names}
+
+    @property
+    def recorded(self) -> dict[str, Array]:
+        """`time`, `event` and the channels at user events that record; empty without any."""
+        with opened(self.path) as file:
+            return _table(file["recorded"]) if "recorded" in file else {}
 
     @property
     def peaks(self) -> tuple[Peak, ...]:

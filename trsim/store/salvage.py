@@ -48,8 +48,10 @@ class Salvage:
             file[name].attrs["long_name"] = "component"
             file[name].make_scale(name)
         self._table(source, file)
-        for group in ("events", *(f"steps/{name}" for name in source["steps"])):
+        names = ["events", *(["recorded"] if "recorded" in source else [])]
+        for group in (*names, *(f"steps/{name}" for name in source["steps"])):
             self._table(source[group], file.create_group(group))
+            file[group].attrs.update(source[group].attrs)
         file.require_group("steps")
         file.create_group("summary")
         self._peaks()

@@ -6,9 +6,11 @@ import h5py
 
 from trsim.store.grow import Field, Growing
 
+EVENT_COLUMNS = 6  # of a line of events, see solve/record.py
 EXPECTED = 256  # rows of the tables whose length nobody knows
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
-KINDS = ("", "onset", "separation", "to implicit", "to explicit")  # of events, by number
+# of events, by number
+KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user")
 
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
@@ -30,8 +32,11 @@ def force_column(instance: Any) -> int:
 
 
 def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
-    """The table of onsets and separations, and of changes of method."""
+    """The table of onsets and separations, of changes of method, and of user events."""
+    user = mechanism.stages.switches.events
     names = (*(instance.name or "-" for instance in mechanism.instances), "solver")
+    did = ("-",) * len(names) + tuple(event.said for event in user)
+    names += tuple(event.name for event in user)
     fields = [
         time_field,
         Field("kind", "", "what happened", 1, words=KINDS),
@@ -39,4 +44,24 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
         Field("speed", "m/s", "rate of penetration; of the solver: largest eigenvalue, 1/s", 3),
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
-    return Growing(file["events"], fields, 5, EXPECTED)
+    if user:
+        file["events"].attrs["user"] = [event.name for event in user]
+        fields += [
+            Field("did", "", "what a user event did", 2, words=did),
+            Field("work", "J", "done by a user event: change of kinetic and stored energy", 5),
+        ]
+    return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
+
+
+def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | None:
+    """The table of the channels at user events that record them; None where none does.
+
+    rows: the fields of the output rows, time first.
+    """
+    events = mechanism.stages.switches.events
+    if not any(event.record for event in events):
+        return None
+    fields = [rows[0], Field("event", "", "which", 1, words=tuple(e.name for e in events))]
+    fields += [field._replace(start=field.start + 1) for field in rows[1:]]
+    width = max(field.start + field.size for field in fields)
+    return Growing(file.create_group("recorded"), fields, width, EXPECTED)

@@ -132,6 +132,7 @@ class Checked(TypedDict):
     drives             names
     forces             name -> type
     contacts           names of joints and stops
+    events             user event -> when it happens and what it does, in words
     planar             whether the motion stays in a plane
     planar_assumed     whether nothing but the start says so
     unknowns           velocities
@@ -156,6 +157,7 @@ class Checked(TypedDict):
     drives: list[str]
     forces: dict[str, str]
     contacts: list[str]
+    events: dict[str, str]
     planar: bool
     planar_assumed: bool
     unknowns: int

@@ -92,6 +92,7 @@ class Show(Document):
     provenance      where the file comes from
     phase           names of phase portraits
     poincare        section -> number of points
+    fired           user event -> how often it happened
     """
 
     file: str
@@ -108,6 +109,7 @@ class Show(Document):
     provenance: Provenance
     phase: list[str]
     poincare: dict[str, int]
+    fired: dict[str, int]
 
 
 class Report(Document):

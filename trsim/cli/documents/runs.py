@@ -100,9 +100,10 @@ class Ran(Results):
     file            its result file
     title           of the scenario
     status          how it ended; after `failed` the exit code is 5
-    reason          why it failed
+    reason          why it failed, or which user event ended it
     statistics      what the solver did
     content_sha256  of all results; the same for the same results
+    fired           user event -> how often it happened
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again
     """
@@ -113,6 +114,7 @@ class Ran(Results):
     reason: str
     statistics: RunStatistics
     content_sha256: str
+    fired: dict[str, int]
     resumed_from: Number
     identical: NotRequired[bool]
 

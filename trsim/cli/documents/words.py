@@ -74,6 +74,7 @@ class SectionPage(TypedDict):
     unit      SI, or null
     elements  that may stand in it
     keys      of it, or of its entries
+    example   a scenario that runs, or ""
     """
 
     word: str
@@ -83,6 +84,7 @@ class SectionPage(TypedDict):
     unit: str | None
     elements: list[str]
     keys: list[Key]
+    example: str
 
 
 class Explain(Document):

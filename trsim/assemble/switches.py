@@ -1,0 +1,199 @@
+"""User events packed: what each watches, and the switches it turns.
+
+Whatever events may change has a switch, one whole number in the record of a run:
+
+    drives   0 the motion of the file, k the k-th motion an event sets, -1 let go
+    joints   0 held together, -1 apart
+    locks    0 free, 1 held
+
+Locks are drives of velocity 0 that stand among the instances from the beginning, with their rows
+left out while they are open.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from trsim import elements
+from trsim.assemble.addresses import Addresses
+from trsim.assemble.mechanism import Instance
+from trsim.elements.event import DIRECTIONS, Event
+from trsim.errors import ScenarioError, known
+from trsim.units import quantity, unit
+
+BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
+ALWAYS = 2**62
+LOOSE, AS_DRAWN, HELD = -1, 0, 1
+UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
+SECTION = "events"  # of the instances of locks
+
+
+@dataclass(frozen=True)
+class UserEvent:
+    """An event of the scenario, as the solver needs it."""
+
+    name: str
+    entry: int  # of S; -1 for t
+    value: float
+    kind: str  # angle, stroke or time
+    direction: int
+    most: int
+    turned: tuple[tuple[int, int], ...]  # switch, what it is put to
+    record: bool
+    end: bool
+    said: str
+    when: str  # what is watched
+
+    def told(self) -> str:
+        """When it happens and what it does, in words."""
+        way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
+        often = "" if self.most == ALWAYS else f", {self.most} times" if self.most > 1 else ", once"
+        return f"{self.when} {way} {self.value:g} {UNITS[self.kind]}{often}: {self.said}"
+
+
+@dataclass(frozen=True)
+class Switches:
+    """All there is to switch, and the events that do."""
+
+    names: tuple[tuple[str, str], ...] = ()  # (drives, joints or locks; name)
+    # drive -> (state of z or -1, function in tab) of each motion that is set
+    motions: Mapping[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)
+    events: tuple[UserEvent, ...] = ()
+    jumps: int = -1  # entry of z with the work of the events
+
+
+def lock_name(joint: str) -> str:
+    """The name of the instance that holds a joint; no name a user can write."""
+    return f"{joint}.lock"
+
+
+def locks(scenario: Any) -> list[tuple[str, Any]]:
+    """A drive for every joint that some event locks."""
+    drive: Any = elements.load("drive").spec
+    found = {}
+    for name, event in scenario.events.items():
+        for k, joint in enumerate(event.do.lock):
+            check(joint, scenario.joints, "joint", (SECTION, name, "do", "lock", k))
+            still = {"joint": joint, "velocity": 0.0}
+            found[lock_name(joint)] = drive.model_validate(still, context={"parameters": {}})
+    return list(found.items())
+
+
+def check(name: str, there: Any, kind: str, path: tuple) -> None:
+    """Raises ScenarioError for a name that does not exist."""
+    if name not in there:
+        raise ScenarioError(f"no {kind} named '{name}'", known(name, there), path)
+
+
+def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switches:
+    """The events of a scenario.  Raises ScenarioError for names and units that do not fit."""
+    if not scenario.events:
+        return Switches()
+    method = scenario.solver.method
+    if method.startswith("scipy:"):
+        raise ScenarioError(
+            f"{method} knows no events: it keeps a state of its own",
+            "take auto, dop853, radau, generalized_alpha or rk4",
+            ("solver", "method"),
+        )
+    of = _Packing(scenario, at, instances)
+    events = tuple(of.event(name, spec) for name, spec in scenario.events.items())
+    motions = {name: tuple(found) for name, found in of.motions.items()}
+    return Switches(tuple(of.names), motions, events, at.state(0.0))
+
+
+class _Packing:
+    """Switches while they are being collected."""
+
+    def __init__(self, scenario: Any, at: Addresses, instances: list[Instance]) -> None:
+        self.scenario, self.at = scenario, at
+        self.instances = {(i.section, i.name): i for i in instances}
+        self.names: dict[tuple[str, str], int] = {}
+        self.motions: dict[str, list[tuple[int, int]]] = {}
+        self.states: dict[str, int] = {}  # of drives that had none
+
+    def event(self, name: str, spec: Event) -> UserEvent:
+        entry, kind = self.watched(name, spec)
+        turned = [self.motion(name, drive, motion) for drive, motion in spec.do.set.items()]
+        turned += [self.released(name, k, one) for k, one in enumerate(spec.do.release)]
+        turned += [self.switch("locks", one, HELD) for one in spec.do.lock]
+        turned += [self.unlocked(name, k, one) for k, one in enumerate(spec.do.unlock)]
+        return UserEvent(
+            name, entry, spec.value, kind, DIRECTIONS[spec.crosses],
+            spec.times or ALWAYS, tuple(turned), spec.do.record, spec.do.end, spec.do.said(),
+            spec.when,
+        )  # fmt: skip
+
+    def watched(self, name: str, spec: Event) -> tuple[int, str]:
+        """Entry of S, and what kind of quantity it is."""
+        kind, path = "time", (SECTION, name, "when")
+        if spec.when != "t":
+            check(spec.when, [*self.scenario.sensors, "t"], "sensor", path)
+            kind = self.at.coordinate(self.scenario.sensors[spec.when].joint).kind
+        self.check_value(name, spec.when, UNITS[kind])
+        return (-1 if kind == "time" else self.at.sensor(spec.when)), kind
+
+    def check_value(self, name: str, when: str, wanted: str) -> None:
+        """Refuse a written unit that does not fit what is watched."""
+        raw = self.scenario.resolved[SECTION][name].get("value")
+        written = quantity(raw) if isinstance(raw, str) else None
+        if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
+            return
+        if wanted != "rad" or any(unit(written[1])[1]):
+            what = f"wrong unit: '{written[1]}'; '{when}' is in {wanted}"
+            raise ScenarioError(what, "", (SECTION, name, "value"))
+
+    def switch(self, section: str, name: str, to: int) -> tuple[int, int]:
+        return self.names.setdefault((section, name), len(self.names)), to
+
+    def motion(self, name: str, drive: str, motion: Any) -> tuple[int, int]:
+        """Store a motion of a drive."""
+        path = (SECTION, name, "do", "set", drive)
+        check(drive, self.scenario.drives, "drive", path)
+        x = self.at.coordinate(self.scenario.drives[drive].joint)
+        by_velocity = motion.position is None
+        word = "velocity" if by_velocity else "position"
+        units = ("rad/s", "m/s") if by_velocity else ("rad", "m")
+        try:
+            self.at.check_unit(x.kind, *units, *path, word)
+        except ScenarioError as error:
+            raise error.at(*path[:2]) from None
+        given = motion.velocity if by_velocity else motion.position
+        try:
+            offset = self.at.function(given, word, time_only=True)
+        except ScenarioError as error:
+            raise error.at(*path) from None
+        state = self.state(drive, x) if by_velocity else -1
+        found = self.motions.setdefault(drive, [])
+        found.append((state, offset))
+        return self.switch("drives", drive, len(found))
+
+    def state(self, drive: str, x: Any) -> int:
+        """The entry of z that holds the place of a drive with a velocity."""
+        own = self.instances["drives", drive].row.con[3]
+        if own >= 0:
+            return own
+        if drive not in self.states:
+            self.states[drive] = self.at.state(x.kind, follows=x.entry)
+        return self.states[drive]
+
+    def released(self, name: str, k: int, one: str) -> tuple[int, int]:
+        path = (SECTION, name, "do", "release", k)
+        joints, drives = self.scenario.joints, self.scenario.drives
+        check(one, [*joints, *drives], "joint or drive", path)
+        if one in drives:
+            return self.switch("drives", one, LOOSE)
+        if self.instances["joints", one].element.key == "clearance_joint":
+            raise ScenarioError(
+                f"joint '{one}' has clearance and cannot come apart",
+                "make it ideal with `clearance: 0`, or release a joint next to it",
+                path,
+            )
+        return self.switch("joints", one, LOOSE)
+
+    def unlocked(self, name: str, k: int, one: str) -> tuple[int, int]:
+        path = (SECTION, name, "do", "unlock", k)
+        check(one, self.scenario.joints, "joint", path)
+        if (SECTION, lock_name(one)) not in self.instances:
+            raise ScenarioError(f"no event locks the joint '{one}'", "", path)
+        return self.switch("locks", one, AS_DRAWN)

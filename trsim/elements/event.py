@@ -1,0 +1,122 @@
+"""Events: what happens in a run when a sensor, or the time, crosses a value.
+
+    g = sensor - value,  g = t - value          an event is a root of g, from the side asked for
+
+The step ends on the root.  What the event does is done there, all at one instant: the constraints
+become those of the new stage, and the velocities go to the nearest ones that satisfy them,
+
+    v+ = v- - M^-1 J^T (J M^-1 J^T)^-1 (J v- + Phi_t)          momentum is kept, energy may be lost
+
+The change of kinetic and stored energy is the `work` of the event, and its sum a line of the energy
+book, `energy.work.events`.  Several events at one instant happen in the order of the file.
+
+An event counts again once g has left the value by 1e-9 of the mechanism's size, or 1e-9 rad: not
+at a start on the value, and not for a touch that turns back.
+
+    events:
+      lug_reached: {when: stroke, value: 120 mm, times: 1, do: {lock: [guide], record: true}}
+      let_go:      {when: door_angle, value: 58 deg, do: {release: [actuator]}}
+      late:        {when: t, value: 2 s, do: {set: {actuator: {velocity: "0.3*smoothstep(t/0.1)"}}}}
+      shut:        {when: stroke, crosses: down, do: {end: true}}
+"""
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from annotated_types import Gt, Le
+from pydantic import Field, model_validator
+
+from trsim.errors import ScenarioError
+from trsim.fields import Flag, Function, Spec, Unit
+
+EXAMPLE = """
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+sensors:
+  angle: {joint: hinge}
+events:
+  jettison: {when: angle, value: -60 deg, crosses: down, do: {release: [hinge], record: true}}
+  over: {when: t, value: 0.6 s, do: {end: true}}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+"""
+
+Crosses = Literal["up", "down", "both"]
+DIRECTIONS = {"up": 1, "down": -1, "both": 0}
+NOTHING: Any = Field(default_factory=dict)
+
+
+class Motion(Spec):
+    """The motion a drive goes on with; in it `t` is the time since the event.
+
+    position  the coordinate; that of a rigid drive begins where the joint is
+    velocity  its rate; starts from the place prescribed until then, or else that of the joint
+    """
+
+    type: ClassVar[str] = "motion"
+    position: Function("m", "rad") | None = None
+    velocity: Function("m/s", "rad/s") | None = None
+
+    @model_validator(mode="after")
+    def one_motion(self):
+        if (self.position is None) == (self.velocity is None):
+            raise ValueError("give either `position` or `velocity`")
+        return self
+
+
+class Actions(Spec):
+    """What happens at an event, all of it at once.
+
+    record   a line of all channels in the table `recorded`, as they are when the event happens
+    set      drives that go on with another motion, also those that had let go
+    release  ideal joints that come apart, and drives that let go
+    lock     joints whose coordinate is held from then on; the force is NAME.lock.force
+    unlock   joints that an event has locked
+    end      the run ends here, with status `done`
+    """
+
+    type: ClassVar[str] = "actions"
+    record: Flag = False
+    set: dict[str, Motion] = NOTHING
+    release: tuple[str, ...] = ()
+    lock: tuple[str, ...] = ()
+    unlock: tuple[str, ...] = ()
+    end: Flag = False
+
+    @model_validator(mode="after")
+    def something(self):
+        if not any(getattr(self, key) for key in type(self).model_fields):
+            keys = ", ".join(type(self).model_fields)
+            raise ScenarioError("nothing to do", f"Give one or more of {keys}.")
+        for one, other in (("set", "release"), ("lock", "unlock")):
+            both = sorted({*getattr(self, one)} & {*getattr(self, other)})
+            if both:
+                raise ScenarioError(f"'{both[0]}' stands under {one} and under {other}")
+        return self
+
+    def said(self) -> str:
+        """The same in words, for the table of events."""
+        told = [f"set {name}" for name in self.set]
+        for key in ("release", "lock", "unlock"):
+            told += [f"{key} {name}" for name in getattr(self, key)]
+        told += [key for key in ("record", "end") if getattr(self, key)]
+        return ", ".join(told)
+
+
+class Event(Spec):
+    """What is done where a sensor, or the time, crosses a value.
+
+    when     sensor, or t
+    value    of it that is crossed
+    crosses  the direction that counts
+    times    how often it happens; whenever it is crossed unless given
+    do       what is done
+    """
+
+    type: ClassVar[str] = "event"
+    when: str
+    value: Annotated[float, Unit("rad", "m", "s")] = 0.0
+    crosses: Crosses = "up"
+    times: Annotated[int, Gt(0), Le(1_000_000_000)] | None = None
+    do: Actions
