@@ -67,7 +67,7 @@ def one(
     if scenario.solver.end is None:
         what = "field required: end (s)"
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
-    compiling(answer, "march.march")
+    compiling(answer, "auto")
     from trsim.analyse import precision
 
     named = [known_method(name) for name in methods.split(",")]
