@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 SOURCES := trsim tests benchmarks
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench stress clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -20,6 +20,10 @@ lint: .venv/developer
 
 bench: .venv/developer
 	$(BIN)/python -m benchmarks
+
+# goes on where it was ended; a fresh start: rm -r runs/stress
+stress: .venv/developer
+	$(BIN)/python -m benchmarks.stress
 
 .venv/bin/python:
 	$(PYTHON) -m venv .venv

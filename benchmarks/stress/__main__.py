@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks.measure import ROOT
 from benchmarks.stress.cells import CASES, Case, cases
+from trsim.version import __version__
 
 FILE = ROOT / "runs" / "stress" / "cells.jsonl"
 WORKERS = 2
@@ -49,6 +50,11 @@ def main() -> None:
             told = ", ".join(f"{cell['method']} {cell['verdict']}" for cell in cells)
             spent = time.monotonic() - started
             print(f"{k}/{len(left)} {spent:5.0f} s  {jobs[job].name}: {told}", flush=True)
+    from benchmarks.stress.report import DOC, MAP, write
+
+    found = known(FILE)
+    write([cell for case in every for cell in found[case.name]], __version__)
+    print(DOC.relative_to(ROOT), MAP.relative_to(ROOT))
 
 
 if __name__ == "__main__":
