@@ -2,7 +2,8 @@
 
 The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin of it, at
 half its tolerance and with another first step (0.93 of the step, for rk4), part where they are no
-longer predictable; before that *horizon* the largest force of every contact is compared.
+longer predictable, in the path of a journal or in the largest forces; before that *horizon* the
+largest force of every contact is compared.
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 
 TIGHTER = 100.0
 PART = 5e-3  # of a journal's path: two runs that differ by more have parted
+SOONER = 0.7  # how much sooner the next horizon tried is
 PEAKS, ENERGY = 0.02, 1e-3  # what a run that says nothing must keep to
 MOST, MOST_OF_TRUTH = 150_000, 1_500_000  # steps
 CONVERGED, REFUSED, SAID_SO, WRONG, UNJUDGED = (
@@ -155,31 +157,47 @@ def compared(bench: Bench, about: Verdict, setting: Setting, ran: Ran) -> Verdic
     """A run that says it is done, against the truth before the horizon."""
     key, tight, truth = bench.truth(setting)
     if not done(truth):
-        return replace(
-            about, verdict=UNJUDGED, reason="no truth: " + (truth.refused or truth.outcome.reason)
-        )
-    if setting.step:
-        twin = bench.run(setting._replace(step=0.93 * setting.step), bench.end, None, MOST)
-    else:
-        other = setting._replace(tolerance=0.5 * (setting.tolerance or 1e-6))
-        first = 0.6 * own_first_step(ran.outcome, setting.tolerance or 1e-6, bench.end)
-        twin = bench.run(other, bench.end, first, MOST)
-    rows = len(ran.rows)
+        why = truth.refused or truth.outcome.reason
+        return replace(about, verdict=UNJUDGED, reason=f"no truth: {why}")
+    other = twin_of(setting)
+    first = 0.6 * own_first_step(ran.outcome, setting.tolerance or 1e-6, bench.end)
+    twin = bench.run(other, bench.end, first if setting.step is None else None, MOST)
+    rows, end = len(ran.rows), bench.end
     horizon = bench.parted(ran, twin) if done(twin) else rows
-    if horizon < rows:  # once more up to there, for the peaks
+    if horizon < rows:
         end = max(0.98 * float(ran.rows[horizon, 0]), float(ran.rows[1, 0]))
-        ran = bench.run(setting, end, None, MOST)
-        truth = bench.run(tight, end, None, MOST_OF_TRUTH)
-        if not done(ran) or not done(truth):
-            return replace(about, verdict=UNJUDGED, reason="a run to the horizon did not end")
+    while True:
+        if end < bench.end:  # once more up to there, for the peaks
+            runs = (bench.run(setting, end, None, MOST), bench.run(other, end, None, MOST))
+            ran, twin, truth = *runs, bench.run(tight, end, None, MOST_OF_TRUTH)
+            if not (done(ran) and done(twin) and done(truth)):
+                return replace(about, verdict=UNJUDGED, reason="a run to the horizon did not end")
+        error = peak_error(ran, truth)
+        # forces part before paths do: what the twin does not repeat cannot be predicted either
+        if error <= PEAKS or not done(twin) or peak_error(ran, twin) < 0.5 * PEAKS:
+            break
+        end *= SOONER
     columns = [1 + c for c in bench.path]
     n = min(len(ran.rows), len(truth.rows))
     scale = float(np.max(np.abs(truth.rows[:n, columns])))
     path = float(np.max(np.abs(ran.rows[:n, columns] - truth.rows[:n, columns]))) / scale
-    largest = max(truth.peaks.values(), default=0.0)
-    error = max((abs(ran.peaks[n] - truth.peaks[n]) / max(truth.peaks[n], 1e-3 * largest, 1e-300)
-                 for n in truth.peaks), default=0.0)  # fmt: skip
     return replace(
         about, verdict=CONVERGED if error <= PEAKS else WRONG, peak_error=error, path_error=path,
-        horizon=horizon / rows, truth=key,
+        horizon=end / bench.end, truth=key,
     )  # fmt: skip
+
+
+def twin_of(setting: Setting) -> Setting:
+    """Nearly the same setting: its errors are about as large, and others."""
+    if setting.step:
+        return setting._replace(step=0.93 * setting.step)
+    return setting._replace(tolerance=0.5 * (setting.tolerance or 1e-6))
+
+
+def peak_error(a: Ran, b: Ran) -> float:
+    """Largest relative difference of a contact's largest force; those without any left out."""
+    largest = max(b.peaks.values(), default=0.0)
+    return max(
+        (abs(a.peaks[n] - b.peaks[n]) / max(b.peaks[n], 1e-3 * largest, 1e-300) for n in b.peaks),
+        default=0.0,
+    )

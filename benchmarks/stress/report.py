@@ -104,10 +104,8 @@ def draw(cells: list[Cell], path: Path) -> None:
             "stiffness factor, clearance in mm, friction (from top to bottom)", fontsize=8
         )
     figure.legend(handles=[Patch(color=COLOURS[v], label=v) for v in VERDICTS], ncols=5,
-                  loc="outside upper center")  # fmt: skip
-    figure.suptitle(
-        "Stress: verdict of every cell; numbers: log10 of the error of the peaks", y=1.04
-    )
+                  loc="outside lower center")  # fmt: skip
+    figure.suptitle("Stress: verdict of every cell; numbers: log10 of the error of the peaks")
     figure.savefig(path, dpi=110, bbox_inches="tight")
     plt.close(figure)
 
@@ -123,7 +121,8 @@ clearance at both ends of a light rod (0.5 kg and 0.3 kg), and a slider-crank.  
 
 The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin at half
 its tolerance and another first step part at the *predictability horizon* (a journal's path differs
-by 0.5 % of itself); before it the largest force of every contact must agree to 2 %.
+by 0.5 % of itself, or a largest force by 1 %); before it the largest force of every contact must
+agree to 2 %.
 
 * **converged**: done, energy book closed to 1e-3, peaks within 2 % of the truth
 * **refused**: not begun, with the reason
@@ -132,7 +131,8 @@ by 0.5 % of itself); before it the largest force of every contact must agree to 
 * **WRONG**: done without a word, and not within 2 %
 
 {counts}.  Version {commit}.  Errors of the peaks of what was judged: median {median:.1e}, 95 %
-below {most:.1e}, worst {worst:.1e}; {chaotic:.0%} of these runs part from their twin before the end.
+below {most:.1e}, worst {worst:.1e}; {chaotic:.0%} of these runs part from their twin before their
+end.
 
 ![map](stress.png)
 
