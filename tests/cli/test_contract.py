@@ -2,6 +2,7 @@
 
 import errno
 import json
+import math
 import os
 import shutil
 import signal
@@ -154,6 +155,19 @@ def test_one_failure_among_several(folder, document):
     told = document("run", "bad.yaml", "none.yaml", "crank.yaml", code=3)
     assert [error["exit_code"] for error in told["errors"]] == [3, 3, 7]
     assert [run["file"] for run in told["runs"]] == ["runs/crank.h5"]
+
+
+def test_modes(folder, document, trsim):
+    (folder / "swing.yaml").write_text("""
+gravity: [0, -9.81]
+bodies: {bob: {mass: 1, inertia: 1e-6, at: [0, -1]}}
+joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
+""")
+    [found] = document("check", "swing.yaml", "--modes")["scenarios"]
+    [mode] = found["modes"]
+    assert mode["frequency"] == pytest.approx(9.81**0.5 / (2 * math.pi), rel=1e-5)
+    assert "0.498" in trsim("check", "swing.yaml", "--modes")[1]
+    assert "modes" not in document("check", "swing.yaml")["scenarios"][0]
 
 
 def test_more_errors_than_are_listed(folder, document):

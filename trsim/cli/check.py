@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from trsim.cli.frame import Answer, framed
+from trsim.cli.modes import mode_lines
 from trsim.cli.source import loaded
 from trsim.errors import TrsimError
 
@@ -14,8 +15,11 @@ from trsim.errors import TrsimError
 @click.command("check")
 @click.argument("scenarios", nargs=-1, required=True, type=click.Path())
 @click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
+@click.option("--modes", is_flag=True, help="Eigenfrequencies, damping and shapes at the start.")
 @framed
-def command(answer: Answer, scenarios: tuple[str, ...], sets: tuple[str, ...]) -> None:
+def command(
+    answer: Answer, scenarios: tuple[str, ...], sets: tuple[str, ...], modes: bool = False
+) -> None:
     """Check SCENARIO files: what they describe, and what a run of them will meet.
 
     Bodies, joints, mobility, redundancy and what to do about it, the start, stiffness and time
@@ -24,7 +28,7 @@ def command(answer: Answer, scenarios: tuple[str, ...], sets: tuple[str, ...]) -
     answer.data["scenarios"] = []
     for k, source in enumerate(scenarios):
         try:
-            found = one(answer, source, sets)
+            found = one(answer, source, sets, modes)
         except TrsimError as error:
             answer.fail(error)
             continue
@@ -35,7 +39,7 @@ def command(answer: Answer, scenarios: tuple[str, ...], sets: tuple[str, ...]) -
             answer.put(text)
 
 
-def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
+def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False) -> dict[str, Any]:
     """What a scenario is once assembled, where it would start, and what is fast in it."""
     from trsim.cli.progress import compiling
     from trsim.cli.run import placed
@@ -51,7 +55,7 @@ def one(answer: Answer, source: str, sets: tuple[str, ...]) -> dict[str, Any]:
             "file": source,
             "title": scenario.title,
             **described(scenario, mechanism),
-            **begun(scenario, mechanism),
+            **begun(scenario, mechanism, modes),
             "skipped": list(skipped(scenario, mechanism)),
         }
     except TrsimError as error:
@@ -101,8 +105,9 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
     }
 
 
-def begun(scenario: Any, mechanism: Any) -> dict[str, Any]:
+def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
+    from trsim.solve.modes import modes
     from trsim.solve.projected import projected
     from trsim.solve.scales import scales
     from trsim.solve.start import start
@@ -126,6 +131,7 @@ def begun(scenario: Any, mechanism: Any) -> dict[str, Any]:
             "projected": asdict(projected(mechanism, at)),
         },
         "scales": {**found, "end": end},
+        **({"modes": [asdict(mode) for mode in modes(mechanism, at)]} if shapes else {}),
     }
 
 
@@ -151,6 +157,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         *mobility_lines(found),
         *start_lines(found["start"]),
         *scale_lines(found["scales"], found["mobility"]),
+        *(mode_lines(found["modes"]) if "modes" in found else ()),
         *(f"  skipped     {text}" for text in found["skipped"]),
         *(f"  note        {note}" for note in found["notes"]),
     ]

@@ -1,5 +1,7 @@
 """Documents about scenarios that are checked."""
 
+from typing import Literal, NotRequired
+
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
 from trsim.cli.documents.common import Document, Number
@@ -122,6 +124,36 @@ class Scales(TypedDict):
     end: Number
 
 
+class Moved(TypedDict):
+    """What a body does in a mode; the largest motion of all is 1.
+
+    body         its name
+    translation  x, y, z
+    rotation     about x, y, z, rad times the mechanism's size
+    """
+
+    body: str
+    translation: list[Number]
+    rotation: list[Number]
+
+
+class Mode(TypedDict):
+    """A small motion about the start.
+
+    kind           oscillates, decays, grows or free
+    frequency      Hz, damped; 0 where it does not oscillate
+    damping_ratio  negative where it grows
+    rate           real part of the eigenvalue, 1/s
+    shape          the bodies that move
+    """
+
+    kind: Literal["oscillates", "decays", "grows", "free"]
+    frequency: Number
+    damping_ratio: Number
+    rate: Number
+    shape: list[Moved]
+
+
 class Checked(TypedDict):
     """What a scenario is once assembled, and what a run of it will meet.
 
@@ -147,6 +179,7 @@ class Checked(TypedDict):
     notes              what looks wrong
     start              where a run would start
     scales             stiffness and time scales
+    modes              small motions about the start, slowest first; with --modes
     skipped            what a run leaves out, and why
     """
 
@@ -172,6 +205,7 @@ class Checked(TypedDict):
     notes: list[str]
     start: Start
     scales: Scales
+    modes: NotRequired[list[Mode]]
     skipped: list[str]
 
 

@@ -1,0 +1,39 @@
+"""The modes of `trsim check --modes`, for a reader."""
+
+from collections.abc import Iterator
+from typing import Any
+
+SHOWN = 4  # bodies of a shape
+
+
+def mode_lines(modes: list[dict[str, Any]]) -> Iterator[str]:
+    """A line for each mode: how fast, how damped, and which bodies move most."""
+    if not modes:
+        yield "  modes       none: the mechanism has no freedom left"
+    for k, mode in enumerate(modes, 1):
+        label = "modes" if k == 1 else ""
+        yield f"  {label:11s} {k:3d}  {speed(mode):34s} {shape(mode['shape'])}"
+
+
+def speed(mode: dict[str, Any]) -> str:
+    """Frequency and damping, or how fast it fades or grows."""
+    if mode["kind"] == "oscillates":
+        return f"{mode['frequency']:.6g} Hz, damping ratio {mode['damping_ratio']:.3g}"
+    if mode["kind"] == "free":
+        return "free: no stiffness"
+    return f"{mode['kind']} in {1.0 / abs(mode['rate']):.4g} s"
+
+
+def shape(moved: list[dict[str, Any]]) -> str:
+    """The bodies that move most, the largest motion 1."""
+
+    def size(one: dict[str, Any]) -> float:
+        return max(map(abs, (*one["translation"], *one["rotation"])))
+
+    told = []
+    for one in sorted(moved, key=size, reverse=True)[:SHOWN]:
+        named = zip("xyzXYZ", (*one["translation"], *one["rotation"]), strict=True)
+        parts = [f"{axis if axis.islower() else 'turn ' + axis.lower()} {value:+.2f}"
+                 for axis, value in named if abs(value) > 0.005]  # fmt: skip
+        told.append(f"{one['body']} {', '.join(parts)}")
+    return "; ".join(told)

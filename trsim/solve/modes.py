@@ -1,0 +1,81 @@
+"""Eigenfrequencies and shapes of the small motions about a start.
+
+    A x = lambda x,      f = |Im lambda| / 2 pi,      zeta = -Re lambda / |lambda|
+
+A is the state matrix of solve/linearised.py, on the constraints, with drives held and contacts as
+they are at the start.  Ask for `initial: {equilibrium: [...]}` to have modes about an equilibrium;
+elsewhere they are those of the motion frozen there.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.solve.linearised import linearised
+from trsim.solve.start import Start
+
+STILL = 1e-6  # of the natural rate: slower eigenvalues are zero to rounding
+UNDAMPED = 1e-6  # damping ratio: a smaller one is the rounding of the differences
+OSCILLATES, DECAYS, GROWS, FREE = "oscillates", "decays", "grows", "free"
+
+
+@dataclass(frozen=True)
+class Moved:
+    """What a body does in a mode, largest of all bodies 1; at the phase of the largest motion."""
+
+    body: str
+    translation: tuple[float, float, float]
+    rotation: tuple[float, float, float]  # rad times the mechanism's size
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One eigenvalue, or a pair."""
+
+    kind: str
+    frequency: float  # Hz, damped; 0 where it does not oscillate
+    damping_ratio: float  # negative where it grows
+    rate: float  # 1/s, Re lambda
+    shape: tuple[Moved, ...]
+
+
+def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
+    """All modes, slowest first; free motions, whose eigenvalues are zero, before them."""
+    linear = linearised(mechanism, begun)
+    if not linear.A.size:
+        return []
+    values, vectors = np.linalg.eig(linear.A)
+    natural = float(begun.speed / begun.length)
+    freedoms = linear.Z.shape[1]
+    found = []
+    for value, vector in zip(values, vectors.T, strict=True):
+        if value.imag < 0.0:
+            continue  # the other of its pair
+        rate = float(value.real) if abs(value) > STILL * natural else 0.0
+        swings = abs(value.imag) > STILL * natural
+        size = abs(value)
+        found.append(Mode(
+            kind=OSCILLATES if swings else FREE if rate == 0.0 else DECAYS if rate < 0.0 else GROWS,
+            frequency=float(value.imag) / (2.0 * pi) if swings else 0.0,
+            damping_ratio=-rate / size if swings and abs(rate) > UNDAMPED * size else 0.0,
+            rate=rate,
+            shape=shape(mechanism, linear.twists @ vector[:freedoms]),
+        ))  # fmt: skip
+    return sorted(found, key=lambda mode: (mode.kind != FREE, mode.frequency, abs(mode.rate)))
+
+
+def shape(mechanism: Mechanism, twists: np.ndarray) -> tuple[Moved, ...]:
+    """The bodies that move, from complex world-axes twists of all of them."""
+    moves = twists.reshape(-1, 6) * np.array([1.0] * 3 + [mechanism.model.size] * 3)
+    largest = moves.flat[int(np.argmax(np.abs(moves)))] if moves.size else 0.0
+    if largest == 0.0:
+        return ()  # of element states alone
+    real = (moves / largest).real
+    names = {f: name for name, f in mechanism.frames.items()}
+    return tuple(
+        Moved(names[f], tuple(row[:3].tolist()), tuple(row[3:].tolist()))
+        for f, row in enumerate(real, 1)
+        if f in names and np.abs(row).max() > 1e-6
+    )
