@@ -4,7 +4,7 @@ import sys
 from importlib import import_module
 
 NAMES = (
-    *("startup", "memory", "reverser"),
+    *("startup", "memory", "reverser", "skipping"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain"),
 )
 

@@ -48,7 +48,7 @@ NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
 REASONS = {
     NO_STEPS_LEFT: "more than {} steps",
     STEP_TOO_LARGE: "a value is not finite, or grew beyond bounds: the fixed step is too large for "
-    "the stiffest contact",
+    "the stiffest contact, or the mechanism jams",
     CONTRADICTORY: "no position or acceleration meets all constraints here: a mechanism that jams, "
     "or masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time",
@@ -155,10 +155,10 @@ def ending(
     """Status and reason of a run that no event ended."""
     if reason == rec.DONE:
         return "done", ""
-    if reason == rec.NOT_FINITE and work.status[3] > 0:
-        reason = CONTRADICTORY
-    elif reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
+    if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
+    elif reason == rec.NOT_FINITE and work.status[3] > 0:
+        reason = CONTRADICTORY
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     if reason != NO_STEPS_LEFT:
         at = mechanism.stages.mechanism(mechanism, r.stage)
