@@ -8,7 +8,7 @@ was killed.  What is known only at the end is added after reopening it in normal
 import contextlib
 import os
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -42,15 +42,19 @@ def write(
     command: str = "",
     every: float = 0.0,
     kept: Checkpoint | None = None,
+    closing: Callable[[h5py.File], dict[str, Any]] | None = None,
 ) -> dict[str, Any]:
     """Write what `blocks` yields to a result file; returns its summary.
 
     every: s of wall time between two checkpoints, 0 for none.  kept: where `blocks` go on.
+    closing: adds to a complete file, before it gets its name, what the content hash does not cover;
+    what it returns is added to the summary.
 
     A solver that fails leaves a complete file with status `failed`, an interrupt a closed .part
     file with status `interrupted`, a run that never starts no file at all.
     """
     run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every)
+    run.closing = closing
     clock, outcome, broken = describe.Clock.now(), None, None
     status: Status
     run.go_on(kept)
@@ -102,6 +106,7 @@ class Running:
         self.every, self.saved, self.took = every, time.monotonic(), 0.0  # s of wall time
         self.state: dict[str, Any] | None = None  # of the solver after the last block taken
         self.resumed: list[str] = []  # when
+        self.closing: Callable[[h5py.File], dict[str, Any]] | None = None
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
         with self.told():
             final.parent.mkdir(parents=True, exist_ok=True)
@@ -271,6 +276,8 @@ class Running:
                 if complete:
                     summary["content_sha256"] = content_hash(file)
                     file.attrs["content_sha256"] = summary["content_sha256"]
+                if complete and self.closing is not None:
+                    summary |= self.closing(file)
             synced(self.part)
             if complete:
                 os.replace(self.part, self.final)
