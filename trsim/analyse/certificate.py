@@ -41,14 +41,15 @@ def certificate(run: h5py.File, twin: h5py.File) -> Certificate:
     ]  # fmt: skip
     until = float(run["time"][pair.rows - 1]) if pair.rows else 0.0
     parted = [stretch(pair, number, each, apart) for number, each in enumerate(found, 1)]
+    quantities = summary(pair, both, parted) if pair.rows else []
     first = parted[0].begin if parted else np.nan
     about = {
         **of_twin(twin), "compared_until": until, "rows": pair.rows, "motion": int(moving.sum()),
         "apart": first, "apart_channel": which, **worst([c for c in curves if c.motion]),
+        **worst_quantity(pair, quantities, ranges),
     }  # fmt: skip
     told = [row for k, one in enumerate(inside) for row in levels(pair, k + 1, one, both)]
     told += [row for one in parted for row in shares(run, twin, one, until)]
-    quantities = summary(pair, both, parted) if pair.rows else []
     return Certificate(about, parted, curves, quantities, told, numbers(run, twin, first),
                        first_onsets(run, twin, until))  # fmt: skip
 
@@ -82,6 +83,18 @@ def worst(curves: list[Curve]) -> dict[str, Any]:
         "difference": largest.difference if largest else np.nan,
         "difference_channel": largest.channel if largest else "",
     }
+
+
+def worst_quantity(pair: Pair, quantities: list[Quantity], ranges: Array) -> dict[str, Any]:
+    """The largest difference of a summary quantity, of the range of its channel."""
+    sizes = {c.name: float(ranges[c.channel]) for c in pair.columns if ranges[c.channel] > 0.0}
+    found = [
+        (abs(q.difference) / sizes[q.channel], f"{q.channel}, {q.quantity}")
+        for q in quantities
+        if q.certain and q.channel in sizes
+    ]
+    largest, name = max(found, default=(np.nan, ""))
+    return {"quantity_difference": largest, "quantity": name}
 
 
 # --- where they are apart --------------------------------------------------------------------

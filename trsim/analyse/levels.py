@@ -18,6 +18,9 @@ from trsim.store.certificate import Level, Parted
 Array = NDArray[np.float64]
 
 
+ERRORS = ("energy.residual", "energy.work.projection")  # of the solver: no motion has them
+
+
 class Inside:
     """Values and squares of all columns in one window: of the run, the twin, and the difference."""
 
@@ -35,11 +38,11 @@ class Inside:
 def levels(pair: Pair, window: int, inside: Inside, both: tuple[Totals, Totals]) -> list[Level]:
     """Mean and RMS of what moves, in one window."""
     n, found = len(pair.columns), []
-    rests = resting(pair, both)
+    left_out = {*resting(pair, both), *ERRORS}
     value = [inside.run.mean, inside.twin.mean]
     half = [inside.run.half, inside.twin.half, inside.off.half]
     for k, column in enumerate(pair.columns):
-        if column.name in rests:
+        if column.name in left_out:
             continue
         numbers = [float(x[k]) for x in (*value, *half)]
         found.append(level(window, column.name, "mean", numbers, column.unit))

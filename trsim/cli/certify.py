@@ -12,6 +12,7 @@ from trsim.errors import FileError, TrsimError, UsageError
 
 BRIEF, REST = ("windows", "contacts"), ("curves", "quantities", "levels", "onsets")  # tables
 SHOWN = 3  # windows in a message
+COLUMNS, CELL = ("largest", "smallest", "final", "mean", "rms"), 23  # of the table; width
 Closing = Callable[[Any], dict[str, Any]]
 
 
@@ -36,7 +37,8 @@ def twin(
         answer.say(f"{source}: the twin is there already: {path}")
     else:
         if path.exists() and was_for(path) is None:
-            raise UsageError(f"{path} exists and is no twin of a run", "Name another file with -o.")
+            what = f"{path} exists and is no twin of a run that can be read"
+            raise UsageError(what, "Remove it, or name another file with -o.")
         solver = other.solver
         answer.say(f"{source}: first its twin, by {solver.method} at {solver.tolerance:g}")
 
@@ -145,6 +147,9 @@ def lines(data: dict[str, Any]) -> list[str]:
         out.append(f"together until t = {data['compared_until']:.6g} s: motion agrees {within}")
     else:
         out += parted(data, within)
+    if data["quantity"]:
+        what = "largest difference of a summary quantity"
+        out.append(f"{what} {data['quantity_difference']:.1e} of the range ({data['quantity']})")
     for contact in data["contacts"]:
         text = f"{contact['contact']}: {contact['impacts']} impacts, twin {contact['twin']}"
         early = f"; {contact['before']} and {contact['twin_before']} before they part"
@@ -170,21 +175,21 @@ def parted(data: dict[str, Any], within: str) -> list[str]:
 
 
 def table(found: Any) -> list[str]:
-    """The summary quantities: what the twin has less, of the range of its channel."""
-    columns = ("largest", "smallest", "final", "mean", "rms")
+    """The summary quantities of all components that are not zero."""
     by: dict[str, dict[str, Any]] = {}
     for row in found.quantities:
         by.setdefault(row.channel, {})[row.quantity] = row
+    by = {n: rows for n, rows in by.items() if any(r.value or r.twin for r in rows.values())}
     width = max(map(len, by), default=0)
-    out = [f"{'':<{width}}  {'unit':<9}" + "".join(f"{name:>24}" for name in columns)]
+    out = [f"{'':<{width}}  {'unit':<9}" + "".join(f"{name:>{CELL}}" for name in COLUMNS)]
     for name, rows in by.items():
-        cells = "".join(f"{cell(rows[quantity]):>24}" for quantity in columns)
+        cells = "".join(f"{cell(rows[quantity]):>{CELL}}" for quantity in COLUMNS)
         out.append(f"{name:<{width}}  {rows['largest'].unit:<9}{cells}")
-    return [*out, "~: of the time in which the two are apart"] if any(
-        not row.certain for row in found.quantities
-    ) else out  # fmt: skip
+    if not all(row.certain for row in found.quantities):
+        out.append("~ of a time in which the two are apart: one value of many")
+    return out
 
 
 def cell(row: Any) -> str:
-    """A value and what its twin has less or more."""
-    return f"{'' if row.certain else '~'}{row.value:.6g} ({row.difference:+.0e})"
+    """A value, and what its twin has less."""
+    return f"{'' if row.certain else '~'}{row.value + 0.0:.6g} ({row.difference + 0.0:+.0e})"

@@ -60,6 +60,9 @@ class Certified(TypedDict):
     apart_channel   which one; "" for none
     difference      largest of motion while the two are together, over the range of its channel
     difference_channel  which one
+    quantity_difference  largest of a summary quantity of which nothing lies where the two are
+                    apart, over the range of its channel; null where there is none
+    quantity        which one: "channel, quantity"
     agree           means, RMS and shares of contact, while apart, that agree
     differ          that do not
     unknown         that have no interval
@@ -81,6 +84,8 @@ class Certified(TypedDict):
     apart_channel: str
     difference: Number
     difference_channel: str
+    quantity_difference: Number
+    quantity: str
     agree: int
     differ: int
     unknown: int
