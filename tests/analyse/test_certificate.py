@@ -1,5 +1,7 @@
 """Where two runs part is found, and what lies there is marked."""
 
+import tracemalloc
+
 import h5py
 import numpy as np
 import pytest
@@ -155,6 +157,25 @@ def test_means_of_two_independent_runs_agree_about_as_often_as_promised(compared
     verdicts = [row.verdict for row in compared(mine, other).levels if row.quantity == "mean"]
     assert len(verdicts) == 200
     assert verdicts.count("agree") >= 180
+
+
+def test_memory_does_not_grow_with_the_rows(tmp_path):
+    """Ten times the rows, and a byte for each of them."""
+    used = []
+    for rows in (20_000, 200_000):
+        time = np.linspace(0.0, 10.0, rows)
+        x = np.sin(time)
+        mine = {f"b{k}.velocity": ("m/s", x) for k in range(8)}
+        other = {**mine, "b7.velocity": ("m/s", x + 0.1 * (time > 5.0))}
+        paths = [written(tmp_path / f"{k}.h5", c, time=time) for k, c in enumerate((mine, other))]
+        with h5py.File(paths[0], "r") as run, h5py.File(paths[1], "r") as twin:
+            tracemalloc.start()
+            found = certificate(run, twin)
+            used.append(tracemalloc.get_traced_memory()[1])
+            tracemalloc.stop()
+        assert found.about["rows"] == rows
+        assert found.about["apart"] == pytest.approx(5.0, abs=1e-3)
+    assert used[1] - used[0] < 4.0 * 180_000
 
 
 def test_stored_and_read(compared, tmp_path):

@@ -39,9 +39,10 @@ def still(
 
 def windows(apart: NDArray[np.bool_]) -> list[Window]:
     """Where two runs are apart, in order; apart (n): whether they are, row by row."""
-    rows = np.flatnonzero(apart)
-    if not rows.size:
+    edges = np.flatnonzero(np.diff(apart, prepend=False, append=False))
+    if not edges.size:
         return []
-    gaps = np.flatnonzero(np.diff(rows) > max(1.0, PAUSE * apart.size))
-    begins, ends = rows[[0, *(gaps + 1)]], rows[[*gaps, -1]] + 1
+    begins, ends = edges[::2], edges[1::2]
+    new = begins[1:] - ends[:-1] >= max(1.0, PAUSE * apart.size)
+    begins, ends = begins[np.append(True, new)], ends[np.append(new, True)]
     return [Window(*pair) for pair in zip(begins.tolist(), ends.tolist(), strict=True)]

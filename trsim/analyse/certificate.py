@@ -121,9 +121,10 @@ def departures(
     if not used.any():
         return apart, which
     bound = APART * ranges[pair.channel][used]
+    read = [name for name, says in zip(pair.names, moving, strict=True) if says]
     names = [column.name for column, use in zip(pair.columns, used, strict=True) if use]
-    for k, mine, other in pair.pieces(0, pair.rows):
-        off = np.abs(mine[:, used] - other[:, used]) / bound
+    for k, mine, other in pair.pieces(0, pair.rows, read):
+        off = np.abs(mine - other) / bound
         apart[k : k + len(off)] = (off > 1.0).any(axis=1)
         if not which and (off > 1.0).any():
             which = names[int(off[np.argmax((off > 1.0).any(axis=1))].argmax())]
@@ -154,7 +155,7 @@ def summary(pair: Pair, both: tuple[Totals, Totals], parted: list[Parted]) -> li
 
     Extremes are those of accepted steps, where both runs kept them and nothing is left out.
     """
-    time, n = pair.run["time"][: pair.rows], pair.rows
+    time, n = pair.run["time"], pair.rows
     exact = [peaks(file) if pair.whole() else {} for file in (pair.run, pair.twin)]
     rows = []
     for k, column in enumerate(pair.columns):
@@ -166,7 +167,7 @@ def summary(pair: Pair, both: tuple[Totals, Totals], parted: list[Parted]) -> li
             certain = not any(within(when, parted) for _, when in ours)
             rows.append(quantified(column, quantity, ours[0][0], ours[1][0], certain))
         mine, other = both
-        last, never = not within(time[-1], parted), not parted
+        last, never = not within(float(time[n - 1]), parted), not parted
         for quantity, a, b, certain in (
             ("final", mine.last[k], other.last[k], last),
             ("mean", mine.sum[k] / n, other.sum[k] / n, never),

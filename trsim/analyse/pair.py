@@ -43,8 +43,12 @@ class Pair:
         self.channel = np.array([column.channel for column in self.columns], dtype=int)
         self.sensors = sensors(run)
 
-    def pieces(self, begin: int, end: int) -> Iterator[tuple[int, Array, Array]]:
-        return pieces(self.run, self.twin, self.names, begin, end) if self.names else iter(())
+    def pieces(
+        self, begin: int, end: int, names: list[str] | None = None
+    ) -> Iterator[tuple[int, Array, Array]]:
+        """First row, and rows (n, m) of both files, of some channels or of all."""
+        names = self.names if names is None else names
+        return pieces(self.run, self.twin, names, begin, end) if names else iter(())
 
     def moves(self, name: str) -> bool:
         """Whether a channel is of positions and velocities, which no contact makes jump."""
