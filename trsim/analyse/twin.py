@@ -7,34 +7,32 @@ what the two share is the mechanism, its forces and the search for events.
 from collections.abc import Callable
 from typing import Any
 
-from trsim.analyse.precision import TIGHTER, TIGHTEST
+from trsim.analyse.precision import TIGHTEST
 from trsim.analyse.trajectory import Setting, changed, marched, unwatched
 
 OTHER = {"dop853": "radau", "radau": "dop853", "auto": "radau"}  # of the rest: auto
-SHARE = 1.0 / 50.0  # of a run: how long a trial is
-DECADE = 10.0
-ROUNDING = 3.0  # times the steps for a tenth of the tolerance: 1.4 for dop853, 1.7 for radau
+SHARE = 1.0 / 20.0  # of a run: how long a trial is
+DECADES = (2, 1)  # how much tighter, by powers of ten, in the order of trial
+ROUNDING = 3.0  # times the steps for a tenth of the tolerance; dop853 takes 1.4, radau 1.7 to 2
 
 
 def twin_setting(
     scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched
 ) -> Setting:  # fmt: skip
-    """The other method, at the tightest tolerance up to TIGHTER that rounding allows.
+    """The other method, at a tolerance as much tighter as rounding allows.
 
     Below some tolerance a method sees nothing but the rounding of the accelerations: its steps
     become many times more, and no better.  Short trials find it.  Raises what `simulate` raises.
     """
     method = OTHER.get(scenario.solver.method, "auto")
-    tolerance = scenario.solver.tolerance
-    last = max(tolerance / TIGHTER, TIGHTEST)
+    tolerance = found = scenario.solver.tolerance
     steps = trial(scenario, mechanism, method, tolerance, look)
-    while tolerance > last * 1.001:
-        tighter = max(tolerance / DECADE, last)
-        more = trial(scenario, mechanism, method, tighter, look)
-        if more > ROUNDING * steps:
+    for decades in DECADES:
+        tighter = max(tolerance / 10.0**decades, TIGHTEST)
+        if trial(scenario, mechanism, method, tighter, look) <= ROUNDING**decades * steps:
+            found = tighter
             break
-        tolerance, steps = tighter, more
-    return Setting(method, float(f"{tolerance:.6g}"))  # without the last digits of divisions
+    return Setting(method, float(f"{found:.6g}"))  # without the last digits of divisions
 
 
 def trial(
