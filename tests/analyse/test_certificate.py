@@ -87,6 +87,20 @@ def test_extremes_are_marked_by_their_times(compared):
     assert by["largest"] and not by["smallest"]
 
 
+def test_what_adds_up_does_not_come_together_again(compared):
+    x = np.sin(TIME)
+    apart = (TIME > 4.0) & (TIME < 6.0)
+    same = np.where(apart, 3.0, x)
+    work = TIME + 0.3 * np.clip(TIME - 4.0, 0.0, 2.0)
+    found = compared({"s": ("m", x), "energy.work.impacts": ("J", TIME)},
+                     {"s": ("m", same), "energy.work.impacts": ("J", work)})  # fmt: skip
+    [window] = found.windows
+    assert (window.begin, window.end, window.share) == pytest.approx((4.001, 6.0, 1.0), abs=1e-9)
+    by = {(q.channel, q.quantity): q.certain for q in found.quantities}
+    assert by["s", "final"] and not by["energy.work.impacts", "final"]
+    assert by["energy.work.impacts", "smallest"] and not by["energy.work.impacts", "largest"]
+
+
 def test_forces_and_rest_say_nothing(compared):
     x, y = diverging()
     still = 1e-12 * x

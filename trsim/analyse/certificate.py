@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, Window, still, windows
-from trsim.analyse.levels import Inside, levels, shares
+from trsim.analyse.levels import ERRORS, Inside, levels, shares
 from trsim.analyse.onsets import first_onsets, numbers
 from trsim.analyse.pair import Column, Pair, Totals
 from trsim.store.certificate import Certificate, Curve, Parted, Quantity
 
 Array = NDArray[np.float64]
 
+BOOK = "energy.work."  # channels that add up what happened: what parted once stays so
 EXTREMES = ("largest", "smallest")
 
 
@@ -91,7 +92,7 @@ def worst_quantity(pair: Pair, quantities: list[Quantity], ranges: Array) -> dic
     found = [
         (abs(q.difference) / sizes[q.channel], f"{q.channel}, {q.quantity}")
         for q in quantities
-        if q.certain and q.channel in sizes
+        if q.certain and q.channel in sizes and q.channel not in ERRORS
     ]
     largest, name = max(found, default=(np.nan, ""))
     return {"quantity_difference": largest, "quantity": name}
@@ -153,21 +154,25 @@ def differences(pair: Pair, found: list[Window]) -> tuple[Array, list[Inside]]:
 def summary(pair: Pair, both: tuple[Totals, Totals], parted: list[Parted]) -> list[Quantity]:
     """Extremes, last value, mean and RMS of every component.
 
-    Extremes are those of accepted steps, where both runs kept them and nothing is left out.
+    Extremes are those of the rows, and of the accepted steps where both runs kept them and nothing
+    of either is left out.
     """
     time, n = pair.run["time"], pair.rows
     exact = [peaks(file) if pair.whole() else {} for file in (pair.run, pair.twin)]
     rows = []
+    ever = [one._replace(end=np.nan) for one in parted[:1]]
     for k, column in enumerate(pair.columns):
+        gone = ever if column.name.startswith(BOOK) else parted
         for j, quantity in enumerate(EXTREMES):
             key = (column.name, quantity)
             ours = [(float(t.values[j, k]), float(time[t.at[j, k]])) for t in both]
             if all(key in known for known in exact):
-                ours = [known[key] for known in exact]
-            certain = not any(within(when, parted) for _, when in ours)
+                both_ways = zip(ours, (known[key] for known in exact), strict=True)
+                ours = [(max, min)[j](two) for two in both_ways]
+            certain = not any(within(when, gone) for _, when in ours)
             rows.append(quantified(column, quantity, ours[0][0], ours[1][0], certain))
         mine, other = both
-        last, never = not within(float(time[n - 1]), parted), not parted
+        last, never = not within(float(time[n - 1]), gone), not parted
         for quantity, a, b, certain in (
             ("final", mine.last[k], other.last[k], last),
             ("mean", mine.sum[k] / n, other.sum[k] / n, never),

@@ -114,7 +114,7 @@ class Quantity(TypedDict):
     """One summary quantity of one component of a channel.
 
     channel     with its component
-    quantity    which one; extremes are those of accepted steps where the solver kept them
+    quantity    which one; extremes are of output rows and, where kept, of accepted steps
     value       of the run
     twin        of the twin
     difference  value less that of the twin
