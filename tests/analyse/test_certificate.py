@@ -164,6 +164,18 @@ def test_verdicts():
     assert verdict(1.0, 1.009, nan, nan, 1e-9) == "agree"  # small beside them
 
 
+@pytest.mark.parametrize("shift, verdict", [(0.0, "agree"), (0.5, "differ")])
+def test_a_common_drift_cancels(shift, verdict, compared):
+    """Neither has an interval of its own, the difference has one."""
+    noise = np.random.default_rng(3).standard_normal((2, len(TIME)))
+    mine, other = TIME + noise[0], TIME + noise[1] + shift
+    found = compared({"s": ("m", mine)}, {"s": ("m", other)}, events=()).levels
+    [mean] = [row for row in found if row.quantity == "mean"]
+    assert np.isnan(mean.half) and np.isnan(mean.twin_half)
+    assert mean.off_half == pytest.approx(2.0 * np.sqrt(2.0 / len(TIME)), rel=0.5)
+    assert mean.verdict == verdict
+
+
 def test_means_of_two_independent_runs_agree_about_as_often_as_promised(compared):
     noise = np.random.default_rng(7).standard_normal((200, 2, len(TIME)))
     mine = {f"b{k}.velocity": ("m/s", pair[0]) for k, pair in enumerate(noise)}
