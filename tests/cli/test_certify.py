@@ -138,6 +138,18 @@ def test_schemas_can_fail(scenario, answer):
         assert faults(changed(document, path, lambda it: it.update(extra=1)), "show"), path
 
 
+def test_runs_that_an_event_ends(scenario, answer):
+    """Both end there, at times that differ as little as they do."""
+    text = small.SLIDER_CRANK + "events: {far: {when: crank_angle, value: 60 deg, do: {end: true}}}"
+    scenario.write_text(text)
+    run = certified(answer, "crank.yaml", "--certify")
+    told = run["certificate"]
+    assert (told["status"], told["apart"]) == ("done", None)
+    assert told["time"] == pytest.approx(run["time"], rel=1e-9) and run["time"] < 3e-3
+    assert told["rows"] >= run["rows"] - 1
+    assert told["difference"] < 1e-3
+
+
 # --- what does not work out ------------------------------------------------------------------
 
 

@@ -55,8 +55,8 @@ class Pair:
         return name in self.sensors or name.rsplit(".", 1)[-1] in MOTION
 
     def whole(self) -> bool:
-        """Whether nothing of either run is left out."""
-        return len(self.run["time"]) == len(self.twin["time"]) == self.rows
+        """Whether nothing is left out of either run, but for a last row at an event."""
+        return max(len(self.run["time"]), len(self.twin["time"])) <= self.rows + 1
 
     def per_channel(self, of_columns: Array) -> Array:
         """The largest of the components."""
