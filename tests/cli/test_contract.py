@@ -25,7 +25,7 @@ from trsim.statuses import STATUSES, Status
 from trsim.store.hdf5 import write
 
 GOOD = {
-    "run": ("crank.yaml",),
+    "run": ("crank.yaml", "--certify"),
     "check": ("crank.yaml",),
     "report": ("x.h5",),
     "show": ("x.h5",),

@@ -4,9 +4,9 @@
     peak error = |P - P_ref| / P_ref                      largest of the contacts
 
 The reference is a run at a much tighter tolerance; a second one, by another method, says how far
-it can be trusted: an error smaller than their difference is marked.  From where the two differ by
-more than `APART` of a range on, pointwise errors mean nothing (impacts multiply any difference);
-they are then taken over the rows before, and peaks are what remains to be compared.
+it can be trusted: an error smaller than their difference is marked.  From where the two are apart
+(apart.py) on, pointwise errors mean nothing (impacts multiply any difference); they are then taken
+over the rows before, and peaks are what remains to be compared.
 
 One run's error is ragged by factors of several, so each is the median over slightly different
 first steps; so is the CPU time, that of the integration alone, without rows.
@@ -19,6 +19,7 @@ from statistics import median
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.apart import APART, still, windows
 from trsim.analyse.trajectory import (
     Problem,
     Setting,
@@ -36,8 +37,6 @@ TOLERANCES = tuple(10.0**-k for k in range(3, 9))
 FIRST_STEPS = (1.0, 0.8, 1.25)  # times about the solver's own
 FIXED = (1000, 3000, 10_000, 30_000)  # fixed steps in a run
 TIGHTER, TIGHTEST, LOOSEST = 100.0, 1e-14, 1e-1  # tolerances: of a reference; that there are
-APART = 0.01  # of a range
-STILL = 1e-9  # of the largest value of the same unit: less is rounding, not motion
 
 
 @dataclass(frozen=True)
@@ -113,8 +112,8 @@ def reference(
         what = f"the reference, {setting.method} at {setting.tolerance:g}, failed: {error.what}"
         raise SolverError(what, "Choose another one: --reference METHOD:TOLERANCE.") from None
     ranges = {name: float(np.max(np.ptp(x, axis=0))) for name, x in run.values.items()}
-    still = motionless(of, run, ranges)
-    ranges = {name: value for name, value in ranges.items() if name not in still}
+    rests = motionless(of, run, ranges)
+    ranges = {name: value for name, value in ranges.items() if name not in rests}
     if not ranges:
         raise UsageError("none of the quantities moves", "Name others with --quantity CHANNEL.")
     other = "dop853" if setting.method != "dop853" else "radau"
@@ -124,24 +123,22 @@ def reference(
         second = trajectory(of, setting._replace(method=other), look=look)
         difference = np.max([np.max(np.abs(second.values[n] - run.values[n]), axis=1) / ranges[n]
                              for n in ranges], axis=0)  # fmt: skip
-        if np.any(difference > APART):
-            rows = int(np.argmax(difference > APART))
+        if parted := windows(difference > APART):
+            rows = parted[0].begin
             apart = float(run.time[rows])
         uncertainty = float(np.max(difference[:rows], initial=0.0))
         peak_uncertainty = peak_error(second, run)
     except SolverError as error:
         reason = error.what
-    return Reference(setting, other, run, ranges, still, rows, apart, uncertainty,
+    return Reference(setting, other, run, ranges, rests, rows, apart, uncertainty,
                      peak_uncertainty, reason)  # fmt: skip
 
 
 def motionless(of: Problem, run: Trajectory, ranges: dict[str, float]) -> tuple[str, ...]:
     """Quantities that change by no more than rounding."""
-    largest: dict[str, float] = {}
-    for q in of.quantities:
-        size = float(np.max(np.abs(run.values[q.name])))
-        largest[q.unit] = max(largest.get(q.unit, 0.0), size)
-    return tuple(q.name for q in of.quantities if ranges[q.name] <= STILL * largest[q.unit])
+    largest = {name: float(np.max(np.abs(x))) for name, x in run.values.items()}
+    rests = still(ranges, largest, {q.name: q.unit for q in of.quantities})
+    return tuple(q.name for q in of.quantities if q.name in rests)
 
 
 def errors(run: Trajectory, to: Reference) -> dict[str, float]:

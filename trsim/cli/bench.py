@@ -151,15 +151,15 @@ def seconds(text: str) -> float:
     return value
 
 
-def chosen(reference: str) -> Any:
+def chosen(text: str, what: str = "reference", option: str = "--reference") -> Any:
     """METHOD:TOLERANCE; the method may have a colon of its own."""
     from trsim.analyse.trajectory import Setting
 
-    method, _, value = reference.rpartition(":")
+    method, _, value = text.rpartition(":")
     if method == "rk4":
-        raise UsageError("rk4 has no tolerance", "Name an adaptive method: --reference radau:1e-10")
+        raise UsageError("rk4 has no tolerance", f"Name an adaptive method: {option} radau:1e-10")
     if not method:
-        raise UsageError(f"'{reference}' is no reference", "Write for example radau:1e-10.")
+        raise UsageError(f"'{text}' is no {what}", "Write for example radau:1e-10.")
     return Setting(known_method(method), tolerance(value))
 
 

@@ -27,10 +27,15 @@ SIGNATURE = b"\x89HDF\r\n\x1a\n"
     "--checkpoint", type=click.FloatRange(min=0.0), metavar="SECONDS",
     help="Wall time between two checkpoints, 0 for none.  [default: 60]",
 )  # fmt: skip
+@click.option(
+    "--certify", is_flag=True,
+    help="Run a twin as well, by another method at a tighter tolerance, and say how both differ.",
+)  # fmt: skip
+@click.option("--certify-with", metavar="METHOD:TOL", help="The same, with this twin.")
 @framed
 def command(
     answer: Answer, scenarios: tuple[str, ...], output: str | None, sets: tuple[str, ...],
-    resume: bool, checkpoint: float | None,
+    resume: bool, checkpoint: float | None, certify: bool, certify_with: str | None,
 ) -> None:  # fmt: skip
     """Simulate SCENARIO files and write result files (HDF5).
 
@@ -39,11 +44,18 @@ def command(
 
     A run that was interrupted or killed leaves FILE.part and, every 60 s, FILE.checkpoint: the same
     command with --resume goes on there, and ends with the result of an unbroken run.
+
+    With --certify the twin comes first, into FILE.twin.h5, and is removed when both are compared.
     """
     answer.data["runs"] = []
+    asked: Any = certify
+    if certify_with is not None:
+        from trsim.cli.bench import chosen
+
+        asked = chosen(certify_with, "twin", "--certify-with")
     for source, target in targets(scenarios, output):
         try:
-            summary = one(answer, source, target, sets, resume, checkpoint)
+            summary = one(answer, source, target, sets, resume, checkpoint, asked)
         except TrsimError as error:
             answer.fail(error)
             continue
@@ -73,16 +85,39 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
 
 def one(
     answer: Answer, source: str, target: Path, sets: tuple[str, ...], resume: bool,
-    checkpoint: float | None,
+    checkpoint: float | None, certify: Any = False,
 ) -> dict[str, Any]:  # fmt: skip
-    """Run one scenario; the summary of its result."""
-    from trsim.cli.progress import compiling, watched
+    """Run one scenario; the summary of its result.
 
+    certify: whether to compare it with a twin, or the `Setting` of that.
+    """
     check_target(target)
     scenario = loaded(source, sets)
     if scenario.solver.end is None:
         what = "field required: end (s)"
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
+    closing = None
+    if certify:
+        from trsim.cli.certify import twin
+
+        closing = twin(answer, source, target, scenario, sets, resume, checkpoint, certify)
+    summary = ran(answer, source, target, scenario, resume, checkpoint, closing)
+    answer.say(line(summary))
+    remark(answer, source, summary)
+    if "certificate" in summary:
+        from trsim.cli.certify import told
+
+        told(answer, target, summary["certificate"])
+    return summary
+
+
+def ran(
+    answer: Answer, source: str, target: Path, scenario: Any, resume: bool,
+    checkpoint: float | None, closing: Any = None, twin: bool = False,
+) -> dict[str, Any]:  # fmt: skip
+    """Simulate a scenario into a file; its summary.  A twin repeats no warnings."""
+    from trsim.cli.progress import compiling, watched
+
     every = interval(answer, source, scenario, checkpoint)
     kept = found(answer, source, target, scenario, resume)
     compiling(answer, scenario.solver.method)
@@ -93,12 +128,12 @@ def one(
 
     try:
         mechanism = assemble(scenario)
-        for note in (*mechanism.notes, *lint(scenario)):
+        for note in () if twin else (*mechanism.notes, *lint(scenario)):
             answer.say(f"{source}: warning: {note}")
         running = simulate(scenario, mechanism, kept.state if kept else None)
         blocks = watched(running, answer, source, scenario.solver.end)
         called = shlex.join(["trsim", *sys.argv[1:]])
-        summary = write(target, scenario, mechanism, blocks, called, every, kept)
+        summary = write(target, scenario, mechanism, blocks, called, every, kept, closing)
         summary["resumed_from"] = kept.time if kept else None
     except TrsimError as error:
         raise placed(error, scenario) from None
@@ -106,8 +141,6 @@ def one(
         Stop.patient = False
     if Stop.number:
         raise KeyboardInterrupt
-    answer.say(line(summary))
-    remark(answer, source, summary)
     return summary
 
 

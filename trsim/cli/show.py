@@ -27,8 +27,19 @@ def command(answer: Answer, run: str) -> None:
         "poincare": {name: len(points.x) for name, points in found.poincare.items()},
         "fired": found.fired,
     }
+    certified = found.certificate
+    if certified is not None:
+        from trsim.cli.certify import full
+
+        answer.data["certificate"] = full(certified)
     for text in lines(found, answer.data):
         answer.put(text)
+    if certified is not None:
+        from trsim.cli.certify import table
+
+        answer.put("  certificate: value (value less that of the twin)")
+        for text in table(certified):
+            answer.put(f"    {text}")
 
 
 def lines(run: Any, data: dict[str, Any]) -> list[str]:
@@ -54,6 +65,11 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
             f"at {contact['peak_time']:.5g} s"
         )
     out += user_events(run, data["fired"])
+    if "certificate" in data:
+        from trsim.cli.certify import lines as of_certificate
+
+        first, *rest = of_certificate(data["certificate"])
+        out += [f"  accuracy  {first}", *(f"            {text}" for text in rest)]
     sections = [f"{name} ({count} points)" for name, count in data["poincare"].items()]
     out.append(f"  phase     {', '.join(data['phase']) or '-'}")
     out.append(f"  poincare  {', '.join(sections) or '-'}")

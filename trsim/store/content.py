@@ -1,7 +1,8 @@
 """The content hash: two files with the same hash hold the same results.
 
-Covered is every name, attribute, type and byte of data, except the group /provenance (machine,
-versions, times) and what HDF5 keeps for itself.  How a file was cut into chunks does not matter.
+Covered is every name, attribute, type and byte of data, except the groups /provenance (machine,
+versions, times) and /certificate (which has a hash of its own), and what HDF5 keeps for itself.
+How a file was cut into chunks does not matter.
 """
 
 import hashlib
@@ -10,13 +11,13 @@ from typing import Any
 import h5py
 import numpy as np
 
-UNCOVERED = {"provenance"}  # groups
+UNCOVERED = {"provenance", "certificate"}  # groups
 OWN = {"content_sha256", "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}  # attributes
 PIECE = 1 << 20  # bytes read at a time
 
 
-def content_hash(file: h5py.File) -> str:
-    """The sha256 of the contents of an open file, in hexadecimal."""
+def content_hash(file: h5py.Group) -> str:
+    """The sha256 of the contents of an open file, or of a group, in hexadecimal."""
     digest = hashlib.sha256()
     _group(file, "", digest, {})
     return digest.hexdigest()

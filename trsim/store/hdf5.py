@@ -8,7 +8,7 @@ was killed.  What is known only at the end is added after reopening it in normal
 import contextlib
 import os
 import time
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -31,26 +31,24 @@ LIBVER = ("v110", "v110")  # the first with SWMR: every HDF5 since 1.10 reads it
 FLUSHED = 0.5  # s of wall time between two flushes
 CACHE = 128 << 10  # bytes of chunks kept per dataset
 INTERRUPTED: Status = "interrupted"
+Closing = Callable[[h5py.File], dict[str, Any]]
 HASTE = 1.0  # s: a checkpoint that takes longer is not begun after an interrupt
 
 
 def write(
-    path: str | os.PathLike,
-    scenario: Any,
-    mechanism: Any,
-    blocks: Generator[Any, None, Any],
-    command: str = "",
-    every: float = 0.0,
-    kept: Checkpoint | None = None,
-) -> dict[str, Any]:
+    path: str | os.PathLike, scenario: Any, mechanism: Any, blocks: Generator[Any, None, Any],
+    command: str = "", every: float = 0.0, kept: Checkpoint | None = None,
+    closing: Closing | None = None,
+) -> dict[str, Any]:  # fmt: skip
     """Write what `blocks` yields to a result file; returns its summary.
 
     every: s of wall time between two checkpoints, 0 for none.  kept: where `blocks` go on.
+    closing: adds to a complete file what its hash does not cover, and returns more for the summary.
 
     A solver that fails leaves a complete file with status `failed`, an interrupt a closed .part
     file with status `interrupted`, a run that never starts no file at all.
     """
-    run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every)
+    run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every, closing)
     clock, outcome, broken = describe.Clock.now(), None, None
     status: Status
     run.go_on(kept)
@@ -89,8 +87,9 @@ class Running:
     """A part file and its growing tables; the file is made when the first rows arrive."""
 
     def __init__(
-        self, final: Path, scenario: Any, mechanism: Any, planned: points.Plan, every: float
-    ) -> None:
+        self, final: Path, scenario: Any, mechanism: Any, planned: points.Plan, every: float,
+        closing: Closing | None = None,
+    ) -> None:  # fmt: skip
         self.final, self.part = final, final.with_name(final.name + ".part")
         self.fresh = final.with_name(final.name + ".part.new")  # of a resumed run
         self.checkpoint = checkpoints.beside(final)
@@ -102,6 +101,7 @@ class Running:
         self.every, self.saved, self.took = every, time.monotonic(), 0.0  # s of wall time
         self.state: dict[str, Any] | None = None  # of the solver after the last block taken
         self.resumed: list[str] = []  # when
+        self.closing = closing
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
         with self.told():
             final.parent.mkdir(parents=True, exist_ok=True)
@@ -271,6 +271,8 @@ class Running:
                 if complete:
                     summary["content_sha256"] = content_hash(file)
                     file.attrs["content_sha256"] = summary["content_sha256"]
+                if complete and self.closing is not None:
+                    summary |= self.closing(file)
             synced(self.part)
             if complete:
                 os.replace(self.part, self.final)

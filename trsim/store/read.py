@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.errors import FileError, UsageError, known
+from trsim.store import certificate
 from trsim.store.content import content_hash
 from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
@@ -157,6 +158,12 @@ class Run:
             found = {name: _plain(inner.attrs) for name, inner in group.items()}
             return {**_plain(group.attrs), "contacts": found}
 
+    @property
+    def certificate(self) -> "certificate.Certificate | None":
+        """What an independent run says of this one, where there was one."""
+        with opened(self.path) as file:
+            return certificate.of(file)
+
     def text(self, name: str) -> Any:
         """A dataset of words by its path: scenario/text, mechanism/redundant."""
         with opened(self.path) as file:
@@ -192,7 +199,8 @@ def verify(path: str | os.PathLike) -> bool:
     """Whether the contents of a complete file still are what its hash says."""
     with opened(Path(path)) as file:
         _check(file, Path(path))
-        return content_hash(file) == file.attrs.get("content_sha256")
+        same = content_hash(file) == file.attrs.get("content_sha256")
+        return same and certificate.whole(file)
 
 
 @contextmanager

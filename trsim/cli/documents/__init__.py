@@ -5,6 +5,16 @@ that did not end with 0 may leave out what its document has beyond `Document`.
 """
 
 from trsim.cli.documents.bench import Bench, Measured, Reference
+from trsim.cli.documents.certificate import (
+    Certificate,
+    Certified,
+    Curve,
+    Level,
+    Onset,
+    Onsets,
+    Parted,
+    Quantity,
+)
 from trsim.cli.documents.checks import (
     Check,
     Checked,
@@ -30,22 +40,30 @@ from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema
 
 __all__ = [
     "Bench",
+    "Certificate",
+    "Certified",
     "Channel",
     "Check",
     "Checked",
     "Contact",
     "ContactScale",
+    "Curve",
     "Document",
     "ElementPage",
     "Error",
     "Explain",
     "Export",
     "Key",
+    "Level",
     "Measured",
     "Mode",
     "Moved",
+    "Onset",
+    "Onsets",
+    "Parted",
     "Projection",
     "Provenance",
+    "Quantity",
     "Ran",
     "Recover",
     "Reference",

@@ -4,6 +4,7 @@ from typing import Literal, NotRequired, Required
 
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
+from trsim.cli.documents.certificate import Certificate
 from trsim.cli.documents.common import Document, Number
 from trsim.cli.documents.runs import Contact, Results, Statistics
 from trsim.statuses import Status
@@ -50,7 +51,11 @@ class Summary(TypedDict, total=False):
 
 
 class Provenance(TypedDict, total=False):
-    """Where the file comes from: command, machine, versions; times in s."""
+    """Where the file comes from: command, machine, versions; times in s.
+
+    twin_integration_cpu  of the twin of a certified run, s
+    keys                  of a twin: what its run depends on
+    """
 
     command: str
     machine: str
@@ -71,6 +76,8 @@ class Provenance(TypedDict, total=False):
     scipy: str
     h5py: str
     pydantic: str
+    twin_integration_cpu: Number
+    keys: str
     recovered_from: str
     recovered_by: str
 
@@ -93,6 +100,7 @@ class Show(Document):
     phase           names of phase portraits
     poincare        section -> number of points
     fired           user event -> how often it happened
+    certificate     what a twin says of the run, where it had one
     """
 
     file: str
@@ -110,6 +118,7 @@ class Show(Document):
     phase: list[str]
     poincare: dict[str, int]
     fired: dict[str, int]
+    certificate: NotRequired[Certificate]
 
 
 class Report(Document):

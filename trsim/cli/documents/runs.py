@@ -4,6 +4,7 @@ from typing import NotRequired
 
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
+from trsim.cli.documents.certificate import Certified
 from trsim.cli.documents.common import Document, Number
 from trsim.statuses import Ended
 
@@ -106,6 +107,7 @@ class Ran(Results):
     fired           user event -> how often it happened
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again
+    certificate     what a twin says of it, with --certify
     """
 
     file: str
@@ -117,6 +119,7 @@ class Ran(Results):
     fired: dict[str, int]
     resumed_from: Number
     identical: NotRequired[bool]
+    certificate: NotRequired[Certified]
 
 
 class Run(Document):

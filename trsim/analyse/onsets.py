@@ -1,0 +1,67 @@
+"""The contacts of two runs: how often they close, when first, and how much of the time."""
+
+from itertools import zip_longest
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.store.certificate import Onset, Onsets
+
+Array = NDArray[np.float64]
+
+FIRST = 5  # onsets that are told one by one
+
+
+def changes(file: h5py.File, contact: str) -> tuple[Array, NDArray[np.bool_]]:
+    """Times (s) at which a contact opens or closes, and whether it closes.
+
+    Of a contact that is closed throughout, the beginning.
+    """
+    events = file["events"]
+    kind, element = (events[key][:].astype(str) for key in ("kind", "element"))
+    mine = (element == contact) & np.isin(kind, ("onset", "separation"))
+    if not mine.any() and len(file["steps"][contact]["time"]):
+        return file["time"][:1], np.array([True])
+    return events["time"][:][mine], kind[mine] == "onset"
+
+
+def closings(file: h5py.File, contact: str) -> Array:
+    """Times (s) of the onsets of a contact."""
+    events = file["events"]
+    kind, element = (events[key][:].astype(str) for key in ("kind", "element"))
+    return np.asarray(events["time"][:][(element == contact) & (kind == "onset")])
+
+
+def numbers(run: h5py.File, twin: h5py.File, before: float) -> list[Onsets]:
+    """How often each contact closed, and how often before a time (s); nan is never."""
+    found = []
+    for name in run["steps"]:
+        mine, other = closings(run, name), closings(twin, name)
+        early = [int(np.count_nonzero(~(times >= before))) for times in (mine, other)]
+        found.append(Onsets(name, len(mine), len(other), *early))
+    return found
+
+
+def first_onsets(run: h5py.File, twin: h5py.File, until: float) -> list[Onset]:
+    """The first onsets of each contact, up to the time (s) both runs reached."""
+    found = []
+    for name in run["steps"]:
+        both = [closings(file, name) for file in (run, twin)]
+        lists = [times[times <= until][:FIRST].tolist() for times in both]
+        for k, (mine, other) in enumerate(zip_longest(*lists, fillvalue=np.nan), 1):
+            found.append(Onset(name, k, mine, other))
+    return found
+
+
+def closed(times: Array, closes: NDArray[np.bool_], edges: Array) -> Array:
+    """The share of time in contact between neighbouring edges (s)."""
+    if not len(times):
+        return np.zeros(len(edges) - 1)
+    # what opens first was closed before
+    lengths = np.diff(times) * closes[:-1]
+    before = (times[0] - min(edges[0], times[0])) * (not closes[0])
+    after = (max(edges[-1], times[-1]) - times[-1]) * closes[-1]
+    at = [min(edges[0], times[0]), *times, max(edges[-1], times[-1])]
+    total = np.cumsum([0.0, before, *lengths, after])
+    return np.diff(np.interp(edges, at, total)) / np.diff(edges)

@@ -1,0 +1,53 @@
+"""How the twin of a run is made: by the other family of methods, at a tighter tolerance.
+
+A method that shares neither stages nor order nor implicitness with the run's makes other errors;
+what the two share is the mechanism, its forces and the search for events.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from trsim.analyse.precision import TIGHTEST
+from trsim.analyse.trajectory import Setting, changed, marched, unwatched
+
+OTHER = {"dop853": "radau", "radau": "dop853", "auto": "radau"}  # of the rest: auto
+SHARE = 1.0 / 20.0  # of a run: how long a trial is
+DECADES = (2, 1)  # how much tighter, by powers of ten, in the order of trial
+ROUNDING = 3.0  # times the steps for a tenth of the tolerance; dop853 takes 1.4, radau 1.7 to 2
+
+
+def twin_setting(
+    scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched
+) -> Setting:  # fmt: skip
+    """The other method, at a tolerance as much tighter as rounding allows.
+
+    Below some tolerance a method sees nothing but the rounding of the accelerations: its steps
+    become many times more, and no better.  Short trials find it.  Raises what `simulate` raises.
+    """
+    method = OTHER.get(scenario.solver.method, "auto")
+    tolerance = found = scenario.solver.tolerance
+    steps = trial(scenario, mechanism, method, tolerance, look)
+    for decades in DECADES:
+        tighter = max(tolerance / 10.0**decades, TIGHTEST)
+        if trial(scenario, mechanism, method, tighter, look) <= ROUNDING**decades * steps:
+            found = tighter
+            break
+    return Setting(method, float(f"{found:.6g}"))  # without the last digits of divisions
+
+
+def trial(
+    scenario: Any, mechanism: Any, method: str, tolerance: float, look: Callable[[], None]
+) -> int:
+    """Steps of the beginning of a run."""
+    end = SHARE * scenario.solver.end
+    short = changed(scenario, "solver", method=method, tolerance=tolerance, step=None, end=end)
+    outcome = marched(changed(short, "output", every=end), mechanism, look)[1]
+    return int(outcome.statistics["steps"])
+
+
+def overrides(scenario: Any, setting: Setting) -> tuple[str, ...]:
+    """What makes a scenario that of its twin, as for --set; its events are always located."""
+    found = [f"solver.method={setting.method}", f"solver.tolerance={setting.tolerance!r}"]
+    if scenario.solver.locate_events is False:
+        found.append("solver.locate_events=true")
+    return tuple(found)
