@@ -1,4 +1,4 @@
-"""What a scene does not have costs nothing: CPU time of one reverser run, more and less of it asked.
+"""What a scene does not have costs nothing: one reverser run, with more and less of it asked for.
 
 A run with all channels in space does the most; each line leaves something out or adds it.  Steps
 are those of the error control; us/rhs is the time of one look at the equations of motion.
