@@ -219,3 +219,34 @@ def test_the_key_is_that_of_every_process():
         command = [sys.executable, "-c", code]
         told.add(subprocess.run(command, check=True, capture_output=True, env=environment).stdout)  # noqa: S603
     assert len(told) == 1
+
+
+def test_no_index_counts_from_the_end():
+    """Compiled code takes an index as it stands: a negative one would read beside the array."""
+    import ast
+    from pathlib import Path
+
+    folders = [Path(machine.__file__).parents[1] / name for name in
+               ("elements", "laws", "assemble", "solve")]  # fmt: skip
+    found = []
+    for path in (path for folder in folders for path in folder.glob("*.py")):
+        for function in ast.walk(ast.parse(path.read_text())):
+            if not isinstance(function, ast.FunctionDef) or not compiled_by(function):
+                continue
+            found += [
+                f"{path.name}:{node.lineno}"
+                for node in ast.walk(function)
+                if isinstance(node, ast.Subscript)
+                for part in ast.walk(node.slice)
+                if isinstance(part, ast.UnaryOp) and isinstance(part.op, ast.USub)
+            ]
+    assert not found
+
+
+def compiled_by(function):
+    """Whether a function is compiled: one of our decorators stands above it."""
+    import ast
+
+    names = {"compiled", "internal", "equation", "kernel", "helper", "law"}
+    return any(names & {n.id for n in ast.walk(d) if isinstance(n, ast.Name)}
+               for d in function.decorator_list)  # fmt: skip

@@ -6,6 +6,7 @@ What numba does for every function and ours do not need is left out:
   is asked for; that is optimised and translated once.  numba optimises and translates every
   function by itself, and again as part of each caller.
 * reference counts, wrappers, closures, array expressions, and the passes that look for them.
+* the question, at every look into an array, whether the index is negative.  Ours never are.
 * the overloads of an operator, tried one after the other, for types they were tried for before.
 
 What is compiled is the same program: without `fastmath` no optimisation changes a number.
@@ -41,6 +42,7 @@ from numba.core.untyped_passes import (
     ReconstructSSA,
     TranslateByteCode,
 )
+from numba.np import arrayobj
 
 
 class Library(JITCodeLibrary):
@@ -137,6 +139,12 @@ def translated(library: Library, symbol: str) -> tuple[Any, bytes]:
 
 
 _THEIR_CALL_TYPE = BaseFunction.get_call_type
+_THEIR_INDEX = arrayobj.fix_integer_index
+
+
+def _index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
+    """An index as it stands, where numba would count a negative one from the end."""
+    return context.cast(builder, index, kind, types.intp)
 
 
 @cache
@@ -172,11 +180,13 @@ def quick() -> Iterator[None]:
     target.refresh = lambda: target.install_registry(intrinsics)
     typing.refresh = lambda: None
     BaseFunction.get_call_type = _remembered  # type: ignore[assignment, method-assign]
+    arrayobj.fix_integer_index = _index
     try:
         yield
     finally:
         codegen._library_class = theirs
         BaseFunction.get_call_type = _THEIR_CALL_TYPE  # type: ignore[method-assign]
+        arrayobj.fix_integer_index = _THEIR_INDEX
         del target.refresh, typing.refresh
         if collects:
             gc.enable()
