@@ -30,7 +30,7 @@ def command(
         try:
             found = one(answer, source, sets, modes)
         except TrsimError as error:
-            answer.fail(error)
+            answer.fail(error, about=source)
             continue
         answer.data["scenarios"].append(found)
         if k:
