@@ -7,7 +7,6 @@ was killed.  What is known only at the end is added after reopening it in normal
 
 import contextlib
 import os
-import shlex
 import time
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
@@ -291,13 +290,8 @@ class Running:
         return summary
 
     def left(self, time: float) -> str:
-        """What is there of a run that was broken off, and the command that goes on."""
-        recover = shlex.join(["trsim", "recover", str(self.part)])
-        text = f"{self.part} holds the run until t = {time:g} s; `{recover}` makes it a result file"
-        if self.checkpoint.exists() and self.command:
-            resumed = "" if "--resume" in self.command.split() else " --resume"
-            text += f", `{self.command}{resumed}` goes on"
-        return f"{text}."
+        """What is there of a run that was broken off."""
+        return checkpoints.left(self.part, self.checkpoint, time, self.command)
 
     def abandon(self) -> None:
         """Let go of a file that cannot be written."""
