@@ -59,7 +59,7 @@ class Doing:
     """What a command is doing, told once it has taken a while."""
 
     def __init__(self, answer: Answer, name: str) -> None:
-        self.answer, self.name, self.late = answer, name, False
+        self.answer, self.name, self.text, self.late = answer, name, "at work", False
         self.timer = threading.Timer(WHILE, self._tell)
         self.timer.daemon = True
 

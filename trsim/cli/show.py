@@ -60,7 +60,9 @@ def see_same(run: Any) -> None:
         raise FileError(what, file=path)
     if not verify(path):
         what = f"{path} does not hold what was written: its content hash differs"
-        raise FileError(what, "It was changed or damaged since.  Run the scenario again.", file=path)
+        raise FileError(
+            what, "It was changed or damaged since.  Run the scenario again.", file=path
+        )
 
 
 def lines(run: Any, data: dict[str, Any]) -> list[str]:

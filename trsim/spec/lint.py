@@ -28,7 +28,16 @@ POINT_JOINTS = ("revolute", "spherical", "clearance_joint", "fixed")
 
 def lint(scenario: Any) -> tuple[str, ...]:
     """What looks wrong in a validated scenario: "section.name: what; what to do"."""
-    checks = (_inertias, _sizes, _conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step)
+    checks = (
+        _inertias,
+        _sizes,
+        _conformity,
+        _restitutions,
+        _speeds,
+        _stops,
+        _fixed_step,
+        _ignored_step,
+    )
     return tuple(message for check in checks for message in check(scenario))
 
 
