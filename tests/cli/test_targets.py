@@ -293,3 +293,9 @@ def test_a_full_disk_behind_standard_output_is_named(tmp_path):
 
 def test_file_errors_keep_their_file():
     assert FileError("x", file="f").at("a").file == "f"
+
+
+def test_a_scenario_without_bodies(folder, answer):
+    (folder / "empty.yaml").write_text("solver: {end: 1}\n")
+    code, document = answer("check", "empty.yaml")
+    assert (code, document["scenarios"][0]["bodies"]) == (0, [])
