@@ -75,7 +75,7 @@ def write(
         run.abandon()
         raise
     if isinstance(broken, KeyboardInterrupt):
-        raise KeyboardInterrupt(run.left(summary["time"])) from None
+        raise KeyboardInterrupt(run.left(run.kept)) from None
     if broken is not None and not isinstance(broken, TrsimError):
         raise broken
     return summary
