@@ -90,3 +90,10 @@ def test_warning(change, start, number):
 )
 def test_no_warning(change):
     assert found(change) == ()
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "generalized_alpha", "scipy:BDF"])
+def test_a_step_that_counts_for_nothing(method):
+    [told] = found(("solver: {", f"solver: {{method: {method}, step: 1e-5, "))
+    assert told.startswith(f"solver.step: 1e-05 s has no influence: {method} chooses its steps")
+    assert found(("solver: {", f"solver: {{method: {method}, max_step: 1e-5, ")) == ()

@@ -5,6 +5,8 @@ tree; whoever holds the tree adds the `place` in a file.
 """
 
 import difflib
+import os
+import stat
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -34,6 +36,7 @@ class TrsimError(Exception):
     """What is wrong, a hint what to do, and where; shown without a traceback."""
 
     exit_code: int = 1
+    file: str | None = None  # it is about, where there is no place
 
     def __init__(
         self, what: str, hint: str = "", path: tuple = (), place: Place | None = None
@@ -90,6 +93,16 @@ class FileError(TrsimError):
 
     exit_code = 7
 
+    def __init__(
+        self, what: str, hint: str = "", path: tuple = (), place: Place | None = None,
+        file: str | None = None,
+    ) -> None:  # fmt: skip
+        super().__init__(what, hint, path, place)
+        self.file = file
+
+    def at(self, *path: str | int) -> "FileError":
+        return FileError(self.what, self.hint, path + self.path, self.place, self.file)
+
 
 class Problems(TrsimError):
     """Several errors at once, each shown."""
@@ -114,6 +127,32 @@ class Problems(TrsimError):
     def show(self) -> str:
         more = [f"... and {self.unlisted} more problems"] if self.unlisted else []
         return "\n".join([problem.show() for problem in self._problems] + more)
+
+
+def what_it_is(mode: int) -> str:
+    """What a file is that is no regular one, by the mode the system tells."""
+    kinds = {
+        stat.S_IFDIR: "a folder",
+        stat.S_IFIFO: "a FIFO",
+        stat.S_IFSOCK: "a socket",
+        stat.S_IFCHR: "a device",
+        stat.S_IFBLK: "a device",
+    }
+    return kinds.get(stat.S_IFMT(mode), "something else")
+
+
+def unreadable(path: str | os.PathLike) -> FileError | None:
+    """Why a path cannot be read as a file: it is not there, or is a folder, a FIFO ..."""
+    try:
+        mode = os.stat(path).st_mode
+    except FileNotFoundError:
+        return FileError(f"{path}: no such file", file=str(path))
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        return FileError(f"{path}: {reason}", file=str(path))
+    if stat.S_ISREG(mode):
+        return None
+    return FileError(f"{path} is {what_it_is(mode)}, not a file", file=str(path))
 
 
 def known(word: object, words: Iterable[str], close: str | None = None) -> str:

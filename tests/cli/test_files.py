@@ -2,6 +2,7 @@
 
 import csv
 
+import h5py
 import numpy as np
 import pytest
 
@@ -87,6 +88,27 @@ def test_run_of_a_result_is_identical(scenario, trsim, answer):
     assert read("y.h5").time[-1] == 0.001
     code, document = answer("check", "y.h5")
     assert document["scenarios"][0]["title"] == "Löwe"
+
+
+# --- show ------------------------------------------------------------------------------------
+
+
+def test_verify(result, answer, trsim):
+    """The hash is compared, not only printed."""
+    code, document = answer("show", "x.h5", "--verify")
+    assert (code, document["verified"]) == (0, True)
+    assert answer("show", "x.h5")[1]["verified"] is None
+    with h5py.File("x.h5", "r+") as file:
+        file["stroke"][5] += 1e-9
+    assert trsim("show", "x.h5")[0] == 0
+    code, document = answer("show", "x.h5", "--verify")
+    assert code == 7
+    [error] = document["errors"]
+    assert "x.h5 does not hold what was written: its content hash differs" in error["what"]
+    with h5py.File("x.h5", "r+") as file:
+        del file.attrs["content_sha256"]
+    code, _, err = trsim("show", "x.h5", "--verify")
+    assert code == 7 and "x.h5 has no content hash to compare with" in err
 
 
 # --- recover ---------------------------------------------------------------------------------

@@ -1,6 +1,8 @@
 """`trsim run --resume`: what it goes on from, what it refuses, and what it says."""
 
 import dataclasses
+import errno
+import json
 
 import h5py
 import pytest
@@ -32,6 +34,45 @@ def interrupted(scenario, trsim, monkeypatch):
 
 def changed(path, **changes):
     store(path, dataclasses.replace(load(path), **changes))
+
+
+def test_says_what_is_left(scenario, trsim, monkeypatch):
+    """Which file holds what until when, and the commands that use it, in the document too."""
+    take = hdf5.Running.take
+
+    def interrupt(run, block):
+        take(run, block)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(hdf5.Running, "take", interrupt)
+    monkeypatch.setattr("sys.argv", ["trsim", "run", "crank.yaml", "-o", "a b.h5"])
+    code, out, err = trsim("run", "crank.yaml", *LONG, "-o", "a b.h5", "--json")
+    assert code == 130
+    t = load(scenario.parent / "a b.h5.checkpoint").time
+    left = (
+        f"a b.h5.part holds the run until t = {t:g} s; `trsim recover 'a b.h5.part'` makes it a "
+        "result file, `trsim run crank.yaml -o 'a b.h5' --resume` goes on with the run."
+    )
+    assert f"interrupted: {left}\n" in err
+    [error] = json.loads(out)["errors"]
+    assert (error["what"], error["hint"]) == ("interrupted by SIGINT", left)
+
+
+def test_a_full_disk_says_what_is_left(scenario, trsim, monkeypatch):
+    take = hdf5.Running.take
+
+    def full(run, block):
+        take(run, block)
+        run.save()
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(hdf5.Running, "take", full)
+    monkeypatch.setattr("sys.argv", ["trsim", "run", "crank.yaml"])
+    code, _, err = trsim("run", "crank.yaml", *LONG)
+    assert code == 7
+    t = load(scenario.parent / "runs/crank.h5.checkpoint").time
+    assert f"crank.h5.part holds the run until t = {t:g} s; `trsim recover runs/crank" in err
+    assert "`trsim run crank.yaml --resume` goes on with the run." in err
 
 
 def test_goes_on(interrupted, scenario, answer):
@@ -191,4 +232,5 @@ def test_checkpoint_that_cannot_be_written(scenario, trsim, monkeypatch):
 
 
 def test_wrong_interval(scenario, trsim):
-    assert trsim("run", "crank.yaml", "--checkpoint", "-1")[0] == 2
+    for wrong in ("-1", "nan", "inf"):
+        assert trsim("run", "crank.yaml", "--checkpoint", wrong)[0] == 2

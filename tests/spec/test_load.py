@@ -459,3 +459,26 @@ def test_any_value_of_any_key(value):
         except TrsimError as error:
             assert error.exit_code == 3
             assert error.show()
+
+
+@pytest.mark.parametrize(
+    "units, path, told",
+    [
+        ("{angle: mm}", "report.units.angle", "'mm' is no unit of angle"),
+        ("{length: deg}", "report.units.length", "'deg' is no unit of length"),
+        ("{lenght: mm}", "report.units", "unknown key 'lenght'"),
+        ("{force: kNn}", "report.units.force", "unknown unit 'kNn'"),
+        ("{force: 3}", "report.units.force", "must be a unit, got 3"),
+        ("mm", "report.units", "must be a mapping, got 'mm'"),
+    ],
+)
+def test_units_of_figures(units, path, told):
+    """What cannot be shown is refused where it stands, not left out of the figures."""
+    with pytest.raises(ScenarioError) as wrong:
+        loads(f"title: x\nreport: {{units: {units}}}")
+    assert ".".join(wrong.value.path) == path
+    assert wrong.value.what.startswith(told)
+    assert wrong.value.place.line == 2
+    loads("report: {units: {angle: rad, length: in, force: kN, torque: N*mm}}")
+    with pytest.raises(ScenarioError, match="unknown key 'unts'"):
+        loads("report: {unts: {}}")

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 import click
 
-from trsim.cli.frame import EXIT_CODES, Answer
+from trsim.cli.frame import EXIT_CODES, Answer, opened
 from trsim.version import __version__
 
 # each a module of this package
@@ -44,6 +44,7 @@ def program() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run a command line and exit."""
+    opened()
     given = list(sys.argv[1:] if arguments is None else arguments)
     named = given[0] if given and given[0] in COMMANDS else None
     answer = Answer(named, "--json" in given)  # where the command cannot give its own

@@ -5,9 +5,9 @@ from typing import Any
 
 import click
 
-from trsim.cli.frame import Answer, Stop, framed
+from trsim.cli.frame import NAMED, Answer, Stop, framed
 from trsim.cli.source import loaded, stem
-from trsim.errors import FileError, ScenarioError, TrsimError, UsageError, known
+from trsim.errors import ScenarioError, TrsimError, UsageError, known
 
 METHODS = "auto,dop853,radau"
 MARK = "<"  # beside an error that the reference does not resolve
@@ -29,7 +29,7 @@ MARK = "<"  # beside an error that the reference does not resolve
 )  # fmt: skip
 @click.option("--repeats", type=click.IntRange(min=1), default=3, show_default=True)
 @click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
-@click.option("-o", "--output", type=click.Path(), help="Folder of the figure and the table.")
+@click.option("-o", "--output", type=NAMED, help="Folder of the figure and the table.")
 @framed
 def command(answer: Answer, scenario: str, output: str | None, **options: Any) -> None:
     """Measure error and CPU time of methods and tolerances on SCENARIO.
@@ -69,13 +69,14 @@ def one(
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
     compiling(answer, "auto")
     from trsim.analyse import precision
+    from trsim.report.precision import see_room
 
     named = [known_method(name) for name in methods.split(",")]
     asked = [tolerance(x) for x in tolerances.split(",")] if tolerances else precision.TOLERANCES
     ends = [scenario.solver.end / n for n in precision.FIXED]
     fixed = [seconds(x) for x in steps.split(",")] if steps else ends
     against = chosen(reference) if reference else precision.reference_setting(named, asked)
-    made(folder)
+    see_room(folder)
     try:
         return measured(answer, scenario, precision.plan(named, asked, fixed), against,
                         quantities, repeats)  # fmt: skip
@@ -161,14 +162,6 @@ def chosen(text: str, what: str = "reference", option: str = "--reference") -> A
     if not method:
         raise UsageError(f"'{text}' is no {what}", "Write for example radau:1e-10.")
     return Setting(known_method(method), tolerance(value))
-
-
-def made(folder: Path) -> None:
-    """Make the folder before anything is measured."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"{folder}: {error.strerror or error}") from None
 
 
 # --- what is told ----------------------------------------------------------------------------

@@ -30,7 +30,7 @@ def command(
         try:
             found = one(answer, source, sets, modes)
         except TrsimError as error:
-            answer.fail(error)
+            answer.fail(error, about=source)
             continue
         answer.data["scenarios"].append(found)
         if k:
@@ -41,7 +41,7 @@ def command(
 
 def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False) -> dict[str, Any]:
     """What a scenario is once assembled, where it would start, and what is fast in it."""
-    from trsim.cli.progress import compiling
+    from trsim.cli.progress import Doing, compiling
     from trsim.cli.run import placed
 
     scenario = loaded(source, sets)
@@ -49,15 +49,16 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
     from trsim.assemble.assemble import assemble
     from trsim.solve.skipped import skipped
 
+    found = {"file": source, "title": scenario.title}
     try:
-        mechanism = assemble(scenario)
-        return {
-            "file": source,
-            "title": scenario.title,
-            **described(scenario, mechanism),
-            **begun(scenario, mechanism, modes),
-            "skipped": list(skipped(scenario, mechanism)),
-        }
+        with Doing(answer, source) as doing:
+            doing(f"assembling {len(scenario.bodies)} bodies")
+            mechanism = assemble(scenario)
+            doing("telling redundant rows and what to release")
+            found |= described(scenario, mechanism)
+            doing("looking for the start and its time scales")
+            found |= begun(scenario, mechanism, modes)
+        return {**found, "skipped": list(skipped(scenario, mechanism))}
     except TrsimError as error:
         raise placed(error, scenario) from None
 

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import click
 
-from trsim.cli.frame import Answer, framed
-from trsim.errors import FileError, UsageError, known
+from trsim.cli.frame import NAMED, Answer, framed
+from trsim.errors import UsageError, known
 
 
 @click.command("export")
 @click.argument("run", type=click.Path())
 @click.option("--csv", "as_csv", is_flag=True, required=True, help="Comma-separated values.")
-@click.option("-o", "--output", type=click.Path(), help="File, or folder of it.")
+@click.option("-o", "--output", type=NAMED, help="File, or folder of it.")
 @click.option("--channels", multiple=True, metavar="PATTERN", help="For example 'B.*'; repeatable.")
 @framed
 def command(
@@ -30,10 +30,7 @@ def command(
     of = {n: channel for channel in found.names for n in components(channel, found.sizes[channel])}
     names = chosen(of, channels)
     target = placed(Path(run), output)
-    try:
-        rows = export(found, names, target)
-    except OSError as error:
-        raise FileError(f"{target}: {error.strerror or error}") from None
+    rows = export(found, names, target)
     answer.data |= {"file": str(target), "rows": rows, "channels": names}
     answer.put(str(target))
     answer.say(f"{target}: {rows} rows of {len(names)} channels")

@@ -8,12 +8,12 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import click
 
-from trsim.errors import FileError, Place, TrsimError
+from trsim.errors import FileError, Place, TrsimError, UsageError
 
 EXIT_CODES = {  # 6 is kept for sweeps of which some cases failed
     0: "done",
@@ -26,6 +26,7 @@ EXIT_CODES = {  # 6 is kept for sweeps of which some cases failed
     130: "interrupted by SIGINT",
     143: "interrupted by SIGTERM",
 }
+WORKED_ON = ("scenario", "run", "part")  # arguments that are one file
 INTERRUPTED: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
@@ -53,48 +54,59 @@ class Answer:
     def say(self, text: str) -> None:
         """A message."""
         if not self.quiet:
-            click.echo(text, err=True)
+            tell(text)
 
     def put(self, text: str) -> None:
         """Data, for a reader; with --json it is in the document instead."""
-        if not self.as_json:
+        if self.as_json:
+            return
+        try:
             click.echo(text)
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            unheard()
+            raise FileError(f"standard output: {error.strerror or error}") from None
 
-    def fail(self, error: TrsimError, text: str = "") -> None:
-        """Tell an error.  The exit code is that of the first one."""
-        click.echo(text or f"error: {error.show()}", err=True)
+    def fail(self, error: TrsimError, about: str | None = None) -> None:
+        """Tell an error.  The exit code is that of the first one; about: the file at work."""
+        tell(f"error: {error.show()}")
         self.exit_code = self.exit_code or error.exit_code
         self.data["unlisted"] += getattr(error, "unlisted", 0)
         for one in error.problems:
-            self.entry(one.what, one.hint, one.exit_code, one.path, one.place)
+            file = one.file if one.file or isinstance(one, UsageError) else about
+            self.entry(one.what, one.hint, one.exit_code, one.path, one.place, file)
 
     def broken(self, error: Exception) -> None:
         """Tell a bug."""
         kind = f"{type(error).__name__}: {error}".splitlines()[0]
         hint = "This is a bug in trsim: please report it.  TRSIM_DEBUG=1 shows the traceback."
-        click.echo(f"internal error: {kind}\n  {hint}", err=True)
+        tell(f"internal error: {kind}\n  {hint}")
         self.exit_code = 1
         self.entry(kind, hint, 1)
 
-    def interrupted(self, number: int | None) -> None:
-        """Tell that a signal ended the command."""
-        click.echo("interrupted", err=True)
+    def interrupted(self, number: int | None, left: str = "") -> None:
+        """Tell that a signal ended the command, and what it left."""
+        tell(f"interrupted: {left}" if left else "interrupted")
         self.exit_code = INTERRUPTED[number or signal.SIGINT]
-        self.entry(EXIT_CODES[self.exit_code], "", self.exit_code)
+        self.entry(EXIT_CODES[self.exit_code], left, self.exit_code)
 
     def refuse(self, error: click.ClickException) -> None:
         """Tell what is wrong with the command line."""
-        error.show(sys.stderr)
+        with suppress(OSError):
+            error.show(sys.stderr)
         self.exit_code = error.exit_code
         self.entry(error.format_message(), "", error.exit_code)
 
     def entry(
-        self, what: str, hint: str, code: int, path: tuple = (), place: Place | None = None
-    ) -> None:
+        self, what: str, hint: str, code: int, path: tuple = (), place: Place | None = None,
+        file: str | None = None,
+    ) -> None:  # fmt: skip
         """Add an error to the document."""
         told = {"what": what, "hint": hint, "path": ".".join(map(str, path)), "exit_code": code}
         for name in ("file", "line", "column"):
             told[name] = getattr(place, name, None)
+        told["file"] = told["file"] or file
         self.data["errors"].append(told)
 
     def close(self) -> int:
@@ -107,9 +119,21 @@ class Answer:
         except OSError as error:
             unheard()
             if not isinstance(error, BrokenPipeError):
-                click.echo(f"error: standard output: {error.strerror or error}", err=True)
+                tell(f"error: standard output: {error.strerror or error}")
                 return self.exit_code or FileError.exit_code
         return self.exit_code
+
+
+class Named(click.Path):
+    """A name of a file or folder to write; a shell variable that is not set gives none."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        if not value:
+            self.fail("the name of the output is empty", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+NAMED = Named()
 
 
 def framed(function: Callable[..., None]) -> Callable[..., int]:
@@ -118,19 +142,20 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
     @functools.wraps(function)
     def command(as_json: bool = False, quiet: bool = False, **options: Any) -> int:
         answer = Answer(function.__module__.rsplit(".", 1)[-1], as_json, quiet)
+        about = next((options[key] for key in WORKED_ON if options.get(key)), None)
         try:
             with listening():
                 function(answer, **options)
         except TrsimError as error:
-            answer.fail(error)
-        except KeyboardInterrupt:
-            answer.interrupted(Stop.number)
+            answer.fail(error, about)
+        except KeyboardInterrupt as stop:
+            answer.interrupted(Stop.number, str(stop))
         except BrokenPipeError:
             unheard()
             return answer.exit_code
         except OSError as error:  # of a file that is none of ours: kernels being compiled, for one
             what = f"{error.filename or 'file system'}: {error.strerror or error}"
-            answer.fail(FileError(what))
+            answer.fail(FileError(what, file=error.filename and os.fspath(error.filename)))
         except Exception as error:
             if Stop.number:  # numba's own way of telling that an exception passed through
                 answer.interrupted(Stop.number)
@@ -170,9 +195,26 @@ def _stop(number: int, _: Any) -> None:
         raise KeyboardInterrupt
 
 
+def tell(text: str) -> None:
+    """A line on standard error; where that cannot be written to, nobody is left to be told."""
+    with suppress(OSError):
+        click.echo(text, err=True)
+
+
 def unheard() -> None:
     """Nobody reads standard output any more: what is still to be said goes to nowhere."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def opened() -> None:
+    """Give a standard stream that was closed to nowhere: its number must not become a file's."""
+    while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+        pass
+    os.close(handle)
+    for name in ("stdin", "stdout", "stderr"):
+        if getattr(sys, name) is None:
+            mode = "r" if name == "stdin" else "w"
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115
 
 
 def plain(value: Any) -> Any:

@@ -1,14 +1,17 @@
 """How far a run is: a bar on a terminal, otherwise a line every ten seconds."""
 
 import sys
+import threading
 import time
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any
 
 from trsim.cli.frame import Answer, Stop
+from trsim.errors import FileError
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
+WHILE = 2.0  # s: what takes longer is told
 LINE = 10.0  # s between two lines where there is no terminal
 DRAWN = 0.2  # s between two looks at the bar
 
@@ -30,11 +33,52 @@ def compiling(answer: Answer, method: str = "") -> None:
         later = ["complete", "march", *COMPILED[method]]
     if needed.file.exists():
         return
+    see_kept(answer)
     answer.say("compiling (once per installation, about half a minute)")
     if later:
         from trsim.elements import ahead
 
         ahead.begin(*(f"trsim.solve.{name}" for name in later))
+
+
+def see_kept(answer: Answer) -> None:
+    """Say so where what is compiled cannot be kept for the next run."""
+    from trsim.elements.machine import folder
+    from trsim.store.target import see_writable
+
+    try:
+        see_writable(folder())
+    except FileError as error:
+        answer.say(
+            f"warning: machine code cannot be kept, so every run compiles anew: {error.what}; "
+            "the variable XDG_CACHE_HOME names another folder for it"
+        )
+
+
+class Doing:
+    """What a command is doing, told once it has taken a while."""
+
+    def __init__(self, answer: Answer, name: str) -> None:
+        self.answer, self.name, self.text, self.late = answer, name, "at work", False
+        self.timer = threading.Timer(WHILE, self._tell)
+        self.timer.daemon = True
+
+    def __enter__(self) -> "Doing":
+        self.timer.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.timer.cancel()
+
+    def __call__(self, text: str) -> None:
+        """Begin something else."""
+        self.text = text
+        if self.late:
+            self._tell()
+
+    def _tell(self) -> None:
+        self.late = True
+        self.answer.say(f"{self.name}: {self.text} ...")
 
 
 def watched(

@@ -4,13 +4,12 @@ from pathlib import Path
 
 import click
 
-from trsim.cli.frame import Answer, framed
-from trsim.errors import UsageError
+from trsim.cli.frame import NAMED, Answer, framed
 
 
 @click.command("recover")
 @click.argument("part", type=click.Path())
-@click.option("-o", "--output", type=click.Path(), help="Result file.")
+@click.option("-o", "--output", type=NAMED, help="Result file.")
 @framed
 def command(answer: Answer, part: str, output: str | None) -> None:
     """Copy what a dead run left in FILE.part into a result file with status `recovered`.
@@ -21,9 +20,7 @@ def command(answer: Answer, part: str, output: str | None) -> None:
 
     source = Path(part)
     stem = source.name.removesuffix(".part").removesuffix(".h5")
-    target = Path(output) if output else source.with_name(f"{stem}.recovered.h5")
-    if target.resolve() == source.resolve():
-        raise UsageError(f"{part} would be replaced by what is recovered from it")
+    target = Path(output) if output else source.parent / f"{stem}.recovered.h5"
     answer.say(f"reading {part} in a process of its own, as a damaged file may stop HDF5")
     found = recover(source, target)
     answer.data |= found

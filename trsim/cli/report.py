@@ -1,15 +1,16 @@
 """trsim report: figures and tables of result files."""
 
+import os
 from pathlib import Path
 
 import click
 
-from trsim.cli.frame import Answer, framed
+from trsim.cli.frame import NAMED, Answer, framed
 
 
 @click.command("report")
 @click.argument("runs", nargs=-1, required=True, type=click.Path())
-@click.option("-o", "--output", type=click.Path(), help="Folder of the figures.")
+@click.option("-o", "--output", type=NAMED, help="Folder of the figures.")
 @framed
 def command(answer: Answer, runs: tuple[str, ...], output: str | None) -> None:
     """Draw the figures and tables of result files RUN.
@@ -19,8 +20,7 @@ def command(answer: Answer, runs: tuple[str, ...], output: str | None) -> None:
     """
     from trsim.report import report
 
-    first = Path(runs[0])
-    folder = Path(output) if output else first.with_suffix("")
+    folder = Path(output or os.path.splitext(runs[0])[0])
     written = report(runs, folder)
     answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     for path in written:

@@ -1,12 +1,25 @@
 """Where a run begins: at its start, or at the checkpoint an earlier one left."""
 
+import math
 from pathlib import Path
 from typing import Any
+
+import click
 
 from trsim.cli.frame import Answer
 from trsim.errors import FileError, UsageError
 
 EVERY = 60.0  # s of wall time between two checkpoints
+
+
+class Seconds(click.FloatRange):
+    """A span of time: NaN compares with nothing, so a range lets it pass."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        found = super().convert(value, param, ctx)
+        if not math.isfinite(found):
+            self.fail(f"{value} is not a number of seconds; 0 is for never.", param, ctx)
+        return found
 
 
 def interval(answer: Answer, source: str, scenario: Any, asked: float | None) -> float:
@@ -22,10 +35,13 @@ def interval(answer: Answer, source: str, scenario: Any, asked: float | None) ->
 def found(answer: Answer, source: str, target: Path, scenario: Any, wanted: bool) -> Any:
     """The checkpoint to go on from, None to start at the beginning; says which.
 
-    Raises UsageError where it is that of another run, FileError where it cannot be read.
+    Raises UsageError where it is that of another run, FileError where it cannot be read, or where
+    another process writes this result.
     """
     from trsim.store.checkpoint import ANEW, beside, differences, load
+    from trsim.store.lock import refuse_if_written
 
+    refuse_if_written(target)
     path = beside(target)
     if not path.is_file():
         if wanted:

@@ -7,24 +7,24 @@ from typing import Any
 
 import click
 
-from trsim.cli.frame import Answer, Stop, framed
-from trsim.cli.resume import found, interval
+from trsim.cli.frame import NAMED, Answer, Stop, framed
+from trsim.cli.resume import Seconds, found, interval
 from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
+from trsim.store.target import RESULT, replaceable
 
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 GIVEN = 1e-2  # of it: more done by projection says so too
 OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
-SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 @click.command("run")
 @click.argument("scenarios", nargs=-1, required=True, type=click.Path())
-@click.option("-o", "--output", type=click.Path(), help="Result file; a folder for several.")
+@click.option("-o", "--output", type=NAMED, help="Result file; a folder for several.")
 @click.option("--set", "sets", multiple=True, metavar="KEY=VALUE", help="Override a number.")
 @click.option("--resume", is_flag=True, help="Go on where an interrupted or killed run was.")
 @click.option(
-    "--checkpoint", type=click.FloatRange(min=0.0), metavar="SECONDS",
+    "--checkpoint", type=Seconds(min=0.0), metavar="SECONDS",
     help="Wall time between two checkpoints, 0 for none.  [default: 60]",
 )  # fmt: skip
 @click.option(
@@ -55,16 +55,17 @@ def command(
         asked = chosen(certify_with, "twin", "--certify-with")
     for source, target in targets(scenarios, output):
         try:
-            summary = one(answer, source, target, sets, resume, checkpoint, asked)
+            file = replaceable(target, RESULT, [source])
+            summary = one(answer, source, file, sets, resume, checkpoint, asked)
         except TrsimError as error:
-            answer.fail(error)
+            answer.fail(error, about=source)
             continue
         answer.data["runs"].append(summary)
         answer.put(summary["file"])
         if summary["status"] == "failed":
             at = f"{source}: the solver failed at t = {summary['time']:.6g} s"
             kept = f"What was computed is in {summary['file']}."
-            answer.fail(SolverError(f"{at}: {summary['reason']}", kept))
+            answer.fail(SolverError(f"{at}: {summary['reason']}", kept), about=source)
 
 
 def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, Path]]:
@@ -91,7 +92,6 @@ def one(
 
     certify: whether to compare it with a twin, or the `Setting` of that.
     """
-    check_target(target)
     scenario = loaded(source, sets)
     if scenario.solver.end is None:
         what = "field required: end (s)"
@@ -171,17 +171,6 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
     if (identical := same(source, summary)) is not None:
         summary["identical"] = identical
         answer.say(f"the content {'is identical to' if identical else 'differs from'} {source}")
-
-
-def check_target(target: Path) -> None:
-    """Refuse to write over a file that is no result of ours."""
-    if not target.is_file() or target.stat().st_size == 0:
-        return
-    with target.open("rb") as file:
-        if file.read(8) != SIGNATURE:
-            raise UsageError(
-                f"{target} exists and is not a result file", "Name another file with -o."
-            )
 
 
 def placed(error: TrsimError, scenario: Any) -> TrsimError:

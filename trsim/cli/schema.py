@@ -5,15 +5,13 @@ from pathlib import Path
 
 import click
 
-from trsim.cli.frame import Answer, framed
-from trsim.errors import FileError, UsageError, known
-
-TITLE = "trsim "  # of every schema
+from trsim.cli.frame import NAMED, Answer, framed
+from trsim.errors import UsageError, known
 
 
 @click.command("schema")
 @click.argument("what", default="scenario")
-@click.option("-o", "--output", type=click.Path(), help="File of the schema.")
+@click.option("-o", "--output", type=NAMED, help="File of the schema.")
 @framed
 def command(answer: Answer, what: str, output: str | None) -> None:
     """Print the JSON Schema of WHAT.
@@ -49,19 +47,7 @@ def modeline(file: str) -> str:
 
 def write(target: Path, text: str) -> None:
     """Write a schema, over nothing but an older one."""
-    try:
-        if target.exists() and not is_schema(target.read_bytes()):
-            raise UsageError(f"{target} exists and is not a schema of trsim", "Name another file.")
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise FileError(f"{target}: {error.strerror or error}") from None
+    from trsim.store.target import SCHEMA, fresh, told
 
-
-def is_schema(content: bytes) -> bool:
-    """Whether it is empty or a schema of ours."""
-    try:
-        found = json.loads(content or b'{"title": "trsim "}')
-    except ValueError:
-        return False
-    return isinstance(found, dict) and str(found.get("title", "")).startswith(TITLE)
+    with told(target), fresh(target, SCHEMA) as unfinished:
+        unfinished.write_text(text + "\n", encoding="utf-8")

@@ -5,19 +5,27 @@ from typing import Any
 import click
 
 from trsim.cli.frame import Answer, framed
+from trsim.errors import FileError
 
 
 @click.command("show")
 @click.argument("run", type=click.Path())
+@click.option("--verify", is_flag=True, help="Read all of it, and compare the content hash.")
 @framed
-def command(answer: Answer, run: str) -> None:
-    """Print what is in the result file RUN."""
+def command(answer: Answer, run: str, verify: bool) -> None:
+    """Print what is in the result file RUN.
+
+    With --verify the content hash is computed anew and compared; exit code 7 if it differs.
+    """
     from trsim.store.read import read
 
     found = read(run)
+    if verify:
+        see_same(found)
     answer.data |= {
         "file": str(found.path),
         **found.attributes,
+        "verified": verify or None,
         "rows": found.rows,
         "channels": {name: found.units[name] for name in found.names},
         "summary": found.summary,
@@ -42,6 +50,21 @@ def command(answer: Answer, run: str) -> None:
             answer.put(f"    {text}")
 
 
+def see_same(run: Any) -> None:
+    """See that a file holds what its content hash says; raises FileError."""
+    from trsim.store.read import verify
+
+    path = str(run.path)
+    if "content_sha256" not in run.attributes:
+        what = f"{path} has no content hash to compare with: its run was not completed"
+        raise FileError(what, file=path)
+    if not verify(path):
+        what = f"{path} does not hold what was written: its content hash differs"
+        raise FileError(
+            what, "It was changed or damaged since.  Run the scenario again.", file=path
+        )
+
+
 def lines(run: Any, data: dict[str, Any]) -> list[str]:
     """The same for a reader."""
     a = run.attributes
@@ -51,7 +74,8 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
     if run.rows:
         time = run.time
         out[-1] += f", t = {time[0]:g} .. {time[-1]:g} s"
-    out.append(f"  content   {a.get('content_sha256', '- (not complete)')}")
+    checked = " (verified)" if data["verified"] else ""
+    out.append(f"  content   {a.get('content_sha256', '- (not complete)')}{checked}")
     solver = data["solver"]
     if "steps" in solver:
         out.append(

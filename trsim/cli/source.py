@@ -3,13 +3,15 @@
 from pathlib import Path
 from typing import Any
 
-from trsim.errors import TrsimError
+from trsim.errors import TrsimError, unreadable
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
 
 def is_result(source: str) -> bool:
     """Whether it is HDF5, whatever its name."""
+    if unreadable(source) is not None:  # a FIFO would wait for its other end
+        return False
     try:
         with open(source, "rb") as file:
             return file.read(8) == SIGNATURE

@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from trsim.spec.shown import UNITS
 from trsim.store.grow import Array
 from trsim.store.read import Run
 from trsim.units import unit
 
 DEFAULT = {"angle": "deg", "length": "mm"}
-OF = {"angle": "rad", "length": "m", "force": "N", "torque": "N*m"}  # what a choice replaces
 COMPARED = (
     "parameters",
     "bodies",
@@ -82,7 +82,7 @@ def display_units(chosen: Mapping[str, str]) -> dict[str, tuple[float, str]]:
     """
     units = {}
     for kind, text in {**DEFAULT, **chosen}.items():
-        si = OF.get(kind)
+        si = UNITS.get(kind)
         if si is None or unit(text)[1] != unit(si)[1]:
             continue
         factor = 1.0 / float(unit(text)[0])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trsim.errors import FileError
+from trsim.store.target import FIGURE, fresh, headed, replaceable, see_writable, told
 
 if TYPE_CHECKING:
     from trsim.analyse.precision import Point, Study
@@ -16,26 +16,36 @@ NAME = "work_precision"
 MARKS = "osD^vP*X"
 FIELDS = ("error", "worst", "peak_error", "unresolved", "peak_unresolved", "cpu", "steps",
           "evaluations", "reason")  # fmt: skip
+TITLES = ("method", "tolerance", "step [s]",
+          *(f"{name} [s]" if name == "cpu" else name for name in FIELDS))  # fmt: skip
+TABLE = headed(*TITLES)
 
 
 def draw(study: "Study", folder: Path) -> list[Path]:
     """work_precision.png and work_precision.csv; raises FileError."""
     from trsim.report.style import look, save
 
-    try:
-        with look():
-            picture = save(figure(study), folder / f"{NAME}.png")
-        return [picture, write(study, folder / f"{NAME}.csv")]
-    except OSError as error:
-        raise FileError(f"{folder}: {error.strerror or error}") from None
+    with look():
+        picture = save(figure(study), folder / f"{NAME}.png")
+    return [picture, write(study, folder / f"{NAME}.csv")]
+
+
+def see_room(folder: Path) -> None:
+    """See that both can be written, before anything is measured; raises FileError, UsageError."""
+    see_writable(folder)
+    replaceable(folder / f"{NAME}.png", FIGURE)
+    replaceable(folder / f"{NAME}.csv", TABLE)
 
 
 def write(study: "Study", path: Path) -> Path:
     """The table as CSV, SI units, numbers in full."""
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with (
+        told(path),
+        fresh(path, TABLE) as unfinished,
+        unfinished.open("x", newline="", encoding="utf-8") as file,
+    ):
         table = csv.writer(file)
-        heads = [f"{name} [s]" if name == "cpu" else name for name in FIELDS]
-        table.writerow(["method", "tolerance", "step [s]", *heads])
+        table.writerow(TITLES)
         for p in study.points:
             values = [*p.setting, *(getattr(p, name) for name in FIELDS)]
             table.writerow([repr(v) if isinstance(v, float) else v for v in values])

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from trsim.report.display import Shown
 from trsim.store.grow import Array
+from trsim.store.target import FIGURE, fresh, told
 
 CHARACTER = 0.085  # inch: a letter of a title
 WIDTH = 6.3  # inch: the text width of an A4 page
@@ -61,7 +62,8 @@ def panels(
 
 def save(figure: Figure, path: Path) -> Path:
     """Write the PNG, without anything that changes from day to day."""
-    figure.savefig(path, metadata={"Software": None})
+    with told(path), fresh(path, FIGURE) as unfinished:
+        figure.savefig(unfinished, format="png", metadata={"Software": "trsim"})
     return path
 
 

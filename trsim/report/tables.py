@@ -9,6 +9,7 @@ import numpy as np
 
 from trsim.report.display import Shown, short
 from trsim.report.style import WIDTH, look, panels, save, titled
+from trsim.store.target import fresh, headed, told
 
 NOISE = 1e-9  # of the largest load of the same unit: rounding
 SECTIONS = ("joints", "drives", "forces")
@@ -109,7 +110,11 @@ def stroke_unit(shown: Shown) -> tuple[float, str]:
 
 def write(loads: list[Load], path: Path) -> Path:
     """The table as CSV, numbers in full."""
-    with path.open("w", newline="", encoding="utf-8") as file:
+    with (
+        told(path),
+        fresh(path, headed(*Load._fields)) as unfinished,
+        unfinished.open("x", newline="", encoding="utf-8") as file,
+    ):
         table = csv.writer(file)
         table.writerow(Load._fields)
         for load in loads:

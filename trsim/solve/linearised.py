@@ -203,7 +203,7 @@ class Probe:
 
     def turning(self) -> Array:
         """Z^T M (omega x) Z: a body that spins carries its small rotations along."""
-        turned = self.twists.reshape(self.work.n - 1, 6, -1).copy()
+        turned = self.twists.reshape(self.work.n - 1, 6, self.twists.shape[1]).copy()
         spin = self.given.reshape(-1, 6)[:, 3:]
         turned[:, 3:] = np.cross(spin[:, :, None], turned[:, 3:], axis=1)
         turned[:, :3] = 0.0

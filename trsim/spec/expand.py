@@ -19,7 +19,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from trsim.errors import FileError, Place, ScenarioError, UsageError, described, known
+from trsim.errors import (
+    FileError,
+    Place,
+    ScenarioError,
+    UsageError,
+    described,
+    known,
+    unreadable,
+)
 from trsim.fields import number, quantity
 from trsim.spec.text import LARGEST, Tree, decoded, read
 
@@ -30,12 +38,9 @@ NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws", "eve
 
 def expand(path: str | os.PathLike, sets: Iterable[str] = ()) -> tuple[Tree, str]:
     """The tree of a scenario file, and its text as given."""
-    try:
-        real = Path(path).resolve(strict=True)
-    except (OSError, RuntimeError, ValueError) as error:
-        raise FileError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
-    if not real.is_file():
-        raise FileError(f"{path} is not a file")
+    if (missing := unreadable(path)) is not None:
+        raise missing
+    real = Path(path).resolve()
     files = _Files(_root(real.parent))
     data = files.content(real, str(path))
     tree = files.tree(real, str(path), data, ())
@@ -85,7 +90,7 @@ class _Files:
             with real.open("rb") as file:
                 data = file.read(LARGEST + 1)
         except OSError as error:
-            raise FileError(f"{name}: {error.strerror}") from None
+            raise FileError(f"{name}: {error.strerror}", file=name) from None
         self.digests[name] = hashlib.sha256(data).hexdigest()
         return data
 

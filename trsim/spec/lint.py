@@ -28,7 +28,16 @@ POINT_JOINTS = ("revolute", "spherical", "clearance_joint", "fixed")
 
 def lint(scenario: Any) -> tuple[str, ...]:
     """What looks wrong in a validated scenario: "section.name: what; what to do"."""
-    checks = (_inertias, _sizes, _conformity, _restitutions, _speeds, _stops, _fixed_step)
+    checks = (
+        _inertias,
+        _sizes,
+        _conformity,
+        _restitutions,
+        _speeds,
+        _stops,
+        _fixed_step,
+        _ignored_step,
+    )
     return tuple(message for check in checks for message in check(scenario))
 
 
@@ -222,6 +231,16 @@ def _stops(scenario: Any) -> Iterator[str]:
                 f"critical (2 sqrt(k m) = {critical:.3g} with the two bodies alone): the blow is "
                 "the damper's, not the spring's; lower the damping or raise the stiffness"
             )
+
+
+def _ignored_step(scenario: Any) -> Iterator[str]:
+    """A step for a method that chooses its own."""
+    solver = scenario.solver
+    if solver.step is not None and solver.method != "rk4":
+        yield (
+            f"solver.step: {solver.step:g} s has no influence: {solver.method} chooses its steps "
+            "by `tolerance`; `max_step` bounds them, `method: rk4` takes a fixed one"
+        )
 
 
 def _fixed_step(scenario: Any) -> Iterator[str]:

@@ -8,13 +8,14 @@ from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Interval
-from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
 from trsim import elements
 from trsim.elements.contact_law import ContactLaw
 from trsim.elements.event import Crosses, Event
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, number, vector
+from trsim.spec import shown
 from trsim.spec.text import Tree
 
 METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
@@ -241,7 +242,7 @@ class Scenario(Spec):
     phases: Any = None
     cases: dict[str, Any] = EMPTY
     sweep: dict[str, Any] = EMPTY
-    report: dict[str, Any] = EMPTY
+    report: Annotated[dict[str, Any], AfterValidator(shown.report)] = EMPTY
 
     _tree: Tree = PrivateAttr()
     _text: str = PrivateAttr()

@@ -15,6 +15,7 @@ import io
 import json
 import os
 import platform
+import shlex
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
@@ -53,6 +54,16 @@ class Checkpoint:
 def beside(final: Path) -> Path:
     """The checkpoint that goes with a result file."""
     return final.with_name(final.name + ENDING)
+
+
+def left(part: Path, path: Path, time: float, command: str) -> str:
+    """What a run that was broken off left, and the commands that use it."""
+    text = f"{part} holds the run until t = {time:g} s; "
+    text += f"`{shlex.join(['trsim', 'recover', str(part)])}` makes it a result file"
+    if path.exists() and command:
+        resumed = "" if "--resume" in command.split() else " --resume"
+        text += f", `{command}{resumed}` goes on with the run"
+    return f"{text}."
 
 
 # --- what must be the same -------------------------------------------------------------------

@@ -1,12 +1,13 @@
 """Channels of a result file as comma-separated values."""
 
-import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from trsim.store.read import Run, opened
+from trsim.store.target import TABLE, fresh, told
 
 LETTERS = ("x", "y", "z")
 ROWS = 4096  # rows handled together
@@ -27,15 +28,22 @@ def export(run: Run, names: list[str], target: Path) -> int:
     places = {n: (c, k) for c, s in run.sizes.items() for k, n in enumerate(components(c, s))}
     units = [run.units[places[name][0]] for name in names]
     heads = ["time [s]", *(f"{n} [{u}]" for n, u in zip(names, units, strict=True))]
-    target.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = target.with_name(target.name + ".part")
-    with opened(run.path) as file, unfinished.open("w", encoding="utf-8", newline="") as out:
+    with (
+        told(target),
+        fresh(target, TABLE, [run.path]) as unfinished,
+        unfinished.open("x", encoding="utf-8", newline="") as out,
+    ):
         out.write(",".join(f'"{head}"' if "," in head else head for head in heads) + "\r\n")
-        for begin in range(0, run.rows, ROWS):
-            table = _table(file, [places[n] for n in names], begin, min(begin + ROWS, run.rows))
+        for table in _tables(run, [places[name] for name in names]):
             out.writelines(",".join(map(repr, row)) + "\r\n" for row in table.tolist())
-    os.replace(unfinished, target)
     return run.rows
+
+
+def _tables(run: Run, places: list[tuple[str, int]]) -> Iterator[np.ndarray]:
+    """Rows handled together; errors of reading are those of the result file."""
+    with opened(run.path) as file:
+        for begin in range(0, run.rows, ROWS):
+            yield _table(file, places, begin, min(begin + ROWS, run.rows))
 
 
 def _table(file: h5py.File, places: list[tuple[str, int]], begin: int, end: int) -> np.ndarray:

@@ -1,13 +1,18 @@
-"""What the file system is asked for around HDF5: room to begin, data on the disk, a way out."""
+"""What the system is asked for around HDF5: room to begin, data on the disk, ways out."""
 
 import contextlib
+import ctypes
 import os
+import signal
+import sys
 from pathlib import Path
 
 import h5py
 
 from trsim.errors import FileError
 
+PR_SET_PDEATHSIG = 1  # of prctl(2)
+MORE = 1 << 22  # bytes, more than HDF5 writes at once
 BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
 
 
@@ -21,9 +26,15 @@ def see_room(part: Path) -> None:
             os.fsync(file.fileno())
     except OSError as error:
         what = f"{part}: the first {BEGINNING} bytes cannot be written: {error.strerror}"
-        raise FileError(what) from None
+        raise FileError(what, file=str(part)) from None
     finally:
         trial.unlink(missing_ok=True)
+
+
+def see_more(path: Path) -> None:
+    """See that a file can grow; raises OSError."""
+    with path.open("ab") as file:
+        os.posix_fallocate(file.fileno(), file.tell(), MORE)
 
 
 def let_go(file: h5py.File) -> None:
@@ -39,6 +50,15 @@ def let_go(file: h5py.File) -> None:
         os.dup2(nowhere, file.id.get_vfd_handle())
         os.close(nowhere)
         file.close()
+
+
+def end_with_parent() -> None:
+    """Have the system end this process with the one that began it; Linux alone can."""
+    if sys.platform == "linux":
+        parent = os.getppid()
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        if os.getppid() != parent:
+            os._exit(1)
 
 
 def synced(path: Path) -> None:

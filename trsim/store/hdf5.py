@@ -22,8 +22,10 @@ from trsim.store.checkpoint import Checkpoint
 from trsim.store.content import content_hash
 from trsim.store.disk import let_go, see_room, synced
 from trsim.store.grow import Field, Growing, scales
+from trsim.store.lock import alone
 from trsim.store.read import Run, read
 from trsim.store.resume import refill
+from trsim.store.target import PART, replaceable
 
 __all__ = ["Run", "read", "write"]
 
@@ -35,6 +37,7 @@ Closing = Callable[[h5py.File], dict[str, Any]]
 HASTE = 1.0  # s: a checkpoint that takes longer is not begun after an interrupt
 
 
+@alone
 def write(
     path: str | os.PathLike, scenario: Any, mechanism: Any, blocks: Generator[Any, None, Any],
     command: str = "", every: float = 0.0, kept: Checkpoint | None = None,
@@ -49,6 +52,7 @@ def write(
     file with status `interrupted`, a run that never starts no file at all.
     """
     run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every, closing)
+    run.command = command
     clock, outcome, broken = describe.Clock.now(), None, None
     status: Status
     run.go_on(kept)
@@ -70,6 +74,8 @@ def write(
     except FileError:
         run.abandon()
         raise
+    if isinstance(broken, KeyboardInterrupt):
+        raise KeyboardInterrupt(run.left(run.kept)) from None
     if broken is not None and not isinstance(broken, TrsimError):
         raise broken
     return summary
@@ -102,11 +108,13 @@ class Running:
         self.state: dict[str, Any] | None = None  # of the solver after the last block taken
         self.resumed: list[str] = []  # when
         self.closing = closing
+        self.command = ""  # line that began the run
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
         with self.told():
             final.parent.mkdir(parents=True, exist_ok=True)
             if not os.access(final.parent, os.W_OK) or final.is_dir():
                 raise OSError("not a file in a folder that can be written to")
+            replaceable(self.part, PART)
 
     @contextlib.contextmanager
     def told(self) -> Iterator[None]:
@@ -116,10 +124,10 @@ class Running:
         except (OSError, RuntimeError) as error:
             reason = describe.cause(error)
             if self.file is None:
-                raise FileError(f"{self.final}: {reason}") from None
+                raise FileError(f"{self.final}: {reason}", file=str(self.final)) from None
             size = self.part.stat().st_size if self.part.exists() else 0
             what = f"{self.part}: cannot be written beyond {size} bytes: {reason}"
-            raise FileError(what, f"It holds the run until t = {self.kept:g} s.") from None
+            raise FileError(what, self.left(self.kept), file=str(self.part)) from None
 
     def take_all(self, blocks: Generator[Any, None, Any]) -> Any:
         """Store all blocks; the outcome."""
@@ -280,6 +288,10 @@ class Running:
                 self.checkpoint.unlink(missing_ok=True)
         summary["file"] = str(self.final if complete else self.part)
         return summary
+
+    def left(self, time: float) -> str:
+        """What is there of a run that was broken off."""
+        return checkpoints.left(self.part, self.checkpoint, time, self.command)
 
     def abandon(self) -> None:
         """Let go of a file that cannot be written."""

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.errors import FileError, UsageError, known
+from trsim.errors import FileError, UsageError, known, unreadable
 from trsim.store import certificate
 from trsim.store.content import content_hash
 from trsim.store.grow import LONGEST, Array
@@ -206,19 +206,18 @@ def verify(path: str | os.PathLike) -> bool:
 @contextmanager
 def opened(path: Path) -> Iterator[h5py.File]:
     """An HDF5 file for reading, also while it is written or after its writer was killed."""
-    if not path.is_file():
-        hint = ""
-        part = path.with_name(path.name + ".part")
-        if part.exists():
-            hint = f"{part} exists: the run is going on, or was broken off."
-        raise FileError(f"{path}: no such file", hint)
+    if (missing := unreadable(path)) is not None:
+        part = Path(f"{path}.part")
+        if part.is_file():
+            missing.hint = f"{part} exists: the run is going on, or was broken off."
+        raise missing
     try:
         with _file(path) as file:
             yield file
     except (OSError, KeyError, RuntimeError, ValueError) as error:
         if isinstance(error, FileError):
             raise
-        raise FileError(*_unreadable(path, error)) from None
+        raise FileError(*_unreadable(path, error), file=str(path)) from None
 
 
 def _file(path: Path) -> h5py.File:
@@ -233,7 +232,7 @@ def _file(path: Path) -> h5py.File:
 
 
 def _unreadable(path: Path, error: Exception) -> tuple[str, str]:
-    if not os.access(path, os.R_OK):
+    if isinstance(error, PermissionError) or not os.access(path, os.R_OK):
         return f"{path}: permission denied", ""
     with path.open("rb") as file:
         signature = file.read(8)

@@ -21,6 +21,7 @@ import numpy as np
 from trsim.errors import FileError
 from trsim.store.checkpoint import ANEW, Checkpoint
 from trsim.store.describe import cause
+from trsim.store.disk import end_with_parent
 from trsim.store.grow import Growing
 from trsim.store.plain import Plain
 from trsim.store.recover import PACE, PATIENCE
@@ -109,6 +110,7 @@ def send(part: Path, wanted: list[tuple[str, int]], out: BinaryIO) -> None:
 
 if __name__ == "__main__":
     try:
+        end_with_parent()
         send(Path(sys.argv[1]), json.load(sys.stdin), sys.stdout.buffer)
     except (OSError, RuntimeError, KeyError, ValueError) as error:
         sys.exit(cause(error))

@@ -12,7 +12,8 @@ class Error(TypedDict):
     hint       what to do about it, or ""
     path       of a key in the scenario, dotted as for --set; of the mapping that lacks a key or has
                an unknown one; "" where the error is not about a scenario
-    file       file of the scenario, or --set
+    file       it is about: of the scenario, or --set; a file that cannot be read or written; with
+               an error of the solver the scenario; null of the command line
     line       in it, from 1; 0 in --set
     column     in it, from 1
     exit_code  of this error alone

@@ -92,6 +92,7 @@ class Show(Document):
     status          how the run stands or ended
     reason          why
     content_sha256  of all results; only in a complete file
+    verified        true if --verify found the same hash; otherwise null
     rows            output rows that can be read
     channels        name -> unit
     summary         the run in a few numbers
@@ -110,6 +111,7 @@ class Show(Document):
     status: Status
     reason: str
     content_sha256: NotRequired[str]
+    verified: Literal[True] | None
     rows: int
     channels: dict[str, str]
     summary: Summary

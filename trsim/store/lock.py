@@ -1,0 +1,101 @@
+"""One writer for a result file: X.h5.lock beside it holds the number of the process.
+
+The system gives the lock (flock) back when a process ends, however it ends: a file that was left
+behind locks nothing.  Where files cannot be locked at all, nothing is.
+"""
+
+import fcntl
+import os
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import wraps
+from pathlib import Path
+from typing import Concatenate, ParamSpec, TypeVar
+
+from trsim.errors import FileError
+from trsim.store.target import make, told
+
+ENDING = ".lock"
+ATTEMPTS, PAUSE = 3, 0.03  # s
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+def alone(
+    function: Callable[Concatenate[str | os.PathLike, P], T],
+) -> Callable[Concatenate[str | os.PathLike, P], T]:
+    """`function(path, ...)` as the only one, of all processes, that writes this result file."""
+
+    @wraps(function)
+    def locked(path: str | os.PathLike, *rest: P.args, **named: P.kwargs) -> T:
+        with writing(Path(path)):
+            return function(path, *rest, **named)
+
+    return locked
+
+
+@contextmanager
+def writing(final: Path) -> Iterator[None]:
+    """Hold the lock of a result file.  Raises FileError where another process does."""
+    path = _beside(final)
+    with told(final):
+        make(final.parent)
+        handle = _held(path, final)
+    try:
+        with suppress(OSError):  # a full disk: the number is only for messages
+            os.truncate(handle, 0)
+            os.write(handle, b"%d\n" % os.getpid())
+        yield
+    finally:
+        with suppress(OSError):
+            path.unlink()
+        os.close(handle)
+
+
+def refuse_if_written(final: Path) -> None:
+    """Raise FileError if a process is writing a result file."""
+    try:
+        handle = os.open(_beside(final), os.O_RDONLY | os.O_NONBLOCK)
+    except OSError:
+        return
+    try:
+        _lock(handle, fcntl.LOCK_SH, final)
+    finally:
+        os.close(handle)
+
+
+def _held(path: Path, final: Path) -> int:
+    """A locked handle of the file that has the name: its last owner may just have removed it."""
+    while True:
+        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        try:
+            _lock(handle, fcntl.LOCK_EX, final)
+            if os.path.samestat(os.fstat(handle), os.stat(path)):
+                return handle
+        except FileNotFoundError:
+            pass
+        except BaseException:
+            os.close(handle)
+            raise
+        os.close(handle)
+
+
+def _lock(handle: int, how: int, final: Path) -> None:
+    """Take a lock; who looks whether there is one holds it for a moment, hence the attempts."""
+    for _ in range(ATTEMPTS):
+        try:
+            fcntl.flock(handle, how | fcntl.LOCK_NB)
+            return
+        except BlockingIOError:
+            time.sleep(PAUSE)
+        except OSError:
+            return
+    number = os.pread(handle, 20, 0).decode(errors="replace").strip()
+    who = f"process {number}" if number.isdigit() else "another process"
+    hint = "Wait for it, or name another file with -o."
+    raise FileError(f"{final} is being written by {who}", hint, file=str(final))
+
+
+def _beside(final: Path) -> Path:
+    return final.with_name(final.name + ENDING)

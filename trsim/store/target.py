@@ -1,0 +1,149 @@
+"""What a command may write over: nothing but a file of the kind it writes itself.
+
+A name that is a link stands for the file it leads to.  All but result files of runs are written
+under another name beside the target, which takes its place when it is complete.
+"""
+
+import errno
+import json
+import os
+import stat
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from trsim.errors import FileError, UsageError, what_it_is
+from trsim.store.plain import SIGNATURE
+
+BEGINNING = 1 << 20  # bytes a file is recognised by
+ELSEWHERE = "Name another file with -o."
+HEADER = 4096  # bytes of a result file with the names of its first attributes
+
+
+class Kind(NamedTuple):
+    """A kind of file, and how it is told from others."""
+
+    name: str
+    fits: Callable[[bytes], bool]  # the beginning of a file
+
+
+def _is_result(start: bytes) -> bool:
+    return start.startswith(SIGNATURE) and b"format_version" in start[:HEADER]
+
+
+def _is_part(start: bytes) -> bool:
+    """HDF5 writes the first bytes of a file that was killed early last."""
+    return _is_result(start) or not any(start[:HEADER])
+
+
+def _is_table(start: bytes) -> bool:
+    """Titles with units, and numbers written in full, as `export` writes them."""
+    titles, *rows = start.split(b"\r\n")
+    if not titles.startswith((b"time [s],", b"time [s]")) or not rows:
+        return False
+    if any(not title.strip(b'"').endswith(b"]") for title in titles.split(b",")):
+        return False
+    try:
+        return not rows[0] or all(repr(float(x)) == x.decode() for x in rows[0].split(b","))
+    except ValueError:
+        return False
+
+
+def _is_schema(start: bytes) -> bool:
+    try:
+        found = json.loads(start)
+    except ValueError:
+        return False
+    return isinstance(found, dict) and str(found.get("title", "")).startswith("trsim ")
+
+
+def _is_figure(start: bytes) -> bool:
+    return start.startswith(b"\x89PNG") and b"Software\0trsim" in start[:HEADER]
+
+
+def headed(*titles: str) -> Kind:
+    """Tables that begin with these titles."""
+    line = ",".join(titles).encode()
+    return Kind("table of trsim", lambda start: start.split(b"\r\n")[0].startswith(line))
+
+
+RESULT = Kind("result file", _is_result)
+PART = Kind("part of a result file", _is_part)
+TABLE = Kind("table that `trsim export` wrote", _is_table)
+SCHEMA = Kind("schema of trsim", _is_schema)
+FIGURE = Kind("figure of trsim", _is_figure)
+
+
+def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Path:
+    """The file to write for a target, links followed.
+
+    given: what the command reads.  Raises UsageError where the target is one of these or anything
+    but a file of its kind, FileError where it may not be written or cannot be looked at.
+    """
+    with told(target):
+        try:
+            found = target.stat()
+        except FileNotFoundError:
+            return _followed(target)
+        if not stat.S_ISREG(found.st_mode):
+            raise UsageError(f"{target} is {what_it_is(found.st_mode)}, not a file", ELSEWHERE)
+        # the superuser may write anything: what is marked as not to be written is left alone
+        if not found.st_mode & 0o222 or not os.access(target, os.W_OK):
+            raise FileError(f"{target} is write-protected", ELSEWHERE)
+        with target.open("rb") as file:
+            start = file.read(BEGINNING)
+    if start and not kind.fits(start):
+        raise UsageError(f"{target} exists and is not a {kind.name}", ELSEWHERE)
+    if any(os.path.exists(one) and os.path.samefile(one, target) for one in given):
+        raise UsageError(f"{target} would be replaced by what is made of it", ELSEWHERE)
+    return _followed(target)
+
+
+def _followed(target: Path) -> Path:
+    return Path(os.path.realpath(target)) if target.is_symlink() else target
+
+
+@contextmanager
+def told(target: Path) -> Iterator[None]:
+    """Errors of the file system, told of the file that is written."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise FileError(f"{target}: cannot be written: {reason}", file=str(target)) from None
+
+
+@contextmanager
+def fresh(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Iterator[Path]:
+    """A name to write to; it takes that of the target at the end, and is gone after an error."""
+    with told(target):
+        make(target.parent)
+    final = replaceable(target, kind, given)
+    unfinished = final.with_name(f"{final.name}.{os.getpid()}")
+    try:
+        yield unfinished
+        with told(target):
+            os.replace(unfinished, final)
+    finally:
+        with suppress(OSError):
+            unfinished.unlink()
+
+
+def make(folder: Path) -> None:
+    """Make a folder, unless it is there."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR)) from None
+
+
+def see_writable(folder: Path) -> None:
+    """See that files can be made in a folder, which is made where it is not there."""
+    trial = folder / f".trsim.{os.getpid()}"
+    with told(folder):
+        make(folder)
+        try:
+            trial.write_bytes(b"trial")
+        finally:
+            trial.unlink(missing_ok=True)
