@@ -226,10 +226,9 @@ def test_no_index_counts_from_the_end():
     import ast
     from pathlib import Path
 
-    folders = [Path(machine.__file__).parents[1] / name for name in
-               ("elements", "laws", "assemble", "solve")]  # fmt: skip
-    found = []
-    for path in (path for folder in folders for path in folder.glob("*.py")):
+    package, found = Path(machine.__file__).parents[1], []
+    names = ("elements", "laws", "assemble", "solve")
+    for path in (path for name in names for path in (package / name).glob("*.py")):
         for function in ast.walk(ast.parse(path.read_text())):
             if not isinstance(function, ast.FunctionDef) or not compiled_by(function):
                 continue
