@@ -15,6 +15,7 @@ from trsim.laws.contact import (
     hertz_contact_time,
     hertz_peak,
 )
+from trsim.spec import plausible
 
 LARGE, SMALL = 3.0, 0.01  # radius of gyration over the reach of the joints
 ROUNDED = 1e-3  # inertias are typed with three or four digits
@@ -23,12 +24,14 @@ OFF = 0.1  # restitution delivered against restitution written
 STEPS = 20.0  # of rk4 in the time of one contact
 STABLE = 2.785  # rk4: step times the rate of a decay
 NARROW = 1e-5  # m/s over which friction turns round
-POINT_JOINTS = ("revolute", "spherical", "clearance_joint", "fixed")
 
 
 def lint(scenario: Any) -> tuple[str, ...]:
     """What looks wrong in a validated scenario: "section.name: what; what to do"."""
-    checks = (_inertias, _sizes, _conformity, _restitutions, _speeds, _stops, _fixed_step)
+    checks = (
+        *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
+        *(_conformity, _restitutions, _speeds, _stops, _fixed_step),
+    )
     return tuple(message for check in checks for message in check(scenario))
 
 
@@ -67,7 +70,7 @@ def _principal(inertia: tuple[float, ...]) -> tuple[float, ...]:
 
 def _sizes(scenario: Any) -> Iterator[str]:
     """Radius of gyration against the reach of the points where others hold the body."""
-    points = _points(scenario)
+    points = plausible.points(scenario)
     everywhere = [p for of_body in points.values() for p in of_body]
     everywhere += [body.at for body in scenario.bodies.values()]
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)
@@ -91,30 +94,6 @@ def _sizes(scenario: Any) -> Iterator[str]:
             yield f"{text}its points lie up to {reach:.3g} m from its centre{ask}"
         elif reach == 0.0 and 0.0 < LARGE * size < radius:
             yield f"{text}the whole mechanism is {size:.3g} m large{ask}"
-
-
-def _points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
-    """Where joints and forces hold each body, as drawn."""
-    found: dict[str, list[tuple[float, ...]]] = {}
-
-    def add(body: str | None, at: Any) -> None:
-        if body is not None and at is not None:
-            found.setdefault(body, []).append(at)
-
-    for joint in scenario.joints.values():
-        if joint.type in POINT_JOINTS:
-            for body in joint.bodies:
-                add(body, getattr(joint, "at", None))
-    for force in scenario.forces.values():
-        add(getattr(force, "body", None), getattr(force, "at", None))
-        for body, at in zip(
-            getattr(force, "bodies", ()), getattr(force, "points", ()), strict=False
-        ):
-            add(body, at)
-        for end in (getattr(force, "point", None), getattr(force, "wall", None)):
-            add(getattr(end, "body", None), getattr(end, "at", None))
-    found.pop("ground", None)
-    return found
 
 
 # --- contact laws ----------------------------------------------------------------------------
