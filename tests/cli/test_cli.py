@@ -260,3 +260,30 @@ def test_killed_run_leaves_a_readable_part(scenario):
     for name in result.names:
         assert np.all(np.isfinite(result.channel(name)))
     assert not (scenario.parent / "runs/crank.h5").exists()
+
+
+GUIDES = """
+bodies: {b: {mass: 1, inertia: 1, velocity: [1, 0]}}
+joints:
+  g: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}
+  h: {type: prismatic, bodies: [ground, b], axis: [1, 0.001, 0]}
+solver: {end: 1 ms}
+"""
+
+
+def test_warnings_and_redundancy_are_told_by_run_and_kept_for_show(trsim, answer, scenario):
+    scenario.write_text(GUIDES)
+    _, _, err = trsim("run", scenario, "-o", "g.h5")
+    assert err.count("warning: bodies.b.velocity: given as [1, 0, 0]") == 1
+    assert "1 constraint row dropped (h.tilt 1)" in err and "reactions of g, h are not" in err
+    _, document = answer("run", scenario, "-o", "g.h5")
+    (ran,) = document["runs"]
+    assert len(ran["warnings"]) == 1 and ran["redundant"] == ["h.tilt 1"]
+    assert ran["not_unique"] == ["g.tilt 1", "h.tilt 1"] and ran["mobility"] == 0
+    _, shown = answer("show", "g.h5")
+    assert all(shown[key] == ran[key] for key in ("warnings", "redundant", "not_unique"))
+    _, out, _ = trsim("show", "g.h5")
+    assert "  warning   bodies.b.velocity" in out and "  redundant 1 constraint row" in out
+    assert next(line for line in out.splitlines() if "h.reaction " in line).endswith("h.tilt 1")
+    _, out, _ = trsim("check", scenario)
+    assert "given ones changed most: b by 1 m/s" in out

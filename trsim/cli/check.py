@@ -51,11 +51,13 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
 
     try:
         mechanism = assemble(scenario)
+        about, start = described(scenario, mechanism), begun(scenario, mechanism, modes)
+        about["notes"] += start.pop("doubts")
         return {
             "file": source,
             "title": scenario.title,
-            **described(scenario, mechanism),
-            **begun(scenario, mechanism, modes),
+            **about,
+            **start,
             "skipped": list(skipped(scenario, mechanism)),
         }
     except TrsimError as error:
@@ -107,6 +109,7 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
 
 def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
+    from trsim.solve.doubts import of_start
     from trsim.solve.modes import modes
     from trsim.solve.projected import projected
     from trsim.solve.scales import scales
@@ -130,6 +133,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
             ],
             "projected": asdict(projected(mechanism, at)),
         },
+        "doubts": list(of_start(scenario, mechanism, at)),
         "scales": {**found, "end": end},
         **({"modes": [asdict(mode) for mode in modes(mechanism, at)]} if shapes else {}),
     }
@@ -217,11 +221,13 @@ def start_lines(start: dict[str, Any]) -> list[str]:
     of = {k: f" ({p[k]})" if p[k] else "" for k in ("position_row", "velocity_row")}
     moved = [f"{p['shift_body']} by {p['shift']:.2g} m"] if p["shift"] else []
     moved += [f"{p['turn_body']} by {p['turn']:.2g} rad"] if p["turn"] else []
+    slipped = [f"{p['slip_body']} by {p['slip']:.2g} m/s"] if p["slip"] else []
+    slipped += [f"{p['spin_body']} by {p['spin']:.2g} rad/s"] if p["spin"] else []
     return [
         f"  start       positions open by {p['position_before']:.1e} as drawn{of['position_row']}, "
         f"{p['position_after']:.1e} at the start; moved most: {words(moved)}",
         f"              velocities off by {p['velocity_before']:.1e} as given{of['velocity_row']}, "
-        f"{p['velocity_after']:.1e} at the start",
+        f"{p['velocity_after']:.1e} at the start; given ones changed most: {words(slipped)}",
         f"              {start['force_residual']:.1e} N out of balance, "
         f"in touch: {words(start['closed_contacts'])}",
     ]
