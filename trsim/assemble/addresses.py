@@ -186,7 +186,8 @@ class Addresses:
         raw = self.scenario.resolved
         for key in path:
             raw = raw.get(key) if isinstance(raw, dict) else None
-        written = quantity(raw) if isinstance(raw, str) else None
+        names = {"t", *self.scenario.parameters}  # of an expression: 1/t is none per tonne
+        written = quantity(raw, names) if isinstance(raw, str) else None
         wanted = angle if kind == "angle" else stroke
         if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
             return

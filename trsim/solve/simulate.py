@@ -13,6 +13,7 @@ from trsim.elements.scene import Scene, carried, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
+from trsim.solve.blame import told
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
 from trsim.solve.locked import locked
@@ -143,15 +144,16 @@ def compiled(
         if r.count[rec.STEPS] >= limit:
             reason = NO_STEPS_LEFT
             break
-    status, text = ended or ending(reason, limit, setting, mechanism, work, r)
+    status, text = ended or ending(reason, limit, setting, scenario, mechanism, work, r)
     fired = {e.name: int(n) for e, n in zip(switches.events, r.watch[:, rec.TIMES], strict=True)}
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun, fired)  # fmt: skip
 
 
 def ending(
-    reason: int, limit: int, setting: Array, mechanism: Mechanism, work: Scene, r: Record
-) -> tuple[Ended, str]:
+    reason: int, limit: int, setting: Array, scenario: Any, mechanism: Mechanism, work: Scene,
+    r: Record,
+) -> tuple[Ended, str]:  # fmt: skip
     """Status and reason of a run that no event ended."""
     if reason == rec.DONE:
         return "done", ""
@@ -162,5 +164,5 @@ def ending(
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     if reason != NO_STEPS_LEFT:
         at = mechanism.stages.mechanism(mechanism, r.stage)
-        text = locked(at, float(r.clock[rec.T]), r.y) or text
+        text = told(scenario, at, r) or locked(at, float(r.clock[rec.T]), r.y) or text
     return "failed", text
