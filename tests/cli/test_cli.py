@@ -287,3 +287,36 @@ def test_warnings_and_redundancy_are_told_by_run_and_kept_for_show(trsim, answer
     assert next(line for line in out.splitlines() if "h.reaction " in line).endswith("h.tilt 1")
     _, out, _ = trsim("check", scenario)
     assert "given ones changed most: b by 1 m/s" in out
+
+
+@pytest.mark.parametrize(
+    "old, new, path",
+    [
+        ("when: B.eccentricity_x_rate", "when: nope", "poincare.journal.when"),
+        ("when: B.eccentricity_x_rate", "when: crank.position", "poincare.journal.when"),
+        ("every: 0.01 ms", "every: 1e-30", "output.every"),
+        (
+            "method: dop853",
+            "method: rk4, step: 1e-6, force: true}\noutput: {every: 1e-12",
+            "output",
+        ),
+        ("method: dop853", "method: rk4, step: 0.05 ms", "solver.step"),
+    ],
+)
+def test_check_refuses_what_run_refuses(old, new, path, answer, scenario):
+    text = small.SLIDER_CRANK.replace(old, new)
+    if "every: 1e-12" in new:
+        text = text.replace("every: 1e-12, end: 3 ms, tolerance: 1e-6}", "every: 1e-12}")
+        text = text.replace("force: true}", "force: true, end: 3 ms}")
+        text = text.replace("output: {every: 0.01 ms}\n", "")
+    scenario.write_text(text)
+    (of_run, of_check) = (answer(word, scenario) for word in ("run", "check"))
+    assert of_run[0] == of_check[0] == 3
+    assert of_run[1]["errors"] == of_check[1]["errors"]
+    assert of_check[1]["errors"][0]["path"].startswith(path)
+
+
+def test_check_lets_a_forced_step_pass(answer, scenario):
+    forced = "method: rk4, step: 0.05 ms, force: true"
+    scenario.write_text(small.SLIDER_CRANK.replace("method: dop853", forced))
+    assert answer("check", scenario)[0] == 0

@@ -51,6 +51,7 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
 
     try:
         mechanism = assemble(scenario)
+        check_output(scenario, mechanism)
         about, start = described(scenario, mechanism), begun(scenario, mechanism, modes)
         about["notes"] += start.pop("doubts")
         return {
@@ -62,6 +63,18 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
         }
     except TrsimError as error:
         raise placed(error, scenario) from None
+
+
+def check_output(scenario: Any, mechanism: Any) -> None:
+    """Refuse what a run refuses before it begins: rows without number, points without channels."""
+    from trsim.solve.outcome import settings
+
+    if scenario.solver.end is not None:
+        settings(scenario, mechanism, scenario.solver.method != "rk4")
+    if scenario.poincare or scenario.phase_portraits:
+        from trsim.store.points import plan
+
+        plan(scenario, mechanism)
 
 
 def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
@@ -109,10 +122,11 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
 
 def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
-    from trsim.solve.doubts import of_start
+    from trsim.solve import doubts
     from trsim.solve.modes import modes
     from trsim.solve.projected import projected
     from trsim.solve.scales import scales
+    from trsim.solve.simulate import check_step
     from trsim.solve.start import start
 
     end = scenario.solver.end
@@ -120,7 +134,9 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
         solver = scenario.solver.model_copy(update={"end": 1.0})
         scenario = scenario.model_copy(update={"solver": solver})
     at = start(scenario, mechanism, located=True)
-    found = asdict(scales(scenario, mechanism, at))
+    of_start = scales(scenario, mechanism, at)
+    check_step(scenario, of_start)
+    found = asdict(of_start)
     found["eigenvalues"] = [[x.real, x.imag] for x in found["eigenvalues"]]
     return {
         "start": {
@@ -133,7 +149,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
             ],
             "projected": asdict(projected(mechanism, at)),
         },
-        "doubts": list(of_start(scenario, mechanism, at)),
+        "doubts": list(doubts.of_start(scenario, mechanism, at)),
         "scales": {**found, "end": end},
         **({"modes": [asdict(mode) for mode in modes(mechanism, at)]} if shapes else {}),
     }

@@ -30,7 +30,7 @@ from trsim.solve.outcome import (
     statistics,
 )
 from trsim.solve.record import Record, fresh_buffers
-from trsim.solve.start import Start, start
+from trsim.solve.start import start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -78,15 +78,13 @@ def simulate(
     return compiled(scenario, mechanism, used, checkpoint)
 
 
-def check_step(scenario: Any, mechanism: Mechanism, begun: Start) -> None:
-    """Refuse a fixed step that is not stable.
+def check_step(scenario: Any, found: Any) -> None:
+    """Refuse a fixed step that is not stable at the Scales of the start, unless it is forced.
 
     Raises ScenarioError with the bound and what sets it.
     """
-    from trsim.solve.scales import scales
-
-    found, step = scales(scenario, mechanism, begun), scenario.solver.step
-    if step > found.explicit_step:
+    step = scenario.solver.step
+    if scenario.solver.method == "rk4" and not scenario.solver.force and step > found.explicit_step:
         raise ScenarioError(
             f"a step of {step:g} s is not stable: rk4 needs at most {found.explicit_step:.3g} s, "
             f"for {found.fastest_is} ({found.fastest:.3g}/s)",
@@ -107,7 +105,9 @@ def compiled(
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
-        check_step(scenario, mechanism, begun)
+        from trsim.solve.scales import scales
+
+        check_step(scenario, scales(scenario, mechanism, begun))
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
     implicit = any(method.IMPLICIT for method in used)
     switches = mechanism.stages.switches
