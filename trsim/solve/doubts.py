@@ -109,7 +109,8 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     if given > GIVEN and work > NOTHING * natural and outcome.status == "done":
         yield (
             f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
-            "largest energy exchanged; does a drive jump?  Else `tolerance` or the step is too coarse"
+            "largest energy exchanged; does a drive jump?  Else `tolerance` or the step is too "
+            "coarse"
         )
     apart = numbers.get("joints_open_relative", 0.0)
     if apart > OPEN:
