@@ -71,6 +71,8 @@ CASES = [
     # 300 kg / (0.2 m)^3, and 1e-8 kg / (0.2 m (0.002 m)^2)
     (("mass: 1, inertia: 0.01", "mass: 300, inertia: 0.01"), "bodies.crank: 300 kg", "3.7e+04"),
     (("mass: 1, inertia: 0.01", "mass: 1e-8, inertia: 1e-10"), "bodies.crank: 1e-08", "1.2e-02"),
+    (("solver: {end: 1 s}", "solver: {end: 1 s}\noutput: {every: 0.3}"), "output.every", "0.9 s"),
+    (("solver: {end: 1 s}", "solver: {end: 12 ms}\noutput: {every: 1}"), "output.every", "at 0 s"),
     # from the implicit relation: see damping_factor
     (("restitution: 0.9", "restitution: 0.5"), "contact_laws.pin: lankarani", "0.725"),
     (("v0: 1e-4, v1: 1e-3", "v0: 0, v1: 1e-6"), "contact_laws.pin.friction", "1.0e-06"),
@@ -101,7 +103,20 @@ def test_warning(change, start, number):
         ("mass: 1, inertia: 0.01", "mass: 60, inertia: 0.6"),  # a solid steel cube
         ("solver: {", f"{RK4}1e-7, "),
         ("contact: pin, ", ""),
+        ("solver: {end: 1 s}", "solver: {end: 0.9}\noutput: {every: 0.1}"),
+        ("solver: {end: 1 s}", "solver: {end: 1 s}\noutput: {every: 1 ms}"),
     ],
 )
 def test_no_warning(change):
     assert found(change) == ()
+
+
+def test_nothing_is_joined_to_the_ground():
+    text = SCENARIO.replace("[ground, crank], at", "[rod, crank], at")
+    drifting = loads(text.replace("[ground, rod]", "[crank, rod]"))
+    (found,) = [message for message in lint(drifting) if "ground" in message]
+    assert found.startswith("joints: nothing is joined to `ground`")
+    spring = "{type: spring_damper, bodies: [ground, rod], points: [[0, 0], [1, 0]], stiffness: 1}"
+    held = text.replace("[ground, rod]", "[crank, rod]")
+    held = held.replace("forces:", f"forces:\n  spring: {spring}")
+    assert not any("ground" in message for message in lint(loads(held)))

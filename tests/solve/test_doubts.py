@@ -105,3 +105,8 @@ def test_an_open_energy_book_is_told():
     open_ = {**r.outcome.statistics, "energy_residual_relative": 0.02}
     (found,) = doubts(r.scenario, r.mechanism, r.outcome._replace(statistics=open_))
     assert "does not close, by 2 %" in found
+
+
+def test_sections_that_a_run_does_not_read_are_told():
+    (found,) = told(SOFT + "sweep: {bodies.rod.mass: [1, 2]}")
+    assert found.startswith("`sweep`: one run takes the scenario as it stands")

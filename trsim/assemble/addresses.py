@@ -223,6 +223,10 @@ class Addresses:
             self.notes.append(f"{'.'.join(path)}: {what}; more points at the corner keep it in")
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
+        if time_only and name not in self.scenario.sensors:
+            raise ScenarioError(
+                f"no parameter named '{name}'", known(name, [*self.scenario.parameters, "t"]), path
+            )
         if time_only:
             raise ScenarioError(
                 f"'{name}' cannot stand here: a drive depends on t only",

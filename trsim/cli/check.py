@@ -271,9 +271,10 @@ def contact_line(contact: dict[str, Any]) -> str:
     """One contact: how it vibrates, how it rebounds, how its friction grows."""
     if contact["half_period"] == float("inf"):
         return f"{contact['name']}: joints and drives fix it, it cannot vibrate"
+    moves = "kg" if contact["unit"] == "N" else "kg*m^2"
     text = (
         f"{contact['name']}: half a period {contact['half_period']:.1e} s pressed by "
-        f"{contact['force']:.2g} ({contact['mass']:.2g} kg move), "
+        f"{contact['force']:.2g} {contact['unit']} ({contact['mass']:.2g} {moves} move), "
         f"{contact['impact_time']:.1e} s at the slowest impact"
     )
     rate = contact["friction_rate"]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
+from trsim.solve.skipped import unread
 from trsim.solve.start import Start
 from trsim.solve.velocities import world_velocities
 
@@ -33,6 +34,7 @@ OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, ...]:
     """Sentences "section.name: what; what to do"."""
     return (
+        *unread(scenario),
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_books(mechanism, outcome),

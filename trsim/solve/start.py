@@ -68,11 +68,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     moved = float(np.max(np.abs(phi), initial=0.0))
     y, left = closest(model, 0.0, follow(mechanism, y))
     if left > 1e-9 * model.size:
-        worst = int(np.argmax(np.abs(jacobian(model, 0.0, y)[0])))
-        raise ModelError(
-            f"the joints cannot be closed: {mechanism.rows[worst]} stays open by {left:.3g}",
-            "check the points of the joints and the drives' positions at t = 0",
-        )
+        raise not_closed(scenario, mechanism, np.abs(jacobian(model, 0.0, y)[0]))
     check_values(mechanism, initial, y)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
@@ -80,6 +76,18 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     length, speed, depth = units(model, y, mem, scenario)
     remember(mechanism.model, y)
     return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, depth)
+
+
+def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
+    """What stays open: the joint that is out of reach, and the drive that asks for it."""
+    largest = float(phi.max())
+    rows = [mechanism.rows[k] for k in np.argsort(-phi) if phi[k] > 0.1 * largest]
+    joints = [row.split(".")[0] for row in rows if row.split(".")[0] in scenario.joints]
+    return ModelError(
+        f"the joints cannot be closed: {', '.join(rows)} stay open by up to {largest:.3g}",
+        "check the points of the joints and the drives' positions at t = 0",
+        ("joints", joints[0]) if joints else (),
+    )
 
 
 def check_names(scenario: Any, initial: Any) -> None:

@@ -142,7 +142,9 @@ class _Files:
             found = [p.name for p in real.parent.iterdir() if p.suffix in suffixes][:200]
         except (OSError, RuntimeError):
             found = []
-        raise ScenarioError(f"there is no file {described(name)}", known(name, sorted(found)))
+        hint = f"There is no {suffixes[0]} file in that folder."
+        hint = known(name, sorted(found)) if found else hint
+        raise ScenarioError(f"there is no file {described(name)}", hint)
 
     def inline_tables(self, tree: Tree, data: Any, folder: Path | None, path: tuple) -> None:
         """Replace each `table: file.csv` by its rows."""
@@ -177,6 +179,7 @@ def rows(content: bytes, file: str) -> list[list[float]]:
     for k, line in enumerate(lines):
         if not line.strip() or line.startswith("#"):
             continue
+        cells: list[str] = []
         try:
             cells = next(csv.reader([line], strict=True))
             x, y = map(float, cells)
@@ -185,11 +188,28 @@ def rows(content: bytes, file: str) -> list[list[float]]:
         except (ValueError, csv.Error):
             if not table and not re.match(r"\s*[\d.+-]", line):
                 continue  # titles
-            what = f"row {k + 1} of {file} is not two numbers"
-            place = Place(file, k + 1, 1, line)
-            raise ScenarioError(what, "Columns are separated by commas.", place=place) from None
+            raise _no_row(file, k + 1, line, cells) from None
         table.append([x, y])
     return table
+
+
+def _no_row(file: str, number: int, line: str, cells: list[str]) -> ScenarioError:
+    """What is wrong with a line of a CSV file, and in which column."""
+    what, hint = f"row {number} of {file} is not two numbers", "Columns are separated by commas."
+    column = next((k for k, cell in enumerate(cells) if not _is_number(cell)), 0)
+    if len(cells) == 2:
+        what = f"row {number} of {file}: {described(cells[column].strip())} in column {column + 1}"
+        what, hint = f"{what} is not a finite number", "Write each number in full, or drop the row."
+    elif cells:
+        what += f", but {len(cells)} column{'s' * (len(cells) > 1)}"
+    return ScenarioError(what, hint, place=Place(file, number, 1, line))
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return abs(float(cell)) < 1e300
+    except ValueError:
+        return False
 
 
 # --- merging ---------------------------------------------------------------------------------
@@ -241,6 +261,9 @@ def override(tree: Tree, text: str) -> None:
     if not equals or not all(keys):
         raise UsageError(f"--set {described(text)}: write --set section.name.key=value")
     key_place = Place("--set", 0, 1, text)
+    if keys[0] == "extends":
+        what = "--set changes values once all files are merged; `extends` was read before"
+        raise UsageError(what, "Write it in a small file that extends both.")
     at = Place("--set", 0, len(dotted) + 2, text)
     try:
         new = read(value, "--set", mapping=False).data

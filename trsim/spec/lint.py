@@ -5,7 +5,7 @@ wide, so that a scenario somebody thought about is silent.
 """
 
 from collections.abc import Iterator
-from math import dist, inf, pi, sqrt
+from math import ceil, dist, inf, pi, sqrt
 from typing import Any
 
 from trsim.elements.clearance_joint import normal_numbers
@@ -30,7 +30,7 @@ def lint(scenario: Any) -> tuple[str, ...]:
     """What looks wrong in a validated scenario: "section.name: what; what to do"."""
     checks = (
         *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
-        *(_conformity, _restitutions, _speeds, _stops, _fixed_step),
+        *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ground, _rows),
     )
     return tuple(message for check in checks for message in check(scenario))
 
@@ -234,4 +234,32 @@ def _unresolved(where: str, h: float, period: float) -> Iterator[str]:
         yield (
             f"{where}: a contact lasts {period:.1e} s at most, {period / h:.3g} steps of rk4; take "
             f"a step of {period / STEPS:.1e} s or less, or `method: auto`"
+        )
+
+
+# --- the whole -------------------------------------------------------------------------------
+
+
+def _ground(scenario: Any) -> Iterator[str]:
+    """Joints, and none of them to the ground."""
+    forces = scenario.forces.values()
+    pairs = [x.bodies for x in (*scenario.joints.values(), *forces) if getattr(x, "bodies", None)]
+    stops = [(f.point.body, f.wall.body) for f in forces if getattr(f, "wall", None) is not None]
+    if scenario.joints and "ground" not in {body for pair in (*pairs, *stops) for body in pair}:
+        yield (
+            "joints: nothing is joined to `ground`, so the mechanism drifts as a whole; name "
+            "`ground` as one of the `bodies` of a joint if that is not meant"
+        )
+
+
+def _rows(scenario: Any) -> Iterator[str]:
+    """Rows that end before the run does."""
+    end, every = scenario.solver.end, scenario.output.every
+    if not end or not every:
+        return
+    last = every * int(end / every * (1.0 + ROUNDED * 1e-6))
+    if last < end * (1.0 - ROUNDED * 1e-6):
+        yield (
+            f"output.every: rows are {every:g} s apart, the last is at {last:g} s, the run ends at "
+            f"{end:g} s; a part of `end` has a row there (`every: {end / ceil(end / every):.6g}`)"
         )

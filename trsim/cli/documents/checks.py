@@ -90,6 +90,7 @@ class ContactScale(TypedDict):
     half_period    of its vibration, s; null where nothing can move
     impact_time    from touch to separation at the slowest impact, s; null where nothing can move
     friction_rate  1/s, of the ramp of modified Coulomb friction; 0 without one
+    unit           of the force, N or N*m
     """
 
     name: str
@@ -101,6 +102,7 @@ class ContactScale(TypedDict):
     half_period: Number
     impact_time: Number
     friction_rate: Number
+    unit: str
 
 
 class Scales(TypedDict):
