@@ -2,7 +2,7 @@
 
 The grammar is a small part of YAML 1.2: mappings, lists and scalars of the core schema.  Tags,
 anchors, aliases, duplicate keys and further documents are refused, so nothing in a file can run
-or grow.  `no`, `on`, dates, 1:30 and 010 are text (010 is no number either, units.py); keys always are.
+or grow.  `no`, `on`, dates, 1:30 and 010 are text, and 010 is no number either; keys always are.
 """
 
 import math
