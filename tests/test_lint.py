@@ -60,6 +60,19 @@ CASES = [
     (("stiffness: internal", "stiffness: paper"), "joints.B: stiffness `paper`", "8.1 times"),
     (("clearance: 0.3 mm", "clearance: 3 mm"), "joints.B: the clearance, 3 mm", "30%"),
     (("clearance: 0.3 mm", "clearance: 0.005 mm"), "joints.B: clearance over radius", "5.0e-04"),
+    # 207 / 1e9, and beyond diamond
+    (("207 GPa", "207"), "contact_laws.pin.youngs_modulus: 207 Pa", "`207 GPa`"),
+    (("207 GPa", "207e9 GPa"), "contact_laws.pin.youngs_modulus: 2.07e+20 Pa", "`2.07e+11 Pa`"),
+    (("207 GPa", "3e12"), "contact_laws.pin.youngs_modulus: 3e+12 Pa", "check the unit"),
+    (("207 GPa,", "207 GPa, journal_youngs_modulus: 3,"), "contact_laws.pin.journal_y", "`3 GPa`"),
+    # 1.5 0.91 1e3 / sqrt(0.01 0.0097 / 0.0003) = 2400 Pa
+    (("stiffness: internal", "stiffness: 1e3"), "joints.B: a stiffness of 1e+03", "2.4e+03 Pa"),
+    (("coefficient: 0.3", "coefficient: 1e10"), "contact_laws.pin.friction.coeff", "1e+10"),
+    # 300 kg / (0.2 m)^3, and 1e-8 kg / (0.2 m (0.002 m)^2)
+    (("mass: 1, inertia: 0.01", "mass: 300, inertia: 0.01"), "bodies.crank: 300 kg", "3.7e+04"),
+    (("mass: 1, inertia: 0.01", "mass: 1e-8, inertia: 1e-10"), "bodies.crank: 1e-08", "1.2e-02"),
+    (("solver: {end: 1 s}", "solver: {end: 1 s}\noutput: {every: 0.3}"), "output.every", "0.9 s"),
+    (("solver: {end: 1 s}", "solver: {end: 12 ms}\noutput: {every: 1}"), "output.every", "at 0 s"),
     # from the implicit relation: see damping_factor
     (("restitution: 0.9", "restitution: 0.5"), "contact_laws.pin: lankarani", "0.725"),
     (("v0: 1e-4, v1: 1e-3", "v0: 0, v1: 1e-6"), "contact_laws.pin.friction", "1.0e-06"),
@@ -84,8 +97,14 @@ def test_warning(change, start, number):
     [
         ("[0.001, 0.02, 0.02]", "[0.001, 0.02, 0.02101]"),  # rounded
         ("normal: lankarani_nikravesh", "normal: identified"),
+        ("207 GPa", "2 MPa"),
+        ("stiffness: internal", "stiffness: 1e10"),
+        ("coefficient: 0.3", "coefficient: 1.5"),
+        ("mass: 1, inertia: 0.01", "mass: 60, inertia: 0.6"),  # a solid steel cube
         ("solver: {", f"{RK4}1e-7, "),
         ("contact: pin, ", ""),
+        ("solver: {end: 1 s}", "solver: {end: 0.9}\noutput: {every: 0.1}"),
+        ("solver: {end: 1 s}", "solver: {end: 1 s}\noutput: {every: 1 ms}"),
     ],
 )
 def test_no_warning(change):
@@ -97,3 +116,14 @@ def test_a_step_that_counts_for_nothing(method):
     [told] = found(("solver: {", f"solver: {{method: {method}, step: 1e-5, "))
     assert told.startswith(f"solver.step: 1e-05 s has no influence: {method} chooses its steps")
     assert found(("solver: {", f"solver: {{method: {method}, max_step: 1e-5, ")) == ()
+
+
+def test_nothing_is_joined_to_the_ground():
+    text = SCENARIO.replace("[ground, crank], at", "[rod, crank], at")
+    drifting = loads(text.replace("[ground, rod]", "[crank, rod]"))
+    (found,) = [message for message in lint(drifting) if "ground" in message]
+    assert found.startswith("joints: nothing is joined to `ground`")
+    spring = "{type: spring_damper, bodies: [ground, rod], points: [[0, 0], [1, 0]], stiffness: 1}"
+    held = text.replace("[ground, rod]", "[crank, rod]")
+    held = held.replace("forces:", f"forces:\n  spring: {spring}")
+    assert not any("ground" in message for message in lint(loads(held)))

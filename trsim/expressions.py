@@ -29,6 +29,8 @@ DEEPEST = 40  # nested operations
 
 _CHARACTERS = re.compile(r"[A-Za-z0-9_.,()+\-*/<>=!\s]*")
 
+_WITH_UNIT = re.compile(r"(?<![\w.])[0-9.]+(?:[eE][+-]?[0-9]+)? +[A-Za-z][\w*/]*")
+
 
 def _clipped(s: float) -> float:
     return min(max(s, 0.0), 1.0)
@@ -125,7 +127,14 @@ def parse(text: str) -> Node:
             tree = ast.parse(" ".join(text.split()), mode="eval")
     except SyntaxError as error:
         reason = (error.msg or "").split(". Perhaps")[0]
-        hint = "A decimal point is '.'" if re.search(r"[0-9],[0-9]", text) else ALLOWED
+        hint = ALLOWED
+        if re.search(r"[0-9],[0-9]", text):
+            hint = "A decimal point is '.'"
+        elif found := _WITH_UNIT.search(text):
+            hint = (
+                f"A unit cannot stand inside an expression: write {found[0]!r} in SI, or as a "
+                f"parameter, `parameters: {{x: {found[0]}}}`, and x here."
+            )
         raise ScenarioError(f"not an expression: {described(text)} ({reason})", hint) from None
     except (ValueError, MemoryError, RecursionError):
         raise ScenarioError("expression nested too deeply", ALLOWED) from None

@@ -163,6 +163,9 @@ def quantity(text: str, names: Any = ()) -> tuple[float, str] | None:
     if not match or len(text) > 200:
         return None
     number, rest = match[1], match[2].strip()
+    if re.match(r"[+-]?0[0-9]", number):
+        what = f"a number does not begin with 0: {described(text)}"
+        raise ScenarioError(what, "YAML once read 010 as 8, others read 10: drop the zero.")
     if rest.startswith("/"):
         words = re.findall(r"[A-Za-z_]\w*", rest)
         if any(word in names or word not in {**BASE, **DERIVED} for word in words) or not words:

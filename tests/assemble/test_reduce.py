@@ -159,3 +159,32 @@ def test_planar_true_is_refused_out_of_the_plane():
     with pytest.raises(ModelError) as caught:
         built(DOOR.replace("planar: false", "planar: true"))
     assert caught.value.path == ("planar",)
+
+
+PARALLELOGRAM = """
+parameters: {{x: {length}*cos({angle}), y: {length}*sin({angle})}}
+bodies:
+  c1: {{mass: 1, inertia: 0.1, at: [x/2, y/2]}}
+  c2: {{mass: 1, inertia: 0.1, at: [1 + x/2, y/2]}}
+  c3: {{mass: 1, inertia: 0.1, at: [2 + x/2, y/2]}}
+  bar: {{mass: 1, inertia: 0.1, at: [1 + x, y]}}
+joints:
+  a1: {{type: revolute, bodies: [ground, c1], at: [0, 0]}}
+  a2: {{type: revolute, bodies: [ground, c2], at: [1, 0]}}
+  a3: {{type: revolute, bodies: [ground, c3], at: [2 + {off}, 0]}}
+  b1: {{type: revolute, bodies: [c1, bar], at: [x, y]}}
+  b2: {{type: revolute, bodies: [c2, bar], at: [1 + x, y]}}
+  b3: {{type: revolute, bodies: [c3, bar], at: [2 + x, y]}}
+drives: {{{drive}}}
+"""
+
+
+@pytest.mark.parametrize("drive", ["", "motor: {joint: a1, velocity: 1}"])
+@pytest.mark.parametrize("off", [0.0, 1e-10, 1e-9])
+@pytest.mark.parametrize(("length", "angle"), [(1, 0.3), (1, 0.785), (0.2, 0.3), (0.02, 1.2)])
+def test_a_parallelogram_of_three_cranks_moves(length, angle, off, drive):
+    """One row too many; the rest of the positions judged are on the same branch."""
+    text = PARALLELOGRAM.format(length=length, angle=angle, off=f"{off * length:.1e}", drive=drive)
+    m = built(text)
+    assert (m.mobility, m.mobility_by_count) == ((0, -1) if drive else (1, 0))
+    assert len(m.redundant) == 1 and not m.singular

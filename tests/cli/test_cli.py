@@ -204,6 +204,7 @@ def test_check(scenario, trsim, answer):
     code, out, _ = trsim("check", "crank.yaml")
     assert code == 0
     assert "mobility    2 by rank, 2 by count: 9 unknowns, 7 constraint rows" in out
+    scenario.write_text(small.SLIDER_CRANK.split("poincare:")[0])  # an ideal pin has no orbit
     code, document = answer("check", "crank.yaml", "--set", "joints.B.clearance=0")
     assert code == 0
     [found] = document["scenarios"]
@@ -260,3 +261,63 @@ def test_killed_run_leaves_a_readable_part(scenario):
     for name in result.names:
         assert np.all(np.isfinite(result.channel(name)))
     assert not (scenario.parent / "runs/crank.h5").exists()
+
+
+GUIDES = """
+bodies: {b: {mass: 1, inertia: 1, velocity: [1, 0]}}
+joints:
+  g: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}
+  h: {type: prismatic, bodies: [ground, b], axis: [1, 0.001, 0]}
+solver: {end: 1 ms}
+"""
+
+
+def test_warnings_and_redundancy_are_told_by_run_and_kept_for_show(trsim, answer, scenario):
+    scenario.write_text(GUIDES)
+    _, _, err = trsim("run", scenario, "-o", "g.h5")
+    assert err.count("warning: bodies.b.velocity: given as [1, 0, 0]") == 1
+    assert "1 constraint row dropped (h.tilt 1)" in err and "reactions of g, h are not" in err
+    _, document = answer("run", scenario, "-o", "g.h5")
+    (ran,) = document["runs"]
+    assert len(ran["warnings"]) == 1 and ran["redundant"] == ["h.tilt 1"]
+    assert ran["not_unique"] == ["g.tilt 1", "h.tilt 1"] and ran["mobility"] == 0
+    _, shown = answer("show", "g.h5")
+    assert all(shown[key] == ran[key] for key in ("warnings", "redundant", "not_unique"))
+    _, out, _ = trsim("show", "g.h5")
+    assert "  warning   bodies.b.velocity" in out and "  redundant 1 constraint row" in out
+    assert next(line for line in out.splitlines() if "h.reaction " in line).endswith("h.tilt 1")
+    _, out, _ = trsim("check", scenario)
+    assert "given ones changed most: b by 1 m/s" in out
+
+
+@pytest.mark.parametrize(
+    "old, new, path",
+    [
+        ("when: B.eccentricity_x_rate", "when: nope", "poincare.journal.when"),
+        ("when: B.eccentricity_x_rate", "when: crank.position", "poincare.journal.when"),
+        ("every: 0.01 ms", "every: 1e-30", "output.every"),
+        (
+            "method: dop853",
+            "method: rk4, step: 1e-6, force: true}\noutput: {every: 1e-12",
+            "output",
+        ),
+        ("method: dop853", "method: rk4, step: 0.05 ms", "solver.step"),
+    ],
+)
+def test_check_refuses_what_run_refuses(old, new, path, answer, scenario):
+    text = small.SLIDER_CRANK.replace(old, new)
+    if "every: 1e-12" in new:
+        text = text.replace("every: 1e-12, end: 3 ms, tolerance: 1e-6}", "every: 1e-12}")
+        text = text.replace("force: true}", "force: true, end: 3 ms}")
+        text = text.replace("output: {every: 0.01 ms}\n", "")
+    scenario.write_text(text)
+    (of_run, of_check) = (answer(word, scenario) for word in ("run", "check"))
+    assert of_run[0] == of_check[0] == 3
+    assert of_run[1]["errors"] == of_check[1]["errors"]
+    assert of_check[1]["errors"][0]["path"].startswith(path)
+
+
+def test_check_lets_a_forced_step_pass(answer, scenario):
+    forced = "method: rk4, step: 0.05 ms, force: true"
+    scenario.write_text(small.SLIDER_CRANK.replace("method: dop853", forced))
+    assert answer("check", scenario)[0] == 0

@@ -44,9 +44,22 @@ def test_a_force_that_is_no_number_at_the_start_is_refused():
     assert caught.value.exit_code == 4
 
 
-def test_reason_says_that_a_value_is_not_finite():
-    r = run(PUSHED.format(LAWS["log"], METHODS["dop853"]), fails=True)
-    assert "not finite" in r.outcome.reason
+@pytest.mark.parametrize("method", [*METHODS.values(), "method: radau", "method: 'scipy:RK45'"])
+@pytest.mark.parametrize(("law", "name"), [("log", "forces.f"), ("table", "forces.f"),
+                                           ("drive", "drives.d")])  # fmt: skip
+def test_reason_names_what_is_not_finite(law, name, method):
+    r = run(PUSHED.format(LAWS[law], method), fails=True)
+    assert r.outcome.reason.startswith(f"{name} (<text>:5:") and "not a finite" in r.outcome.reason
+
+
+@pytest.mark.parametrize("motion", ["velocity: log(t)", "velocity: sqrt(-1 - t)", "position: 1/t",
+                                    "velocity: sqrt(t)", "position: log(t)"])  # fmt: skip
+@pytest.mark.parametrize("more", ["", ", compliance: {stiffness: 1e3}"])
+def test_a_drive_that_is_no_number_at_the_start_is_refused(motion, more):
+    if motion == "velocity: sqrt(t)" and more:
+        return  # a compliant drive does not ask for the acceleration
+    with pytest.raises(ModelError, match=r"drives\.d: its motion or acceleration is not a finite"):
+        run(PUSHED.format(f"drives: {{d: {{joint: hinge, {motion}{more}}}}}", METHODS["dop853"]))
 
 
 @pytest.mark.parametrize("law", ["1/(0.1 - t)**2", "10*exp(1e4*t)"])

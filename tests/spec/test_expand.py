@@ -222,21 +222,21 @@ def test_table_beside_the_file_that_names_it(here):
 
 
 @pytest.mark.parametrize(
-    "text, row",
+    "text, row, what",
     [
-        ("0, 1\n1, x\n", 2),
-        ("0, 1\n1\n", 2),
-        ("0, 1\n1, 2, 3\n", 2),
-        ("0; 1\n", 1),
-        ("0, nan\n", 1),
-        ("0, 1\n1, inf\n", 2),
-        ('0, 1\n"1, 2\n', 2),
+        ("0, 1\n1, x\n", 2, ": 'x' in column 2 is not a finite number"),
+        ("0, 1\n1\n", 2, " is not two numbers, but 1 column"),
+        ("0, 1\n1, 2, 3\n", 2, " is not two numbers, but 3 columns"),
+        ("0; 1\n", 1, " is not two numbers, but 1 column"),
+        ("0, nan\n", 1, ": 'nan' in column 2 is not a finite number"),
+        ("0, 1\n1, inf\n", 2, ": 'inf' in column 2 is not a finite number"),
+        ('0, 1\n"1, 2\n', 2, " is not two numbers"),
     ],
 )
-def test_csv_errors_name_the_row(text, row):
+def test_csv_errors_name_the_row(text, row, what):
     with pytest.raises(ScenarioError) as caught:
         rows(text.encode(), "air.csv")
-    assert caught.value.what == f"row {row} of air.csv is not two numbers"
+    assert caught.value.what == f"row {row} of air.csv{what}"
     assert caught.value.place.line == row
 
 

@@ -186,7 +186,8 @@ class Addresses:
         raw = self.scenario.resolved
         for key in path:
             raw = raw.get(key) if isinstance(raw, dict) else None
-        written = quantity(raw) if isinstance(raw, str) else None
+        names = {"t", *self.scenario.parameters}  # of an expression: 1/t is none per tonne
+        written = quantity(raw, names) if isinstance(raw, str) else None
         wanted = angle if kind == "angle" else stroke
         if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
             return
@@ -222,6 +223,10 @@ class Addresses:
             self.notes.append(f"{'.'.join(path)}: {what}; more points at the corner keep it in")
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
+        if time_only and name not in self.scenario.sensors:
+            raise ScenarioError(
+                f"no parameter named '{name}'", known(name, [*self.scenario.parameters, "t"]), path
+            )
         if time_only:
             raise ScenarioError(
                 f"'{name}' cannot stand here: a drive depends on t only",

@@ -148,12 +148,16 @@ def pack(  # type: ignore[no-untyped-def]
     at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted})
     instances = []
     for key, section, name, spec in wanted:
+        told = len(at.notes)
         try:
             instances.append(Instance(section, name, kinds[key], kinds[key].pack(name, spec, at)))
         except ScenarioError as error:
             raise error.at(section, name) from None
         except ValueError as error:
             raise ScenarioError(str(error), path=(section, name)) from None
+        place = scenario.place((section, name))
+        line = f"{place.show()}: " if place else ""
+        at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
     at.switches = switches(scenario, at, instances) if drives is None else Switches()
     for name in coordinates:
         if at.elements["joints", name].coordinate:

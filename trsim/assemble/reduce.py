@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 IN_PLANE, OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
 DEPENDENT = 1e-8  # of a row left after the rows before it are taken out
+NEARLY = 1e-6  # the same at nearby positions, where an error of the drawing has grown
 SAMPLES = 4
 SPREAD = 0.03  # of the mechanism's size and rad: how far positions are perturbed
 
@@ -94,7 +95,7 @@ def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None =
     return y, float(np.max(np.abs(phi), initial=0.0))
 
 
-def dependent_rows(J: Array, scale: Array, order: list[int]) -> set[int]:
+def dependent_rows(J: Array, scale: Array, order: list[int], least: float = DEPENDENT) -> set[int]:
     """Rows that depend on the rows before them in `order` (modified Gram-Schmidt, twice)."""
     basis: list[Array] = []
     found = set()
@@ -109,7 +110,7 @@ def dependent_rows(J: Array, scale: Array, order: list[int]) -> set[int]:
             for b in basis:
                 row = row - (row @ b) * b
         left = np.linalg.norm(row)
-        if left < DEPENDENT:
+        if left < least:
             found.add(k)
         else:
             basis.append(row / left)
@@ -130,7 +131,10 @@ def dependences(model: Model, y: Array, columns: list[int], order: list[int],
         return []
     always = None
     for near in nearby(model, y, columns, geometric):
-        there = dependent_rows(jacobian(model, 0.0, near)[2][:, keep], scale, order)
+        J = jacobian(model, 0.0, near)[2][:, keep]
+        there = dependent_rows(J, scale, order, NEARLY)
+        if len(there) > len(here):  # no rank is lower there: these rows are nearly parallel
+            there = dependent_rows(J, scale, order)
         always = there if always is None else always & there
     if always is None:
         always = here
@@ -138,20 +142,37 @@ def dependences(model: Model, y: Array, columns: list[int], order: list[int],
 
 
 def nearby(model: Model, y: Array, columns: list[int], geometric: list[int]) -> Iterator[Array]:
-    """Consistent positions around y, perturbed in the twist components of `columns`.
+    """Consistent positions around y, SPREAD away in the twist components of `columns`.
 
-    geometric: the rows positions keep to.  At most SAMPLES; always the same ones.
+    geometric: the rows positions keep to.  At most SAMPLES; always the same ones.  They are reached
+    along motions the rows allow: from elsewhere Newton follows the nearly dependent directions of
+    redundant rows far away, to where these rows happen to be independent.  Where such a motion ends
+    at once (a dead centre, nothing moves) they are reached from anywhere.
     """
     rng = np.random.default_rng(0)
+    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns], int)
+    rows = np.array(geometric, np.int64)
+    scale = weights(model)[keep]
+    J = jacobian(model, 0.0, y)[2][rows][:, keep]
+    size = np.where(np.array(columns) < 3, model.size, 1.0)
     for _ in range(SAMPLES):
-        dx = np.zeros((model.n - 1, 6))
-        dx[:, columns] = SPREAD * rng.normal(size=(model.n - 1, len(columns)))
-        dx[:, :3] *= model.size
-        near, left = closest(
-            model, 0.0, displaced(model, y, dx.ravel()), np.array(geometric, np.int64), columns
-        )
-        if left <= 1e-9 * model.size:
-            yield near
+        way = SPREAD * (rng.normal(size=(model.n - 1, len(columns))) * size).ravel()
+        free = way - scale * np.linalg.lstsq(J * scale, J @ way, rcond=DEPENDENT)[0]
+        far = np.max(np.abs(free.reshape(-1, len(columns)) / size))
+        for step in (free * (SPREAD / max(far, 1e-3 * SPREAD)), way):
+            dx = np.zeros((model.n - 1, 6))
+            dx[:, columns] = step.reshape(-1, len(columns))
+            near, left = closest(model, 0.0, displaced(model, y, dx.ravel()), rows, columns)
+            moved = np.max(np.abs((near - y)[: model.n_q]).reshape(model.n - 1, -1) / shape(model))
+            if left <= 1e-9 * model.size and (moved > 0.1 * SPREAD or step is way):
+                yield near
+                break
+
+
+def shape(model: Model) -> Array:
+    """Units of the positions of one body: the mechanism's size, and 1 for its orientation."""
+    return np.concatenate([np.full(2 if model.d == 3 else 3, model.size),
+                           np.ones(1 if model.d == 3 else 4)])  # fmt: skip
 
 
 def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:

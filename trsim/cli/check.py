@@ -54,13 +54,27 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
         with Doing(answer, source) as doing:
             doing(f"assembling {len(scenario.bodies)} bodies")
             mechanism = assemble(scenario)
+            check_output(scenario, mechanism)
             doing("telling redundant rows and what to release")
             found |= described(scenario, mechanism)
             doing("looking for the start and its time scales")
             found |= begun(scenario, mechanism, modes)
+        found["notes"] += found.pop("doubts")
         return {**found, "skipped": list(skipped(scenario, mechanism))}
     except TrsimError as error:
         raise placed(error, scenario) from None
+
+
+def check_output(scenario: Any, mechanism: Any) -> None:
+    """Refuse what a run refuses before it begins: rows without number, points without channels."""
+    from trsim.solve.outcome import settings
+
+    if scenario.solver.end is not None:
+        settings(scenario, mechanism, scenario.solver.method != "rk4")
+    if scenario.poincare or scenario.phase_portraits:
+        from trsim.store.points import plan
+
+        plan(scenario, mechanism)
 
 
 def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
@@ -108,9 +122,11 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
 
 def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
+    from trsim.solve import doubts
     from trsim.solve.modes import modes
     from trsim.solve.projected import projected
     from trsim.solve.scales import scales
+    from trsim.solve.simulate import check_step
     from trsim.solve.start import start
 
     end = scenario.solver.end
@@ -118,7 +134,9 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
         solver = scenario.solver.model_copy(update={"end": 1.0})
         scenario = scenario.model_copy(update={"solver": solver})
     at = start(scenario, mechanism, located=True)
-    found = asdict(scales(scenario, mechanism, at))
+    of_start = scales(scenario, mechanism, at)
+    check_step(scenario, of_start)
+    found = asdict(of_start)
     found["eigenvalues"] = [[x.real, x.imag] for x in found["eigenvalues"]]
     return {
         "start": {
@@ -131,6 +149,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
             ],
             "projected": asdict(projected(mechanism, at)),
         },
+        "doubts": list(doubts.of_start(scenario, mechanism, at)),
         "scales": {**found, "end": end},
         **({"modes": [asdict(mode) for mode in modes(mechanism, at)]} if shapes else {}),
     }
@@ -218,11 +237,13 @@ def start_lines(start: dict[str, Any]) -> list[str]:
     of = {k: f" ({p[k]})" if p[k] else "" for k in ("position_row", "velocity_row")}
     moved = [f"{p['shift_body']} by {p['shift']:.2g} m"] if p["shift"] else []
     moved += [f"{p['turn_body']} by {p['turn']:.2g} rad"] if p["turn"] else []
+    slipped = [f"{p['slip_body']} by {p['slip']:.2g} m/s"] if p["slip"] else []
+    slipped += [f"{p['spin_body']} by {p['spin']:.2g} rad/s"] if p["spin"] else []
     return [
         f"  start       positions open by {p['position_before']:.1e} as drawn{of['position_row']}, "
         f"{p['position_after']:.1e} at the start; moved most: {words(moved)}",
         f"              velocities off by {p['velocity_before']:.1e} as given{of['velocity_row']}, "
-        f"{p['velocity_after']:.1e} at the start",
+        f"{p['velocity_after']:.1e} at the start; given ones changed most: {words(slipped)}",
         f"              {start['force_residual']:.1e} N out of balance, "
         f"in touch: {words(start['closed_contacts'])}",
     ]
@@ -250,9 +271,10 @@ def contact_line(contact: dict[str, Any]) -> str:
     """One contact: how it vibrates, how it rebounds, how its friction grows."""
     if contact["half_period"] == float("inf"):
         return f"{contact['name']}: joints and drives fix it, it cannot vibrate"
+    moves = "kg" if contact["unit"] == "N" else "kg*m^2"
     text = (
         f"{contact['name']}: half a period {contact['half_period']:.1e} s pressed by "
-        f"{contact['force']:.2g} ({contact['mass']:.2g} kg move), "
+        f"{contact['force']:.2g} {contact['unit']} ({contact['mass']:.2g} {moves} move), "
         f"{contact['impact_time']:.1e} s at the slowest impact"
     )
     rate = contact["friction_rate"]

@@ -44,6 +44,7 @@ class Answer:
     def __init__(self, command: str | None, as_json: bool, quiet: bool = False) -> None:
         self.as_json, self.quiet = as_json, quiet
         self.exit_code = 0
+        self.warned: set[str] = set()
         self.data: dict[str, Any] = {
             "command": command,
             "exit_code": 0,
@@ -55,6 +56,13 @@ class Answer:
         """A message."""
         if not self.quiet:
             tell(text)
+
+    def warn(self, about: str, text: str) -> None:
+        """A warning; one that was said is not said again."""
+        message = f"{about}: warning: {text}"
+        if message not in self.warned:
+            self.say(message)
+        self.warned.add(message)
 
     def put(self, text: str) -> None:
         """Data, for a reader; with --json it is in the document instead."""

@@ -8,14 +8,11 @@ from typing import Any
 import click
 
 from trsim.cli.frame import NAMED, Answer, Stop, framed
+from trsim.cli.redundancy import redundancy
 from trsim.cli.resume import Seconds, found, interval
 from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
 from trsim.store.target import RESULT, replaceable
-
-LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
-GIVEN = 1e-2  # of it: more done by projection says so too
-OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 
 
 @click.command("run")
@@ -129,7 +126,7 @@ def ran(
     try:
         mechanism = assemble(scenario)
         for note in () if twin else (*mechanism.notes, *lint(scenario)):
-            answer.say(f"{source}: warning: {note}")
+            answer.warn(source, note)
         running = simulate(scenario, mechanism, kept.state if kept else None)
         blocks = watched(running, answer, source, scenario.solver.end)
         called = shlex.join(["trsim", *sys.argv[1:]])
@@ -145,26 +142,11 @@ def ran(
 
 
 def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
-    """Say what is worth knowing of a result: an open energy book, the same content as before."""
-    lost = summary["statistics"].get("energy_residual_relative", 0.0)
-    if lost > LOST:
-        answer.say(
-            f"{source}: warning: the energy book does not close, by {100 * lost:.2g} % of the "
-            "largest energy exchanged; tighten `tolerance`; does the velocity of a drive jump?"
-        )
-    given = summary["statistics"].get("work_of_projection_relative", 0.0)
-    if given > GIVEN and summary["status"] == "done":
-        answer.say(
-            f"{source}: warning: bringing the mechanism back to its joints and drives did "
-            f"{100 * given:.2g} % of the largest energy exchanged; does a drive jump?  "
-            "Else `tolerance` or the step is too coarse"
-        )
-    apart = summary["statistics"].get("joints_open_relative", 0.0)
-    if apart > OPEN:
-        answer.say(
-            f"{source}: warning: joints were open by up to {apart:.2g} of the mechanism's size; "
-            "`stabilisation: projection` closes them"
-        )
+    """Say what is worth knowing of a result: doubts, redundancy, the same content as before."""
+    for text in summary["warnings"]:
+        answer.warn(source, text)
+    if summary["redundant"]:
+        answer.say(f"{source}: {redundancy(summary)}")
     for name, times in summary["fired"].items():
         if times == 0 and summary["status"] == "done":
             answer.say(f"{source}: note: the event '{name}' never happened")

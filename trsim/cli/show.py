@@ -5,6 +5,7 @@ from typing import Any
 import click
 
 from trsim.cli.frame import Answer, framed
+from trsim.cli.redundancy import redundancy
 from trsim.errors import FileError
 
 
@@ -30,6 +31,10 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         "channels": {name: found.units[name] for name in found.names},
         "summary": found.summary,
         "solver": found.group("solver"),
+        "warnings": list(found.warnings),
+        "mobility": found.group("mechanism")["mobility"],
+        "redundant": list(found.text("mechanism/redundant")),
+        "not_unique": list(found.text("mechanism/not_unique")),
         "provenance": found.group("provenance"),
         "phase": list(found.phase),
         "poincare": {name: len(points.x) for name, points in found.poincare.items()},
@@ -94,12 +99,15 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
 
         first, *rest = of_certificate(data["certificate"])
         out += [f"  accuracy  {first}", *(f"            {text}" for text in rest)]
+    if data["redundant"]:
+        out.append(f"  redundant {redundancy(data)}")
+    out += [f"  warning   {text}" for text in data["warnings"]]
     sections = [f"{name} ({count} points)" for name, count in data["poincare"].items()]
     out.append(f"  phase     {', '.join(data['phase']) or '-'}")
     out.append(f"  poincare  {', '.join(sections) or '-'}")
     out.append("  channels")
     width = max((len(name) for name in run.names), default=0)
-    out += [f"    {name:<{width}}  {run.units[name]}" for name in run.names]
+    out += [f"    {name:<{width}}  {run.units[name]}{mark(name, data)}" for name in run.names]
     return out
 
 
@@ -119,3 +127,10 @@ def user_events(run: Any, fired: dict[str, int]) -> list[str]:
     more = [f"            and {len(told) - SHOWN} more"] if len(told) > SHOWN else []
     never = [f"  event     {name}: never" for name, times in fired.items() if not times]
     return [*told[:SHOWN], *more, *never]
+
+
+def mark(channel: str, data: dict[str, Any]) -> str:
+    """What is not to be taken at its word in a reaction."""
+    joint, _, what = channel.partition(".")
+    rows = [row for row in data["not_unique"] if row.split(".")[0] == joint]
+    return f"  not unique: {', '.join(rows)}" if rows and what.startswith("reaction") else ""

@@ -11,6 +11,7 @@ from trsim.assemble.reduce import jacobian
 from trsim.elements.scene import Model, scene
 from trsim.solve.angles import follow
 from trsim.solve.start import Start
+from trsim.solve.velocities import world_velocities
 
 Array = NDArray[np.float64]
 
@@ -29,6 +30,10 @@ class Projected:
     shift_body: str
     turn: float  # rad, largest turn of a body
     turn_body: str
+    slip: float  # m/s, largest change of a velocity that was given
+    slip_body: str
+    spin: float  # rad/s, of an angular velocity that was given
+    spin_body: str
 
 
 def projected(mechanism: Mechanism, begun: Start) -> Projected:
@@ -44,12 +49,34 @@ def projected(mechanism: Mechanism, begun: Start) -> Projected:
     ways = np.linalg.norm(X[:, :3] - X0[:, :3], axis=1)
     turns = [angle(a[3:].reshape(3, 3), b[3:].reshape(3, 3)) for a, b in zip(X, X0, strict=True)]
     names = [name for name, f in mechanism.frames.items() if f > 0]
+    slips, spins = changes(mechanism, begun)
     return Projected(
         *(largest(before), largest(after), worst(before, mechanism.rows)),
         *(largest(slip), largest(left), worst(slip, mechanism.rows)),
         *(largest(ways), worst(ways, names)),
         *(largest(np.array(turns)), worst(np.array(turns), names)),
+        *(largest(slips), worst(slips, names)),
+        *(largest(spins), worst(spins, names)),
     )
+
+
+def given_velocities(mechanism: Mechanism, begun: Start) -> Array:
+    """World-axes twists of the bodies at their places of the start, as given, (n - 1, 6)."""
+    model = mechanism.model
+    y = begun.y.copy()
+    y[model.n_q : model.n_q + model.n_v] = mechanism.y0[model.n_q : model.n_q + model.n_v]
+    return world_velocities(model, y).reshape(-1, 6)
+
+
+def changes(mechanism: Mechanism, begun: Start) -> tuple[Array, Array]:
+    """|change| of every velocity (m/s) and angular velocity (rad/s) that is not given as zero."""
+    was = given_velocities(mechanism, begun)
+    now = world_velocities(mechanism.model, begun.y).reshape(-1, 6)
+    parts = (slice(3), slice(3, 6))
+    slips, spins = (
+        np.linalg.norm(now[:, k] - was[:, k], axis=1) * np.any(was[:, k], axis=1) for k in parts
+    )
+    return slips, spins
 
 
 def rates(model: Model, y: Array) -> Array:

@@ -36,7 +36,8 @@ REAL, IMAGINARY = 2.785, 2.828  # where the stability region of rk4 ends
 SLOWEST = 1e-3  # m/s: speed of an impact where none is given
 DIRECTIONS = 8  # of the normal of a journal that touches nothing yet
 STILL = 1e-6  # of the natural rate: slower eigenvalues are zero to rounding
-IMMOVABLE = 1e-12  # of what the bodies alone would give: a contact that joints and drives fix
+ROUNDING = 2e-6  # of the fastest: a double zero comes out as the root of what rounding leaves
+IMMOVABLE = 1e-4  # of what the bodies alone would give: a contact that joints and drives fix
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class ContactScale:
     half_period: float  # s, at this stiffness; inf where it moves nothing
     impact_time: float  # s, at the slowest impact
     friction_rate: float  # 1/s, 0 without a ramp
+    unit: str  # of the force: N or N*m
 
 
 @dataclass(frozen=True)
@@ -75,16 +77,17 @@ def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
     linear = linearised(mechanism, begun)
     natural = float(begun.speed / begun.length)
     every = np.linalg.eigvals(linear.A) if linear.A.size else np.zeros(0)
-    some = sorted((x for x in every.tolist() if abs(x) > STILL * natural), key=rank)
+    least = max(STILL * natural, ROUNDING * float(np.max(np.abs(every), initial=0.0)))
+    some = sorted((x for x in every.tolist() if abs(x) > least), key=rank)
     contacts = tuple(contact_scales(mechanism, begun, linear))
-    swings = [abs(x.imag) for x in some if abs(x.imag) > STILL * natural]
+    swings = [abs(x.imag) for x in some if abs(x.imag) > least]
     limits = list(bounds(some, contacts))
     step, fastest, words = min(limits, default=(np.inf, 0.0, ""))
     return Scales(
         eigenvalues=tuple(complex(x) for x in some),
         zeros=len(every) - len(some),
-        decay=max((-x.real for x in some if -x.real > STILL * natural), default=0.0),
-        growth=max((x.real for x in some if x.real > STILL * natural), default=0.0),
+        decay=max((-x.real for x in some if -x.real > least), default=0.0),
+        growth=max((x.real for x in some if x.real > least), default=0.0),
         frequency=max(swings, default=0.0),
         natural_time=2.0 * pi / min(swings) if swings else 1.0 / natural,
         contacts=contacts,
@@ -125,6 +128,7 @@ def contact_scales(
     poses(w, begun.y)
     gaps(w, 0.0)
     closed = w.gap[:, 0] > 0.0
+    unit = {column.name: column.unit for column in mechanism.columns}
     for c, e in enumerate(mechanism.model.contact.tolist()):
         instance = mechanism.instances[e]
         K, n, alone, _, slowest = w.contact_par[c].tolist()
@@ -148,6 +152,7 @@ def contact_scales(
             half_period=pi * sqrt(mass / k) if free else np.inf,
             impact_time=hertz_contact_time(mass, K, n, v) if free else np.inf,
             friction_rate=ramp(w, e, instance.element.key) * force * sliding,
+            unit=unit.get(f"{instance.name}.normal_force", "N"),
         )
 
 

@@ -19,6 +19,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
+from trsim.solve.blame import told
 from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
 from trsim.solve.locked import locked
@@ -112,7 +113,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
-        reason = locked(mechanism, float(r.clock[rec.T]), r.y) or reason
+        here = told(scenario, mechanism, r) or locked(mechanism, float(r.clock[rec.T]), r.y)
+        reason = here or reason
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
 
 

@@ -13,6 +13,7 @@ from trsim.elements.scene import Scene, carried, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
+from trsim.solve.blame import told
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
 from trsim.solve.locked import locked
@@ -29,7 +30,7 @@ from trsim.solve.outcome import (
     statistics,
 )
 from trsim.solve.record import Record, fresh_buffers
-from trsim.solve.start import Start, start
+from trsim.solve.start import start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -77,15 +78,13 @@ def simulate(
     return compiled(scenario, mechanism, used, checkpoint)
 
 
-def check_step(scenario: Any, mechanism: Mechanism, begun: Start) -> None:
-    """Refuse a fixed step that is not stable.
+def check_step(scenario: Any, found: Any) -> None:
+    """Refuse a fixed step that is not stable at the Scales of the start, unless it is forced.
 
     Raises ScenarioError with the bound and what sets it.
     """
-    from trsim.solve.scales import scales
-
-    found, step = scales(scenario, mechanism, begun), scenario.solver.step
-    if step > found.explicit_step:
+    step = scenario.solver.step
+    if scenario.solver.method == "rk4" and not scenario.solver.force and step > found.explicit_step:
         raise ScenarioError(
             f"a step of {step:g} s is not stable: rk4 needs at most {found.explicit_step:.3g} s, "
             f"for {found.fastest_is} ({found.fastest:.3g}/s)",
@@ -106,7 +105,9 @@ def compiled(
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
-        check_step(scenario, mechanism, begun)
+        from trsim.solve.scales import scales
+
+        check_step(scenario, scales(scenario, mechanism, begun))
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
     implicit = any(method.IMPLICIT for method in used)
     switches = mechanism.stages.switches
@@ -143,15 +144,16 @@ def compiled(
         if r.count[rec.STEPS] >= limit:
             reason = NO_STEPS_LEFT
             break
-    status, text = ended or ending(reason, limit, setting, mechanism, work, r)
+    status, text = ended or ending(reason, limit, setting, scenario, mechanism, work, r)
     fired = {e.name: int(n) for e, n in zip(switches.events, r.watch[:, rec.TIMES], strict=True)}
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun, fired)  # fmt: skip
 
 
 def ending(
-    reason: int, limit: int, setting: Array, mechanism: Mechanism, work: Scene, r: Record
-) -> tuple[Ended, str]:
+    reason: int, limit: int, setting: Array, scenario: Any, mechanism: Mechanism, work: Scene,
+    r: Record,
+) -> tuple[Ended, str]:  # fmt: skip
     """Status and reason of a run that no event ended."""
     if reason == rec.DONE:
         return "done", ""
@@ -162,5 +164,5 @@ def ending(
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     if reason != NO_STEPS_LEFT:
         at = mechanism.stages.mechanism(mechanism, r.stage)
-        text = locked(at, float(r.clock[rec.T]), r.y) or text
+        text = told(scenario, at, r) or locked(at, float(r.clock[rec.T]), r.y) or text
     return "failed", text

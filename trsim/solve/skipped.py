@@ -78,6 +78,10 @@ def _channels(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
 
 
 def _keys(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    yield from unread(scenario)
+
+
+def unread(scenario: Any) -> Iterator[str]:
     """Sections that `run` reads and does not act on."""
     given = [key for key in UNREAD if getattr(scenario, key)]
     if given:

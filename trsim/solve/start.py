@@ -31,6 +31,7 @@ from trsim.elements.contract import (
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, with_scene
+from trsim.solve.blame import refuse_no_number
 from trsim.solve.statics import equilibrium
 from trsim.solve.velocities import velocities
 
@@ -62,15 +63,12 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     model = mechanism.model
     for name, x in mechanism.coordinates.items():
         model.branch[x.entry] = angles.get(name, x.drawn)
+    refuse_no_number(mechanism, follow(mechanism, y), np.zeros((len(model.con), N_MEM)))
     phi = jacobian(model, 0.0, follow(mechanism, y))[0]
     moved = float(np.max(np.abs(phi), initial=0.0))
     y, left = closest(model, 0.0, follow(mechanism, y))
     if left > 1e-9 * model.size:
-        worst = int(np.argmax(np.abs(jacobian(model, 0.0, y)[0])))
-        raise ModelError(
-            f"the joints cannot be closed: {mechanism.rows[worst]} stays open by {left:.3g}",
-            "check the points of the joints and the drives' positions at t = 0",
-        )
+        raise not_closed(scenario, mechanism, np.abs(jacobian(model, 0.0, y)[0]))
     check_values(mechanism, initial, y)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
@@ -78,6 +76,18 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     length, speed, depth = units(model, y, mem, scenario)
     remember(mechanism.model, y)
     return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, depth)
+
+
+def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
+    """What stays open: the joint that is out of reach, and the drive that asks for it."""
+    largest = float(phi.max())
+    rows = [mechanism.rows[k] for k in np.argsort(-phi) if phi[k] > 0.1 * largest]
+    joints = [row.split(".")[0] for row in rows if row.split(".")[0] in scenario.joints]
+    return ModelError(
+        f"the joints cannot be closed: {', '.join(rows)} stay open by up to {largest:.3g}",
+        "check the points of the joints and the drives' positions at t = 0",
+        ("joints", joints[0]) if joints else (),
+    )
 
 
 def check_names(scenario: Any, initial: Any) -> None:
@@ -120,17 +130,7 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
     derivative(w, 0.0, y, yd)
     if np.all(np.isfinite(yd)):
         return
-    for e, instance in enumerate(mechanism.instances):
-        force = instance.element.kernels.get("force")
-        w.F[:] = 0.0
-        if force is not None:
-            force(0.0, w, e, e + 1)
-        if not np.all(np.isfinite(w.F)):
-            raise ModelError(
-                "its force is not a finite number at t = 0",
-                "is an expression outside its range: log or sqrt of something negative, 1/0?",
-                (instance.section, instance.name),
-            )
+    refuse_no_number(mechanism, y, mem)
     if w.status[3]:
         raise ModelError(
             "masses and inertias are so unequal that the arithmetic cannot tell the constraints of "

@@ -11,7 +11,6 @@ another; `null` removes the key.  A CSV table is read where its file name stands
 tree is complete in itself.
 """
 
-import csv
 import hashlib
 import os
 import re
@@ -29,6 +28,7 @@ from trsim.errors import (
     unreadable,
 )
 from trsim.fields import number, quantity
+from trsim.spec.table import rows
 from trsim.spec.text import LARGEST, Tree, decoded, read
 
 DEEPEST = 8  # levels of extends
@@ -147,7 +147,9 @@ class _Files:
             found = [p.name for p in real.parent.iterdir() if p.suffix in suffixes][:200]
         except (OSError, RuntimeError):
             found = []
-        raise ScenarioError(f"there is no file {described(name)}", known(name, sorted(found)))
+        hint = f"There is no {suffixes[0]} file in that folder."
+        hint = known(name, sorted(found)) if found else hint
+        raise ScenarioError(f"there is no file {described(name)}", hint)
 
     def inline_tables(self, tree: Tree, data: Any, folder: Path | None, path: tuple) -> None:
         """Replace each `table: file.csv` by its rows."""
@@ -173,28 +175,6 @@ class _Files:
 def _beside(name: str, place: Place | None) -> str:
     """A file name as seen from where the file that names it was seen from."""
     return os.path.normpath(Path(place.file if place else ".").parent / name)
-
-
-def rows(content: bytes, file: str) -> list[list[float]]:
-    """The two columns of a CSV file; a first line of titles and lines after # are skipped."""
-    lines = decoded(content, file).splitlines()
-    table: list[list[float]] = []
-    for k, line in enumerate(lines):
-        if not line.strip() or line.startswith("#"):
-            continue
-        try:
-            cells = next(csv.reader([line], strict=True))
-            x, y = map(float, cells)
-            if not abs(x) < 1e300 or not abs(y) < 1e300:
-                raise ValueError
-        except (ValueError, csv.Error):
-            if not table and not re.match(r"\s*[\d.+-]", line):
-                continue  # titles
-            what = f"row {k + 1} of {file} is not two numbers"
-            place = Place(file, k + 1, 1, line)
-            raise ScenarioError(what, "Columns are separated by commas.", place=place) from None
-        table.append([x, y])
-    return table
 
 
 # --- merging ---------------------------------------------------------------------------------
@@ -246,6 +226,9 @@ def override(tree: Tree, text: str) -> None:
     if not equals or not all(keys):
         raise UsageError(f"--set {described(text)}: write --set section.name.key=value")
     key_place = Place("--set", 0, 1, text)
+    if keys[0] == "extends":
+        what = "--set changes values once all files are merged; `extends` was read before"
+        raise UsageError(what, "Write it in a small file that extends both.")
     at = Place("--set", 0, len(dotted) + 2, text)
     try:
         new = read(value, "--set", mapping=False).data

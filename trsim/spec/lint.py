@@ -5,7 +5,7 @@ wide, so that a scenario somebody thought about is silent.
 """
 
 from collections.abc import Iterator
-from math import dist, inf, pi, sqrt
+from math import ceil, dist, inf, pi, sqrt
 from typing import Any
 
 from trsim.elements.clearance_joint import normal_numbers
@@ -15,6 +15,7 @@ from trsim.laws.contact import (
     hertz_contact_time,
     hertz_peak,
 )
+from trsim.spec import plausible
 
 LARGE, SMALL = 3.0, 0.01  # radius of gyration over the reach of the joints
 ROUNDED = 1e-3  # inertias are typed with three or four digits
@@ -23,20 +24,13 @@ OFF = 0.1  # restitution delivered against restitution written
 STEPS = 20.0  # of rk4 in the time of one contact
 STABLE = 2.785  # rk4: step times the rate of a decay
 NARROW = 1e-5  # m/s over which friction turns round
-POINT_JOINTS = ("revolute", "spherical", "clearance_joint", "fixed")
 
 
 def lint(scenario: Any) -> tuple[str, ...]:
     """What looks wrong in a validated scenario: "section.name: what; what to do"."""
     checks = (
-        _inertias,
-        _sizes,
-        _conformity,
-        _restitutions,
-        _speeds,
-        _stops,
-        _fixed_step,
-        _ignored_step,
+        *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
+        *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
     )
     return tuple(message for check in checks for message in check(scenario))
 
@@ -76,7 +70,7 @@ def _principal(inertia: tuple[float, ...]) -> tuple[float, ...]:
 
 def _sizes(scenario: Any) -> Iterator[str]:
     """Radius of gyration against the reach of the points where others hold the body."""
-    points = _points(scenario)
+    points = plausible.points(scenario)
     everywhere = [p for of_body in points.values() for p in of_body]
     everywhere += [body.at for body in scenario.bodies.values()]
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)
@@ -100,30 +94,6 @@ def _sizes(scenario: Any) -> Iterator[str]:
             yield f"{text}its points lie up to {reach:.3g} m from its centre{ask}"
         elif reach == 0.0 and 0.0 < LARGE * size < radius:
             yield f"{text}the whole mechanism is {size:.3g} m large{ask}"
-
-
-def _points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
-    """Where joints and forces hold each body, as drawn."""
-    found: dict[str, list[tuple[float, ...]]] = {}
-
-    def add(body: str | None, at: Any) -> None:
-        if body is not None and at is not None:
-            found.setdefault(body, []).append(at)
-
-    for joint in scenario.joints.values():
-        if joint.type in POINT_JOINTS:
-            for body in joint.bodies:
-                add(body, getattr(joint, "at", None))
-    for force in scenario.forces.values():
-        add(getattr(force, "body", None), getattr(force, "at", None))
-        for body, at in zip(
-            getattr(force, "bodies", ()), getattr(force, "points", ()), strict=False
-        ):
-            add(body, at)
-        for end in (getattr(force, "point", None), getattr(force, "wall", None)):
-            add(getattr(end, "body", None), getattr(end, "at", None))
-    found.pop("ground", None)
-    return found
 
 
 # --- contact laws ----------------------------------------------------------------------------
@@ -274,4 +244,32 @@ def _unresolved(where: str, h: float, period: float) -> Iterator[str]:
         yield (
             f"{where}: a contact lasts {period:.1e} s at most, {period / h:.3g} steps of rk4; take "
             f"a step of {period / STEPS:.1e} s or less, or `method: auto`"
+        )
+
+
+# --- the whole -------------------------------------------------------------------------------
+
+
+def _ground(scenario: Any) -> Iterator[str]:
+    """Joints, and none of them to the ground."""
+    forces = scenario.forces.values()
+    pairs = [x.bodies for x in (*scenario.joints.values(), *forces) if getattr(x, "bodies", None)]
+    stops = [(f.point.body, f.wall.body) for f in forces if getattr(f, "wall", None) is not None]
+    if scenario.joints and "ground" not in {body for pair in (*pairs, *stops) for body in pair}:
+        yield (
+            "joints: nothing is joined to `ground`, so the mechanism drifts as a whole; name "
+            "`ground` as one of the `bodies` of a joint if that is not meant"
+        )
+
+
+def _rows(scenario: Any) -> Iterator[str]:
+    """Rows that end before the run does."""
+    end, every = scenario.solver.end, scenario.output.every
+    if not end or not every:
+        return
+    last = every * int(end / every * (1.0 + ROUNDED * 1e-6))
+    if last < end * (1.0 - ROUNDED * 1e-6):
+        yield (
+            f"output.every: rows are {every:g} s apart, the last is at {last:g} s, the run ends at "
+            f"{end:g} s; a part of `end` has a row there (`every: {end / ceil(end / every):.6g}`)"
         )

@@ -2,7 +2,7 @@
 
 The grammar is a small part of YAML 1.2: mappings, lists and scalars of the core schema.  Tags,
 anchors, aliases, duplicate keys and further documents are refused, so nothing in a file can run
-or grow.  `no`, `on`, dates, 1:30 and 010 are text; keys always are.
+or grow.  `no`, `on`, dates, 1:30 and 010 are text, and 010 is no number either; keys always are.
 """
 
 import math
@@ -62,10 +62,18 @@ class Tree:
         return self.keys.get(tuple(path)) or self.place(path)
 
 
+def _too_large(file: str) -> tuple[str, str]:
+    """What, and the hint."""
+    hint = "Move long tables into CSV files: `table: name.csv`."
+    if file.lower().endswith(".csv"):
+        hint = "Thin it out: an Akima curve needs few points."
+    return f"{file} is larger than {LARGEST // 1_000_000} MB", hint
+
+
 def decoded(data: bytes, file: str) -> str:
     """UTF-8 bytes as text; a byte order mark is dropped."""
     if len(data) > LARGEST:
-        raise ScenarioError(f"{file} is larger than {LARGEST // 1_000_000} MB")
+        raise ScenarioError(*_too_large(file))
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -81,7 +89,7 @@ def read(text: str, file: str = "<text>", mapping: bool = True) -> Tree:
     """The plain data of a YAML text, with marks.  Raises ScenarioError at the first fault."""
     text = text.removeprefix("\ufeff")
     if len(text) > LARGEST:
-        raise ScenarioError(f"{file} is larger than {LARGEST // 1_000_000} MB")
+        raise ScenarioError(*_too_large(file))
     lines = text.splitlines()
 
     def place(line: int, column: int) -> Place:

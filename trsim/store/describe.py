@@ -13,6 +13,8 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
+from trsim.solve.doubts import doubts
+from trsim.spec.lint import lint
 from trsim.statuses import Status
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION
@@ -121,7 +123,9 @@ def summary(
     run: Any, file: h5py.File, status: Status, reason: str, outcome: Any, found: list[Peak]
 ) -> dict[str, Any]:
     """The run in a few numbers."""
-    names = [instance.name for instance in run.mechanism.instances]
+    mechanism = run.mechanism
+    late = doubts(run.scenario, mechanism, outcome) if outcome else ()
+    names = [instance.name for instance in mechanism.instances]
     largest = {p.channel: p for p in found if p.extreme == "largest"}
     contacts = {}
     for e in run.contacts:
@@ -144,15 +148,20 @@ def summary(
         "fired": dict(outcome.fired) if outcome else {},
         "contacts": contacts,
         "statistics": dict(outcome.statistics) if outcome else {},
+        "warnings": [*mechanism.notes, *lint(run.scenario), *late],
+        "mobility": int(mechanism.mobility),
+        "redundant": list(mechanism.redundant),
+        "not_unique": list(mechanism.not_unique),
     }
 
 
 def end(
     file: h5py.File, told: dict[str, Any], scenario: Any, outcome: Any, provenance: dict
 ) -> None:
-    """Status, summary, solver and provenance."""
+    """Status, summary, solver, warnings and provenance."""
     summarised(file, told)
     solver = file["solver"]
+    solver["warnings"] = np.array(told["warnings"], dtype=TEXT)
     for name, value in vars(scenario.solver).items():
         if isinstance(value, str | int | float | bool):
             solver.attrs[name] = value

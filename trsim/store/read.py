@@ -171,6 +171,13 @@ class Run:
         return found if isinstance(found, str) else tuple(found)
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """What was said before and after the run; nothing in a file that was not completed."""
+        with opened(self.path) as file:
+            found = file["solver"].get("warnings")
+            return tuple(found.asstr()[()]) if found is not None else ()
+
+    @property
     def scenario(self) -> dict[str, Any]:
         """The scenario as plain data, after extends, tables and --set."""
         return json.loads(self.text("scenario/resolved"))

@@ -37,6 +37,10 @@ class Projection(TypedDict):
     shift_body       whose
     turn             largest turn of a body from how it is drawn, rad
     turn_body        whose
+    slip             largest change of a velocity that was given, m/s
+    slip_body        whose
+    spin             largest change of an angular velocity that was given, rad/s
+    spin_body        whose
     """
 
     position_before: Number
@@ -49,6 +53,10 @@ class Projection(TypedDict):
     shift_body: str
     turn: Number
     turn_body: str
+    slip: Number
+    slip_body: str
+    spin: Number
+    spin_body: str
 
 
 class Start(TypedDict):
@@ -82,6 +90,7 @@ class ContactScale(TypedDict):
     half_period    of its vibration, s; null where nothing can move
     impact_time    from touch to separation at the slowest impact, s; null where nothing can move
     friction_rate  1/s, of the ramp of modified Coulomb friction; 0 without one
+    unit           of the force, N or N*m
     """
 
     name: str
@@ -93,6 +102,7 @@ class ContactScale(TypedDict):
     half_period: Number
     impact_time: Number
     friction_rate: Number
+    unit: str
 
 
 class Scales(TypedDict):

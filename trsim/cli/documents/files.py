@@ -97,6 +97,10 @@ class Show(Document):
     channels        name -> unit
     summary         the run in a few numbers
     solver          its settings, and what it did
+    warnings        what looked wrong: in the scenario, at the start, in the results
+    mobility        degrees of freedom by rank, drives counted as constraints
+    redundant       constraint rows dropped, "joint.axis"; their reactions are zero
+    not_unique      reactions that the motion does not determine
     provenance      where the file comes from
     phase           names of phase portraits
     poincare        section -> number of points
@@ -116,6 +120,10 @@ class Show(Document):
     channels: dict[str, str]
     summary: Summary
     solver: Solver
+    warnings: list[str]
+    mobility: int
+    redundant: list[str]
+    not_unique: list[str]
     provenance: Provenance
     phase: list[str]
     poincare: dict[str, int]

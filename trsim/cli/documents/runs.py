@@ -103,6 +103,10 @@ class Ran(Results):
     status          how it ended; after `failed` the exit code is 5
     reason          why it failed, or which user event ended it
     statistics      what the solver did
+    warnings        what looks wrong: in the scenario, at the start, in the results
+    mobility        degrees of freedom by rank, drives counted as constraints
+    redundant       constraint rows dropped, "joint.axis"; their reactions are stored as zero
+    not_unique      reactions that the motion does not determine
     content_sha256  of all results; the same for the same results
     fired           user event -> how often it happened
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
@@ -115,6 +119,10 @@ class Ran(Results):
     status: Ended
     reason: str
     statistics: RunStatistics
+    warnings: list[str]
+    mobility: int
+    redundant: list[str]
+    not_unique: list[str]
     content_sha256: str
     fired: dict[str, int]
     resumed_from: Number

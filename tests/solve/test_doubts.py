@@ -1,0 +1,112 @@
+"""What a run says against itself: a changed start, a contact beyond its law, an open book."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.small import SLIDER_CRANK
+from trsim.assemble.assemble import assemble
+from trsim.solve.doubts import doubts, of_start
+from trsim.solve.projected import projected
+from trsim.solve.start import start
+from trsim.spec.load import load, loads
+
+from ..runs import run
+
+FILES = sorted((Path(__file__).parents[2] / "scenarios").rglob("*.yaml"))
+
+FIXED = """
+bodies: {{b: {{mass: 1, inertia: 1, {}}}}}
+joints: {}
+solver: {{end: 0.01}}
+"""
+PIN = "{p: {type: revolute, bodies: [ground, b], at: [0, 0]}}"
+GUIDES = """{g: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]},
+ h: {type: prismatic, bodies: [ground, b], axis: [1, 1e-3, 0]}}"""
+
+
+def told(text):
+    r = run(text)
+    return doubts(r.scenario, r.mechanism, r.outcome)
+
+
+@pytest.mark.parametrize(
+    "given, joints, start, numbers",
+    [
+        (
+            "at: [1, 0], velocity: [1, 1]",
+            PIN,
+            "bodies.b.velocity",
+            "[1, 1, 0], starts with [0, 0.5",
+        ),
+        ("velocity: [1, 0]", GUIDES, "bodies.b.velocity", "[1, 0, 0], starts with [0, 0, 0] m/s"),
+        (
+            "at: [1, 0], angular_velocity: [0, 0, 2]",
+            PIN,
+            "bodies.b.angular",
+            "starts with [0, 0, 1]",
+        ),
+    ],
+)
+def test_a_velocity_that_was_not_kept_is_told(given, joints, start, numbers):
+    (found,) = told(FIXED.format(given, joints))
+    assert found.startswith(start) and numbers in found
+
+
+@pytest.mark.parametrize(
+    "given", ["at: [1, 0]", "at: [1, 0], velocity: [0, 1], angular_velocity: [0, 0, 1]"]
+)
+def test_velocities_that_fit_are_not_mentioned(given):
+    assert told(FIXED.format(given, PIN)) == ()
+
+
+def test_a_rod_whose_velocity_the_drive_decides():
+    text = SLIDER_CRANK.replace("at: [0.11, 0]", "at: [0.11, 0], velocity: [0, 5]")
+    (found,) = told(text.replace("clearance: 0.5 mm, contact: pin", "clearance: 0"))
+    # the middle of A and B: half of 5000 rpm times 50 mm
+    assert found.startswith("bodies.rod.velocity: given as [0, 5, 0], starts with [0, 13.09, 0]")
+
+
+def test_a_position_that_was_not_kept_is_told():
+    text = SLIDER_CRANK.replace("0.5 mm, contact: pin", "0")
+    (found,) = told(text.replace("velocity: 5000 rpm", "position: 0.1 + t"))
+    assert found.startswith("bodies.") and "from where it is drawn" in found
+
+
+def test_check_tells_the_change_of_two_guides():
+    scenario = loads(FIXED.format("velocity: [1, 0]", GUIDES))
+    m = assemble(scenario)
+    p = projected(m, start(scenario, m, True))
+    assert p.slip == pytest.approx(1.0) and p.slip_body == "b"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
+def test_the_scenarios_start_as_given(path):
+    scenario = load(path)
+    m = assemble(scenario)
+    assert list(of_start(scenario, m, start(scenario, m, True))) == []
+
+
+SOFT = SLIDER_CRANK.replace("end: 3 ms", "end: 1.5 ms")
+
+
+def test_a_journal_beyond_its_law_is_told():
+    (found,) = told(SOFT.replace("207 GPa", "2 MPa"))
+    assert found.startswith("joints.B: the journal is pressed in by")
+    assert "of the clearance (0.5 mm)" in found and "of the radius (10 mm)" in found
+
+
+def test_a_stiff_journal_is_not():
+    assert told(SOFT) == ()
+
+
+def test_an_open_energy_book_is_told():
+    r = run(SOFT)
+    open_ = {**r.outcome.statistics, "energy_residual_relative": 0.02}
+    (found,) = doubts(r.scenario, r.mechanism, r.outcome._replace(statistics=open_))
+    assert "does not close, by 2 %" in found
+
+
+def test_sections_that_a_run_does_not_read_are_told():
+    (found,) = told(SOFT + "sweep: {bodies.rod.mass: [1, 2]}")
+    assert found.startswith("`sweep`: one run takes the scenario as it stands")

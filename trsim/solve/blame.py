@@ -1,0 +1,65 @@
+"""Which element gives a value that is no number: each is evaluated alone, at one state."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import poses
+from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.elements.scene import workspace
+from trsim.errors import ModelError
+from trsim.solve import record as rec
+from trsim.solve.record import Record
+
+Array = NDArray[np.float64]
+
+AHEAD = (1e-12, 1e-9, 1e-6, 1e-3)  # of the run: how far beyond a failure to look
+PLACES = ("F", "zd", "phi", "phi_t", "gamma")
+RANGE = "log or sqrt of something negative, 1/0, a table that ends"
+
+
+def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | None:
+    """The first element whose force or prescribed motion is not finite at (t, y)."""
+    w = workspace(mechanism.model)
+    w.mem[:] = mem
+    poses(w, y)
+    for e, instance in enumerate(mechanism.instances):
+        for place in PLACES:
+            getattr(w, place)[:] = 0.0
+        for word in ("force", "constraint"):
+            if (kernel := instance.element.kernels.get(word)) is not None:
+                kernel(t, w, e, e + 1)
+        if not all(np.all(np.isfinite(getattr(w, place))) for place in PLACES):
+            return instance
+    return None
+
+
+def refuse_no_number(mechanism: Mechanism, y: Array, mem: Array) -> None:
+    """Raises ModelError for an element whose force or motion is not finite at t = 0."""
+    found = blamed(mechanism, 0.0, y, mem)
+    if found is None:
+        return
+    what = "its force is" if found.section == "forces" else "its motion or acceleration is"
+    raise ModelError(
+        f"{what} not a finite number at t = 0",
+        f"is an expression outside its range: {RANGE}?",
+        (found.section, found.name),
+    )
+
+
+def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Why a run cannot go on, where the law of an element ends just ahead; else empty."""
+    if not np.all(np.isfinite(r.y)):
+        return ""
+    t, step = float(r.clock[rec.T]), scenario.solver.step or 0.0
+    for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
+        found = blamed(mechanism, t + ahead, r.y, r.mem)
+        if found is not None and found.section:
+            place = scenario.place((found.section, found.name))
+            where = f" ({place.show()})" if place else ""
+            return (
+                f"{found.section}.{found.name}{where} is not a finite number beyond t = {t:.6g} s: "
+                f"{RANGE}?"
+            )
+    return ""

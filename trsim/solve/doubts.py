@@ -1,0 +1,124 @@
+"""What speaks against believing a run: of its start and of how it went, each with its numbers.
+
+start      a position or a velocity is not the one that was given
+contacts   pressed in by more than their law is made for: a half width of the contact of half the
+           radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
+energy     the book of the run does not close
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.solve.outcome import Outcome
+from trsim.solve.projected import given_velocities, projected
+from trsim.solve.skipped import unread
+from trsim.solve.start import Start
+from trsim.solve.velocities import world_velocities
+
+Array = NDArray[np.float64]
+
+MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits of a drawing
+VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
+CHANGED = 1e-3  # of a speed that was given
+OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
+LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
+GIVEN = 1e-2  # of it: more done by projection says so too
+NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
+OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
+
+
+def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, ...]:
+    """Sentences "section.name: what; what to do"."""
+    return (
+        *unread(scenario),
+        *of_start(scenario, mechanism, outcome.start),
+        *of_contacts(scenario, mechanism, outcome.peaks),
+        *of_books(mechanism, outcome),
+    )
+
+
+def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]:
+    """Positions and velocities that had to give way to joints and drives."""
+    initial, p = scenario.initial, projected(mechanism, begun)
+    asked = initial.equilibrium or initial.values  # then it is moved on purpose
+    if not asked and p.shift > MOVED * mechanism.model.size:
+        yield (
+            f"bodies.{p.shift_body}: starts {p.shift:.2g} m from where it is drawn, to meet joints "
+            "and drives at t = 0; correct the points"
+        )
+    elif not asked and p.turn > TURNED:
+        yield (
+            f"bodies.{p.turn_body}: starts turned by {p.turn:.2g} rad against the drawing, to meet "
+            "joints and drives at t = 0; correct the points"
+        )
+    given = given_velocities(mechanism, begun)
+    real = world_velocities(mechanism.model, begun.y).reshape(-1, 6)
+    for name, frame in mechanism.frames.items():
+        if frame == 0:
+            continue  # the ground
+        for key, unit, part in VELOCITIES:
+            was, now = (v[frame - 1, part] for v in (given, real))
+            size = float(np.linalg.norm(was))
+            if np.linalg.norm(now - was) > CHANGED * size > 0.0:
+                yield (
+                    f"bodies.{name}.{key}: given as {vector(was, size)}, starts with "
+                    f"{vector(now, size)} {unit}, the nearest that joints and drives allow; give "
+                    "velocities that fit together"
+                )
+
+
+def vector(v: Array, size: float) -> str:
+    """Three numbers; what is nothing to a size is rounding."""
+    return "[" + ", ".join(f"{x if abs(x) > 1e-9 * size else 0.0:.4g}" for x in v) + "]"
+
+
+def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """Journals that went deeper than their law holds."""
+    column = {c.name: c.start for c in mechanism.columns}
+    for name, joint in scenario.joints.items():
+        if f"{name}.penetration" not in column or joint.type != "clearance_joint":
+            continue
+        depth, when = peaks[column[f"{name}.penetration"], :2].tolist()
+        law = scenario.contact_laws.get(joint.contact) or next(iter(scenario.contact_laws.values()))
+        c, R = joint.clearance, law.bearing_radius or np.inf
+        # the cylinder's law knows how far a contact wraps around its pin
+        if depth > OF_RADIUS * R or (depth > OF_CLEARANCE * c and law.stiffness != "cylinder"):
+            radius = (
+                f" and {depth / R:.2g} of the radius ({1e3 * R:.3g} mm)" if np.isfinite(R) else ""
+            )
+            yield (
+                f"joints.{name}: the journal is pressed in by {1e3 * depth:.3g} mm at "
+                f"{when:.4g} s, {depth / c:.2g} of the clearance ({1e3 * c:.3g} mm){radius}; its "
+                f"law holds to about {OF_CLEARANCE:g} and {OF_RADIUS:g} of them: check stiffness, "
+                "moduli and loads"
+            )
+
+
+def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """An open energy book, work of the projection, open joints; nothing of what is at rest."""
+    numbers = outcome.statistics
+    natural = float(np.sum(mechanism.model.mass)) * outcome.start.speed**2
+    work = abs(numbers.get("work_of_projection", 0.0))
+    lost = numbers.get("energy_residual_relative", 0.0)
+    if lost > LOST:
+        yield (
+            f"the energy book does not close, by {100 * lost:.2g} % of the largest energy "
+            "exchanged; tighten `tolerance`; does the velocity of a drive jump?"
+        )
+    given = numbers.get("work_of_projection_relative", 0.0)
+    if given > GIVEN and work > NOTHING * natural and outcome.status == "done":
+        yield (
+            f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
+            "largest energy exchanged; does a drive jump?  Else `tolerance` or the step is too "
+            "coarse"
+        )
+    apart = numbers.get("joints_open_relative", 0.0)
+    if apart > OPEN:
+        yield (
+            f"joints were open by up to {apart:.2g} of the mechanism's size; "
+            "`stabilisation: projection` closes them"
+        )

@@ -1,0 +1,125 @@
+"""Magnitudes no material and no body has: mostly a unit that was forgotten.
+
+stiffness    E of 1 MPa (rubber) to 1 TPa (diamond); a stiffness in N/m^1.5 as the E of
+             K = 4/3 E/(2 (1 - nu^2)) sqrt(R_i R_j/(R_i - R_j))
+friction     coefficients of 0 to 2
+mass         lighter than a wire a hundred times as long as thick at 1 kg/m^3, heavier than a
+             solid cube at 30 000 kg/m^3; the edge of the cube is the body's extent
+             L = max(largest distance of its points, sqrt(12) times the radius of gyration)
+"""
+
+from collections.abc import Iterator
+from itertools import combinations
+from math import dist, sqrt
+from typing import Any
+
+SOFTEST, HARDEST = 1e6, 1e12  # Pa
+POISSON = 0.3  # where a law that gives K says nothing
+STICKIEST = 2.0  # rubber on rubber is about 1
+LIGHTEST, HEAVIEST = 1.0, 3e4  # kg/m^3; osmium is 22 600
+WIRE = 100.0  # length over thickness
+POINT_JOINTS = ("revolute", "spherical", "clearance_joint", "fixed")
+
+
+def moduli(scenario: Any) -> Iterator[str]:
+    """Stiffness of what is in contact."""
+    for name, law in scenario.contact_laws.items():
+        for key in ("youngs_modulus", "journal_youngs_modulus"):
+            E = getattr(law, key)
+            if E is not None and not SOFTEST <= E <= HARDEST:
+                yield (
+                    f"contact_laws.{name}.{key}: {E:.3g} Pa; solids have 1 MPa (rubber) to 1 TPa "
+                    f"(diamond), steel 2.1e+11 Pa: {_prefix(E)}"
+                )
+    for name, joint in scenario.joints.items():
+        law = scenario.contact_laws.get(getattr(joint, "contact", None))
+        c = getattr(joint, "clearance", 0.0)
+        if law is None or not isinstance(law.stiffness, float) or law.bearing_radius is None:
+            continue
+        if not 0.0 < c < law.bearing_radius:
+            continue
+        E = modulus(law.stiffness * c ** (law.exponent - 1.5), law.bearing_radius, c)
+        if not SOFTEST <= E <= HARDEST:
+            yield (
+                f"joints.{name}: a stiffness of {law.stiffness:.3g} N/m^{law.exponent:g} is that "
+                f"of a pin with a Young's modulus of {E:.1e} Pa (radius "
+                f"{1e3 * law.bearing_radius:.3g} mm, clearance {1e3 * c:.3g} mm); solids have "
+                "1 MPa to 1 TPa: write `stiffness: internal` and the `youngs_modulus`"
+            )
+
+
+def modulus(K: float, R: float, c: float) -> float:
+    """Young's modulus that gives a pin of two equal materials the stiffness K, Pa."""
+    return 1.5 * K * (1.0 - POISSON**2) / sqrt(R * (R - c) / c)
+
+
+def _prefix(E: float) -> str:
+    """The unit that was meant, if one fits: left out, or written after a number in Pa."""
+    for unit, factor in (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)):
+        if E < SOFTEST <= E * factor <= HARDEST:
+            return f"is `{E:g} {unit}` meant?"
+        if 1e9 <= E / factor <= HARDEST < E / 1e3:
+            return f"is `{E / factor:.3g} Pa` meant?"
+    return "check the unit"
+
+
+def coefficients(scenario: Any) -> Iterator[str]:
+    """Coefficients of friction."""
+    for name, law in scenario.contact_laws.items():
+        for key in ("coefficient", "static_coefficient"):
+            mu = getattr(law.friction, key)
+            if mu is not None and mu > STICKIEST:
+                yield (
+                    f"contact_laws.{name}.friction.{key}: {mu:.3g}; dry metals have 0.1 to 1, "
+                    f"rubber up to about {STICKIEST:g}: a pin holds fast above 1 already"
+                )
+
+
+def densities(scenario: Any) -> Iterator[str]:
+    """Mass of each body against its extent; a body held at one point has none to speak of."""
+    held = points(scenario)
+    slides = {b for j in scenario.joints.values() if j.type == "prismatic" for b in j.bodies}
+    for name, body in scenario.bodies.items():
+        places = [*held.get(name, ()), body.at]
+        reach = max((dist(p, q) for p, q in combinations(places, 2)), default=0.0)
+        if reach == 0.0 or body.mass == 0.0:
+            continue
+        inertia = body.inertia if isinstance(body.inertia, float) else max(body.inertia[:3])
+        L = max(reach, 0.0 if name in slides else sqrt(12.0 * max(inertia, 0.0) / body.mass))
+        cube, wire = body.mass / L**3, body.mass * WIRE**2 / reach**3
+        text = f"bodies.{name}: {body.mass:.3g} kg"
+        ask = "; steel has 7850: check the mass (kg) and the points (m)"
+        if cube > HEAVIEST:
+            yield (
+                f"{text} within {L:.3g} m would be {cube:.1e} kg/m^3 even as a solid cube of that "
+                f"edge{ask}"
+            )
+        elif wire < LIGHTEST:
+            yield (
+                f"{text} over {reach:.3g} m would be {wire:.1e} kg/m^3 even as a wire of a "
+                f"hundredth of that in thickness{ask}"
+            )
+
+
+def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
+    """Where joints and forces hold each body, as drawn."""
+    found: dict[str, list[tuple[float, ...]]] = {}
+
+    def add(body: str | None, at: Any) -> None:
+        if body is not None and at is not None:
+            found.setdefault(body, []).append(at)
+
+    for joint in scenario.joints.values():
+        if joint.type in POINT_JOINTS:
+            for body in joint.bodies:
+                add(body, getattr(joint, "at", None))
+    for force in scenario.forces.values():
+        add(getattr(force, "body", None), getattr(force, "at", None))
+        for body, at in zip(
+            getattr(force, "bodies", ()), getattr(force, "points", ()), strict=False
+        ):
+            add(body, at)
+        for end in (getattr(force, "point", None), getattr(force, "wall", None)):
+            add(getattr(end, "body", None), getattr(end, "at", None))
+    found.pop("ground", None)
+    return found
