@@ -1,9 +1,9 @@
 """One case by all methods: run, compare with the truth, and say what became of each.
 
 The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin of it, at
-half its tolerance and with another first step (0.93 of the step, for rk4), part where they are no
-longer predictable, in the path of a journal or in the largest forces; before that *horizon* the
-largest force of every contact is compared.
+a fifth of its tolerance and with another first step (0.93 of the step, for rk4), part where they
+are no longer predictable, in the path of a journal or in the largest forces; before that *horizon*
+the largest force of every contact is compared.
 """
 
 from dataclasses import asdict, dataclass, replace
@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 TIGHTER = 100.0
 PART = 5e-3  # of a journal's path: two runs that differ by more have parted
+TWIN = 0.2  # tolerance of a twin over that of the run
 SOONER = 0.7  # how much sooner the next horizon tried is
 PEAKS, ENERGY = 0.02, 1e-3  # what a run that says nothing must keep to
 MOST, MOST_OF_TRUTH = 150_000, 1_500_000  # steps
@@ -161,14 +162,14 @@ def compared(bench: Bench, about: Verdict, setting: Setting, ran: Ran) -> Verdic
         return replace(about, verdict=UNJUDGED, reason=f"no truth: {why}")
     other = twin_of(setting)
     first = 0.6 * own_first_step(ran.outcome, setting.tolerance or 1e-6, bench.end)
-    twin = bench.run(other, bench.end, first if setting.step is None else None, MOST)
+    twin = bench.run(other, bench.end, first if setting.step is None else None, MOST_OF_TRUTH)
     rows, end = len(ran.rows), bench.end
     horizon = bench.parted(ran, twin) if done(twin) else rows
     if horizon < rows:
         end = max(0.98 * float(ran.rows[horizon, 0]), float(ran.rows[1, 0]))
     while True:
         if end < bench.end:  # once more up to there, for the peaks
-            runs = (bench.run(setting, end, None, MOST), bench.run(other, end, None, MOST))
+            runs = (bench.run(setting, end, None, MOST), bench.run(other, end, None, MOST_OF_TRUTH))
             ran, twin, truth = *runs, bench.run(tight, end, None, MOST_OF_TRUTH)
             if not (done(ran) and done(twin) and done(truth)):
                 return replace(about, verdict=UNJUDGED, reason="a run to the horizon did not end")
@@ -191,7 +192,7 @@ def twin_of(setting: Setting) -> Setting:
     """Nearly the same setting: its errors are about as large, and others."""
     if setting.step:
         return setting._replace(step=0.93 * setting.step)
-    return setting._replace(tolerance=0.5 * (setting.tolerance or 1e-6))
+    return setting._replace(tolerance=TWIN * (setting.tolerance or 1e-6))
 
 
 def peak_error(a: Ran, b: Ran) -> float:

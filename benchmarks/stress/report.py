@@ -119,10 +119,10 @@ the reverser from before the touch of its lug with clearance at one or two pins,
 clearance at both ends of a light rod (0.5 kg and 0.3 kg), and a slider-crank.  Tolerances 1e-4,
 1e-5, 1e-6; steps of rk4 10, 2 and 1 µs.  At most 150 000 steps a run.
 
-The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin at half
-its tolerance and another first step part at the *predictability horizon* (a journal's path differs
-by 0.5 % of itself, or a largest force by 1 %); before it the largest force of every contact must
-agree to 2 %.
+The truth of a cell is another method at a tolerance 100 times tighter.  A run and a twin at a fifth
+of its tolerance and another first step part at the *predictability horizon* (a journal's path
+differs by 0.5 % of itself, or a largest force by 1 %); before it the largest force of every contact
+must agree to 2 %.
 
 * **converged**: done, energy book closed to 1e-3, peaks within 2 % of the truth
 * **refused**: not begun, with the reason
