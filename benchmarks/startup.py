@@ -31,6 +31,7 @@ class Took(NamedTuple):
 def took(command: list[str], code: int = 0, cache: str = "") -> Took:
     """One process, with its own cache folder if one is given; `code` is the exit expected."""
     environment = {**os.environ, **({"XDG_CACHE_HOME": cache} if cache else {})}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # modules stay translated, as for any user
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True)  # noqa: S603
     wall = time.perf_counter() - start

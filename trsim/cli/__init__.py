@@ -1,5 +1,6 @@
 """The command line: `trsim run`, `trsim report`, ...  One file per command, imported when used."""
 
+import os
 import signal
 import sys
 from collections.abc import Sequence
@@ -10,6 +11,9 @@ import click
 
 from trsim.cli.frame import EXIT_CODES, Answer, opened
 from trsim.version import __version__
+
+# numpy would start threads for matrices of a few dozen rows
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # each a module of this package
 COMMANDS = ("run", "report", "check", "show", "export", "recover", "explain", "schema", "bench")
