@@ -79,7 +79,10 @@ def test_no_lock_where_there_can_be_none(tmp_path):
 def test_the_second_process_ends_with_the_first(end, started, tmp_path):
     process, pid = started(BEGINS)
     assert alive(int(pid))
-    time.sleep(3.0)  # it is compiling
+    waited = time.monotonic()
+    while not (tmp_path / "trsim").exists() and time.monotonic() - waited < PATIENCE:
+        time.sleep(0.02)
+    time.sleep(0.5)  # it is compiling, which takes some seconds
     process.send_signal(end)
     waited = time.monotonic()
     while alive(int(pid)) and time.monotonic() - waited < PATIENCE:

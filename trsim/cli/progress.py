@@ -30,7 +30,8 @@ def compiling(answer: Answer, method: str = "") -> None:
         from trsim.solve.complete import complete as needed
         from trsim.solve.simulate import COMPILED
 
-        later = ["complete", "march", *COMPILED[method]]
+        # the largest first; the first process comes to the explicit method before it needs another
+        later = ["complete", "march", *reversed(COMPILED[method])]
     if needed.file.exists():
         return
     see_kept(answer)
