@@ -30,8 +30,8 @@ def compiling(answer: Answer, method: str = "") -> None:
         from trsim.solve.complete import complete as needed
         from trsim.solve.simulate import COMPILED
 
-        # the largest first; the first process comes to the explicit method before it needs another
-        later = ["complete", "march", *reversed(COMPILED[method])]
+        # the largest first; the first process comes to the rest before it needs an implicit method
+        later = ["complete", *reversed(COMPILED[method]), "march"]
     if needed.file.exists():
         return
     see_kept(answer)
