@@ -1,6 +1,6 @@
 """What a run needs around its march, whatever makes the steps: settings, record, outcome."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +10,8 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION, Scene
 from trsim.errors import ScenarioError
+from trsim.fields import FunctionSpec
+from trsim.instants import shortest_pulse
 from trsim.solve import record as rec
 from trsim.solve.record import Record
 from trsim.solve.start import Start
@@ -50,6 +52,7 @@ CRAWLS = (
 )
 EASY, PROPORTION = 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
+SHORTEST = 1e-6  # of a run: a pulse shorter than that may be passed over
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 MOST_ROWS = 10_000  # output rows one fixed step may span
 
@@ -80,6 +83,8 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     if mechanism.timed and not solver.max_step:
         # a pulse between two stages of a long step would not be seen at all
         s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
+        pulse = max(shortest_pulse(timed(scenario), solver.end), SHORTEST * solver.end)
+        s[rec.H_MAX] = min(s[rec.H_MAX], pulse)
     s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
     if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
         raise ScenarioError(
@@ -96,6 +101,12 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     located = adaptive if solver.locate_events is None else solver.locate_events
     s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
     return s
+
+
+def timed(scenario: Any) -> Iterator[FunctionSpec]:
+    """What drives and loads are told as functions."""
+    for spec in (*scenario.drives.values(), *scenario.forces.values()):
+        yield from (value for _, value in spec if isinstance(value, FunctionSpec))
 
 
 def first_step(scenario: Any, record: Record) -> float:
