@@ -51,14 +51,16 @@ def test_the_files_are_what_the_generator_writes(file, text):
 # --- Andrews' squeezing mechanism --------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("tolerance", "bound"), [(1e-8, 1e-6), (1e-11, 2e-9)])
+@pytest.mark.parametrize(("tolerance", "bound"), [(1e-8, 1e-6), (1e-11, 1e-11)])
 def test_andrews(tolerance, bound):
-    """P3.  The published digits are good to 1e-10 rad."""
+    """P3.  The published angles are 1.4e-9 rad away from four computations that agree to 1e-12."""
     r = run(load(VALIDATION / "andrews.yaml", [f"solver.tolerance={tolerance}"]))
     known = reference("p3_andrews.json")
-    assert [r[name][-1] for name in ANGLES] == pytest.approx(known["angles"], abs=bound)
+    angles = [r[name][-1] for name in ANGLES]
+    assert angles == pytest.approx(known["recomputed_angles"], abs=bound)
+    assert angles == pytest.approx(known["angles"], abs=max(bound, 2e-9))
     rates = [r[f"{name}.rate"][-1] for name in ANGLES]
-    assert rates == pytest.approx(known["rates"], abs=1e3 * bound)
+    assert rates == pytest.approx(known["rates"], abs=max(1e3 * bound, 2e-6))
 
 
 def test_andrews_from_the_round_angle():
