@@ -4,9 +4,11 @@ An explicit method whose steps are held at its limit of stability,
 
     h rho > 6.1,    rho = |f(y_1) - f(Y_12)| / |y_1 - Y_12|                 [HairerWanner1996]
 
-with Y_12 the last stage of DOP853 (both at t + h), for 15 steps gives way to the implicit one.  The
-implicit one gives back after an event, or when its own steps, with the largest eigenvalue of its
-matrices by a few vector iterations, would be stable for the explicit one as well.
+with Y_12 the last stage of DOP853 (both at t + h), for 15 steps, of large models for n_v / 4, gives
+way to the implicit one: near a singular position some steps look stiff and are not, and Jacobians
+of large models are dear.  The implicit one gives back after an event, or when its own steps, with
+the largest eigenvalue of its matrices by a few vector iterations, would be stable for the explicit
+one as well.
 """
 
 from math import sqrt
@@ -41,6 +43,7 @@ A = dop853_tableau.A
 EXPLICIT, IMPLICIT = 0, 1  # rows of `methods`
 STABLE = 6.1  # h rho of DOP853 on the negative real axis
 STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
+DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
 EASY = 3.0  # h rho at which the explicit method takes steps of the same length
 ITERATIONS = 12  # of the vector iteration
 
@@ -55,7 +58,7 @@ def choose(s, r, b, h, event):
         if load > STABLE:
             r.count[STIFF] += 1
             r.count[NOT_STIFF] = 0
-            if r.count[STIFF] >= STIFF_STEPS:
+            if r.count[STIFF] >= max(STIFF_STEPS, s.n_v // DEAR):
                 change(s, r, b, IMPLICIT, load)
         else:
             r.count[NOT_STIFF] += 1
