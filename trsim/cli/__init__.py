@@ -1,5 +1,6 @@
 """The command line: `trsim run`, `trsim report`, ...  One file per command, imported when used."""
 
+import gc
 import os
 import signal
 import sys
@@ -12,6 +13,8 @@ import click
 from trsim.cli.frame import EXIT_CODES, Answer, opened
 from trsim.version import __version__
 
+# imports make tens of thousands of objects that stay: collecting among them finds nothing
+gc.set_threshold(50_000)
 # numpy would start threads for matrices of a few dozen rows
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
