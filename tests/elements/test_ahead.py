@@ -40,13 +40,22 @@ def started(tmp_path):
     def start(code, *arguments):
         environment = {**os.environ, "PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(tmp_path)}
         command = [sys.executable, "-c", code, *map(str, arguments)]
-        running.append(subprocess.Popen(command, stdout=subprocess.PIPE, env=environment))  # noqa: S603
+        running.append(
+            subprocess.Popen(  # noqa: S603
+                command, stdout=subprocess.PIPE, env=environment, preexec_fn=interruptible
+            )
+        )
         return running[-1], running[-1].stdout.readline().split()[0]
 
     yield start
     for process in running:
         process.kill()
         process.communicate()
+
+
+def interruptible():
+    """As from a terminal: what a shell runs in the background ignores SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def alive(pid):
