@@ -10,6 +10,7 @@ from trsim.assemble.mechanism import Instance, Mechanism
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.solve import record as rec
+from trsim.solve.locked import locked
 from trsim.solve.record import Record
 
 Array = NDArray[np.float64]
@@ -63,3 +64,8 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
                 f"{RANGE}?"
             )
     return ""
+
+
+def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Why a run cannot go on from its record, in words; empty where nothing is found."""
+    return told(scenario, mechanism, r) or locked(mechanism, float(r.clock[rec.T]), r.y)

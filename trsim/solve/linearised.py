@@ -13,6 +13,7 @@ the Jacobian frozen there.  Time stands still: what drives prescribe, and their 
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +37,8 @@ FASTEST = 1e-2  # m/s: a run of next to no time makes its unit of speed as large
 PRESSED = 1e-3  # of a penetration: a probe must not leave the contact
 TOUCHING = 1e-12  # of the mechanism's size: contacts pressed in by less count as open
 FREE = 1e-10  # relative singular value of J below which a motion is free
+STILL = 1e-6  # of the natural rate: slower eigenvalues are zero to rounding
+ROUNDING = 2e-6  # of the fastest: a double zero comes out as the root of what rounding leaves
 CORRECTIONS = 3  # Newton steps of a probe; two reach rounding
 
 
@@ -85,6 +88,12 @@ def linearised(mechanism: Mechanism, begun: Start) -> Linearised:
     return Linearised(
         np.eye(f), -A[f : 2 * f, f : 2 * f], -A[f : 2 * f, :f], A, probe.Z, probe.twists
     )
+
+
+def rounding(values: NDArray[Any], begun: Start) -> float:
+    """Below this an eigenvalue of A is zero to rounding, 1/s."""
+    fastest = float(np.max(np.abs(values), initial=0.0))
+    return max(STILL * float(begun.speed / begun.length), ROUNDING * fastest)
 
 
 def smooth(mechanism: Mechanism) -> Model:

@@ -28,8 +28,7 @@ def locked(mechanism: Mechanism, t: float, y: Array) -> str:
     if not np.all(np.isfinite(J)) or not np.all(length > 0.0):
         return ""
     u, s, _ = np.linalg.svd(J / length)
-    rank = min(J.shape)
-    smallest = float(s[-1]) if model.m <= rank else 0.0
+    smallest = float(s[-1]) if len(s) == model.m else 0.0
     if smallest > NEARLY * s[0]:
         return ""
     part = np.abs(u[:, -1])

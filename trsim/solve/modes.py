@@ -13,10 +13,9 @@ from math import pi
 import numpy as np
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.solve.linearised import linearised
+from trsim.solve.linearised import linearised, rounding
 from trsim.solve.start import Start
 
-STILL = 1e-6  # of the natural rate: slower eigenvalues are zero to rounding
 UNDAMPED = 1e-6  # damping ratio: a smaller one is the rounding of the differences
 OSCILLATES, DECAYS, GROWS, FREE = "oscillates", "decays", "grows", "free"
 
@@ -47,14 +46,14 @@ def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
     if not linear.A.size:
         return []
     values, vectors = np.linalg.eig(linear.A)
-    natural = float(begun.speed / begun.length)
+    least = rounding(values, begun)
     freedoms = linear.Z.shape[1]
     found = []
     for value, vector in zip(values, vectors.T, strict=True):
         if value.imag < 0.0:
             continue  # the other of its pair
-        rate = float(value.real) if abs(value) > STILL * natural else 0.0
-        swings = abs(value.imag) > STILL * natural
+        rate = float(value.real) if abs(value) > least else 0.0
+        swings = abs(value.imag) > least
         size = abs(value)
         found.append(Mode(
             kind=OSCILLATES if swings else FREE if rate == 0.0 else DECAYS if rate < 0.0 else GROWS,

@@ -26,7 +26,7 @@ from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR, R_B, C
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
 from trsim.laws.friction import CODES
-from trsim.solve.linearised import Linearised, linearised
+from trsim.solve.linearised import Linearised, linearised, rounding
 from trsim.solve.start import Start
 from trsim.solve.velocities import twist_gradient
 
@@ -35,8 +35,6 @@ Array = NDArray[np.float64]
 REAL, IMAGINARY = 2.785, 2.828  # where the stability region of rk4 ends
 SLOWEST = 1e-3  # m/s: speed of an impact where none is given
 DIRECTIONS = 8  # of the normal of a journal that touches nothing yet
-STILL = 1e-6  # of the natural rate: slower eigenvalues are zero to rounding
-ROUNDING = 2e-6  # of the fastest: a double zero comes out as the root of what rounding leaves
 IMMOVABLE = 1e-4  # of what the bodies alone would give: a contact that joints and drives fix
 
 
@@ -77,7 +75,7 @@ def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
     linear = linearised(mechanism, begun)
     natural = float(begun.speed / begun.length)
     every = np.linalg.eigvals(linear.A) if linear.A.size else np.zeros(0)
-    least = max(STILL * natural, ROUNDING * float(np.max(np.abs(every), initial=0.0)))
+    least = rounding(every, begun)
     some = sorted((x for x in every.tolist() if abs(x) > least), key=rank)
     contacts = tuple(contact_scales(mechanism, begun, linear))
     swings = [abs(x.imag) for x in some if abs(x.imag) > least]

@@ -19,10 +19,9 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
-from trsim.solve.blame import told
+from trsim.solve.blame import why
 from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
-from trsim.solve.locked import locked
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
 from trsim.solve.outcome import (
@@ -113,8 +112,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
-        here = told(scenario, mechanism, r) or locked(mechanism, float(r.clock[rec.T]), r.y)
-        reason = here or reason
+        reason = why(scenario, mechanism, r) or reason
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
 
 

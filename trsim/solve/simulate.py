@@ -13,10 +13,9 @@ from trsim.elements.scene import Scene, carried, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
-from trsim.solve.blame import told
+from trsim.solve.blame import why
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
-from trsim.solve.locked import locked
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.outcome import (
     CRAWLS,
@@ -164,5 +163,5 @@ def ending(
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     if reason != NO_STEPS_LEFT:
         at = mechanism.stages.mechanism(mechanism, r.stage)
-        text = told(scenario, at, r) or locked(at, float(r.clock[rec.T]), r.y) or text
+        text = why(scenario, at, r) or text
     return "failed", text
