@@ -6,6 +6,7 @@ What numba does for every function and ours do not need is left out:
   is asked for; that is optimised and translated once.  numba optimises and translates every
   function by itself, and again as part of each caller.
 * reference counts, wrappers, closures, array expressions, and the passes that look for them.
+* where each variable dies.  Only what is counted is released there.
 * the question, at every look into an array, whether the index is negative.  Ours never are.
 * the overloads of an operator, tried one after the other, for types they were tried for before.
 
@@ -19,14 +20,14 @@ from functools import cache
 from typing import Any
 
 import llvmlite.binding as llvm
-from numba.core import cgutils, types
+from numba.core import base, cgutils, ir, transforms, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_machinery import LoweringPass, PassManager, register_pass
+from numba.core.postproc import PostProcessor
 from numba.core.registry import cpu_target
 from numba.core.typed_passes import (
     AnnotateTypes,
-    IRLegalization,
     NativeLowering,
     NoPythonBackend,
     NopythonTypeInference,
@@ -111,8 +112,8 @@ class OwnLibrary(LoweringPass):
 
 PASSES = (
     TranslateByteCode, FixupArgs, IRProcessing, GenericRewrites, ReconstructSSA,
-    NopythonTypeInference, PreLowerStripPhis, IRLegalization, AnnotateTypes, OwnLibrary,
-    NativeLowering, NoPythonBackend,
+    NopythonTypeInference, PreLowerStripPhis, AnnotateTypes, OwnLibrary, NativeLowering,
+    NoPythonBackend,
 )  # fmt: skip
 
 
@@ -139,12 +140,27 @@ def translated(library: Library, symbol: str) -> tuple[Any, bytes]:
 
 
 _THEIR_CALL_TYPE = BaseFunction.get_call_type
-_THEIR_INDEX = arrayobj.fix_integer_index
 
 
 def _index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
     """An index as it stands, where numba would count a negative one from the end."""
     return context.cast(builder, index, kind, types.intp)
+
+
+def _blocks_only(post: PostProcessor, *_: Any, **__: Any) -> None:
+    """What must follow a change of a function; numba would also look where its variables live."""
+    post.func_ir.blocks = transforms.canonicalize_cfg(post.func_ir.blocks)
+
+
+def _variables(statement: Any) -> list[Any]:
+    """The variables that a statement or an expression names."""
+    found: list[Any] = []
+    for value in (statement._kws if type(statement) is ir.Expr else statement.__dict__).values():
+        if type(value) is ir.Var:
+            found.append(value)
+        elif isinstance(value, ir.Inst | list | tuple | dict):
+            found += statement._rec_list_vars(value)
+    return found
 
 
 @cache
@@ -162,32 +178,45 @@ def _remembered(function: Any, context: Any, arguments: Any, named: dict[str, An
     return _call_type(function, plain if alike else tuple(arguments))
 
 
+# what takes the place of numba's while it compiles for us: of what, under which name
+OURS = (
+    (BaseFunction, "get_call_type", _remembered),
+    (PostProcessor, "run", _blocks_only),
+    (arrayobj, "fix_integer_index", _index),
+    (base, "_has_loc", cache(base._has_loc)),
+    (ir.Stmt, "list_vars", _variables),
+    (ir.Expr, "list_vars", _variables),
+)
+
+
 @contextmanager
 def quick() -> Iterator[None]:
     """numba while it compiles for us.
 
     Its own parts go into our libraries too, the types of calls are remembered, nothing is looked
-    for in registries but what compiling itself puts there, no garbage is collected.
+    for in registries but what compiling itself puts there.  No garbage is collected: nearly all
+    that is made stays.
     """
     target, typing = cpu_target.target_context, cpu_target.typing_context
     codegen, collects = target.codegen(), gc.isenabled()
     typing.refresh()  # in this order, or numba tries the overloads of numbers last
     target.refresh()
-    theirs = codegen._library_class
+    theirs = [(codegen, "_library_class", codegen._library_class)]
+    theirs += [(owner, name, getattr(owner, name)) for owner, name, _ in OURS]
+    intrinsics = next(iter(target._registries))  # where numba registers those of ours
     gc.disable()
     codegen._library_class = Library
-    intrinsics = next(iter(target._registries))  # where numba registers those of ours
+    for owner, name, ours in OURS:
+        setattr(owner, name, ours)
     target.refresh = lambda: target.install_registry(intrinsics)
     typing.refresh = lambda: None
-    BaseFunction.get_call_type = _remembered  # type: ignore[assignment, method-assign]
-    arrayobj.fix_integer_index = _index
     try:
         yield
     finally:
-        codegen._library_class = theirs
-        BaseFunction.get_call_type = _THEIR_CALL_TYPE  # type: ignore[method-assign]
-        arrayobj.fix_integer_index = _THEIR_INDEX
+        for owner, name, value in theirs:
+            setattr(owner, name, value)
         del target.refresh, typing.refresh
+        gc.freeze()
         if collects:
             gc.enable()
 
