@@ -115,13 +115,14 @@ class Scene(Model):
     x: A1  # (m) right-hand side, then solution
     r: A1  # (m) refinement
     r2: A1  # (m)
+    moved: A2  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: A2  # (n, 6) accelerations without constraints, axes of the solve
     gap: A2  # (N, 2) penetration and its rate
     corner: A2  # (N, 2) how far an element has left its branch, and the branch it goes to
     left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
     out: A1  # (n_out) one output row
-    # [0] the last factorisation met a small pivot, [1] evaluations, [2] factorisations,
+    # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
     # [3] evaluations with contradictory constraints since the last accepted step
     status: I1
 
@@ -166,6 +167,7 @@ def scene(model: Model) -> Scene:
         x=np.zeros(m),
         r=np.zeros(m),
         r2=np.zeros(m),
+        moved=np.zeros((n, 6)),
         free=np.zeros((n, 6)),
         gap=np.zeros((len(model.con), 2)),
         corner=np.full((len(model.con), 2), -1.0),

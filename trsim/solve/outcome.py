@@ -50,7 +50,7 @@ CRAWLS = (
     "thousands of steps in a row were shorter than 1e-11 of the run, which would need 1e11 of "
     "them: a force that grows without bound, or a tolerance below the rounding of the state"
 )
-EASY, PROPORTION = 1e-2, 8.0 / 7.0  # see `settings`
+SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 SHORTEST = 1e-6  # of a run: a pulse shorter than that may be passed over
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
@@ -61,8 +61,8 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     """The constants of the march.
 
     The error of a run grows like tolerance^0.75..0.88 where each step keeps to the tolerance.  So
-    that ten times the tolerance means about ten times the error, steps are held to
-    EASY (tolerance / EASY)^PROPORTION.
+    that ten times the tolerance means about ten times the error, and smooth motion of some tens of
+    steps keeps to it at its end, steps are held to SHARE EASY (tolerance / EASY)^PROPORTION.
     """
     solver, output = scenario.solver, scenario.output
     if solver.end is None:
@@ -77,7 +77,7 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
         )
     s = np.zeros(rec.N_SETTINGS)
     s[rec.T_END] = solver.end
-    s[rec.TOLERANCE] = EASY * (solver.tolerance / EASY) ** PROPORTION
+    s[rec.TOLERANCE] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
     s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
     s[rec.H_MAX] = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:
