@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from trsim.laws.friction import beyond, branch_of, modified_coulomb, neighbour, on_branch
+from trsim.spec.load import load
 
+from ..linkages import REVERSER
 from ..mechanisms import p1_slider_crank
 from ..runs import run
 
@@ -81,3 +83,17 @@ def test_a_loaded_journal_creeps_at_the_balance_of_friction():
     assert np.hypot(N, F) == pytest.approx(500.0, rel=1e-3)
     speed = abs(r["pin.sliding_speed"][-1])
     assert speed == pytest.approx(V0 + (V1 - V0) * F / (MU * N), rel=1e-2)
+
+
+@pytest.mark.parametrize("sets", [["solver.tolerance=0.03"], ["solver.tolerance=0.1"],
+                                  ["solver.tolerance=1e-4", "output.every=2e-6"]])  # fmt: skip
+def test_corners_do_not_hold_a_run(sets):
+    """Both branches sending the motion back to the other, in steps too long for what they meet.
+
+    Four loaded pins stick and slip: these runs stood still for ever at a corner, 0.3 .. 0.5 s.
+    """
+    scenario = load(REVERSER / "clearance_abpq_0.1mm.yaml",
+                    ["solver.end=0.51", "solver.max_steps=60000", *sets])  # fmt: skip
+    r = run(scenario)
+    assert r.outcome.status == "done"
+    assert r.outcome.statistics["corners"] > 1000

@@ -219,7 +219,8 @@ def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
 def accept(s, r, b, t1, projected, last):
     """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
     s.status[3] = 0
-    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if t1 <= r.clock[T] else 0
+    stays = t1 - r.clock[T] <= SMALLEST * 2.2e-16 * t1
+    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if stays else 0
     r.clock[T] = t1
     r.clock[WORK_PROJECTION] += projected
     copy_to(r.y, b.y1)

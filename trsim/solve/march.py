@@ -20,6 +20,7 @@ from trsim.solve.complete import (
     SMALLEST,
     SMOOTH_STEP,
     STEP_AT,
+    WITH_CORNER,
     WITH_EVENT,
     WORTHLESS,
     call_complete,
@@ -71,6 +72,7 @@ from trsim.solve.record import (
 from trsim.solve.watch import take_sides
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
+TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
 def method_table(method):
@@ -129,6 +131,8 @@ def march(s, r, b, setting, methods, most):
         if too_fast(s, r):
             return TOO_FAST
         control(r, setting, method, h, error, outcome != SMOOTH_STEP)
+        if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:
+            shorten(r, setting, h)
         if methods.shape[0] > 1:
             choose(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
@@ -207,6 +211,19 @@ def control(r, setting, method, h, error, event):
         r.clock[H] = h * factor
     else:
         r.clock[H] = max(r.clock[H], h * factor)
+
+
+@internal
+def shorten(r, setting, h):
+    """A shorter step next, where a law came straight back to the corner it had just left.
+
+    The dense output of an implicit step far longer than what dies out after a corner is wrong at
+    the step's beginning.  Both branches could then send the motion back to the other for ever; in
+    a step that resolves it one of them does not.
+    """
+    shortest = 100.0 * SMALLEST * 2.2e-16 * setting[T_END]
+    if setting[FIXED_STEP] == 0.0:
+        r.clock[H] = min(r.clock[H], max(SHORTEN * h, shortest))
 
 
 @compiled(types.void(SCENE, RECORD, BUFFERS, A1))
