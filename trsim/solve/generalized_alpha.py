@@ -22,7 +22,7 @@ from trsim.solve import hermite
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
 from trsim.solve.displacements import active, turn, w_index
-from trsim.solve.jacobian import jacobian
+from trsim.solve.jacobian import jacobian, missing
 from trsim.solve.record import (
     FACTORED_H,
     FRESH,
@@ -63,7 +63,7 @@ def step(s, r, b, setting, t, h):
         for c in range(n):
             r.past[FILTERED, c] = r.yd[c]
     for attempt in range(2):
-        if r.count[JACOBIAN] == NO_JACOBIAN or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
             jacobian(s, r, b, setting, t, K[SCRATCH], K[MOVE])
             r.clock[FACTORED_H] = 0.0
         elif attempt > 0:

@@ -13,16 +13,34 @@ smallest penetration that matters.
 from trsim.assemble.equations import evaluate
 from trsim.elements.vectors import copy_to, internal
 from trsim.solve.displacements import active, displace, place_of, w_index
-from trsim.solve.record import FRESH, JACOBIAN, JACOBIANS, TOLERANCE
+from trsim.solve.record import (
+    FRESH,
+    JACOBIAN,
+    JACOBIANS,
+    NO_JACOBIAN,
+    NO_RATES,
+    OLD,
+    TOLERANCE,
+)
 
 PART = 3e-4  # of an entry's unit: the step of a difference
 
 
 @internal
+def missing(r):
+    """Whether a step needs `jacobian` first."""
+    return r.count[JACOBIAN] == NO_JACOBIAN or r.count[JACOBIAN] == NO_RATES
+
+
+@internal
 def jacobian(s, r, b, setting, t, trial, rates):
-    """Fill by_place and by_rate at (t, r.y), where y' is r.yd.  trial, rates: scratch (n_y)."""
+    """Fill by_place and by_rate at (t, r.y), where y' is r.yd.  trial, rates: scratch (n_y).
+
+    After a corner of friction only by_rate is new: what is left of the other is good enough.
+    """
     n_w, tolerance = active(s), setting[TOLERANCE]
-    for k in range(s.n_v):
+    places = r.count[JACOBIAN] != NO_RATES
+    for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed
         unit = 1.0 / (b.weight[place_of(s, k)] * tolerance)
         if s.d == 6 and k % 6 > 2:
@@ -43,5 +61,5 @@ def jacobian(s, r, b, setting, t, trial, rates):
         for row in range(n_w):
             i = w_index(s, row)
             r.by_rate[row, k] = (rates[i] - r.yd[i]) / part
-    r.count[JACOBIAN] = FRESH
+    r.count[JACOBIAN] = FRESH if places else OLD
     r.count[JACOBIANS] += 1

@@ -37,6 +37,7 @@ from trsim.solve.record import (
     LAST_EVENT,
     LOCATE,
     NO_JACOBIAN,
+    NO_RATES,
     NOT_STIFF,
     ONSET,
     PAST_ERROR,
@@ -104,7 +105,9 @@ def change_phases(s, r, b, setting, t1):
             r.mem[e, IMPACT_SPEED] = 0.0
     if touched:
         r.clock[LAST_EVENT] = t1
-    r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+        r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+    elif r.count[JACOBIAN] != NO_JACOBIAN:
+        r.count[JACOBIAN] = NO_RATES  # the force itself has no jump: a kink in its slope
     evaluate(s, t1, r.y, r.yd)
     corners(s, t1)
     for c in range(s.contact.size):

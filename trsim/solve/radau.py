@@ -22,7 +22,7 @@ from trsim.elements.vectors import all_finite, internal
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
 from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
 from trsim.solve.displacements import active, moved_by, twisted, w_index
-from trsim.solve.jacobian import jacobian
+from trsim.solve.jacobian import jacobian, missing
 from trsim.solve.record import (
     AFTER_REJECTION,
     FACTORED_H,
@@ -70,14 +70,14 @@ E = np.array([-13.0 - 7.0 * _S6, -13.0 + 7.0 * _S6, -1.0]) / 3.0  # of the error
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
 MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
-QUICK = 0.02  # contraction with which a matrix is kept for the next step
+QUICK = 0.1
 HALVE = 10.0  # an error that says: Newton failed, take about half the step
 
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
     for attempt in range(3):
-        if r.count[JACOBIAN] == NO_JACOBIAN or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
             jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
             r.clock[FACTORED_H] = 0.0
         elif attempt > 0:

@@ -44,7 +44,7 @@ from trsim.elements.scene import Model
     STIFF,  # steps in a row that looked stiff to an explicit method, or not to an implicit one
     NOT_STIFF,  # steps in a row that speak against it
     HISTORY,  # 1: `past` holds the polynomial of the step before
-    JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, OLD, FRESH
+    JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
     JACOBIANS,  # made so far
     ITERATIONS,  # of Newton, so far
     CRAWLED,  # trial steps in a row that were vanishingly short
@@ -52,7 +52,7 @@ from trsim.elements.scene import Model
     N_COUNT,
 ) = range(22)
 
-NO_JACOBIAN, OLD, FRESH = 0, 1, 2
+NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 
 # settings: constants of the march
 (
