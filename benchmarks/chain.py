@@ -1,14 +1,19 @@
 """P5: open chains of n rods, 0.2 s: error of the tip (m); cost per rod and right-hand side."""
 
 import json
+import time
 from collections.abc import Callable
 from statistics import median
+from typing import Any
 
 import numpy as np
 
 from benchmarks.measure import ROOT, Run, run
 from benchmarks.problems import LENGTH, bending_chain, chain
 from benchmarks.work_precision import Problem, at_bounds, of_text, table, varied
+from trsim.assemble.equations import evaluate
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.signatures import A1, i8, void
 
 DATA = ROOT / "tests" / "data"
 SIZES = (10, 40, 160)
@@ -24,24 +29,47 @@ def tip(r: Run, n: int) -> np.ndarray:
     return row[place : place + 3] + 0.5 * LENGTH * row[turn : turn + 9 : 3]
 
 
+@compiled(void(SCENE, A1, A1, i8))
+def often(s, y, yd, times):
+    """The equations of motion, again and again."""
+    for _ in range(times):
+        evaluate(s, 0.0, y, yd)
+
+
+def alone(mechanism: Any) -> float:
+    """CPU time of the equations of motion by themselves, us per evaluation."""
+    from trsim.elements.scene import scene
+
+    work, y = scene(mechanism.model), mechanism.y0.copy()
+    yd, times = np.zeros_like(y), 10_000 // mechanism.model.n
+    start = time.process_time()
+    often(work, y, yd, times)
+    return 1e6 * (time.process_time() - start) / times
+
+
 def costs(text: Callable[[int], str]) -> None:
-    """Print the CPU time per right-hand side, everything a step does included.
+    """Print the CPU time of assembling, and per right-hand side, all that a step does included.
 
     The lengths are run in turn, so that a busy minute of the machine meets all of them.
     """
     from trsim.assemble.assemble import assemble
 
     lean = {n: of_text(text(n))(["output.every=0.2", "output.channels=[]"]) for n in SIZES}
-    models = {n: assemble(scenario) for n, scenario in lean.items()}
-    each: dict[int, list[float]] = {n: [] for n in SIZES}
+    models, built, each, bare = {}, {}, {n: [] for n in SIZES}, {n: [] for n in SIZES}
+    for n in SIZES:
+        start = time.process_time()
+        models[n] = assemble(lean[n])
+        built[n] = time.process_time() - start
     for _ in range(1 + ROUNDS):
         for n in SIZES:
             numbers = run(varied(lean[n], BOUND), models[n]).outcome.statistics
             each[n].append(1e6 * numbers["integration_cpu"] / numbers["evaluations"])
+            bare[n].append(alone(models[n]))
     for n in SIZES:
         took = [cost / n for cost in each[n][1:]]
-        said = f"{median(took):.2f} us per rod and right-hand side, least {min(took):.2f}"
-        print(f"  n = {n:3d}: {said}")
+        print(f"  n = {n:3d}: assembled in {built[n]:.2f} s; us per rod and right-hand side "
+              f"{median(took):.2f}, least {min(took):.2f}; equations alone "
+              f"{min(bare[n][1:]) / n:.2f}")  # fmt: skip
     ratio = median(large / small for small, large in zip(each[40][1:], each[160][1:], strict=True))
     print(f"  n = 160 over n = 40: {ratio:.2f} times the cost per right-hand side\n")
 
