@@ -52,8 +52,8 @@ def andrews_error(scenario: Any, turn: dict[str, float]) -> float:
     return float(np.max(np.abs(angles(scenario, turn) - known)))
 
 
-def tip_error(tip: np.ndarray, n: int) -> float:
-    known = json.loads((DATA / "p5_chains.json").read_text())["straight"][str(n)]
+def tip_error(tip: np.ndarray, n: int, kind: str = "straight") -> float:
+    known = json.loads((DATA / "p5_chains.json").read_text())[kind][str(n)]
     return float(np.linalg.norm(tip - known))
 
 

@@ -63,9 +63,10 @@ def test_multipliers_of_dependent_rows():
     yd = np.zeros_like(y)
     derivative(work, 0.0, y, yd)
     rows, moved = np.zeros((work.m, work.n_v)), np.zeros((work.m, work.n_v))
-    for k in range(work.m):
-        for p in range(work.row_start[k], work.row_start[k + 1]):
-            at = slice(3 * (work.slot_frame[p] - 1), 3 * work.slot_frame[p])
+    for f in range(1, work.n):
+        at = slice(3 * (f - 1), 3 * f)
+        for p in range(work.frame_start[f], work.frame_start[f + 1]):
+            k = work.slot_row[p]
             rows[k, at], moved[k, at] = work.B[p, :3], work.W[p, :3]
     assert np.linalg.matrix_rank(rows) < work.m
     free = np.tile([0.0, -GRAVITY, 0.0], work.n - 1)

@@ -5,7 +5,8 @@ import pytest
 
 from trsim.assemble import release as releases
 from trsim.assemble.assemble import assemble, build, pack
-from trsim.assemble.reduce import dependences, jacobian, unique_reactions, weights
+from trsim.assemble.rank import unique_reactions
+from trsim.assemble.reduce import dependences, jacobian, weights
 from trsim.assemble.release import release
 from trsim.assemble.rows import all_rows
 from trsim.assemble.tables import drawn

@@ -156,7 +156,9 @@ def test_a_moving_loop():
     assert abs(turning0) > 1.0
     K, C = -slope(lambda x: rate(x, 0.0), 0.0), -slope(lambda x: rate(0.0, x), 0.0)
     assert found.K[0, 0] == pytest.approx(K, rel=EXACT)
-    assert found.C[0, 0] == pytest.approx(C, rel=EXACT)
+    # C vanishes: what is left of it is rounding of the rates
+    assert abs(C) < 1e-12
+    assert found.C[0, 0] == pytest.approx(0.0, abs=1e-10 * abs(turning0))
 
 
 def test_stiffness_of_a_closed_loop():

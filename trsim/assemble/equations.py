@@ -13,6 +13,7 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 from math import cos, nan, sin
 
 from trsim.assemble.linear import contradictory, factorise, independent, solve
+from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
 from trsim.elements.calls import call_kernel, caller
 from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.elements.scene import BAUMGARTE
@@ -42,10 +43,12 @@ def derivative(s, t, y, yd):
         if contradictory(s, s.x) and masses_too_unequal(s):
             s.status[3] += 1
             s.x[0] = nan
+        power = 0.0
         for k in range(s.m):
             s.lam[k] = s.x[k]
             # a moving constraint is a drive: the power it gives to the mechanism
-            s.zd[DRIVES] += s.lam[k] * s.phi_t[k]
+            power += s.lam[k] * s.phi_t[k]
+        s.zd[DRIVES] += power
     accelerations(s, y, yd)
 
 
@@ -157,37 +160,13 @@ def free_accelerations(s):
 
 
 @equation
-def rows(s):
-    """B: the rows of J in the axes of the solve, slot by slot; W = M^-1 B^T; then S = J W."""
-    if s.d == 3:
-        planar_slots(s)
-    else:
-        spatial_slots(s)
-    value, pair, B, W = s.value, s.pair, s.B, s.W
-    clear(value)
-    for p in range(pair.shape[0]):
-        i, j = pair[p, 0], pair[p, 1]
-        total = B[i, 0] * W[j, 0] + B[i, 1] * W[j, 1] + B[i, 2] * W[j, 2]
-        if s.d == 6:
-            total += B[i, 3] * W[j, 3] + B[i, 4] * W[j, 4] + B[i, 5] * W[j, 5]
-        value[pair[p, 2]] += total
-
-
-@equation
 def masses_too_unequal(s):
     """Whether S is singular only to rounding: bodies so unequal that its small part is lost.
 
     Where J J^T is singular too the rows do depend on each other: a dead centre, at which a driven
     mechanism may well start with a velocity that is none of those on its way.  S is made anew.
     """
-    value, pair, B = s.value, s.pair, s.B
-    turn = 1.0 / (s.size * s.size)
-    clear(value)
-    for p in range(pair.shape[0]):
-        i, j = pair[p, 0], pair[p, 1]
-        for a in range(s.d):
-            angular = a >= 3 or (s.d == 3 and a == 2)
-            value[pair[p, 2]] += B[i, a] * B[j, a] * (turn if angular else 1.0)
+    plain_rows(s)
     unequal = independent(s)
     rows(s)
     factorise(s)
@@ -195,78 +174,30 @@ def masses_too_unequal(s):
 
 
 @equation
-def planar_slots(s):
-    """B and W of x', y' and omega_z."""
-    J, B, W, row_start = s.J, s.B, s.W, s.row_start
-    mass_inverse, inertia_inverse = s.mass_inverse, s.inertia_inverse
-    for k in range(s.m):
-        for p in range(row_start[k], row_start[k + 1]):
-            f, c = s.slot_frame[p], s.slot_column[p]
-            B[p, 0], B[p, 1], B[p, 2] = J[k, c], J[k, c + 1], J[k, c + 5]
-            W[p, 0] = B[p, 0] * mass_inverse[f]
-            W[p, 1] = B[p, 1] * mass_inverse[f]
-            W[p, 2] = B[p, 2] * inertia_inverse[f, 8]
-
-
-@equation
-def spatial_slots(s):
-    """B and W of the velocity and the body-axes angular velocity."""
-    J, B, W, X, K = s.J, s.B, s.W, s.X, s.inertia_inverse
-    for k in range(s.m):
-        for p in range(s.row_start[k], s.row_start[k + 1]):
-            f, c = s.slot_frame[p], s.slot_column[p]
-            w0, w1, w2 = J[k, c + 3], J[k, c + 4], J[k, c + 5]
-            for a in range(3):
-                B[p, a] = J[k, c + a]
-                B[p, 3 + a] = X[f, 3 + a] * w0 + X[f, 6 + a] * w1 + X[f, 9 + a] * w2
-                W[p, a] = B[p, a] * s.mass_inverse[f]
-            for a in range(3):
-                W[p, 3 + a] = (
-                    K[f, 3 * a] * B[p, 3] + K[f, 3 * a + 1] * B[p, 4] + K[f, 3 * a + 2] * B[p, 5]
-                )
-
-
-@equation
 def right_hand_side(s):
     """x = J M^-1 F - gamma, with Baumgarte's terms where asked for."""
-    B, free, row_start, slot_frame = s.B, s.free, s.row_start, s.slot_frame
+    B, free, x = s.B, s.free, s.x
     for k in range(s.m):
-        total = -s.gamma[k]
-        for p in range(row_start[k], row_start[k + 1]):
-            f = slot_frame[p]
-            for a in range(s.d):
-                total += B[p, a] * free[f, a]
+        x[k] = -s.gamma[k]
         if s.stabilisation == BAUMGARTE:
-            total += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
-        s.x[k] = total
-
-
-@equation
-def velocity_residual(s, k):
-    """Phi' = J V + Phi_t of row k."""
-    J, V = s.J, s.V
-    total = s.phi_t[k]
-    for p in range(s.row_start[k], s.row_start[k + 1]):
-        f, c = s.slot_frame[p], s.slot_column[p]
-        for a in range(6):
-            total += J[k, c + a] * V[f, a]
-    return total
+            x[k] += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
+    for f in range(1, s.n):
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            total = B[p, 0] * free[f, 0] + B[p, 1] * free[f, 1] + B[p, 2] * free[f, 2]
+            if s.d == 6:
+                total += B[p, 3] * free[f, 3] + B[p, 4] * free[f, 4] + B[p, 5] * free[f, 5]
+            x[s.slot_row[p]] += total
 
 
 @equation
 def accelerations(s, y, yd):
     """V' = M^-1 (F - J^T lam) into yd and, in world axes, into A; q' into yd."""
-    X, A, a, W, lam = s.X, s.A, s.free, s.W, s.lam
-    row_start, slot_frame = s.row_start, s.slot_frame
-    for k in range(s.m):
-        for p in range(row_start[k], row_start[k + 1]):
-            f = slot_frame[p]
-            for c in range(s.d):
-                a[f, c] -= W[p, c] * lam[k]
+    X, A, a = s.X, s.A, s.free
     for k in range(s.n_z):
         yd[s.n_q + s.n_v + k] = s.zd[k]
     if s.d == 3:
         for f in range(1, s.n):
+            pull(s, f, s.lam)
             q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
             for c in range(3):
                 yd[q + c] = y[v + c]
@@ -274,6 +205,7 @@ def accelerations(s, y, yd):
             A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
         return
     for f in range(1, s.n):
+        pull(s, f, s.lam)
         q, v = 7 * (f - 1), s.n_q + 6 * (f - 1)
         for c in range(3):
             yd[q + c] = y[v + c]

@@ -36,14 +36,14 @@ def factorise(s):
     s.status[2] += 1
     s.status[0] = SOUND
     for k in range(s.m):
-        s.first[k] = s.value[s.diagonal[k]]
+        s.first[k] = s.value[s.column_start[k]]
     copy_to(s.original, s.value)
     smallest = eliminate(s, TINY)
     if smallest <= TINY:
         s.status[0] = SINGULAR
         copy_to(s.value, s.original)
         for k in range(s.m):
-            s.value[s.diagonal[k]] += SHIFT * s.first[k]
+            s.value[s.column_start[k]] += SHIFT * s.first[k]
         eliminate(s, TINY)
     elif smallest < SMALL:
         s.status[0] = POOR
@@ -52,40 +52,44 @@ def factorise(s):
 @internal
 def eliminate(s, tiny):
     """Right-looking elimination; returns the smallest pivot, as a share of its diagonal."""
-    value, smallest = s.value, 1.0
-    diagonal, update, update_start = s.diagonal, s.update, s.update_start
-    below, below_start = s.below, s.below_start
+    value, target, column_start = s.value, s.target, s.column_start
+    smallest, u = 1.0, 0
     for k in range(s.m):
-        D = value[diagonal[k]]
+        start, end = column_start[k], column_start[k + 1]
+        D = value[start]
         if SMALL * s.first[k] >= D:
             smallest = min(smallest, D / s.first[k] if s.first[k] > 0.0 else 0.0)
             if tiny * s.first[k] >= D:
                 D = tiny * s.first[k]
                 if D == 0.0:
                     D = 1.0
-                value[diagonal[k]] = D
+                value[start] = D
         inverse = 1.0 / D
-        for u in range(update_start[k], update_start[k + 1]):
-            value[update[u, 0]] -= value[update[u, 1]] * value[update[u, 2]] * inverse
-        for p in range(below_start[k], below_start[k + 1]):
-            value[below[p]] *= inverse
+        # from the last row up: what is left of the column is still that of S
+        for p in range(end - 1, start, -1):
+            L = value[p] * inverse
+            for o in range(start + 1, p + 1):
+                value[target[u]] -= L * value[o]
+                u += 1
+            value[p] = L
     return smallest
 
 
 @internal
 def substitute(s, value, x):
     """x <- (L D L^T)^-1 x."""
-    order, diagonal = s.order, s.diagonal
-    below, below_row, below_start = s.below, s.below_row, s.below_start
+    row, column_start = s.row, s.column_start
     for k in range(s.m):
-        x_k = x[order[k]]
-        for p in range(below_start[k], below_start[k + 1]):
-            x[below_row[p]] -= value[below[p]] * x_k
+        start = column_start[k]
+        x_k = x[row[start]]
+        for p in range(start + 1, column_start[k + 1]):
+            x[row[p]] -= value[p] * x_k
     for k in range(s.m - 1, -1, -1):
-        total = x[order[k]] / value[diagonal[k]]
-        for p in range(below_start[k], below_start[k + 1]):
-            total -= value[below[p]] * x[below_row[p]]
-        x[order[k]] = total
+        start = column_start[k]
+        total = x[row[start]] / value[start]
+        for p in range(start + 1, column_start[k + 1]):
+            total -= value[p] * x[row[p]]
+        x[row[start]] = total
 
 
 @internal
@@ -112,20 +116,15 @@ def solve(s, x):
 @internal
 def residual(s, x, r):
     """r <- r - J M^-1 J^T x with the rows `rows` last made."""
-    B, W, u, row_start, slot_frame = s.B, s.W, s.moved, s.row_start, s.slot_frame
+    B, W, u, frame_start, slot_row = s.B, s.W, s.moved, s.frame_start, s.slot_row
     clear_table(u)
-    for k in range(s.m):
-        for p in range(row_start[k], row_start[k + 1]):
-            f = slot_frame[p]
+    for f in range(1, s.n):
+        for p in range(frame_start[f], frame_start[f + 1]):
             for a in range(s.d):
-                u[f, a] += W[p, a] * x[k]
-    for k in range(s.m):
-        total = r[k]
-        for p in range(row_start[k], row_start[k + 1]):
-            f = slot_frame[p]
+                u[f, a] += W[p, a] * x[slot_row[p]]
+        for p in range(frame_start[f], frame_start[f + 1]):
             for a in range(s.d):
-                total -= B[p, a] * u[f, a]
-        r[k] = total
+                r[slot_row[p]] -= B[p, a] * u[f, a]
 
 
 @internal
@@ -137,7 +136,7 @@ def contradictory(s, x):
     residual(s, x, s.r2)
     left, whole = 0.0, 0.0
     for k in range(s.m):
-        row = s.order[k]
+        row = s.row[s.column_start[k]]
         left = max(left, abs(s.r2[row]) / sqrt(s.first[k]))
         whole = max(whole, abs(s.r[row]) / sqrt(s.first[k]))
     return left > LEFT_OVER * whole
@@ -147,5 +146,5 @@ def contradictory(s, x):
 def independent(s):
     """Whether the rows whose J J^T was just filled into s.value do not depend on each other."""
     for k in range(s.m):
-        s.first[k] = s.value[s.diagonal[k]]
+        s.first[k] = s.value[s.column_start[k]]
     return eliminate(s, PLAIN) > PLAIN

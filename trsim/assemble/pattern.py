@@ -2,37 +2,48 @@
 
 Two rows of J meet in S where they share a moving frame.  A minimum-degree order keeps the fill
 small [George1989]: for an open chain the cost of factorising grows linearly with its length.
-The numeric part (assemble/equations.py) only walks the index lists made here.
+The numeric part (equations.py, linear.py) only walks the index lists made here, each from its
+beginning to its end.
 """
 
+from heapq import heapify, heappop, heappush
 from typing import Any
 
 import numpy as np
 
 
-def slots(row_frames: list[tuple[int, int]]) -> tuple[list[int], list[int], list[int]]:
-    """Slots of rows given as pairs of frames (i, j): start of each row, frame, column of J."""
-    start, frame, column = [0], [], []
-    for i, j in row_frames:
-        for f, c in ((i, 0), (j, 6)):
+def slots(row_frames: list[tuple[int, int]], n: int) -> list[list[tuple[int, int]]]:
+    """For each of n frames its slots: (row, column of J) of the rows between frames (i, j)."""
+    found: list[list[tuple[int, int]]] = [[] for _ in range(n)]
+    for k, (i, j) in enumerate(row_frames):
+        for f, column in ((i, 0), (j, 6)):
             if f > 0:
-                frame.append(f)
-                column.append(c)
-        start.append(len(frame))
-    return start, frame, column
+                found[f].append((k, column))
+    return found
 
 
 def minimum_degree(neighbours: list[set[int]]) -> list[int]:
-    """An elimination order: always the row with the fewest neighbours left, fill included."""
+    """An elimination order: always the row with the fewest neighbours left, fill included.
+
+    Among these the one whose neighbours were eliminated longest ago: its pivot waits for no other,
+    so a chain is taken from both ends in turn, and the processor works on both at once.
+    """
     graph = [set(n) for n in neighbours]
-    left, order = set(range(len(graph))), []
-    while left:
-        k = min(left, key=lambda r: (len(graph[r]), r))
+    waiting = [(len(g), 0, k) for k, g in enumerate(graph)]
+    valid = list(waiting)
+    heapify(waiting)
+    order: list[int] = []
+    while waiting:
+        found = heappop(waiting)
+        k = found[2]
+        if found != valid[k]:
+            continue
         order.append(k)
-        left.remove(k)
         for a in graph[k]:
             graph[a] |= graph[k]
             graph[a] -= {a, k}
+            valid[a] = (len(graph[a]), len(order), a)
+            heappush(waiting, valid[a])
         graph[k] = set()
     return order
 
@@ -51,58 +62,46 @@ def eliminate(neighbours: list[set[int]], order: list[int]) -> list[list[int]]:
     return below
 
 
-def pattern(row_frames: list[tuple[int, int]]) -> dict[str, Any]:
-    """Index arrays of Model for the given rows; see the comments there."""
-    m = len(row_frames)
-    start, frame, column = slots(row_frames)
-    touching: dict[int, list[tuple[int, int]]] = {}
-    for k in range(m):
-        for s in range(start[k], start[k + 1]):
-            touching.setdefault(frame[s], []).append((k, s))
-    neighbours: list[set[int]] = [set() for _ in range(m)]
-    for rows in touching.values():
-        members = {k for k, _ in rows}
-        for k in members:
-            neighbours[k] |= members - {k}
+def pattern(row_frames: list[tuple[int, int]], n: int) -> dict[str, Any]:
+    """Index arrays of Model for rows between pairs of its n frames; see the comments there."""
+    of_frame = slots(row_frames, n)
+    neighbours: list[set[int]] = [set() for _ in row_frames]
+    for members in of_frame:
+        rows = {k for k, _ in members}
+        for k in rows:
+            neighbours[k] |= rows - {k}
     order = minimum_degree(neighbours)
-    rank = {row: k for k, row in enumerate(order)}
     below = eliminate(neighbours, order)
+    columns = [[k, *under] for k, under in zip(order, below, strict=True)]
+    row = [k for column in columns for k in column]
+    column_start = np.cumsum([0, *map(len, columns)])
 
-    place: dict[tuple[int, int], int] = {}
-
-    def at(a: int, b: int) -> int:
-        """Place of the entry of rows a and b (elimination ranks decide which is lower)."""
-        key = (a, b) if rank[a] >= rank[b] else (b, a)
-        return place.setdefault(key, len(place))
-
-    diagonal = [at(k, k) for k in order]
-    below_start, below_place, below_row = [0], [], []
-    update_start = [0]
-    update: list[tuple[int, int, int]] = []
-    for k, under in zip(order, below, strict=True):
-        for a_index, a in enumerate(under):
-            below_place.append(at(a, k))
-            below_row.append(a)
-            update += [(at(a, b), at(a, k), at(b, k)) for b in under[: a_index + 1]]
-        below_start.append(len(below_place))
-        update_start.append(len(update))
-    pair = [
-        (sa, sb, at(a, b))
-        for rows in touching.values()
-        for n, (a, sa) in enumerate(rows)
-        for b, sb in rows[: n + 1]
+    # an entry of S stands in the column of that one of its rows which is eliminated first
+    place = {
+        (column[0], k): start + p
+        for start, column in zip(column_start.tolist(), columns, strict=False)
+        for p, k in enumerate(column)
+    }
+    place |= {(b, a): p for (a, b), p in place.items()}
+    target = [
+        place[under[last], b]
+        for under in below
+        for last in reversed(range(len(under)))
+        for b in under[: last + 1]
+    ]
+    entry = [
+        place[a, b]
+        for members in of_frame
+        for last, (a, _) in enumerate(members)
+        for b, _ in members[: last + 1]
     ]
     return {
-        "row_start": np.array(start, np.int64),
-        "slot_frame": np.array(frame, np.int64),
-        "slot_column": np.array(column, np.int64),
-        "pair": np.array(pair, np.int64).reshape(-1, 3),
-        "n_value": len(place),
-        "order": np.array(order, np.int64),
-        "diagonal": np.array(diagonal, np.int64),
-        "below_start": np.array(below_start, np.int64),
-        "below": np.array(below_place, np.int64),
-        "below_row": np.array(below_row, np.int64),
-        "update_start": np.array(update_start, np.int64),
-        "update": np.array(update, np.int64).reshape(-1, 3),
+        "row_frame": np.array(row_frames, np.int64).reshape(-1, 2),
+        "frame_start": np.cumsum([0, *map(len, of_frame)]),
+        "slot_row": np.array([k for members in of_frame for k, _ in members], np.int64),
+        "slot_column": np.array([c for members in of_frame for _, c in members], np.int64),
+        "entry": np.array(entry, np.int64),
+        "column_start": column_start,
+        "row": np.array(row, np.int64),
+        "target": np.array(target, np.int64),
     }

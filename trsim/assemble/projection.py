@@ -5,8 +5,9 @@ dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1
 
 import numpy as np
 
-from trsim.assemble.equations import constraints, equation, poses, rows, velocity_residual
+from trsim.assemble.equations import constraints, equation, poses
 from trsim.assemble.linear import factorise, solve
+from trsim.assemble.schur import pull, rows, velocity_residual
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.signatures import A1, f8, float64, void
 from trsim.elements.vectors import clear_table
@@ -70,11 +71,8 @@ def project_positions(s, t, y):
     solve(s, s.x)
     dx = s.free
     clear_table(dx)
-    for k in range(s.m):
-        for p in range(s.row_start[k], s.row_start[k + 1]):
-            for a in range(s.d):
-                dx[s.slot_frame[p], a] -= s.W[p, a] * s.x[k]
     for f in range(1, s.n):
+        pull(s, f, s.x)
         move(s, y, f, dx[f])
     return worst
 
@@ -91,9 +89,10 @@ def project_velocities(s, y):
         s.x[k] = velocity_residual(s, k)
         worst = max(worst, abs(s.x[k]))
     solve(s, s.x)
-    for k in range(s.m):
-        for p in range(s.row_start[k], s.row_start[k + 1]):
-            v = s.n_q + s.d * (s.slot_frame[p] - 1)
-            for a in range(s.d):
-                y[v + a] -= s.W[p, a] * s.x[k]
+    clear_table(s.free)
+    for f in range(1, s.n):
+        pull(s, f, s.x)
+        v = s.n_q + s.d * (f - 1)
+        for a in range(s.d):
+            y[v + a] += s.free[f, a]
     return worst

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.projection import move_all
+from trsim.assemble.rank import DEPENDENT, dependent_rows
 from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]
 
 IN_PLANE, OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
-DEPENDENT = 1e-8  # of a row left after the rows before it are taken out
 NEARLY = 1e-6  # the same at nearby positions, where an error of the drawing has grown
 SAMPLES = 4
 SPREAD = 0.03  # of the mechanism's size and rad: how far positions are perturbed
@@ -40,8 +40,8 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     poses(w, y)
     constraints(w, t)
     J = np.zeros((model.m, model.n, 6))
-    row = np.repeat(np.arange(model.m), np.diff(model.row_start))
-    J[row, model.slot_frame] = w.J.reshape(-1, 2, 6)[row, model.slot_column // 6]
+    for end, block in ((0, w.J[:, :6]), (1, w.J[:, 6:])):
+        J[np.arange(model.m), model.row_frame[:, end]] = block
     return w.phi.copy(), w.phi_t.copy(), J[:, 1:].reshape(model.m, 6 * (model.n - 1))
 
 
@@ -93,28 +93,6 @@ def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None =
     phi = jacobian(model, t, y)[0]
     phi = phi if active is None else phi[active]
     return y, float(np.max(np.abs(phi), initial=0.0))
-
-
-def dependent_rows(J: Array, scale: Array, order: list[int], least: float = DEPENDENT) -> set[int]:
-    """Rows that depend on the rows before them in `order` (modified Gram-Schmidt, twice)."""
-    basis: list[Array] = []
-    found = set()
-    for k in order:
-        row = J[k] * scale
-        length = np.linalg.norm(row)
-        if length == 0.0:
-            found.add(k)
-            continue
-        row = row / length
-        for _ in range(2):
-            for b in basis:
-                row = row - (row @ b) * b
-        left = np.linalg.norm(row)
-        if left < least:
-            found.add(k)
-        else:
-            basis.append(row / left)
-    return found
 
 
 def dependences(model: Model, y: Array, columns: list[int], order: list[int],
@@ -204,14 +182,3 @@ def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
     if tilted and not held:
         return False, False
     return True, bool(held)
-
-
-def unique_reactions(J: Array, scale: Array) -> NDArray[np.bool_]:
-    """Which rows have a multiplier that the motion determines: no part in the null space of J^T."""
-    if len(J) == 0:
-        return np.zeros(0, bool)
-    length = np.linalg.norm(J * scale, axis=1)
-    rows = (J * scale) / np.where(length > 0, length, 1.0)[:, None]
-    u, s, _ = np.linalg.svd(rows, full_matrices=True)
-    rank = int(np.sum(s > DEPENDENT * max(1.0, s.max(initial=1.0))))
-    return np.linalg.norm(u[:, rank:], axis=1) < 1e-7

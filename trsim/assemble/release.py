@@ -19,16 +19,8 @@ from numpy.typing import NDArray
 
 from trsim.assemble.assemble import build, pack
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
-from trsim.assemble.reduce import (
-    DEPENDENT,
-    IN_PLANE,
-    OUT_OF_PLANE,
-    dependent_rows,
-    jacobian,
-    nearby,
-    unique_reactions,
-    weights,
-)
+from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
+from trsim.assemble.reduce import IN_PLANE, OUT_OF_PLANE, jacobian, nearby, weights
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
 from trsim.elements.scene import scene

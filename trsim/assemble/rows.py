@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.rank import unique_reactions
 from trsim.assemble.reduce import (
     IN_PLANE,
     OUT_OF_PLANE,
@@ -14,7 +15,6 @@ from trsim.assemble.reduce import (
     dependences,
     is_planar,
     jacobian,
-    unique_reactions,
     weights,
 )
 from trsim.elements.contract import PHASE, UNLOCATED

@@ -52,18 +52,14 @@ class Model(Packed):
     corners: I2
     energy: I2
     measure: I2
-    row_start: I1  # (m+1) slots of a row: one per moving frame it touches   assemble/pattern.py
-    slot_frame: I1  # (slots) frame of a slot
+    row_frame: I2  # (m, 2) frames i and j of a row                        assemble/pattern.py
+    frame_start: I1  # (n+1) slots of a frame: one per row that touches it, the ground has none
+    slot_row: I1  # (slots) its row
     slot_column: I1  # (slots) its first column of J: 0 for frame i, 6 for frame j
-    pair: I2  # (pairs, 3) two slots of one frame, and the entry of S they add to
-    n_value: i8  # entries of the lower triangle of J M^-1 J^T, fill included
-    order: I1  # (m) row eliminated k-th
-    diagonal: I1  # (m) place of D_k
-    below_start: I1  # (m+1)
-    below: I1  # place of L_ik
-    below_row: I1  # its row i
-    update_start: I1  # (m+1)
-    update: I2  # (updates, 3) target, place of L_ik, place of L_jk
+    entry: I1  # (pairs) the place in S that two slots of one frame add to
+    column_start: I1  # (m+1) places of the column of S and of L that is eliminated k-th
+    row: I1  # (places) their rows, that of the diagonal first
+    target: I1  # (updates) the place that two entries of one column of L are taken from
     derivative: i8  # address of the equations of motion
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
@@ -109,8 +105,8 @@ class Scene(Model):
     lam: A1  # (m) multipliers
     B: A2  # (slots, 6) rows of J in the axes of the solve
     W: A2  # (slots, 6) M^-1 B^T
-    value: A1  # (n_value) S = J M^-1 J^T, then its factors
-    original: A1  # (n_value) S
+    value: A1  # (places) S = J M^-1 J^T, then its factors
+    original: A1  # (places) S
     first: A1  # (m) its diagonal, in elimination order
     x: A1  # (m) right-hand side, then solution
     r: A1  # (m) refinement
@@ -138,7 +134,7 @@ def scene(model: Model) -> Scene:
 
     from trsim.elements.contract import N_MEM
 
-    n, m, slots = model.n, model.m, len(model.slot_frame)
+    n, m, slots = model.n, model.m, len(model.slot_row)
     X = np.zeros((n, 12))
     X[:, [3, 7, 11]] = 1.0
     X[:, 2] = model.depth
@@ -161,8 +157,8 @@ def scene(model: Model) -> Scene:
         lam=np.zeros(m),
         B=np.zeros((slots, 6)),
         W=np.zeros((slots, 6)),
-        value=np.zeros(model.n_value),
-        original=np.zeros(model.n_value),
+        value=np.zeros(len(model.row)),
+        original=np.zeros(len(model.row)),
         first=np.zeros(m),
         x=np.zeros(m),
         r=np.zeros(m),

@@ -2,8 +2,9 @@
 
 from math import nan
 
-from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses, velocity_residual
+from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
 from trsim.assemble.projection import normalise, project_positions, project_velocities
+from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import PROJECTION
 from trsim.elements.vectors import internal
 from trsim.solve.record import WORST_PHI, WORST_PHI_DOT

@@ -130,13 +130,6 @@ class Probe:
         self.own = [
             self.n_q + self.n_v + N_BOOK + k for k, s in enumerate(mechanism.follows) if s < 0
         ]
-        ends = [(0, 0)] * work.m
-        for k in range(work.m):
-            for p in range(work.row_start[k], work.row_start[k + 1]):
-                i, j = ends[k]
-                f = int(work.slot_frame[p])
-                ends[k] = (f, j) if work.slot_column[p] == 0 else (i, f)
-        self.ends = np.array(ends, np.int64).reshape(-1, 2)
         self.basis()
         self.scales(begun)
 
@@ -205,7 +198,7 @@ class Probe:
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
         work = self.work
-        i, j = self.ends[:, 0], self.ends[:, 1]
+        i, j = work.row_frame[:, 0], work.row_frame[:, 1]
         return np.asarray(
             np.sum(work.J[:, :6] * work.V[i] + work.J[:, 6:] * work.V[j], axis=1) + work.phi_t
         )

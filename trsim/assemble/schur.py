@@ -1,0 +1,113 @@
+"""J M^-1 J^T, and what else the rows of J do to the bodies, frame by frame.
+
+A slot is a row on one of its moving frames; the slots of a frame are neighbours (pattern.py).  Of
+each, in the axes of the solve (planar x', y', omega_z; spatial the velocity and the body-axes
+angular velocity),
+
+    B = its part of J,        W = M^-1 B^T,        S = sum of B W over the slots that share a frame
+
+so every loop here goes through the bodies once, and through lists from beginning to end.
+"""
+
+from trsim.elements.vectors import clear
+from trsim.elements.vectors import internal as equation
+
+
+@equation
+def rows(s):
+    """B, W and S of the J of the last evaluation."""
+    clear(s.value)
+    if s.d == 3:
+        planar_rows(s)
+    else:
+        spatial_rows(s)
+
+
+@equation
+def planar_rows(s):
+    """B and W of x', y' and omega_z, and what they add to S."""
+    J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
+    pair = 0
+    for f in range(1, s.n):
+        for p in range(frame_start[f], frame_start[f + 1]):
+            k, c = s.slot_row[p], s.slot_column[p]
+            b0, b1, b2 = J[k, c], J[k, c + 1], J[k, c + 5]
+            w0, w1 = b0 * s.mass_inverse[f], b1 * s.mass_inverse[f]
+            w2 = b2 * s.inertia_inverse[f, 8]
+            B[p, 0], B[p, 1], B[p, 2] = b0, b1, b2
+            W[p, 0], W[p, 1], W[p, 2] = w0, w1, w2
+            for o in range(frame_start[f], p + 1):
+                value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
+                pair += 1
+
+
+@equation
+def spatial_rows(s):
+    """B and W of the velocity and the body-axes angular velocity, and what they add to S."""
+    J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
+    X, K, mass_inverse = s.X, s.inertia_inverse, s.mass_inverse
+    pair = 0
+    for f in range(1, s.n):
+        for p in range(frame_start[f], frame_start[f + 1]):
+            k, c = s.slot_row[p], s.slot_column[p]
+            b0, b1, b2 = J[k, c], J[k, c + 1], J[k, c + 2]
+            t0, t1, t2 = J[k, c + 3], J[k, c + 4], J[k, c + 5]
+            b3 = X[f, 3] * t0 + X[f, 6] * t1 + X[f, 9] * t2
+            b4 = X[f, 4] * t0 + X[f, 7] * t1 + X[f, 10] * t2
+            b5 = X[f, 5] * t0 + X[f, 8] * t1 + X[f, 11] * t2
+            w0, w1, w2 = b0 * mass_inverse[f], b1 * mass_inverse[f], b2 * mass_inverse[f]
+            w3 = K[f, 0] * b3 + K[f, 1] * b4 + K[f, 2] * b5
+            w4 = K[f, 3] * b3 + K[f, 4] * b4 + K[f, 5] * b5
+            w5 = K[f, 6] * b3 + K[f, 7] * b4 + K[f, 8] * b5
+            B[p, 0], B[p, 1], B[p, 2], B[p, 3], B[p, 4], B[p, 5] = b0, b1, b2, b3, b4, b5
+            W[p, 0], W[p, 1], W[p, 2], W[p, 3], W[p, 4], W[p, 5] = w0, w1, w2, w3, w4, w5
+            for o in range(frame_start[f], p + 1):
+                value[entry[pair]] += (
+                    B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
+                    + (B[o, 3] * w3 + B[o, 4] * w4 + B[o, 5] * w5)
+                )  # fmt: skip
+                pair += 1
+
+
+@equation
+def plain_rows(s):
+    """J J^T in place of S, from B; rotations are weighed by the mechanism's size."""
+    B, value, turn = s.B, s.value, 1.0 / (s.size * s.size)
+    clear(value)
+    pair = 0
+    for f in range(1, s.n):
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for o in range(s.frame_start[f], p + 1):
+                for a in range(s.d):
+                    angular = a >= 3 or (s.d == 3 and a == 2)
+                    value[s.entry[pair]] += B[p, a] * B[o, a] * (turn if angular else 1.0)
+                pair += 1
+
+
+@equation
+def velocity_residual(s, k):
+    """Phi' = J V + Phi_t of row k."""
+    J, V = s.J, s.V
+    i, j = s.row_frame[k, 0], s.row_frame[k, 1]
+    total = s.phi_t[k]
+    for a in range(6):
+        total += J[k, a] * V[i, a] + J[k, 6 + a] * V[j, a]
+    return total
+
+
+@equation
+def pull(s, f, x):
+    """free -= M^-1 J^T x of one frame, in the axes of the solve."""
+    W, a = s.W, s.free
+    a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
+    a3, a4, a5 = a[f, 3], a[f, 4], a[f, 5]
+    for p in range(s.frame_start[f], s.frame_start[f + 1]):
+        x_k = x[s.slot_row[p]]
+        a0 -= W[p, 0] * x_k
+        a1 -= W[p, 1] * x_k
+        a2 -= W[p, 2] * x_k
+        a3 -= W[p, 3] * x_k
+        a4 -= W[p, 4] * x_k
+        a5 -= W[p, 5] * x_k
+    a[f, 0], a[f, 1], a[f, 2] = a0, a1, a2
+    a[f, 3], a[f, 4], a[f, 5] = a3, a4, a5
