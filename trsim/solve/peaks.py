@@ -24,9 +24,9 @@ from trsim.solve.record import (
 )
 
 AHEAD = 1e-4  # of a step: how far the rate of a contact force looks
-BISECTIONS = 16  # of a step, to the maximum of a contact force: flat there, so this is plenty
+TRIALS, FLAT = 12, 1e-3  # to the maximum of a contact force; of its rate: flat enough there
 INSIDE = 16  # parts a searched step is cut into
-NEAR = 0.5  # of the largest contact force so far: a maximum above this is searched for
+NEAR = 0.9  # of the largest contact force so far: a maximum that may be above is searched for
 SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
 
 
@@ -63,23 +63,24 @@ def extreme(p, t, value):
 
 
 @internal
+def ahead_of(s, y, yd, t, ahead):
+    """Move y along y' and measure everything there."""
+    for k in range(y.size):
+        y[k] += ahead * yd[k]
+    poses(s, y)
+    call_all(s, s.measure, t)
+
+
+@internal
 def force_rate(s, y, yd, t, ahead, c):
     """Rate of contact c's force at (t, y), by its channel a little before and after along y'.
 
-    y is moved and moved back.
+    y is moved to and fro; it ends where the channel was looked at last.
     """
     o = s.wanted[s.contact[c]]
-    for k in range(y.size):
-        y[k] -= ahead * yd[k]
-    poses(s, y)
-    call_all(s, s.measure, t - ahead)
+    ahead_of(s, y, yd, t - ahead, -ahead)
     before = s.out[o]
-    for k in range(y.size):
-        y[k] += 2.0 * ahead * yd[k]
-    poses(s, y)
-    call_all(s, s.measure, t + ahead)
-    for k in range(y.size):
-        y[k] -= ahead * yd[k]
+    ahead_of(s, y, yd, t + ahead, 2.0 * ahead)
     return (s.out[o] - before) / (2.0 * ahead)
 
 
@@ -87,27 +88,48 @@ def force_rate(s, y, yd, t, ahead, c):
 def near_peak(s, r, b, t, h, last):
     """Whether a contact force passes a maximum, one of its largest, inside the step just made.
 
-    Fills b.slope1 with the rate of every contact force at the end of the step.
+    Fills b.slope1 with the rate of every contact force at the end of the step, all from the same
+    two places.
     """
+    rates, touching = b.slope1, False
+    for c in range(s.contact.size):
+        rates[c] = 0.0
+        touching = touching or loaded(s, c)
+    if not touching:
+        return False
+    ahead = AHEAD * h
+    copy_to(b.y2, b.y1)
+    ahead_of(s, b.y2, b.K[last], t - ahead, -ahead)
+    for c in range(s.contact.size):
+        if loaded(s, c):
+            rates[c] = -s.out[s.wanted[s.contact[c]]]
+    ahead_of(s, b.y2, b.K[last], t + ahead, 2.0 * ahead)
     near = False
     for c in range(s.contact.size):
-        b.slope1[c] = 0.0
-        o = s.wanted[s.contact[c]]
-        if s.mem[s.contact[c], PHASE] == FLIGHT or o < 0:
-            continue
-        copy_to(b.y2, b.y1)
-        b.slope1[c] = force_rate(s, b.y2, b.K[last], t, AHEAD * h, c)
-        near = near or passes(s, r, b, c)
+        if loaded(s, c):
+            rates[c] = (rates[c] + s.out[s.wanted[s.contact[c]]]) / (2.0 * ahead)
+            near = near or passes(s, r, b, c, h)
     return near
 
 
 @internal
-def passes(s, r, b, c):
-    """Whether the force of contact c has a maximum worth finding between the step's ends."""
-    o = s.wanted[s.contact[c]]
-    if o < 0 or not (r.slope[c] > 0.0 and b.slope1[c] < 0.0):
+def loaded(s, c):
+    """Whether contact c has a force, and a channel of it."""
+    return s.mem[s.contact[c], PHASE] != FLIGHT and s.wanted[s.contact[c]] >= 0
+
+
+@internal
+def passes(s, r, b, c, h):
+    """Whether the force of contact c has a maximum worth finding in the step of length h.
+
+    It lies below the point where the tangents at both ends meet.
+    """
+    o, rise, fall = s.wanted[s.contact[c]], r.slope[c], b.slope1[c]
+    if o < 0 or not (rise > 0.0 and fall < 0.0):
         return False
-    return max(b.out[o], r.peak[o, PEAK_V2]) > NEAR * r.peak[o, PEAK_MAX]
+    start, end = r.peak[o, PEAK_V2], b.out[o]
+    meet = min(max((end - start - fall * h) / (rise - fall), 0.0), h)
+    return max(start + rise * meet, end) > NEAR * r.peak[o, PEAK_MAX]
 
 
 @internal
@@ -119,22 +141,38 @@ def peaks_inside(s, r, b, interpolate, t, h, t1):
     """
     reach = (t1 - t) / h
     for c in range(s.contact.size):
-        if s.mem[s.contact[c], PHASE] == FLIGHT or not passes(s, r, b, c):
-            continue
-        low, high = 0.0, reach
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            values_inside(s, r, b, interpolate, t, h, middle)
-            if force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c) > 0.0:
-                low = middle
-            else:
-                high = middle
-        values_inside(s, r, b, interpolate, t, h, low)
-        for o in range(s.n_out):
-            extreme(r.peak[o], t + low * h, s.out[o])
+        if loaded(s, c) and passes(s, r, b, c, t1 - t):
+            top = summit(s, r, b, interpolate, t, h, reach, c)
+            values_inside(s, r, b, interpolate, t, h, top)
+            for o in range(s.n_out):
+                extreme(r.peak[o], t + top * h, s.out[o])
     for k in range(1, INSIDE):
         values_inside(s, r, b, interpolate, t, h, reach * k / INSIDE)
         refine(s, r, s.out, t + reach * k / INSIDE * h)
+
+
+@internal
+def summit(s, r, b, interpolate, t, h, reach, c):
+    """Where the force of contact c is largest, as theta: its rate's root by Illinois steps."""
+    low, rise, high, fall, side = 0.0, r.slope[c], reach, b.slope1[c], 0
+    enough = FLAT * (rise - fall)
+    for k in range(TRIALS):
+        middle = high - fall * (high - low) / (fall - rise)
+        if k % 4 == 3 or not low < middle < high:
+            middle = 0.5 * (low + high)
+        values_inside(s, r, b, interpolate, t, h, middle)
+        rate = force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c)
+        if abs(rate) < enough:
+            return middle
+        if rate > 0.0:
+            low, rise = middle, rate
+            fall *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            high, fall = middle, rate
+            rise *= 0.5 if side == -1 else 1.0
+            side = -1
+    return 0.5 * (low + high)
 
 
 @internal
