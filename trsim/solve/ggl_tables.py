@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.coupling import Nodes, nodes
-from trsim.assemble.elimination import elimination
+from trsim.assemble.elimination import Elimination, elimination
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.packed import A1, A2, I1, I2
@@ -168,44 +168,13 @@ def mass(model: Model, start: Any, row: Any) -> Any:
 
 def tables(found: Nodes, mechanism: Mechanism, model: Model) -> dict[str, Any]:
     """The fields SparseBuffers adds to Buffers."""
-    d, n_v, m = model.d, model.n_v, model.m
-    n_w = n_v + found.states
-    start, row = columns(found, d)
-    group_start, group = groups(found, d)
-    in_group = np.empty(n_w, np.int64)
+    start, row = columns(found, model.d)
+    group_start, group = groups(found, model.d)
+    in_group = np.empty(len(group), np.int64)
     in_group[group] = np.repeat(np.arange(len(group_start) - 1), np.diff(group_start))
-    held = state_rows(mechanism, model)
-    joints = constraint_groups(found, model, held)
-    size = sizes(found, d) + [len(rows) for rows, _ in joints]
-    free = found.bodies + found.states
-    near = found.neighbours() + [set(on) for _, on in joints]
-    for k, (_, on) in enumerate(joints):
-        for node in on:
-            near[node].add(free + k)
-    order = elimination(near, size, free)
-    # constraint rows are numbered as they stand in the model
-    number = np.array([*range(n_w), *(n_w + j for rows, _ in joints for j in rows)], np.int64)
-    rank = np.zeros(n_w + m, np.int64)
-    rank[number] = order.rank
-    slots, slot_row = len(model.slot_row), model.slot_row
-    slot_frame = np.repeat(np.arange(model.n), np.diff(model.frame_start))
-    at = np.repeat(np.arange(n_w), np.diff(start))
-    b_row = n_w + np.repeat(slot_row, d)
-    b_column = (d * (slot_frame - 1)[:, None] + np.arange(d)).ravel()
-    s_row, s_column = np.array(held, np.int64).reshape(-1, 2).T
-    rows = rank[np.concatenate([row, b_row, b_column, n_w + s_row])]
-    cols = rank[np.concatenate([at, b_column, b_row, s_column])]
-    sorted_by = np.lexsort((cols, rows))
-    places = np.empty(len(rows), np.int64)
-    places[sorted_by] = np.arange(len(rows))
-    jacobian, b, across, state = np.split(places, np.cumsum([len(row), slots * d, slots * d]))
-
-    def wide(part: Any) -> Any:
-        table = np.zeros((slots, 6), np.int64)
-        table[:, :d] = part.reshape(slots, d)
-        return table
-
-    entries, l, N = len(rows), len(order.lower), n_w + m
+    held = np.array(state_rows(mechanism, model), np.int64).reshape(-1, 2)
+    order = eliminated(found, model, held)
+    places = entries(model, start, row, held, order.rank)
     return {
         "column_start": start,
         "row": row,
@@ -213,39 +182,77 @@ def tables(found: Nodes, mechanism: Mechanism, model: Model) -> dict[str, Any]:
         "group_start": group_start,
         "group": group,
         "in_group": in_group,
-        "state_row": np.array(held, np.int64).reshape(-1, 2),
-        "entry_start": np.searchsorted(rows[sorted_by], np.arange(N + 1)).astype(np.int64),
+        "state_row": held,
+        **places,
+        **order._asdict(),
+        **room(model, len(start) - 1, len(places["entry_column"]), len(order.lower)),
+    }
+
+
+def eliminated(found: Nodes, model: Model, held: Any) -> Elimination:
+    """Order of elimination and factors; constraint rows numbered as they stand in the model."""
+    n_w, free = model.n_v + found.states, found.bodies + found.states
+    joints = constraint_groups(found, model, held)
+    near = found.neighbours() + [set(on) for _, on in joints]
+    for k, (_, on) in enumerate(joints):
+        for node in on:
+            near[node].add(free + k)
+    size = sizes(found, model.d) + [len(rows) for rows, _ in joints]
+    order = elimination(near, size, free)
+    number = np.array([*range(n_w), *(n_w + j for rows, _ in joints for j in rows)], np.int64)
+    rank = np.zeros(n_w + model.m, np.int64)
+    rank[number] = order.rank
+    return order._replace(rank=rank)
+
+
+def entries(model: Model, start: Any, row: Any, held: Any, rank: Any) -> dict[str, Any]:
+    """Where Jacobian, B, B^T and Phi_z stand among the entries, sorted by row and column."""
+    d, n_w, slots = model.d, len(start) - 1, len(model.slot_row)
+    frame = np.repeat(np.arange(model.n), np.diff(model.frame_start))
+    at = np.repeat(np.arange(n_w), np.diff(start))
+    b_row = n_w + np.repeat(model.slot_row, d)
+    b_column = (d * (frame - 1)[:, None] + np.arange(d)).ravel()
+    rows = rank[np.concatenate([row, b_row, b_column, n_w + held[:, 0]])]
+    cols = rank[np.concatenate([at, b_column, b_row, held[:, 1]])]
+    sorted_by = np.lexsort((cols, rows))
+    places = np.empty(len(rows), np.int64)
+    places[sorted_by] = np.arange(len(rows))
+    jacobian, b, across, state = np.split(places, np.cumsum([len(row), slots * d, slots * d]))
+    wide = np.zeros((2, slots, 6), np.int64)
+    wide[0, :, :d], wide[1, :, :d] = b.reshape(slots, d), across.reshape(slots, d)
+    return {
+        "entry_start": np.searchsorted(rows[sorted_by], np.arange(len(rank) + 1)).astype(np.int64),
         "entry_column": cols[sorted_by],
         "entry": jacobian,
-        "entry_row": wide(b),
-        "entry_across": wide(across),
+        "entry_row": wide[0],
+        "entry_across": wide[1],
         "entry_state": state,
-        "rank": rank,
-        "start": order.start,
-        "column": order.column,
-        "lower_start": order.lower_start,
-        "lower": order.lower,
-        **{name: np.zeros(l) for name in ("real_l", "real_u")},
-        **{name: np.zeros((2, l)) for name in ("complex_l", "complex_u")},
+    }
+
+
+def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]:
+    """Empty tables for numbers."""
+    n_v, m, N = model.n_v, model.m, n_w + model.m
+    return {
+        **{name: np.zeros(n_lower) for name in ("real_l", "real_u")},
+        **{name: np.zeros((2, n_lower)) for name in ("complex_l", "complex_u")},
         **{name: np.zeros((2, N)) for name in ("complex_d", "work", "side")},
         **{name: np.zeros((2, n_v)) for name in ("slope", "move")},
         **{name: np.zeros(n_w) for name in ("pull", "pull0")},
         "real_d": np.zeros(N),
-        "value": np.zeros((2, entries)),
+        "value": np.zeros((2, n_entries)),
         "made": np.zeros(2),
         "rate0": np.zeros(m),
-        "across": np.zeros((slots, 6)),
+        "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),
         "mu": np.zeros((2, m)),
     }
 
 
-def constraint_groups(
-    found: Nodes, model: Model, held: list[tuple[int, int]]
-) -> list[tuple[list[int], list[int]]]:
+def constraint_groups(found: Nodes, model: Model, held: Any) -> list[tuple[list[int], list[int]]]:
     """Constraint rows that act on the same nodes: rows, nodes."""
     by_nodes: dict[tuple[int, ...], list[int]] = {}
-    state = dict(held)
+    state = dict(held.tolist())
     for j in range(model.m):
         on = {frame - 1 for frame in model.row_frame[j].tolist() if frame > 0}
         if j in state:
