@@ -5,7 +5,7 @@ from importlib import import_module
 
 NAMES = (
     *("startup", "memory", "reverser", "skipping"),
-    *("slider_crank", "andrews", "pendulum", "windows", "chain"),
+    *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain"),
 )
 
 

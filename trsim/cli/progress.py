@@ -42,6 +42,24 @@ def compiling(answer: Answer, method: str = "") -> None:
         ahead.begin(*(f"trsim.solve.{name}" for name in later))
 
 
+def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
+    """Say so where many bodies need a solver that was not compiled yet."""
+    from trsim.solve.simulate import files
+
+    used = files(scenario, mechanism)
+    if "radau_ggl" not in used:
+        return
+    from trsim.solve import radau_ggl
+
+    if radau_ggl.step.file.exists():
+        return
+    answer.say("compiling Radau for many bodies (once per installation, about 15 s)")
+    if len(used) > 1:  # meanwhile the explicit method makes steps
+        from trsim.elements import ahead
+
+        ahead.begin("trsim.solve.radau_ggl")
+
+
 def see_kept(answer: Answer) -> None:
     """Say so where what is compiled cannot be kept for the next run."""
     from trsim.elements.machine import folder

@@ -113,7 +113,7 @@ def ran(
     checkpoint: float | None, closing: Any = None, twin: bool = False,
 ) -> dict[str, Any]:  # fmt: skip
     """Simulate a scenario into a file; its summary.  A twin repeats no warnings."""
-    from trsim.cli.progress import compiling, watched
+    from trsim.cli.progress import compiling, compiling_sparse, watched
 
     every = interval(answer, source, scenario, checkpoint)
     kept = found(answer, source, target, scenario, resume)
@@ -125,6 +125,7 @@ def ran(
 
     try:
         mechanism = assemble(scenario)
+        compiling_sparse(answer, scenario, mechanism)
         for note in () if twin else (*mechanism.notes, *lint(scenario)):
             answer.warn(source, note)
         running = simulate(scenario, mechanism, kept.state if kept else None)

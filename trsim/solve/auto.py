@@ -27,6 +27,7 @@ from trsim.solve.record import (
     FACTORED_H,
     HISTORY,
     JACOBIAN,
+    JACOBIAN_RATE,
     METHOD,
     NO_JACOBIAN,
     NOT_STIFF,
@@ -110,6 +111,8 @@ def explicit_rate(s, r, b, h):
 def implicit_rate(s, r, b):
     """Largest eigenvalue of the linearised motion, 1/s, by vector iteration on (dx, dw)."""
     n, n_v = active(s), s.n_v
+    if r.by_place.shape[0] < n:  # a sparse one
+        return r.clock[JACOBIAN_RATE]
     x, w, u = b.K[3], b.K[4], b.K[5]
     for k in range(n_v):
         x[k] = 1.0 if k % 2 == 0 else -0.7

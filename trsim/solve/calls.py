@@ -1,7 +1,8 @@
 """What an integrator is to the march: three functions, called by address like the elements.
 
 STEP        b.y1 <- one step of size h from r.y, with b.K[0] = y'(t, y); returns the error, in
-            units of the tolerance (<= 1 is accepted; 0 where there is no estimate)
+            units of the tolerance (<= 1 is accepted; 0 where there is no estimate; NO_STEP and more
+            where no step was found, b.y1 is then nothing)
             Row 1 of K is scratch of the march once step and dense output are made
 DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
             is y'(t + h, y1) with y1 as finally accepted, projected
@@ -13,6 +14,8 @@ from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE
 from trsim.elements.packed import A1, A2, f8
 from trsim.solve.record import BUFFERS, RECORD
+
+NO_STEP = 10.0
 
 #                    scene  record  buffers  setting t h
 STEP = types.float64(SCENE, RECORD, BUFFERS, A1, f8, f8)

@@ -3,8 +3,6 @@
 What is found on the interpolant is made exact; only then the record changes.
 """
 
-from math import isfinite
-
 from trsim.assemble.equations import evaluate
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
@@ -12,7 +10,7 @@ from trsim.elements.calls import caller
 from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
-from trsim.solve.calls import call_dense, call_interpolate, call_step
+from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_step
 from trsim.solve.events import any_suspicious, first_event
 from trsim.solve.land import land
 from trsim.solve.norm import grow
@@ -167,7 +165,7 @@ def exact(s, r, b, setting, method, t, h, theta):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
-        if not isfinite(error):
+        if not error < NO_STEP:
             return 0.0
         if gap_of < 0:
             break

@@ -19,7 +19,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve import hermite
-from trsim.solve.calls import DENSE, INTERPOLATE, STEP
+from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
 from trsim.solve.displacements import active, turn, w_index
 from trsim.solve.jacobian import jacobian, missing
@@ -53,7 +53,7 @@ FILTERED, BEFORE = hermite.ROWS, hermite.ROWS + 1  # rows of `past`: b_0, f one 
 MOST_ITERATIONS = 10
 KAPPA = 0.02  # of the error allowed: what Newton may leave
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
-HALVE = 10.0  # an error that says: Newton failed, take about half the step
+HALVE = NO_STEP  # Newton failed: take about half the step
 
 
 @compiled(STEP)

@@ -19,7 +19,7 @@ import numpy as np
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
-from trsim.solve.calls import DENSE, INTERPOLATE, STEP
+from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
 from trsim.solve.displacements import active, moved_by, twisted, w_index
 from trsim.solve.jacobian import jacobian, missing
@@ -70,8 +70,8 @@ E = np.array([-13.0 - 7.0 * _S6, -13.0 + 7.0 * _S6, -1.0]) / 3.0  # of the error
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
 MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
-QUICK = 0.1
-HALVE = 10.0  # an error that says: Newton failed, take about half the step
+QUICK = 0.1  # contraction with which a matrix is kept for the next step
+HALVE = NO_STEP  # Newton failed: take about half the step
 
 
 @compiled(STEP)
@@ -290,6 +290,11 @@ def norm(e, weight):
 
 @compiled(DENSE)
 def dense(scene, K, t, y, h, y1, P):
+    collocation(K, y, y1, P)
+
+
+@internal
+def collocation(K, y, y1, P):
     """Divided differences of the collocation polynomial, through the end as accepted."""
     for c in range(y.size):
         z0, z1, z2 = K[Z, c], K[Z + 1, c], y1[c] - y[c]

@@ -23,8 +23,9 @@ from trsim.elements.scene import Model
     OLD_H,  # s, its length
     FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
     NEWTON_RATE,  # contraction of the last Newton iterations
+    JACOBIAN_RATE,  # 1/s, largest eigenvalue of a sparse Jacobian
     N_CLOCK,
-) = range(17)
+) = range(18)
 
 # count: integer state of the march
 (

@@ -41,6 +41,7 @@ COMPILED = {  # word -> files of this folder
     "generalized_alpha": ("generalized_alpha",),
     "auto": ("dop853", "radau"),
 }
+SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured on stiff chains
 GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again after these
 VISIT = 5000  # steps between two looks at the outside world
 
@@ -73,8 +74,18 @@ def simulate(
         from trsim.solve.scipy_ivp import simulate as by_scipy
 
         return by_scipy(scenario, mechanism)
-    used = [import_module(f"trsim.solve.{name}") for name in COMPILED[method]]
+    used = [import_module(f"trsim.solve.{name}") for name in files(scenario, mechanism)]
     return compiled(scenario, mechanism, used, checkpoint)
+
+
+def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
+    """The files of this folder that make the steps of a run; none for a method of scipy."""
+    solver = scenario.solver
+    sparse = solver.formulation == "ggl"
+    if solver.formulation is None:  # Baumgarte's terms belong to the accelerations
+        sparse = mechanism.model.n_v >= SPARSE_FROM and solver.stabilisation != "baumgarte"
+    known = COMPILED.get(solver.method, ())
+    return tuple("radau_ggl" if sparse and name == "radau" else name for name in known)
 
 
 def check_step(scenario: Any, found: Any) -> None:
@@ -110,8 +121,13 @@ def compiled(
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
     implicit = any(method.IMPLICIT for method in used)
     switches = mechanism.stages.switches
-    r = new_record(work, begun, dense_rows if implicit else 0, len(switches.names))
+    sparse = next((m.SPARSE for m in used if hasattr(m, "SPARSE")), None)
+    past_rows = dense_rows if implicit and not sparse else 0
+    r = new_record(work, begun, past_rows, len(switches.names))
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned)
+    if sparse:
+        r = sparse.record(r, scenario, mechanism, dense_rows)
+        b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
     methods[0] = method_table(used[0])
     clock0 = time.process_time()
@@ -119,6 +135,7 @@ def compiled(
         clock0 -= put_back(checkpoint, r, work)
         if np.any(r.stage):
             work = carried(work, mechanism.stages.model(r.stage))
+            b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
     else:
         begin(work, r, b, setting)
         r.clock[rec.H] = first_step(scenario, r)
@@ -132,6 +149,7 @@ def compiled(
             before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
+                b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
         cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
             methods[:] = [method_table(method) for method in used]

@@ -83,6 +83,8 @@ class SolverSpec(Spec):
     method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
                    two or three digits of stiff motion; rk4 has fixed steps; scipy's are
                    independent checks
+    formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
+                   stabilised index 2 with sparse matrices; found out unless given
     end            time at which the run ends; needed by `run`, not by `check`
     step           of rk4
     tolerance      error of a step, relative to the size of clearances or of bodies
@@ -97,6 +99,7 @@ class SolverSpec(Spec):
 
     type: ClassVar[str] = "solver"
     method: Literal[METHODS] = "auto"  # type: ignore[valid-type]
+    formulation: Literal["index1", "ggl"] | None = None
     end: Seconds | None = None
     step: Seconds | None = None
     tolerance: Annotated[float, Interval(ge=1e-14, le=1e-1), Unit("-")] = 1e-8
@@ -115,6 +118,9 @@ class SolverSpec(Spec):
         if self.baumgarte is not None and self.stabilisation != "baumgarte":
             hint = "Write `stabilisation: baumgarte` as well."
             raise ScenarioError("baumgarte is not the stabilisation", hint, ("baumgarte",))
+        if self.formulation == "ggl" and self.stabilisation == "baumgarte":
+            hint = "Its positions and velocities are held by multipliers: leave one of the two out."
+            raise ScenarioError("ggl needs no baumgarte", hint, ("formulation",))
         return self
 
 

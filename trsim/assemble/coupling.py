@@ -1,0 +1,66 @@
+"""Which unknowns of a mechanism act on which: the sparsity of its equations, before any number.
+
+A node is what moves as one: a moving body (its d velocities) or a state of an element.  Two nodes
+are coupled where a force, a joint or a rate of change of one depends on the other.  Drives held or
+let go by user events are counted as they are in any stage, so the coupling is that of all stages.
+"""
+
+from typing import Any, NamedTuple
+
+from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.elements.contract import N_BOOK
+
+# where the state of an element stands in its Row.con
+STATE = {"drive": 3, "clearance_joint": 3}
+
+
+class Nodes(NamedTuple):
+    """Nodes of a mechanism: bodies first, then the states of elements."""
+
+    bodies: int
+    states: int
+    groups: tuple[frozenset[int], ...]  # nodes that are coupled with each other, once each
+
+    def neighbours(self) -> list[set[int]]:
+        """For each node the others it is coupled with."""
+        found: list[set[int]] = [set() for _ in range(self.bodies + self.states)]
+        for group in self.groups:
+            for node in group:
+                found[node] |= group - {node}
+        return found
+
+
+def nodes(scenario: Any, mechanism: Mechanism) -> Nodes:
+    """The nodes of a mechanism, and which of them its elements couple."""
+    bodies, states = mechanism.model.n - 1, mechanism.model.n_z - N_BOOK
+    of = _Coupling(scenario, mechanism, bodies)
+    groups = {of.group(instance) for instance in mechanism.instances}
+    return Nodes(bodies, states, tuple(sorted((g for g in groups if len(g) > 1), key=sorted)))
+
+
+class _Coupling:
+    def __init__(self, scenario: Any, mechanism: Mechanism, bodies: int) -> None:
+        self.scenario, self.bodies = scenario, bodies
+        self.coordinates = mechanism.coordinates
+        self.motions = mechanism.stages.switches.motions
+
+    def group(self, instance: Instance) -> frozenset[int]:
+        """The nodes that an element couples."""
+        if instance.section not in ("joints", "drives", "forces", "events"):
+            return frozenset()
+        con, key = instance.row.con, instance.element.key
+        frames = {con[0], con[1]}
+        states = {con[STATE[key]]} if key in STATE else set()
+        if key == "drive":
+            states |= {state for state, _ in self.motions.get(instance.name, ())}
+        if key == "applied_load":
+            frames |= self.read(self.scenario.forces[instance.name])
+        own = {f - 1 for f in frames if f > 0}
+        return frozenset(own | {self.bodies + z - N_BOOK for z in states if z >= 0})
+
+    def read(self, load: Any) -> set[int]:
+        """The bodies whose motion a load depends on through sensors."""
+        function = load.torque if load.force is None else load.force
+        joints = [self.scenario.sensors[n].joint for n in function.names - {"t", "pi"}]
+        found = [self.coordinates[joint] for joint in joints]
+        return {frame for x in found for frame in (x.i, x.j)}

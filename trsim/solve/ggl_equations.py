@@ -1,0 +1,118 @@
+"""Equations of motion stabilised as by Gear, Gupta and Leimkuhler.
+
+    x' = v - M^-1 B^T mu        M v' = f(x, v, z, t) - B^T lam        z' = g(x, v, z, t)
+    0 = Phi(x, z, t)            0 = B v + Phi_t                       [GearGuptaLeimkuhler1985]
+
+index 2, with positions and velocities on their constraints at every stage of a method; mu is zero
+but for the error of the method.  x are displacements, B the rows of J in the axes of the solve.
+"""
+
+from trsim.assemble.equations import (
+    constraints,
+    forces,
+    free_accelerations,
+    poses,
+)
+from trsim.assemble.schur import rows
+from trsim.elements.contract import DRIVES, N_BOOK
+from trsim.elements.vectors import internal
+
+
+@internal
+def pull(s, t, y, lam, out):
+    """out (n_w) <- loads less B^T lam in the axes of the solve, then z'.
+
+    Poses, Phi, Phi_t, B and W = M^-1 B^T stay in the scene; the power of drives is in zd.
+    """
+    poses(s, y)
+    forces(s, t)
+    free_accelerations(s)
+    constraints(s, t)
+    for f in range(1, s.n):
+        v, a = s.d * (f - 1), s.free[f]
+        if s.d == 3:
+            out[v], out[v + 1], out[v + 2] = s.F[f, 0], s.F[f, 1], s.F[f, 5]
+        else:
+            I = s.inertia[f]
+            for c in range(3):
+                out[v + c] = s.F[f, c]
+                out[v + 3 + c] = I[3 * c] * a[3] + I[3 * c + 1] * a[4] + I[3 * c + 2] * a[5]
+    rows(s)
+    for k in range(s.m):
+        s.zd[DRIVES] += lam[k] * s.phi_t[k]
+    for f in range(1, s.n):
+        v = s.d * (f - 1)
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for c in range(s.d):
+                out[v + c] -= s.B[p, c] * lam[s.slot_row[p]]
+    for k in range(N_BOOK, s.n_z):
+        out[s.n_v + k - N_BOOK] = s.zd[k]
+
+
+@internal
+def moving(s, y, x, out):
+    """out (n_q) <- rates of the coordinates y where the bodies' velocities are x (n_v)."""
+    if s.d == 3:
+        for k in range(s.n_q):
+            out[k] = x[k]
+        return
+    for f in range(s.n - 1):
+        q, v = 7 * f, 6 * f
+        for a in range(3):
+            out[q + a] = x[v + a]
+        e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
+        o0, o1, o2 = 0.5 * x[v + 3], 0.5 * x[v + 4], 0.5 * x[v + 5]
+        out[q + 3] = -e1 * o0 - e2 * o1 - e3 * o2
+        out[q + 4] = e0 * o0 + e2 * o2 - e3 * o1
+        out[q + 5] = e0 * o1 + e3 * o0 - e1 * o2
+        out[q + 6] = e0 * o2 + e1 * o1 - e2 * o0
+
+
+@internal
+def mass_times(s, b, x, out):
+    """out (n_v) <- M x, on the pattern of the Jacobian."""
+    for k in range(s.n_v):
+        out[k] = 0.0
+    for k in range(s.n_v):
+        if x[k] != 0.0:
+            for e in range(b.column_start[k], b.column_start[k + 1]):
+                if b.mass[e] != 0.0:
+                    out[b.row[e]] += b.mass[e] * x[k]
+
+
+@internal
+def unweighed(s, x, out):
+    """out (n_v) <- M^-1 x."""
+    for f in range(1, s.n):
+        v, I = s.d * (f - 1), s.inertia_inverse[f]
+        if s.d == 3:
+            out[v], out[v + 1] = x[v] * s.mass_inverse[f], x[v + 1] * s.mass_inverse[f]
+            out[v + 2] = x[v + 2] * I[8]
+        else:
+            for i in range(3):
+                out[v + i] = x[v + i] * s.mass_inverse[f]
+                out[v + 3 + i] = (
+                    I[3 * i] * x[v + 3] + I[3 * i + 1] * x[v + 4] + I[3 * i + 2] * x[v + 5]
+                )
+
+
+@internal
+def add_product(s, at, part, x, out):
+    """out (m) += part times A x, with A (m, n_v) kept slot by slot in `at`."""
+    for f in range(1, s.n):
+        v = s.d * (f - 1)
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            total = 0.0
+            for k in range(s.d):
+                total += at[p, k] * x[v + k]
+            out[s.slot_row[p]] += part * total
+
+
+@internal
+def away(s, at, mu, x):
+    """x (n_v) <- x - A^T mu, with A^T kept slot by slot in `at`."""
+    for f in range(1, s.n):
+        v = s.d * (f - 1)
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for k in range(s.d):
+                x[v + k] -= at[p, k] * mu[s.slot_row[p]]

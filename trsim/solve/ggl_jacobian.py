@@ -1,0 +1,132 @@
+"""The sparse Jacobian of the stabilised equations: differences, many columns at a time.
+
+Two columns are found by one difference where no row depends on both [CurtisPowellReid1974].  Steps
+are those of jacobian.py.
+"""
+
+from math import sqrt
+
+from trsim.assemble.equations import evaluate
+from trsim.assemble.linear import substitute
+from trsim.assemble.schur import velocity_residual
+from trsim.elements.vectors import clear, copy_to, internal
+from trsim.solve.displacements import active, displace, place_of, w_index
+from trsim.solve.ggl_equations import add_product, away, pull, unweighed
+from trsim.solve.jacobian import PART
+from trsim.solve.record import FRESH, JACOBIAN, JACOBIANS, TOLERANCE
+
+ITERATIONS = 12  # of the vector iteration
+
+
+@internal
+def sparse_jacobian(s, r, b, setting, t, trial, lam):
+    """The derivatives of `pull`, B and Phi_z at (t, r.y).  trial, lam: scratch (n_y)."""
+    tolerance = setting[TOLERANCE]
+    evaluate(s, t, r.y, trial)
+    copy_to(lam, s.lam)
+    pull(s, t, r.y, lam, b.pull0)
+    for p in range(s.slot_row.size):
+        for c in range(s.d):
+            r.at_rows[p, c] = s.B[p, c]
+    for j in range(s.m):
+        b.rate0[j] = velocity_residual(s, j)
+    for k in range(b.state_row.shape[0]):
+        r.at_state[k] = -s.phi[b.state_row[k, 0]]
+    for g in range(b.group_start.size - 1):
+        first, end = b.group_start[g], b.group_start[g + 1]
+        if b.group[first] < s.n_v:
+            copy_to(trial, r.y)
+            for q in range(first, end):
+                displace(s, trial, b.group[q], step_of_place(s, b, tolerance, b.group[q]))
+            pull(s, t, trial, lam, b.pull)
+            for q in range(first, end):
+                k = b.group[q]
+                divide(b, r.at_place, k, step_of_place(s, b, tolerance, k))
+            turning(s, r, b, g, b.group[first] % s.d, tolerance)
+        copy_to(trial, r.y)
+        for q in range(first, end):
+            i = w_index(s, b.group[q])
+            trial[i] += step_of_rate(b, tolerance, i)
+        pull(s, t, trial, lam, b.pull)
+        for q in range(first, end):
+            k = b.group[q]
+            i = w_index(s, k)
+            divide(b, r.at_rate, k, trial[i] - r.y[i])
+            for e in range(b.state_row.shape[0]):
+                if b.state_row[e, 1] == k:
+                    change = r.at_state[e] + s.phi[b.state_row[e, 0]]
+                    r.at_state[e] = change / (trial[i] - r.y[i])
+    r.count[JACOBIAN] = FRESH
+    r.count[JACOBIANS] += 1
+
+
+@internal
+def turning(s, r, b, g, a, tolerance):
+    """Change of Phi' with the a-th displacement of the bodies of a group, at the same v."""
+    for f in range(1, s.n):
+        k = s.d * (f - 1) + a
+        if b.in_group[k] == g:
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                j = s.slot_row[p]
+                change = velocity_residual(s, j) - b.rate0[j]
+                r.at_turn[p, a] = change / step_of_place(s, b, tolerance, k)
+
+
+@internal
+def step_of_place(s, b, tolerance, k):
+    """Step of the k-th displacement: a part of the unit of its velocity's partner."""
+    half = 2.0 if s.d == 6 and k % 6 > 2 else 1.0  # half a turn vector makes a quaternion
+    return PART * half / (b.weight[place_of(s, k)] * tolerance)
+
+
+@internal
+def step_of_rate(b, tolerance, i):
+    return PART / (b.weight[i] * tolerance) if b.weight[i] > 0.0 else PART
+
+
+@internal
+def divide(b, at, k, step):
+    """Column k of a Jacobian from the loads before and after."""
+    for e in range(b.column_start[k], b.column_start[k + 1]):
+        i = b.row[e]
+        at[e] = (b.pull[i] - b.pull0[i]) / step
+
+
+@internal
+def fastest(s, r, b):
+    """Largest eigenvalue of the linearised motion, 1/s, as auto.implicit_rate finds it."""
+    n = active(s)
+    x, w, u, v = b.move[0], b.pull, b.pull0, b.move[1]
+    for k in range(n):
+        w[k] = 1.0 if k % 3 == 0 else 0.6
+    for k in range(s.n_v):
+        x[k] = 1.0 if k % 2 == 0 else -0.7
+    product = 1.0
+    for turn in range(ITERATIONS):
+        before, size = 0.0, 0.0
+        for k in range(n):
+            u[k] = 0.0
+            before = max(before, abs(w[k]))
+        for k in range(n):
+            for e in range(b.column_start[k], b.column_start[k + 1]):
+                u[b.row[e]] += r.at_rate[e] * w[k]
+                if k < s.n_v:
+                    u[b.row[e]] += r.at_place[e] * x[k]
+        unweighed(s, u, v)
+        mu = b.mu[0]
+        clear(mu)
+        add_product(s, r.at_rows, 1.0, v, mu)
+        substitute(s, b.schur, mu)
+        away(s, b.across, mu, v)
+        copy_to(u, v)
+        for k in range(n):
+            size = max(size, abs(u[k]))
+        if size == 0.0 or before == 0.0:
+            return 0.0
+        for k in range(s.n_v):
+            x[k] = w[k] / size
+        for k in range(n):
+            w[k] = u[k] / size
+        if turn >= ITERATIONS - 4:  # an oscillation grows by rho^2 in two turns
+            product *= size / before
+    return sqrt(sqrt(product))
