@@ -33,7 +33,7 @@ class Case(NamedTuple):
 
 CASES = (
     Case("clearance_b_0.3mm", (1e-3, 1e-4, 1e-5, 1e-6), 1e-9, 1),
-    Case("clearance_ab_0.3mm", (1e-3, 1e-4, 1e-5, 1e-6), 1e-9, 1),
+    Case("clearance_ab_0.3mm", (1e-3, 1e-4, 1e-5), 1e-7, 24),
     Case("clearance_ap_0.1mm", (1e-3, 1e-4, 1e-5), 1e-6, 24),
     Case("clearance_abpq_0.1mm", (1e-2, 1e-3, 1e-4), 1e-5, 24),
 )

@@ -69,7 +69,9 @@ def choose(s, r, b, h, event):
     if event:
         change(s, r, b, EXPLICIT, 0.0)
         return
-    load = h * implicit_rate(s, r, b)
+    if r.clock[JACOBIAN_RATE] < 0.0:
+        r.clock[JACOBIAN_RATE] = implicit_rate(s, r, b)
+    load = h * r.clock[JACOBIAN_RATE]
     r.count[STIFF] = r.count[STIFF] + 1 if load < EASY else 0
     if r.count[STIFF] >= CHEAP_STEPS:
         change(s, r, b, EXPLICIT, load)
@@ -111,8 +113,6 @@ def explicit_rate(s, r, b, h):
 def implicit_rate(s, r, b):
     """Largest eigenvalue of the linearised motion, 1/s, by vector iteration on (dx, dw)."""
     n, n_v = active(s), s.n_v
-    if r.by_place.shape[0] < n:  # a sparse one
-        return r.clock[JACOBIAN_RATE]
     x, w, u = b.K[3], b.K[4], b.K[5]
     for k in range(n_v):
         x[k] = 1.0 if k % 2 == 0 else -0.7

@@ -9,9 +9,11 @@ from trsim.assemble.equations import corners, poses
 from trsim.elements.contract import BRANCH, CONTACT, PHASE, WHOLE
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
+from trsim.solve.illinois import between, narrowed
 
 NONE = 2.0  # a root beyond the step
-LOOKS = 8  # places of a step that are looked at before the root is bracketed
+EXACT = 1e-12  # of a step: how well a corner is located
+LOOKS = 4  # places of a step that are looked at before the root is bracketed
 
 
 @internal
@@ -57,27 +59,16 @@ def corner_root(s, r, b, t, h, c, interpolate):
 
 @internal
 def bracketed(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_high):
-    """The root between two places with different signs, by Illinois steps."""
-    f_low = min(f_low, -1e-3 * f_high)  # it may be zero: just inside
-    side = 0
+    """The root between two places, inside and beyond."""
+    # inside it may be zero: just inside
+    bracket = (low, min(f_low, -1e-3 * f_high), high, f_high, 0.0)
     for k in range(100):
-        if high - low <= 4e-16 * max(1.0, high):
+        if bracket[2] - bracket[0] <= EXACT:
             break
-        middle = high - f_high * (high - low) / (f_high - f_low)
-        if k % 4 == 3 or not low < middle < high:
-            middle = 0.5 * (low + high)
+        middle = between(bracket, k)
         f = beyond_inside(s, P, y, t, h, middle, c, scratch, interpolate)
-        if f > 0.0:
-            high, f_high = middle, f
-            if side == 1:
-                f_low *= 0.5
-            side = 1
-        else:
-            low, f_low = middle, f
-            if side == -1:
-                f_high *= 0.5
-            side = -1
-    return high
+        bracket = narrowed(bracket, middle, f, True)
+    return bracket[2]
 
 
 @internal

@@ -11,6 +11,7 @@ from trsim.elements.contract import CONTACT, FLIGHT, PHASE, UNLOCATED
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
 from trsim.solve.corners import any_left, corner_root
+from trsim.solve.illinois import between, narrowed
 
 NONE = 2.0  # a root beyond the step
 SAME = 1e-12  # roots closer than this part of a step are one event
@@ -53,33 +54,20 @@ def inside(s, P, y, t, h, theta, c, scratch, interpolate):
 def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, rising):
     """Where the value (column 0) or rate (1) of `inside` changes sign between low and high.
 
-    rising: the sign at `high` is positive.  Illinois steps, safeguarded by bisection.
+    rising: the sign at `high` is positive.
     """
     f_low = inside(s, P, y, t, h, low, c, scratch, interpolate)[column]
     f_high = inside(s, P, y, t, h, high, c, scratch, interpolate)[column]
-    side = 0
+    bracket = (low, f_low, high, f_high, 0.0)
     for k in range(200):
-        if high - low <= 4e-16 * max(1.0, high):
+        if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
             break
-        middle = 0.5 * (low + high)
-        if k % 4 != 3 and f_high != f_low:
-            middle = high - f_high * (high - low) / (f_high - f_low)
-            if not low < middle < high:
-                middle = 0.5 * (low + high)
+        middle = between(bracket, k)
         f = inside(s, P, y, t, h, middle, c, scratch, interpolate)[column]
         if f == 0.0:
             return middle
-        if (f > 0.0) == rising:
-            high, f_high = middle, f
-            if side == 1:
-                f_low *= 0.5
-            side = 1
-        else:
-            low, f_low = middle, f
-            if side == -1:
-                f_high *= 0.5
-            side = -1
-    return high
+        bracket = narrowed(bracket, middle, f, rising)
+    return bracket[2]
 
 
 @internal

@@ -16,6 +16,7 @@ from trsim.solve.displacements import active, displace, place_of, w_index
 from trsim.solve.record import (
     FRESH,
     JACOBIAN,
+    JACOBIAN_RATE,
     JACOBIANS,
     NO_JACOBIAN,
     NO_RATES,
@@ -63,3 +64,4 @@ def jacobian(s, r, b, setting, t, trial, rates):
             r.by_rate[row, k] = (rates[i] - r.yd[i]) / part
     r.count[JACOBIAN] = FRESH if places else OLD
     r.count[JACOBIANS] += 1
+    r.clock[JACOBIAN_RATE] = -1.0  # not known yet

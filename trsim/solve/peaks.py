@@ -10,6 +10,7 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import FLIGHT, PHASE
 from trsim.elements.vectors import copy_to, internal
 from trsim.solve.calls import call_interpolate
+from trsim.solve.illinois import between, narrowed
 from trsim.solve.record import (
     ENERGY_0,
     PEAK_MAX,
@@ -153,26 +154,17 @@ def peaks_inside(s, r, b, interpolate, t, h, t1):
 
 @internal
 def summit(s, r, b, interpolate, t, h, reach, c):
-    """Where the force of contact c is largest, as theta: its rate's root by Illinois steps."""
-    low, rise, high, fall, side = 0.0, r.slope[c], reach, b.slope1[c], 0
-    enough = FLAT * (rise - fall)
+    """Where the force of contact c is largest, as theta: the root of its rate."""
+    bracket = (0.0, r.slope[c], reach, b.slope1[c], 0.0)
+    enough = FLAT * (r.slope[c] - b.slope1[c])
     for k in range(TRIALS):
-        middle = high - fall * (high - low) / (fall - rise)
-        if k % 4 == 3 or not low < middle < high:
-            middle = 0.5 * (low + high)
+        middle = between(bracket, k)
         values_inside(s, r, b, interpolate, t, h, middle)
         rate = force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c)
         if abs(rate) < enough:
             return middle
-        if rate > 0.0:
-            low, rise = middle, rate
-            fall *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            high, fall = middle, rate
-            rise *= 0.5 if side == -1 else 1.0
-            side = -1
-    return 0.5 * (low + high)
+        bracket = narrowed(bracket, middle, rate, False)
+    return between(bracket, 3)
 
 
 @internal

@@ -23,7 +23,7 @@ from trsim.elements.scene import Model
     OLD_H,  # s, its length
     FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
     NEWTON_RATE,  # contraction of the last Newton iterations
-    JACOBIAN_RATE,  # 1/s, largest eigenvalue of a sparse Jacobian
+    JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
     N_CLOCK,
 ) = range(18)
 
