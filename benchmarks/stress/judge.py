@@ -4,7 +4,7 @@ The truth of a cell is another method at a tolerance 100 times tighter.  A run a
 a fifth of its tolerance and with another first step (0.93 of the step, for rk4), part where they
 are no longer predictable, in the path of a journal or in the largest forces; before that *horizon*
 the largest force of every contact is compared.  Where impacts have made the first difference large
-two runs may still agree by chance: before a cell is called wrong the twin's own twin must agree too.
+two runs may agree by chance: before a cell is called wrong the twin's own twin must agree too.
 """
 
 from dataclasses import asdict, dataclass, replace
