@@ -275,3 +275,41 @@ def test_auto_hands_over_to_it():
     assert rec.TO_IMPLICIT in kinds
     b = run(text, *INDEX1, "solver.tolerance=1e-8")
     assert np.abs(r["rod9.position"] - b["rod9.position"]).max() < 1e-5
+
+
+HARD_STOP = """
+gravity: [0, -9.81, 0]
+planar: false
+solver: {{end: 0.02, method: {method}}}
+bodies:
+{bodies}
+joints:
+{joints}
+forces:
+{springs}
+  stop: {{type: limit_stop, point: {{body: b5, at: [0.3, 0]}}, stiffness: 1e9, damping: 10,
+         wall: {{body: ground, at: [0, 0], normal: [0, 1, 0]}}}}
+"""
+
+
+@pytest.mark.parametrize("method", ["auto", "radau"])
+def test_a_hard_stop_at_the_end_of_a_stiff_chain(method):
+    """The touch begins with the run; sparse Newton systems took its rounding for error."""
+    inertia = "mass: 0.1, inertia: [1e-5, 3e-5, 3e-5]"
+    bodies = [f"  b{k}: {{{inertia}, at: [{0.025 + 0.05 * k}, 0]}}" for k in range(6)]
+    joints = [
+        f"  j{k}: {{type: revolute, bodies: [{f'b{k - 1}' if k else 'ground'}, b{k}], "
+        f"at: [{0.05 * k}, 0], axis: {[0, k % 2, 1 - k % 2]}}}"
+        for k in range(6)
+    ]
+    springs = [
+        f"  t{k}: {{type: torsion_spring, joint: j{k}, stiffness: 5e4, damping: 50}}"
+        for k in range(6)
+    ]
+    words = {"bodies": bodies, "joints": joints, "springs": springs}
+    text = HARD_STOP.format(method=method, **{k: "\n".join(v) for k, v in words.items()})
+    r = run(text)
+    assert r.outcome.status == "done"
+    assert r.outcome.statistics["energy_residual_relative"] < 1e-6
+    exact = run(text, "solver.method=dop853", "solver.tolerance=1e-10")
+    assert r["b5.position"][-1] == pytest.approx(exact["b5.position"][-1], abs=1e-8)

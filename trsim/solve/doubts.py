@@ -105,9 +105,10 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     work = abs(numbers.get("work_of_projection", 0.0))
     lost = numbers.get("energy_residual_relative", 0.0)
     if lost > LOST:
+        driven = any(instance.section == "drives" for instance in mechanism.instances)
         yield (
             f"the energy book does not close, by {100 * lost:.2g} % of the largest energy "
-            "exchanged; tighten `tolerance`; does the velocity of a drive jump?"
+            "exchanged; tighten `tolerance`" + ("; does the velocity of a drive jump?" * driven)
         )
     given = numbers.get("work_of_projection_relative", 0.0)
     if given > GIVEN and work > NOTHING * natural and outcome.status == "done":

@@ -86,18 +86,20 @@ def method_table(method):
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
 def march(s, r, b, setting, methods, most):
-    """Advance the record until it is done, a buffer is full, or `most` steps were accepted.
+    """Advance the record until it is done, a buffer is full, or `most` steps were accepted, or
+    twice as many tried.
 
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
     Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST or CRAWL.
     """
-    accepted = 0
+    accepted = tried = 0
     while r.clock[T] < setting[T_END]:
         if full(s, r, b):
             return FULL
-        if accepted >= most:
+        if accepted >= most or tried >= 2 * most:
             return PAUSE
+        tried += 1
         t, method = r.clock[T], methods[r.count[METHOD]]
         if method[STEP_AT] == 0:
             return LOAD

@@ -42,8 +42,11 @@ COMPILED = {  # word -> files of this folder
     "auto": ("dop853", "radau"),
 }
 SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured on stiff chains
+# what the multipliers of a tighter one are rounded to looks like its error, as it does in the first
+# moments of a hard touch, whose error is judged by depths of nanometres
+SPARSE_UNTIL = 1e-11  # tolerance
 GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again after these
-VISIT = 5000  # steps between two looks at the outside world
+VISIT, LIGHT = 5000, 30  # steps between two looks at the outside world, of so many velocities
 
 NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
 REASONS = {
@@ -82,8 +85,11 @@ def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """The files of this folder that make the steps of a run; none for a method of scipy."""
     solver = scenario.solver
     sparse = solver.formulation == "ggl"
-    if solver.formulation is None:  # Baumgarte's terms belong to the accelerations
-        sparse = mechanism.model.n_v >= SPARSE_FROM and solver.stabilisation != "baumgarte"
+    if solver.formulation is None:
+        smooth = not len(mechanism.model.contact) and solver.tolerance >= SPARSE_UNTIL
+        # Baumgarte's terms belong to the accelerations
+        sparse = smooth and solver.stabilisation != "baumgarte"
+        sparse = sparse and mechanism.model.n_v >= SPARSE_FROM
     known = COMPILED.get(solver.method, ())
     return tuple("radau_ggl" if sparse and name == "radau" else name for name in known)
 
@@ -140,9 +146,10 @@ def compiled(
         begin(work, r, b, setting)
         r.clock[rec.H] = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
+    visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v))
     ended = None  # by a user event
     while True:
-        most = min(VISIT, limit - int(r.count[rec.STEPS]))
+        most = min(visit, limit - int(r.count[rec.STEPS]))
         reason = march(work, r, b, setting, methods, most)
         recorded = None
         if reason == rec.ACT:

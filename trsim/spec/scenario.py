@@ -118,6 +118,9 @@ class SolverSpec(Spec):
         if self.baumgarte is not None and self.stabilisation != "baumgarte":
             hint = "Write `stabilisation: baumgarte` as well."
             raise ScenarioError("baumgarte is not the stabilisation", hint, ("baumgarte",))
+        if self.formulation is not None and self.method not in ("radau", "auto"):
+            hint = f"Method {self.method} has one formulation only: leave it out."
+            raise ScenarioError("formulation is a choice of radau and auto", hint, ("formulation",))
         if self.formulation == "ggl" and self.stabilisation == "baumgarte":
             hint = "Its positions and velocities are held by multipliers: leave one of the two out."
             raise ScenarioError("ggl needs no baumgarte", hint, ("formulation",))
