@@ -8,6 +8,7 @@ What numba does for every function and ours do not need is left out:
 * reference counts, wrappers, closures, array expressions, and the passes that look for them.
 * where each variable dies.  Only what is counted is released there.
 * the question, at every look into an array, whether the index is negative.  Ours never are.
+* copies of loops whose length is not known: ours are short, and the copies never run.
 * the overloads of an operator, tried one after the other, for types they were tried for before.
 
 What is compiled is the same program: without `fastmath` no optimisation changes a number.
@@ -44,6 +45,8 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 from numba.np import arrayobj
+
+llvm.set_option("trsim", "-unroll-runtime=false")  # the only way to say it, for all of the process
 
 
 class Library(JITCodeLibrary):
