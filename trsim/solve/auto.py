@@ -114,13 +114,9 @@ def implicit_rate(s, r, b):
     """Largest eigenvalue of the linearised motion, 1/s, by vector iteration on (dx, dw)."""
     n, n_v = active(s), s.n_v
     x, w, u = b.K[3], b.K[4], b.K[5]
-    for k in range(n_v):
-        x[k] = 1.0 if k % 2 == 0 else -0.7
-    for k in range(n):
-        w[k] = 1.0 if k % 3 == 0 else 0.6
+    sown(s, n, x, w)
     product = 1.0
     for turn in range(ITERATIONS):
-        before = size = 0.0
         for i in range(n):
             total = 0.0
             for k in range(n_v):
@@ -128,14 +124,33 @@ def implicit_rate(s, r, b):
             for k in range(n):
                 total += r.by_rate[i, k] * w[k]
             u[i] = total
-            size = max(size, abs(total))
-            before = max(before, abs(w[i]))
-        if size == 0.0 or before == 0.0:
+        growth = grown(s, n, x, w, u)
+        if growth == 0.0:
             return 0.0
-        for k in range(n_v):
-            x[k] = w[k] / size
-        for i in range(n):
-            w[i] = u[i] / size
         if turn >= ITERATIONS - 4:  # an oscillation grows by rho^2 in two turns
-            product *= size / before
+            product *= growth
     return sqrt(sqrt(product))
+
+
+@internal
+def sown(s, n, x, w):
+    """Displacements x (n_v) and rates w (n) of a vector iteration at its start."""
+    for k in range(s.n_v):
+        x[k] = 1.0 if k % 2 == 0 else -0.7
+    for k in range(n):
+        w[k] = 1.0 if k % 3 == 0 else 0.6
+
+
+@internal
+def grown(s, n, x, w, u):
+    """(x, w) <- (w, u) over the size of u = w'; u over w in size, 0 where either is 0."""
+    before = size = 0.0
+    for k in range(n):
+        before, size = max(before, abs(w[k])), max(size, abs(u[k]))
+    if size == 0.0 or before == 0.0:
+        return 0.0
+    for k in range(s.n_v):
+        x[k] = w[k] / size
+    for k in range(n):
+        w[k] = u[k] / size
+    return size / before

@@ -78,15 +78,15 @@ def twisted(s, r, k, source):
 
 
 @internal
-def moved_by(s, r, q, w):
-    """Rate of the q-th generalised coordinate when the velocities are w."""
+def moved_by(s, y, q, w):
+    """Rate of the q-th of the generalised coordinates y when the velocities are w."""
     if s.d == 3:
         return w[q]
     f, a = q // 7, q % 7
     v = 6 * f
     if a < 3:
         return w[v + a]
-    y, p = r.y, 7 * f
+    p = 7 * f
     e0, e1, e2, e3 = y[p + 3], y[p + 4], y[p + 5], y[p + 6]
     o0, o1, o2 = w[v + 3], w[v + 4], w[v + 5]
     if a == 3:

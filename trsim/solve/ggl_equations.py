@@ -7,15 +7,11 @@ index 2, with positions and velocities on their constraints at every stage of a 
 but for the error of the method.  x are displacements, B the rows of J in the axes of the solve.
 """
 
-from trsim.assemble.equations import (
-    constraints,
-    forces,
-    free_accelerations,
-    poses,
-)
+from trsim.assemble.equations import constraints, forces, free_accelerations, poses
 from trsim.assemble.schur import rows
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.vectors import internal
+from trsim.solve.displacements import moved_by
 
 
 @internal
@@ -40,11 +36,7 @@ def pull(s, t, y, lam, out):
     rows(s)
     for k in range(s.m):
         s.zd[DRIVES] += lam[k] * s.phi_t[k]
-    for f in range(1, s.n):
-        v = s.d * (f - 1)
-        for p in range(s.frame_start[f], s.frame_start[f + 1]):
-            for c in range(s.d):
-                out[v + c] -= s.B[p, c] * lam[s.slot_row[p]]
+    away(s, s.B, lam, out)
     for k in range(N_BOOK, s.n_z):
         out[s.n_v + k - N_BOOK] = s.zd[k]
 
@@ -52,20 +44,8 @@ def pull(s, t, y, lam, out):
 @internal
 def moving(s, y, x, out):
     """out (n_q) <- rates of the coordinates y where the bodies' velocities are x (n_v)."""
-    if s.d == 3:
-        for k in range(s.n_q):
-            out[k] = x[k]
-        return
-    for f in range(s.n - 1):
-        q, v = 7 * f, 6 * f
-        for a in range(3):
-            out[q + a] = x[v + a]
-        e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
-        o0, o1, o2 = 0.5 * x[v + 3], 0.5 * x[v + 4], 0.5 * x[v + 5]
-        out[q + 3] = -e1 * o0 - e2 * o1 - e3 * o2
-        out[q + 4] = e0 * o0 + e2 * o2 - e3 * o1
-        out[q + 5] = e0 * o1 + e3 * o0 - e1 * o2
-        out[q + 6] = e0 * o2 + e1 * o1 - e2 * o0
+    for q in range(s.n_q):
+        out[q] = moved_by(s, y, q, x)
 
 
 @internal

@@ -10,12 +10,11 @@ from trsim.assemble.equations import evaluate
 from trsim.assemble.linear import substitute
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.vectors import clear, copy_to, internal
+from trsim.solve.auto import ITERATIONS, grown, sown
 from trsim.solve.displacements import active, displace, place_of, w_index
 from trsim.solve.ggl_equations import add_product, away, pull, unweighed
 from trsim.solve.jacobian import PART
 from trsim.solve.record import FRESH, JACOBIAN, JACOBIANS, TOLERANCE
-
-ITERATIONS = 12  # of the vector iteration
 
 
 @internal
@@ -97,16 +96,10 @@ def fastest(s, r, b):
     """Largest eigenvalue of the linearised motion, 1/s, as auto.implicit_rate finds it."""
     n = active(s)
     x, w, u, v = b.move[0], b.pull, b.pull0, b.move[1]
-    for k in range(n):
-        w[k] = 1.0 if k % 3 == 0 else 0.6
-    for k in range(s.n_v):
-        x[k] = 1.0 if k % 2 == 0 else -0.7
+    sown(s, n, x, w)
     product = 1.0
     for turn in range(ITERATIONS):
-        before, size = 0.0, 0.0
-        for k in range(n):
-            u[k] = 0.0
-            before = max(before, abs(w[k]))
+        clear(u)
         for k in range(n):
             for e in range(b.column_start[k], b.column_start[k + 1]):
                 u[b.row[e]] += r.at_rate[e] * w[k]
@@ -119,14 +112,9 @@ def fastest(s, r, b):
         substitute(s, b.schur, mu)
         away(s, b.across, mu, v)
         copy_to(u, v)
-        for k in range(n):
-            size = max(size, abs(u[k]))
-        if size == 0.0 or before == 0.0:
+        growth = grown(s, n, x, w, u)
+        if growth == 0.0:
             return 0.0
-        for k in range(s.n_v):
-            x[k] = w[k] / size
-        for k in range(n):
-            w[k] = u[k] / size
-        if turn >= ITERATIONS - 4:  # an oscillation grows by rho^2 in two turns
-            product *= size / before
+        if turn >= ITERATIONS - 4:
+            product *= growth
     return sqrt(sqrt(product))

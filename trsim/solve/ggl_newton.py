@@ -209,5 +209,5 @@ def advanced(s, r, b, f, g, a, c):
         y[k] = dy[k] - (im * a - re * c) / size
     for k in range(s.n_q):
         re, im = f[k], g[k]
-        f[k] = (re * a + im * c) / size + moved_by(s, r, k, x)
-        g[k] = (im * a - re * c) / size + moved_by(s, r, k, y)
+        f[k] = (re * a + im * c) / size + moved_by(s, r.y, k, x)
+        g[k] = (im * a - re * c) / size + moved_by(s, r.y, k, y)

@@ -224,7 +224,7 @@ def corrected(s, r, f, x, w, mu):
         w[i] = total
     solve_real(r.lu[:n], r.pivot[0], w, n)
     for q in range(s.n_q):
-        f[q] = (f[q] + moved_by(s, r, q, w)) / mu
+        f[q] = (f[q] + moved_by(s, r.y, q, w)) / mu
     for i in range(n):
         f[w_index(s, i)] = w[i]
     for k in range(N_BOOK):
@@ -245,7 +245,7 @@ def corrected_pair(s, r, f, g, x, w, a, c):
             w[i] += r.by_place[i, k] * v
     solve_complex(r.lu[n : 2 * n], r.lu[2 * n :], r.pivot[1], x, w, n)
     for q in range(s.n_q):
-        u, v = f[q] + moved_by(s, r, q, x), g[q] + moved_by(s, r, q, w)
+        u, v = f[q] + moved_by(s, r.y, q, x), g[q] + moved_by(s, r.y, q, w)
         f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
     for i in range(n):
         f[w_index(s, i)], g[w_index(s, i)] = x[i], w[i]

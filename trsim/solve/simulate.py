@@ -86,10 +86,9 @@ def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     solver = scenario.solver
     sparse = solver.formulation == "ggl"
     if solver.formulation is None:
-        smooth = not len(mechanism.model.contact) and solver.tolerance >= SPARSE_UNTIL
-        # Baumgarte's terms belong to the accelerations
-        sparse = smooth and solver.stabilisation != "baumgarte"
-        sparse = sparse and mechanism.model.n_v >= SPARSE_FROM
+        large, touches = mechanism.model.n_v >= SPARSE_FROM, len(mechanism.model.contact) > 0
+        held = solver.stabilisation == "baumgarte"  # whose terms belong to the accelerations
+        sparse = large and not touches and not held and solver.tolerance >= SPARSE_UNTIL
     known = COMPILED.get(solver.method, ())
     return tuple("radau_ggl" if sparse and name == "radau" else name for name in known)
 
