@@ -6,7 +6,7 @@ import pytest
 from trsim.assemble import release as releases
 from trsim.assemble.assemble import assemble, build, pack
 from trsim.assemble.rank import unique_reactions
-from trsim.assemble.reduce import dependences, jacobian, weights
+from trsim.assemble.reduce import dependences, jacobian, moves, weights
 from trsim.assemble.release import release
 from trsim.assemble.rows import all_rows
 from trsim.assemble.tables import drawn
@@ -53,13 +53,12 @@ def without(scenario, mechanism, gone):
     """Rows left dependent, mobility and uniqueness of a mechanism with some rows let go."""
     at, instances = pack(scenario, frozenset(), None, ())
     rows = [r for r in all_rows(instances) if f"{r.element}.{r.axis}" not in gone]
-    full, y = build(scenario, at, instances, rows, 6), drawn(scenario, at, 6)
-    columns = [0, 1, 5] if mechanism.planar else [0, 1, 2, 3, 4, 5]
-    keep = [6 * f + c for f in range(full.n - 1) for c in columns]
+    full, y = build(scenario, at, instances, rows, 6), drawn(at, 6)
+    keep = moves(full, mechanism.planar)
     J = jacobian(full, 0.0, y)[2][:, keep]
     inside = np.flatnonzero(np.abs(J).max(axis=1) > 1e-9).tolist()
     geometric = [k for k in inside if rows[k].element in scenario.joints]
-    found = dependences(full, y, columns, inside, geometric)
+    found = dependences(full, y, keep, inside, geometric)
     unique = unique_reactions(J[inside], weights(full)[keep])
     return [f.row for f in found if f.everywhere], len(keep) - len(inside), unique.all()
 

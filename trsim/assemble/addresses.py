@@ -5,12 +5,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.assemble.members import Beam, beams
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import names
 from trsim.laws import functions
 from trsim.laws.tables import akima_coefficients
 from trsim.units import quantity, unit
+
+AT_A_NODE = 1e-6  # of a bar's length: a joint so far from a node is at it
 
 
 class JointCoordinate(NamedTuple):
@@ -33,6 +36,7 @@ class Addresses:
 
     scenario: Any
     elements: dict[tuple[str, str], Any]  # (section, name) -> Element
+    members: dict[str, Any]  # the bodies: rigid, or flexible bars
     tab: list[float] = field(default_factory=lambda: [0.0])
     states: list[tuple[str | float, int]] = field(default_factory=list)  # scale, coordinate
     coordinates: dict[str, JointCoordinate] = field(default_factory=dict)
@@ -43,34 +47,68 @@ class Addresses:
     switches: Any = None  # of user events, once all elements are packed
 
     def __post_init__(self) -> None:
-        self.frames = {"ground": 0}
-        for name in self.scenario.bodies:
-            self.frames[name] = len(self.frames)
-        specs = [None, *self.scenario.bodies.values()]
-        self.at_start = np.array([(0.0, 0.0, 0.0), *(spec.at for spec in specs[1:])], float)
-        self.angle = np.array([0.0, *(spec.angle for spec in specs[1:])])
+        rigid = {n: spec for n, spec in self.members.items() if spec.type != "ancf_cable"}
+        self.frames = {"ground": 0} | {name: f for f, name in enumerate(rigid, start=1)}
+        self.n_rigid = len(self.frames)
+        self.beams: dict[str, Beam] = beams(self.members, self.n_rigid)
+        self.owners = ["ground", *rigid]  # of every frame
+        for name, beam in self.beams.items():
+            self.frames |= {f"{name}[{k}]": beam.first + k for k in range(beam.nodes)}
+            self.owners += [name] * beam.nodes
+        nodes = [place for beam in self.beams.values() for place in beam.places]
+        self.at_start = np.array([(0.0, 0.0, 0.0), *(s.at for s in rigid.values()), *nodes], float)
+        self.angle = np.array([0.0, *(spec.angle for spec in rigid.values())])
         c, s = np.cos(self.angle), np.sin(self.angle)
-        self.rotation = np.zeros((len(specs), 3, 3))
-        self.rotation[:, 0, 0], self.rotation[:, 0, 1] = c, -s
-        self.rotation[:, 1, 0], self.rotation[:, 1, 1] = s, c
-        self.rotation[:, 2, 2] = 1.0
-        self.specs = specs
+        self.rotation = np.zeros((len(self.frames), 3, 3))
+        self.rotation[: self.n_rigid, 0, 0], self.rotation[: self.n_rigid, 0, 1] = c, -s
+        self.rotation[: self.n_rigid, 1, 0], self.rotation[: self.n_rigid, 1, 1] = s, c
+        self.rotation[: self.n_rigid, 2, 2] = 1.0
+        for beam in self.beams.values():
+            self.rotation[beam.first : beam.first + beam.nodes] = beam.axes
+            angle = np.arctan2(beam.tangent[1], beam.tangent[0])
+            self.angle = np.append(self.angle, [angle] * beam.nodes)
         self.points: list[tuple[int, tuple[float, ...]]] = []  # for arms and the size
 
-    def body(self, name: str, *path: str | int) -> int:
-        """Frame of a body; ground is 0."""
+    def body(self, name: str, *path: str | int, near: Any = None, off: float = AT_A_NODE) -> int:
+        """Frame of a body; ground is 0.  Of a flexible bar the node at the place `near`.
+
+        off: how far from a node that place may be, in lengths of the bar.
+        """
+        if name in self.beams:
+            return self._node(name, path, near, off)
         if name not in self.frames:
-            raise ScenarioError(f"no body named '{name}'", known(name, self.frames), path)
+            known_names = ["ground", *self.members]
+            raise ScenarioError(f"no body named '{name}'", known(name, known_names), path)
         return self.frames[name]
 
-    def bodies(self, pair: tuple[str, str]) -> tuple[int, int]:
-        """Frames of two different bodies."""
-        i, j = self.body(pair[0], "bodies", 0), self.body(pair[1], "bodies", 1)
-        if i == j:
+    def _node(self, name: str, path: tuple[str | int, ...], near: Any, off: float) -> int:
+        beam = self.beams[name]
+        if near is None:
+            near = beam.places[beam.nodes // 2]
+        away = np.linalg.norm(beam.places - np.array(near), axis=1)
+        k = int(np.argmin(away))
+        if away[k] > off * beam.whole:
+            x, y, z = beam.places[k]
+            raise ScenarioError(
+                f"is {away[k]:.3g} m away from the nearest node of '{name}'",
+                f"that one is at [{x:.6g}, {y:.6g}, {z:.6g}]: choose `elements` so that a node "
+                "lies at every joint and load",
+                path,
+            )
+        return beam.first + k
+
+    def bodies(self, pair: tuple[str, str], at: Any, other: Any = None) -> tuple[int, int]:
+        """Frames of two different bodies, at a place; or each at its own."""
+        if pair[0] == pair[1]:
             raise ScenarioError(
                 f"joins '{pair[0]}' to itself", "name two different bodies", ("bodies",)
             )
-        return i, j
+        i = self.body(pair[0], "bodies", 0, near=at)
+        return i, self.body(pair[1], "bodies", 1, near=at if other is None else other)
+
+    def is_node(self, i: int) -> bool:
+        """Whether a frame is a node of a flexible bar."""
+        return i >= self.n_rigid
 
     def centre(self, i: int) -> tuple[float, ...]:
         """Centre of mass as drawn."""
@@ -91,14 +129,23 @@ class Addresses:
         return float((self.angle[j] - self.angle[i]) * axis[2]) if abs(axis[2]) > 0.999 else 0.0
 
     def mass(self, i: int) -> float:
-        return float(self.specs[i].mass) if i else float("inf")
+        if i == 0:
+            return float("inf")
+        spec = self.members[self.owners[i]]
+        return float(spec.per_length * spec.length if self.is_node(i) else spec.mass)
 
     def inertia_about(self, i: int, axis: tuple[float, ...]) -> float:
         """Moment of inertia about an axis (world, as drawn) through the centre of mass."""
         from trsim.elements.rigid_body import tensor
 
+        if self.is_node(i):  # a slender bar
+            bar = self.members[self.owners[i]]
+            across = np.linalg.norm(np.cross(self.rotation[i][:, 0], axis))
+            return float(bar.per_length * bar.length**3 / 12.0 * across**2)
         a = np.array(self.axes(i, axis))
-        return float(a @ np.array(tensor(self.specs[i].inertia)[0]).reshape(3, 3) @ a)
+        return float(
+            a @ np.array(tensor(self.members[self.owners[i]].inertia)[0]).reshape(3, 3) @ a
+        )
 
     def coordinate(self, joint: str, kind: str = "") -> JointCoordinate:
         """The coordinate of a joint; entering it in S is what makes it computed."""
@@ -121,7 +168,7 @@ class Addresses:
             )
         if joint not in self.coordinates:
             spec = self.scenario.joints[joint]
-            i, j = self.bodies(spec.bodies)
+            i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
             axis = perpendicular(spec.axis)[2]
             self.coordinates[joint] = JointCoordinate(

@@ -1,6 +1,7 @@
 """Scenario -> Model: pack the elements, drop what the scene does not need, lay out the outputs."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,11 +9,20 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
+from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
 from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
+from trsim.assemble.members import members
 from trsim.assemble.pattern import pattern
-from trsim.assemble.rows import all_rows, check_inertias, choose_rows, planarity, reactions
+from trsim.assemble.rows import (
+    all_rows,
+    check_inertias,
+    check_space,
+    choose_rows,
+    planarity,
+    reactions,
+)
 from trsim.assemble.stages import Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
@@ -31,7 +41,6 @@ from trsim.assemble.tables import (
 )
 from trsim.elements.contract import (
     N_BOOK,
-    Row,
 )
 from trsim.elements.scene import BAUMGARTE, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
@@ -44,22 +53,26 @@ def assemble(
     ideal: frozenset[str] = frozenset(),
     drives: Mapping[str, Any] | None = None,
     coordinates: tuple[str, ...] = (),
+    stiff: bool = False,
 ) -> Mechanism:
     """Build the model.  Raises ScenarioError, ModelError.
 
     For the start of a run - ideal: clearance joints to take as ideal ones; drives: drives instead
-    of the scenario's; coordinates: joints whose coordinate is needed though nobody asks for it.
+    of the scenario's; coordinates: joints whose coordinate is needed though nobody asks for it;
+    stiff: flexible bars as rigid ones.
     """
-    at, instances = pack(scenario, ideal, drives, coordinates)
+    at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
     full = scene(build(scenario, at, instances, rows, 6))  # one workspace for all
-    y6 = drawn(scenario, at, 6)
+    y6 = drawn(at, 6)
     planar, assumed = planarity(scenario, full, y6)
-    check_inertias(scenario, planar)
+    check_inertias(at, planar)
+    if not planar:
+        check_space(at, instances)
     kept, found = choose_rows(full, y6, instances, planar, rows)
     d = 3 if planar else 6
     model = build(scenario, at, instances, kept, d)
-    y0 = drawn(scenario, at, d)
+    y0 = drawn(at, d)
     model, columns = layout(scenario, model, instances, at, planar)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
@@ -81,6 +94,7 @@ def assemble(
         follows=tuple(follow for _, follow in at.states),
         coordinates=at.coordinates,
         frames=at.frames,
+        beams=at.beams,
         notes=(*notes(scenario, assumed), *at.notes),
         stages=stages(scenario, at, instances, model, planar),
     )
@@ -92,7 +106,7 @@ def stages(
     """What user events make of the mechanism; planarity is that of the start."""
 
     def built(instances: list[Instance], rows: list[RowName]) -> tuple[Model, list[RowName]]:
-        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(scenario, at, 6)
+        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
         kept, _ = choose_rows(full, y6, instances, planar, rows)
         return build(scenario, at, instances, kept, 3 if planar else 6), kept
 
@@ -121,31 +135,34 @@ def pack(  # type: ignore[no-untyped-def]
     ideal: frozenset[str],
     drives: Mapping[str, Any] | None,
     coordinates: tuple[str, ...],
+    stiff: bool = False,
 ):
     """Every element of the scenario as an Instance, neighbours of one kind together."""
     wanted: list[tuple[str, str, str, Any]] = []
-    sections = {s: getattr(scenario, s) for s in ("bodies", "joints", "drives", "sensors")}
+    bodies = members(scenario, stiff)
+    sections = {s: getattr(scenario, s) for s in ("joints", "drives", "sensors")}
+    sections["bodies"] = bodies
     if drives is not None:
         sections["drives"] = drives
     sections["forces"] = scenario.forces
     if drives is None:
         sections[SECTION] = dict(locks(scenario))
-    for section, members in sections.items():
-        for name, spec in members.items():
+    for section, entries in sections.items():
+        for name, spec in entries.items():
             key = spec.type
             if key == "clearance_joint" and (spec.clearance == 0.0 or name in ideal):
                 key = "revolute"
             wanted.append((key, section, name, spec))
     if any(scenario.gravity):
         gravity = elements.load("gravity")
-        for name, spec in scenario.bodies.items():
-            if spec.mass > 0.0:
+        for name, spec in bodies.items():
+            if spec.type == "rigid_body" and spec.mass > 0.0:  # a flexible bar has its own
                 field = gravity.spec(body=name, field=scenario.gravity)
                 wanted.append(("gravity", "", name, field))
     order = list(elements.ELEMENTS)
     wanted.sort(key=lambda item: order.index(item[0]))
     kinds = {key: elements.load(key) for key, *_ in wanted}
-    at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted})
+    at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted}, bodies)
     instances = []
     for key, section, name, spec in wanted:
         told = len(at.notes)
@@ -168,7 +185,7 @@ def pack(  # type: ignore[no-untyped-def]
             row = instance.row
             index = at.coordinates[instance.name].entry
             con = (*row.con[:2], index, *row.con[3:])
-            row = Row(con, row.par, row.contact)
+            row = replace(row, con=con)
             instances[n] = Instance(instance.section, instance.name, instance.element, row)
     return at, instances
 
@@ -179,19 +196,27 @@ def build(
     """The arrays of a model with the given constraint rows, without outputs."""
     n, N = len(at.frames), max(len(instances), 1)
     con, par = tables(instances, rows)
-    mass, inertia, mass_inverse, inertia_inverse = masses(scenario, d)
+    mass, inertia, mass_inverse, inertia_inverse = masses(at, d)
     solver = scenario.solver
     size = extent(at)
     n_z = N_BOOK + len(at.states)
+    d_node = 4 if d == 3 else 6
+    n_nodes = n - at.n_rigid
+    q_node, v_node = (3 if d == 3 else 7) * (at.n_rigid - 1), d * (at.n_rigid - 1)
+    frames = [r.frames for r in rows]
     scale_kind, scale = norm(at, d, size)
     contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
     stabilisation = {"none": NONE, "baumgarte": BAUMGARTE, "projection": PROJECTION}
     baumgarte = solver.baumgarte
     return Model(
         d=d,
+        d_node=d_node,
         n=n,
-        n_q=(3 if d == 3 else 7) * (n - 1),
-        n_v=d * (n - 1),
+        n_r=at.n_rigid,
+        n_q=q_node + d_node * n_nodes,
+        n_v=v_node + d_node * n_nodes,
+        q_node=q_node,
+        v_node=v_node,
         n_z=n_z,
         m=len(rows),
         mass=mass,
@@ -205,7 +230,8 @@ def build(
         n_s=at.n_s,
         turn=turns(at, d),
         **kernels(instances),
-        **pattern([r.frames for r in rows], n),
+        **pattern(frames, n, [(beam.first, beam.nodes) for beam in at.beams.values()]),
+        **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
         stabilisation=stabilisation[solver.stabilisation],
         alpha=baumgarte.alpha if baumgarte else 0.0,
@@ -217,7 +243,7 @@ def build(
         contact_state=contact_states(instances, contacts),
         contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(
-            [sum(c.size for c in instances[e].element.channels) for e in contacts], np.int64
+            [sum(c.size for c in instances[e].channels) for e in contacts], np.int64
         ),
         wanted=np.full(N, -1, np.int64),
         joint_out=np.zeros((0, 4), np.int64),

@@ -3,7 +3,8 @@
     [ M  J^T ] [ V'  ]   [ F - gyroscopic ]
     [ J  0   ] [ lam ] = [ gamma          ]        gamma - 2 alpha Phi' - beta^2 Phi with Baumgarte
 
-M is block diagonal, so the multipliers come from the small sparse matrix S = J M^-1 J^T,
+M is constant, a block for each body, so the multipliers come from the small sparse matrix
+S = J M^-1 J^T,
 
     S lam = J M^-1 F - gamma,        V' = M^-1 (F - J^T lam)              [Nikravesh1988]
 
@@ -12,6 +13,14 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 
 from math import cos, nan, sin
 
+from trsim.assemble.beams import (
+    node_accelerations,
+    node_kinetic,
+    node_poses,
+    node_rates,
+    node_right_hand_side,
+    pull_nodes,
+)
 from trsim.assemble.linear import contradictory, factorise, independent, solve
 from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
 from trsim.elements.calls import call_kernel, caller
@@ -65,7 +74,7 @@ def poses(s, y):
     for k in range(s.n_z):
         s.z[k] = y[s.n_q + s.n_v + k]
     if s.d == 3:
-        for f in range(1, s.n):
+        for f in range(1, s.n_r):
             q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
             cosine, sine = cos(y[q + 2]), sin(y[q + 2])
             X[f, 0], X[f, 1] = y[q], y[q + 1]
@@ -78,8 +87,10 @@ def poses(s, y):
             angle_j = y[3 * (j - 1) + 2] if j > 0 else 0.0
             branch[turn[k, 0]] = sign * (angle_j - angle_i)
     else:
-        for f in range(1, s.n):
+        for f in range(1, s.n_r):
             spatial_pose(X, V, f, y, 7 * (f - 1), s.n_q + 6 * (f - 1))
+    if s.n_r < s.n:
+        node_poses(s, y)
     for k in range(s.n_s):
         S[k, 0] = branch[k]
     call_all(s, s.coordinate, 0.0)
@@ -112,6 +123,7 @@ def spatial_pose(X, V, f, y, q, v):
 def forces(s, t):
     """Sum the wrenches F and the powers and rates z'."""
     clear_table(s.F)
+    clear_table(s.Q)
     clear(s.zd)
     call_all(s, s.force, t)
 
@@ -133,13 +145,15 @@ def constraints(s, t):
 def free_accelerations(s):
     """M^-1 (F - omega x I omega), in the axes of the solve."""
     X, V, F, a = s.X, s.V, s.F, s.free
+    if s.n_r < s.n:
+        node_accelerations(s)
     if s.d == 3:
-        for f in range(1, s.n):
+        for f in range(1, s.n_r):
             a[f, 0] = F[f, 0] * s.mass_inverse[f]
             a[f, 1] = F[f, 1] * s.mass_inverse[f]
             a[f, 2] = F[f, 5] * s.inertia_inverse[f, 8]
         return
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         for c in range(3):
             a[f, c] = F[f, c] * s.mass_inverse[f]
         # torque and angular velocity in body axes
@@ -181,7 +195,9 @@ def right_hand_side(s):
         x[k] = -s.gamma[k]
         if s.stabilisation == BAUMGARTE:
             x[k] += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
-    for f in range(1, s.n):
+    if s.n_r < s.n:
+        node_right_hand_side(s, x)
+    for f in range(1, s.n_r):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             total = B[p, 0] * free[f, 0] + B[p, 1] * free[f, 1] + B[p, 2] * free[f, 2]
             if s.d == 6:
@@ -195,8 +211,11 @@ def accelerations(s, y, yd):
     X, A, a = s.X, s.A, s.free
     for k in range(s.n_z):
         yd[s.n_q + s.n_v + k] = s.zd[k]
+    if s.n_r < s.n:
+        pull_nodes(s, s.lam)
+        node_rates(s, y, yd)
     if s.d == 3:
-        for f in range(1, s.n):
+        for f in range(1, s.n_r):
             pull(s, f, s.lam)
             q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
             for c in range(3):
@@ -204,7 +223,7 @@ def accelerations(s, y, yd):
                 yd[v + c] = a[f, c]
             A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
         return
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         pull(s, f, s.lam)
         q, v = 7 * (f - 1), s.n_q + 6 * (f - 1)
         for c in range(3):
@@ -239,8 +258,8 @@ def corners(s, t):
 @compiled(float64(SCENE, A1))
 def kinetic(s, y):
     """Kinetic energy, J."""
-    T = 0.0
-    for f in range(1, s.n):
+    T = node_kinetic(s, y) if s.n_r < s.n else 0.0
+    for f in range(1, s.n_r):
         v = s.n_q + s.d * (f - 1)
         if s.d == 3:
             T += 0.5 * s.mass[f] * (y[v] * y[v] + y[v + 1] * y[v + 1])

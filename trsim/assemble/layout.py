@@ -51,7 +51,7 @@ def all_names(instances: Iterable["Instance"], jumps: int) -> list[str]:
     """Every channel one may ask for, and the elements that have some."""
     names = []
     for instance in instances:
-        recorded = (*instance.element.channels, *instance.element.reactions)
+        recorded = (*instance.channels, *instance.element.reactions)
         channels = [f"{instance.name}.{c.name}" for c in recorded if c.name]
         names += [instance.name, *channels] if channels else []
     return names + [f"energy.{name}" for name in energy_columns(jumps)]
@@ -78,7 +78,7 @@ def layout(
         width += size
 
     for e, instance in enumerate(instances):
-        channels = instance.element.channels
+        channels = instance.channels
         names = [f"{instance.name}.{c.name}" if c.name else instance.name for c in channels]
         # contacts are always measured: their peaks and steps are part of every result
         if names and (any(map(asked, names)) or instance.row.contact):

@@ -15,6 +15,7 @@ with them the accelerations are right to eps/delta.
 
 from math import sqrt
 
+from trsim.assemble.beams import divide_by_mass, gathered
 from trsim.elements.vectors import clear_table, copy_to, internal
 
 SOUND, POOR, SINGULAR = 0, 1, 2  # how a factorisation went, in s.status[0]
@@ -118,13 +119,20 @@ def residual(s, x, r):
     """r <- r - J M^-1 J^T x with the rows `rows` last made."""
     B, W, u, frame_start, slot_row = s.B, s.W, s.moved, s.frame_start, s.slot_row
     clear_table(u)
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         for p in range(frame_start[f], frame_start[f + 1]):
             for a in range(s.d):
                 u[f, a] += W[p, a] * x[slot_row[p]]
         for p in range(frame_start[f], frame_start[f + 1]):
             for a in range(s.d):
                 r[slot_row[p]] -= B[p, a] * u[f, a]
+    if s.n_r < s.n:
+        gathered(s, u, x)
+        divide_by_mass(s, u)
+        for f in range(s.n_r, s.n):
+            for p in range(frame_start[f], frame_start[f + 1]):
+                for a in range(s.d_node):
+                    r[slot_row[p]] -= B[p, a] * u[f, a]
 
 
 @internal

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.layout import Column
-from trsim.elements.contract import Element, Row
+from trsim.assemble.members import Beam
+from trsim.elements.contract import Channel, Element, Row
 from trsim.elements.scene import Model
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ class Instance:
     name: str
     element: Element
     row: Row
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        own = self.row.channels
+        return self.element.channels if own is None else own
 
 
 @dataclass(frozen=True)
@@ -60,5 +66,6 @@ class Mechanism:
     follows: tuple[int, ...]  # coordinate each element state starts at, or -1
     coordinates: Mapping[str, Any]  # joint -> JointCoordinate
     frames: Mapping[str, int]
+    beams: Mapping[str, Beam]
     notes: tuple[str, ...]
     stages: "Stages"  # what user events make of it

@@ -1,7 +1,7 @@
 """The sparsity of S = J M^-1 J^T and the program of its factorisation L D L^T, made once.
 
-Two rows of J meet in S where they share a moving frame.  A minimum-degree order keeps the fill
-small [George1989]: for an open chain the cost of factorising grows linearly with its length.
+Two rows of J meet in S where they share a moving body: a frame, or the nodes of a beam.  A
+minimum-degree order keeps the fill small [George1989]: for an open chain the cost of factorising grows linearly with its length.
 The numeric part (equations.py, linear.py) only walks the index lists made here, each from its
 beginning to its end.
 """
@@ -62,11 +62,19 @@ def eliminate(neighbours: list[set[int]], order: list[int]) -> list[list[int]]:
     return below
 
 
-def pattern(row_frames: list[tuple[int, int]], n: int) -> dict[str, Any]:
-    """Index arrays of Model for rows between pairs of its n frames; see the comments there."""
+def pattern(
+    row_frames: list[tuple[int, int]], n: int, beams: list[tuple[int, int]] | None = None
+) -> dict[str, Any]:
+    """Index arrays of Model for rows between pairs of its n frames; see the comments there.
+
+    beams: first frame and number of nodes of each; they follow the rigid bodies.
+    """
     of_frame = slots(row_frames, n)
+    spans = [of_frame[first : first + nodes] for first, nodes in beams or []]
+    rigid = of_frame[: n - sum(map(len, spans))]
+    of_body = [*rigid, *([slot for node in span for slot in node] for span in spans)]
     neighbours: list[set[int]] = [set() for _ in row_frames]
-    for members in of_frame:
+    for members in of_body:
         rows = {k for k, _ in members}
         for k in rows:
             neighbours[k] |= rows - {k}
@@ -91,7 +99,7 @@ def pattern(row_frames: list[tuple[int, int]], n: int) -> dict[str, Any]:
     ]
     entry = [
         place[a, b]
-        for members in of_frame
+        for members in of_body
         for last, (a, _) in enumerate(members)
         for b, _ in members[: last + 1]
     ]

@@ -5,6 +5,7 @@ dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1
 
 import numpy as np
 
+from trsim.assemble.beams import pull_nodes
 from trsim.assemble.equations import constraints, equation, poses
 from trsim.assemble.linear import factorise, solve
 from trsim.assemble.schur import pull, rows, velocity_residual
@@ -16,13 +17,15 @@ from trsim.elements.vectors import clear_table
 @compiled(void(SCENE, A1, A1))
 def move_all(s, y, dx):
     """Move all bodies by the small displacements dx (n_v) in the axes of the solve."""
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         move(s, y, f, dx[s.d * (f - 1) : s.d * f])
+    for k in range(s.v_node, s.n_v):
+        y[s.q_node + k - s.v_node] += dx[k]
 
 
 @equation
 def move(s, y, f, dx):
-    """Move frame f by the small displacement dx (d) in the axes of the solve."""
+    """Move the rigid body of frame f by the small displacement dx (d) in the axes of the solve."""
     if s.d == 3:
         for a in range(3):
             y[3 * (f - 1) + a] += dx[a]
@@ -45,7 +48,7 @@ def move(s, y, f, dx):
 def normalise(s, y):
     """Quaternions back to length one."""
     if s.d == 6:
-        for f in range(1, s.n):
+        for f in range(1, s.n_r):
             q = 7 * (f - 1) + 3
             length = np.sqrt(y[q] ** 2 + y[q + 1] ** 2 + y[q + 2] ** 2 + y[q + 3] ** 2)
             for a in range(4):
@@ -71,9 +74,13 @@ def project_positions(s, t, y):
     solve(s, s.x)
     dx = s.free
     clear_table(dx)
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         pull(s, f, s.x)
         move(s, y, f, dx[f])
+    if s.n_r < s.n:
+        pull_nodes(s, s.x)
+        for k in range(s.n_v - s.v_node):
+            y[s.q_node + k] += dx[s.n_r + k // s.d_node, k % s.d_node]
     return worst
 
 
@@ -90,9 +97,13 @@ def project_velocities(s, y):
         worst = max(worst, abs(s.x[k]))
     solve(s, s.x)
     clear_table(s.free)
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         pull(s, f, s.x)
         v = s.n_q + s.d * (f - 1)
         for a in range(s.d):
             y[v + a] += s.free[f, a]
+    if s.n_r < s.n:
+        pull_nodes(s, s.x)
+        for k in range(s.n_v - s.v_node):
+            y[s.n_q + s.v_node + k] += s.free[s.n_r + k // s.d_node, k % s.d_node]
     return worst

@@ -1,8 +1,9 @@
 """What the scene does not need is not solved: planarity, redundant rows, mobility.
 
 Planarity is read off the numbers: a row whose derivatives against z', omega_x, omega_y vanish is in
-the plane; one whose derivatives against x', y', omega_z vanish is out of it.  Rows are judged
-redundant by rank, at several consistent positions near the drawn one: what is dependent only at
+the plane; one whose derivatives against x', y', omega_z vanish is out of it.  Derivatives are
+against world-axes rates, six of each moving frame: see `world_rates`.  Rows are judged redundant by
+rank, at several consistent positions near the drawn one: what is dependent only at
 the drawn position (a dead centre, a parallelogram lying flat) is singular, not redundant, and kept.
 """
 
@@ -16,11 +17,12 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.projection import move_all
 from trsim.assemble.rank import DEPENDENT, dependent_rows
-from trsim.elements.scene import Model, workspace
+from trsim.elements.scene import Model, Scene, workspace
 
 Array = NDArray[np.float64]
 
-IN_PLANE, OUT_OF_PLANE = [0, 1, 5], [2, 3, 4]
+IN_PLANE = [0, 1, 5]  # of the six world-axes rates of a rigid body
+NODE_IN_PLANE = [0, 1, 3, 4]  # and of a node of a beam, see `world_rates`
 NEARLY = 1e-6  # the same at nearby positions, where an error of the drawing has grown
 SAMPLES = 4
 SPREAD = 0.03  # of the mechanism's size and rad: how far positions are perturbed
@@ -35,48 +37,92 @@ class Dependence:
 
 
 def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
-    """Phi (m), Phi_t (m) and J (m, 6 (n-1)) against the world-axes twists of the moving frames."""
+    """Phi (m), Phi_t (m) and J (m, 6 (n-1)) against the world-axes rates of the moving frames."""
     w = workspace(model)
     poses(w, y)
     constraints(w, t)
     J = np.zeros((model.m, model.n, 6))
     for end, block in ((0, w.J[:, :6]), (1, w.J[:, 6:])):
         J[np.arange(model.m), model.row_frame[:, end]] = block
-    return w.phi.copy(), w.phi_t.copy(), J[:, 1:].reshape(model.m, 6 * (model.n - 1))
+    return w.phi.copy(), w.phi_t.copy(), against_rates(w, J[:, 1:].reshape(model.m, 6 * (model.n - 1)))
+
+
+def moves(model: Model, planar: bool) -> NDArray[np.bool_]:
+    """Which world-axes rates there are (6 (n-1)): in the plane, or all."""
+    found = np.ones((model.n - 1, 6), bool)
+    if planar:
+        found[:] = False
+        found[: model.n_r - 1, IN_PLANE] = True
+        found[model.n_r - 1 :, NODE_IN_PLANE] = True
+    return found.ravel()
+
+
+def against_rates(work: Scene, rows: Array) -> Array:
+    """Rows against world-axes twists (k, 6 (n-1)) as rows against world-axes rates.
+
+    What turns a node of a beam moves its slope g: omega = g x g' / |g|^2.
+    """
+    if work.n_r == work.n:
+        return rows
+    shape = rows.shape
+    rows = rows.reshape(len(rows), work.n - 1, 6).copy()
+    g = work.G[work.n_r :, :3]
+    square = np.sum(g * g, axis=1)[:, None]
+    rows[:, work.n_r - 1 :, 3:] = np.cross(rows[:, work.n_r - 1 :, 3:], g) / square
+    return rows.reshape(shape)
+
+
+def world_rates(model: Model, y: Array) -> Array:
+    """Rates of the moving frames, one vector (6 (n-1)): the twist of a rigid body in world axes;
+    of a node of a beam those of its place and of its slope."""
+    w = workspace(model)
+    poses(w, y)
+    rates = w.V[1:].copy()
+    rates[w.n_r - 1 :, 3:] = w.G[w.n_r :, 3:]
+    return rates.ravel()
 
 
 def weights(model: Model) -> Array:
-    """sqrt(M^-1) of the world-axes twists, nearly: positions moved by it cost equal energy."""
+    """sqrt(M^-1) of the world-axes rates, nearly: positions moved by it cost equal energy."""
     trace = np.maximum(model.inertia[1:, 0] + model.inertia[1:, 4] + model.inertia[1:, 8], 1e-300)
     arm = np.sqrt(trace / np.maximum(model.mass[1:], 1e-300))
     return np.stack([np.ones_like(arm)] * 3 + [1.0 / np.maximum(arm, 1e-9)] * 3, axis=1).ravel()
 
 
 def displaced(model: Model, y: Array, dx: Array) -> Array:
-    """y after small world-axes displacements dx (6 (n-1)) of the moving frames."""
+    """y after small displacements dx (6 (n-1)) along the world-axes rates of the moving frames."""
     y = y.copy()
     w = workspace(model)
-    steps = dx.reshape(-1, 6)
-    if model.d == 3:
-        steps = steps[:, IN_PLANE]
-    else:
-        poses(w, y)
-        R = w.X[1:, 3:].reshape(-1, 3, 3)
-        steps = np.hstack([steps[:, :3], np.einsum("fij,fi->fj", R, steps[:, 3:])])
-    move_all(w, y, np.ascontiguousarray(steps).ravel())
+    poses(w, y)
+    move_all(w, y, in_solve_axes(w, dx))
     return y
 
 
-def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None = None,
-            columns: list[int] | None = None, steps: int = 60) -> tuple[Array, float]:  # fmt: skip
+def in_solve_axes(work: Scene, dx: Array) -> Array:
+    """World-axes rates (6 (n-1)) in the axes of the solve (n_v), at the poses of the workspace."""
+    steps = dx.reshape(-1, 6)
+    bodies, nodes = steps[: work.n_r - 1], steps[work.n_r - 1 :]
+    if work.d == 3:
+        return np.concatenate([bodies[:, IN_PLANE].ravel(), nodes[:, NODE_IN_PLANE].ravel()])
+    R = work.X[1 : work.n_r, 3:].reshape(-1, 3, 3)
+    turned = np.hstack([bodies[:, :3], np.einsum("fij,fi->fj", R, bodies[:, 3:])])
+    return np.concatenate([turned.ravel(), nodes.ravel()])
+
+
+def closest(
+    model: Model,
+    t: float,
+    y: Array,
+    active: NDArray[np.int64] | None = None,
+    free: NDArray[np.bool_] | None = None,
+    steps: int = 60,
+) -> tuple[Array, float]:
     """Newton with least squares onto the constraints; works with redundant rows.
 
-    columns: twist components (0..5) that may move.  Returns y and the largest residual left.
+    free: world-axes rates that may move.  Returns y and the largest residual left.
     """
     scale = weights(model)
-    allowed = np.zeros((model.n - 1, 6), bool)
-    allowed[:, columns if columns is not None else range(6)] = True
-    free = allowed.ravel()
+    free = moves(model, False) if free is None else free
     for _ in range(steps):
         phi, _, J = jacobian(model, t, y)
         if active is not None:
@@ -95,20 +141,19 @@ def closest(model: Model, t: float, y: Array, active: NDArray[np.int64] | None =
     return y, float(np.max(np.abs(phi), initial=0.0))
 
 
-def dependences(model: Model, y: Array, columns: list[int], order: list[int],
+def dependences(model: Model, y: Array, keep: NDArray[np.bool_], order: list[int],
                 geometric: list[int]) -> list[Dependence]:  # fmt: skip
     """Dependent rows as drawn, and whether they stay so at nearby consistent positions.
 
-    order: priority of the rows; geometric: the rows positions must keep to when perturbed (all
-    but the drives).
+    keep: world-axes rates that there are; order: priority of the rows; geometric: the rows
+    positions must keep to when perturbed (all but the drives).
     """
-    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns], int)
     scale = weights(model)[keep]
     here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
     if not here:
         return []
     always = None
-    for near in nearby(model, y, columns, geometric):
+    for near in nearby(model, y, keep, geometric):
         J = jacobian(model, 0.0, near)[2][:, keep]
         there = dependent_rows(J, scale, order, NEARLY)
         if len(there) > len(here):  # no rank is lower there: these rows are nearly parallel
@@ -119,8 +164,10 @@ def dependences(model: Model, y: Array, columns: list[int], order: list[int],
     return [Dependence(k, k in always) for k in sorted(here | always)]
 
 
-def nearby(model: Model, y: Array, columns: list[int], geometric: list[int]) -> Iterator[Array]:
-    """Consistent positions around y, SPREAD away in the twist components of `columns`.
+def nearby(
+    model: Model, y: Array, keep: NDArray[np.bool_], geometric: list[int]
+) -> Iterator[Array]:
+    """Consistent positions around y, SPREAD away in the world-axes rates `keep`.
 
     geometric: the rows positions keep to.  At most SAMPLES; always the same ones.  They are reached
     along motions the rows allow: from elsewhere Newton follows the nearly dependent directions of
@@ -128,29 +175,33 @@ def nearby(model: Model, y: Array, columns: list[int], geometric: list[int]) -> 
     at once (a dead centre, nothing moves) they are reached from anywhere.
     """
     rng = np.random.default_rng(0)
-    keep = np.array([6 * f + c for f in range(model.n - 1) for c in columns], int)
     rows = np.array(geometric, np.int64)
     scale = weights(model)[keep]
     J = jacobian(model, 0.0, y)[2][rows][:, keep]
-    size = np.where(np.array(columns) < 3, model.size, 1.0)
+    size = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)[keep]
     for _ in range(SAMPLES):
-        way = SPREAD * (rng.normal(size=(model.n - 1, len(columns))) * size).ravel()
+        way = SPREAD * rng.normal(size=size.size) * size
         free = way - scale * np.linalg.lstsq(J * scale, J @ way, rcond=DEPENDENT)[0]
-        far = np.max(np.abs(free.reshape(-1, len(columns)) / size))
+        far = np.max(np.abs(free / size))
         for step in (free * (SPREAD / max(far, 1e-3 * SPREAD)), way):
-            dx = np.zeros((model.n - 1, 6))
-            dx[:, columns] = step.reshape(-1, len(columns))
-            near, left = closest(model, 0.0, displaced(model, y, dx.ravel()), rows, columns)
-            moved = np.max(np.abs((near - y)[: model.n_q]).reshape(model.n - 1, -1) / shape(model))
+            dx = np.zeros(keep.size)
+            dx[keep] = step
+            near, left = closest(model, 0.0, displaced(model, y, dx), rows, keep)
+            moved = distance(model, y, near)
             if left <= 1e-9 * model.size and (moved > 0.1 * SPREAD or step is way):
                 yield near
                 break
 
 
-def shape(model: Model) -> Array:
-    """Units of the positions of one body: the mechanism's size, and 1 for its orientation."""
-    return np.concatenate([np.full(2 if model.d == 3 else 3, model.size),
-                           np.ones(1 if model.d == 3 else 4)])  # fmt: skip
+def distance(model: Model, y: Array, near: Array) -> float:
+    """How far one position is from another: of the mechanism's size, or in the axes of a body."""
+    w = workspace(model)
+    poses(w, y)
+    before = w.X.copy()
+    poses(w, near)
+    apart = np.abs(w.X - before)
+    apart[:, :3] /= model.size
+    return float(np.max(apart))
 
 
 def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
@@ -159,26 +210,29 @@ def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
     sample(y) -> wrenches F (n, 6) of the force elements at a state.
     """
     rng = np.random.default_rng(1)
-    m = model.n - 1
+    inside, n_v = moves(model, True), slice(model.n_q, model.n_q + model.n_v)
+    rigid = np.arange(6 * (model.n - 1)) < 6 * (model.n_r - 1)
     tilted = False  # moments that turn bodies out of the plane, unless something holds them
     for _ in range(2):
-        dx = np.zeros((m, 6))
-        dx[:, IN_PLANE] = 0.05 * rng.normal(size=(m, 3))
-        near = displaced(model, y, dx.ravel())
-        near[model.n_q : model.n_q + model.n_v].reshape(m, 6)[:, IN_PLANE] = rng.normal(size=(m, 3))
-        J = jacobian(model, 0.0, near)[2].reshape(model.m, m, 6)
-        inside = np.abs(J[:, :, IN_PLANE]).max(axis=(1, 2), initial=0.0)
-        outside = np.abs(J[:, :, OUT_OF_PLANE]).max(axis=(1, 2), initial=0.0)
-        if np.any((inside > 1e-9) & (outside > 1e-9 * np.maximum(1.0, model.size))):
+        dx = np.zeros(inside.size)
+        # beams stay straight: their elastic forces would hide all others
+        dx[inside & rigid] = 0.05 * rng.normal(size=int((inside & rigid).sum()))
+        near = displaced(model, y, dx)
+        # in the plane the axes of the solve are the world's
+        near[n_v][inside] = rng.normal(size=int(inside.sum()))
+        J = jacobian(model, 0.0, near)[2]
+        within = np.abs(J[:, inside]).max(axis=1, initial=0.0)
+        outside = np.abs(J[:, ~inside]).max(axis=1, initial=0.0)
+        if np.any((within > 1e-9) & (outside > 1e-9 * np.maximum(1.0, model.size))):
             return False, False
         F = sample(near)[1:]
         if np.abs(F[:, 2]).max(initial=0.0) > 1e-9 * max(1.0, np.abs(F).max(initial=0.0)):
             return False, False
         tilt = np.abs(F[:, 3:5]).max(initial=0.0)
         tilted = tilted or tilt > 1e-9 * max(1.0, np.abs(F).max(initial=0.0))
-    outside_rows = jacobian(model, 0.0, y)[2].reshape(model.m, m, 6)[:, :, OUT_OF_PLANE]
-    outside_rows = outside_rows.reshape(model.m, 3 * m)
-    held = np.linalg.matrix_rank(outside_rows, tol=1e-8) == 3 * m if model.m else m == 0
+    outside_rows = jacobian(model, 0.0, y)[2][:, ~inside & rigid]
+    bodies = outside_rows.shape[1]
+    held = np.linalg.matrix_rank(outside_rows, tol=1e-8) == bodies if model.m else bodies == 0
     if tilted and not held:
         return False, False
     return True, bool(held)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from trsim.assemble.assemble import build, pack
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
-from trsim.assemble.reduce import IN_PLANE, OUT_OF_PLANE, jacobian, nearby, weights
+from trsim.assemble.reduce import jacobian, moves, nearby, weights
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
 from trsim.elements.scene import scene
@@ -94,15 +94,14 @@ def self_stress(scenario: Any, mechanism: Mechanism, at: Any, instances: list[In
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
     full = scene(build(scenario, at, instances, rows, 6))
-    y6 = drawn(scenario, at, 6)
-    inside = np.flatnonzero(in_solve(jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
-    columns = IN_PLANE if mechanism.planar else sorted([*IN_PLANE, *OUT_OF_PLANE])
-    keep = np.array([6 * f + c for f in range(full.n - 1) for c in columns], int)
+    y6 = drawn(at, 6)
+    inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
+    keep = moves(full, mechanism.planar)
     geometric = [r for r in inside if instances[rows[r].instance].section == "joints"]
     scale = weights(full)[keep]
     places = [] if mechanism.singular else [y6]
     jacobians, spaces = [], []
-    for y in [*places, *nearby(full, y6, columns, geometric)]:
+    for y in [*places, *nearby(full, y6, keep, geometric)]:
         J = jacobian(full, 0.0, y)[2][:, keep][inside] * scale
         J = J / np.linalg.norm(J, axis=1)[:, None]
         u, s, _ = np.linalg.svd(J, full_matrices=True)

@@ -6,16 +6,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.addresses import Addresses
 from trsim.assemble.mechanism import Instance, RowName
 from trsim.assemble.rank import unique_reactions
 from trsim.assemble.reduce import (
-    IN_PLANE,
-    OUT_OF_PLANE,
     Dependence,
     dependences,
     is_planar,
     jacobian,
+    moves,
     weights,
+    world_rates,
 )
 from trsim.elements.contract import PHASE, UNLOCATED
 from trsim.elements.scene import Model, scene
@@ -38,24 +39,30 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
             continue
         for index, axis in enumerate(instance.element.rows):
             turns = axis.startswith(("tilt", "turn"))
+            if axis == "turn" and on_a_beam(instances, (i, j)):
+                continue  # a weld to a beam turns with its tangent; about it there is no torsion
             rows.append(RowName(instance.name, axis, n, index, (i, j), turns))
     return rows
 
 
-def in_solve(J: Array, planar: bool) -> NDArray[np.bool_]:
+def on_a_beam(instances: list[Instance], frames: tuple[int, int]) -> bool:
+    """Whether one of the frames is a node of a flexible bar."""
+    first = [i.row.con[0] for i in instances if i.element.key == "ancf_cable"]
+    return bool(first) and max(frames) >= min(first)
+
+
+def in_solve(full: Model, J: Array, planar: bool) -> NDArray[np.bool_]:
     """Rows with a part in the plane; all of them in space."""
     if not planar:
         return np.ones(len(J), bool)
-    blocks = J.reshape(len(J), J.shape[1] // 6, 6)[:, :, IN_PLANE]
-    return np.abs(blocks).max(axis=(1, 2), initial=0.0) > 1e-9
+    return np.abs(J[:, moves(full, True)]).max(axis=1, initial=0.0) > 1e-9
 
 
 def reactions(full: Model, y6: Array, planar: bool) -> tuple[list[int], list[int]]:
     """Rows of the solve whose reaction the motion determines, and those where it does not."""
     J = jacobian(full, 0.0, y6)[2]
-    plane = IN_PLANE if planar else [*IN_PLANE, *OUT_OF_PLANE]
-    keep = [6 * f + c for f in range(full.n - 1) for c in plane]
-    inside = np.flatnonzero(in_solve(J, planar))
+    keep = moves(full, planar)
+    inside = np.flatnonzero(in_solve(full, J, planar))
     unique = unique_reactions(J[:, keep][inside], weights(full)[keep])
     return inside[unique].tolist(), inside[~unique].tolist()
 
@@ -65,15 +72,14 @@ def choose_rows(
 ) -> tuple[list[RowName], list[Dependence]]:
     """Rows of the solve: in the plane where the scene is planar, the redundant ones dropped."""
     _, _, J = jacobian(full, 0.0, y6)
-    candidates = np.flatnonzero(in_solve(J, planar)).tolist()
+    candidates = np.flatnonzero(in_solve(full, J, planar)).tolist()
     is_drive = [instances[r.instance].element.key == "drive" for r in rows]
     is_lock = [instances[r.instance].section == "events" for r in rows]
     # translations first: where a choice is left, moments go rather than forces; then locks, which
     # may hold what is held already, and drives last
     order = sorted(candidates, key=lambda k: (is_drive[k], not is_lock[k], rows[k].rotation, k))
-    columns = IN_PLANE if planar else [0, 1, 2, 3, 4, 5]
     geometric = [k for k in candidates if not is_drive[k]]
-    found = dependences(full, y6, columns, order, geometric)
+    found = dependences(full, y6, moves(full, planar), order, geometric)
     for f in found:
         if is_drive[f.row] and not is_lock[f.row] and f.everywhere:
             name = rows[f.row].element
@@ -100,8 +106,7 @@ def planarity(scenario: Any, full: Model, y6: Array) -> tuple[bool, bool]:
     if scenario.planar is False or full.n == 1:
         return False, False
     inside, held = is_planar(full, y6, sample)
-    velocities = y6[full.n_q : full.n_q + full.n_v].reshape(-1, 6)
-    inside = inside and not np.any(velocities[:, OUT_OF_PLANE])
+    inside = inside and not np.any(world_rates(full, y6)[~moves(full, True)])
     if scenario.planar and not inside:
         raise ModelError(
             "`planar: true`, but joints, loads or velocities leave the x-y plane",
@@ -111,14 +116,35 @@ def planarity(scenario: Any, full: Model, y6: Array) -> tuple[bool, bool]:
     return inside, inside and not held and scenario.planar is None
 
 
-def check_inertias(scenario: Any, planar: bool) -> None:
+def check_inertias(at: Addresses, planar: bool) -> None:
     """A single inertia is about z: not enough in space."""
     if planar:
         return
-    for name, spec in scenario.bodies.items():
-        if isinstance(spec.inertia, float):
+    for name, spec in at.members.items():
+        if spec.type == "rigid_body" and isinstance(spec.inertia, float):
             raise ModelError(
                 "one inertia (about z) is not enough in a scene that is not planar",
                 "give three principal inertias, or six numbers with the products",
                 ("bodies", name, "inertia"),
+            )
+
+
+def check_space(at: Addresses, instances: list[Instance]) -> None:
+    """What a flexible bar cannot do in space: it has no torsion and bends alike all around."""
+    for name, spec in at.members.items():
+        if spec.type == "ancf_cable" and not spec.numbers[2]:
+            raise ModelError(
+                "a flexible bar in space bends alike in all directions, and this section does not",
+                "use a round or square section, or draw the mechanism in the x-y plane",
+                ("bodies", name),
+            )
+    for instance in instances:
+        i, j = (*instance.row.con[:2], 0)[:2] if instance.section == "joints" else (0, 0)
+        free = instance.element.key in ("spherical", "fixed")
+        if on_a_beam(instances, (i, j)) and not free:
+            raise ModelError(
+                f"a {instance.element.key} holds the turning of a flexible bar about itself, "
+                "and in space that has no torsion",
+                "join it by `spherical` or `fixed`, or draw the mechanism in the x-y plane",
+                ("joints", instance.name),
             )

@@ -9,6 +9,7 @@ angular velocity),
 so every loop here goes through the bodies once, and through lists from beginning to end.
 """
 
+from trsim.assemble.beams import node_plain_rows, node_rows
 from trsim.elements.vectors import clear
 from trsim.elements.vectors import internal as equation
 
@@ -17,10 +18,9 @@ from trsim.elements.vectors import internal as equation
 def rows(s):
     """B, W and S of the J of the last evaluation."""
     clear(s.value)
-    if s.d == 3:
-        planar_rows(s)
-    else:
-        spatial_rows(s)
+    pair = planar_rows(s) if s.d == 3 else spatial_rows(s)
+    if s.n_r < s.n:
+        node_rows(s, pair)
 
 
 @equation
@@ -28,7 +28,7 @@ def planar_rows(s):
     """B and W of x', y' and omega_z, and what they add to S."""
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
     pair = 0
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         for p in range(frame_start[f], frame_start[f + 1]):
             k, c = s.slot_row[p], s.slot_column[p]
             b0, b1, b2 = J[k, c], J[k, c + 1], J[k, c + 5]
@@ -39,6 +39,7 @@ def planar_rows(s):
             for o in range(frame_start[f], p + 1):
                 value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
                 pair += 1
+    return pair
 
 
 @equation
@@ -47,7 +48,7 @@ def spatial_rows(s):
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
     X, K, mass_inverse = s.X, s.inertia_inverse, s.mass_inverse
     pair = 0
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         for p in range(frame_start[f], frame_start[f + 1]):
             k, c = s.slot_row[p], s.slot_column[p]
             b0, b1, b2 = J[k, c], J[k, c + 1], J[k, c + 2]
@@ -67,6 +68,7 @@ def spatial_rows(s):
                     + (B[o, 3] * w3 + B[o, 4] * w4 + B[o, 5] * w5)
                 )  # fmt: skip
                 pair += 1
+    return pair
 
 
 @equation
@@ -75,13 +77,15 @@ def plain_rows(s):
     B, value, turn = s.B, s.value, 1.0 / (s.size * s.size)
     clear(value)
     pair = 0
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for o in range(s.frame_start[f], p + 1):
                 for a in range(s.d):
                     angular = a >= 3 or (s.d == 3 and a == 2)
                     value[s.entry[pair]] += B[p, a] * B[o, a] * (turn if angular else 1.0)
                 pair += 1
+    if s.n_r < s.n:
+        node_plain_rows(s, pair, turn)
 
 
 @equation
@@ -97,7 +101,7 @@ def velocity_residual(s, k):
 
 @equation
 def pull(s, f, x):
-    """free -= M^-1 J^T x of one frame, in the axes of the solve."""
+    """free -= M^-1 J^T x of one rigid body, in the axes of the solve."""
     W, a = s.W, s.free
     a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
     a3, a4, a5 = a[f, 3], a[f, 4], a[f, 5]

@@ -52,14 +52,24 @@ def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
     return {kind: np.array(rows, np.int64).reshape(-1, 3) for kind, rows in tables.items()}
 
 
-def masses(scenario: Any, d: int) -> tuple[Array, Array, Array, Array]:
-    """Masses and inertia tensors of the frames, and their inverses."""
+def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
+    """Masses and inertia tensors of the frames, and their inverses.
+
+    Of a node of a beam its share of them, lumped: for what is judged, not solved, by them.
+    """
     from trsim.elements.rigid_body import tensor
 
-    n = 1 + len(scenario.bodies)
+    n = len(at.frames)
     mass, inertia = np.zeros(n), np.zeros((n, 9))
     mass_inverse, inertia_inverse = np.zeros(n), np.zeros((n, 9))
-    for f, (name, spec) in enumerate(scenario.bodies.items(), start=1):
+    for beam in at.beams.values():
+        part = slice(beam.first, beam.first + beam.nodes)
+        element = beam.per_length * beam.length
+        mass[part] = element
+        mass[[beam.first, beam.first + beam.nodes - 1]] *= 0.5
+        inertia[part, 0::4] = mass[part, None] * beam.length**2 / 48.0
+    for f, name in enumerate(at.owners[1 : at.n_rigid], start=1):
+        spec = at.members[name]
         mass[f] = spec.mass
         inertia[f], complete = tensor(spec.inertia)
         known = inertia[f].reshape(3, 3)
@@ -98,12 +108,25 @@ def check_radius(name: str, mass: float, inertia: Array) -> None:
             )
 
 
-def drawn(scenario: Any, at: Addresses, d: int) -> Array:
+def drawn(at: Addresses, d: int) -> Array:
     """y as drawn, with the bodies' given velocities; z zero."""
-    n, n_z = len(at.frames), N_BOOK + len(at.states)
-    n_q = (3 if d == 3 else 7) * (n - 1)
-    y = np.zeros(n_q + d * (n - 1) + n_z)
-    for f, spec in enumerate(scenario.bodies.values(), start=1):
+    n, n_z, width = at.n_rigid, N_BOOK + len(at.states), 2 if d == 3 else 3
+    nodes = 2 * width * (len(at.frames) - n)
+    n_q = (3 if d == 3 else 7) * (n - 1) + nodes
+    y = np.zeros(n_q + d * (n - 1) + nodes + n_z)
+    for name, beam in at.beams.items():
+        spec = at.members[name]
+        slope = np.tile(beam.tangent, (beam.nodes, 1))
+        omega, centre = np.array(spec.angular_velocity), beam.places.mean(axis=0)
+        rate = np.array(spec.velocity) + np.cross(omega, beam.places - centre)
+        q = (3 if d == 3 else 7) * (n - 1) + 2 * width * (beam.first - n)
+        v = n_q + d * (n - 1) + 2 * width * (beam.first - n)
+        end = 2 * width * beam.nodes
+        y[q : q + end] = np.hstack([beam.places[:, :width], slope[:, :width]]).ravel()
+        turning = np.cross(omega, slope)
+        y[v : v + end] = np.hstack([rate[:, :width], turning[:, :width]]).ravel()
+    for f, name in enumerate(at.owners[1:n], start=1):
+        spec = at.members[name]
         v = n_q + d * (f - 1)
         if d == 3:
             y[3 * (f - 1) : 3 * f] = (*spec.at[:2], spec.angle)
@@ -124,7 +147,7 @@ def turns(at: Addresses, d: int) -> NDArray[np.int64]:
     rows = [
         (x.entry, x.i, x.j, 1 if x.axis[2] > 0 else -1)
         for x in at.coordinates.values()
-        if x.kind == "angle"
+        if x.kind == "angle" and not (at.is_node(x.i) or at.is_node(x.j))
     ]
     return np.array(rows, np.int64).reshape(-1, 4)
 
@@ -137,7 +160,7 @@ def extent(at: Addresses) -> float:
     worst = int(np.argmax(far))
     if far[worst] > LARGEST:
         frames = [*range(len(at.frames)), *(i for i, _ in at.points)]
-        name = list(at.frames)[frames[worst]]
+        name = at.owners[frames[worst]]
         raise ModelError(
             f"a point of '{name}' lies {far[worst]:.3g} m from the origin",
             f"a mechanism of at most {LARGEST:g} m can be solved; check the units",
@@ -153,6 +176,8 @@ def levers(at: Addresses, size: float) -> list[float]:
     arms = [0.0] * len(at.frames)
     for i, s in at.points:
         arms[i] = max(arms[i], float(np.linalg.norm(s)))
+    for beam in at.beams.values():
+        arms[beam.first : beam.first + beam.nodes] = [beam.whole] * beam.nodes
     return [a if a > 0.0 else size for a in arms]
 
 
@@ -160,13 +185,20 @@ def norm(at: Addresses, d: int, size: float) -> tuple[NDArray[np.int64], Array]:
     """Unit of every entry of y in the error norm, and the lever of rotations."""
     kind: list[int] = []
     lever: list[float] = []
-    arms = levers(at, size)
-    for arm in arms[1:]:
-        kind += [scales.LENGTH] * (2 if d == 3 else 3) + [scales.ANGLE] * (1 if d == 3 else 4)
-        lever += [1.0] * (2 if d == 3 else 3) + ([arm] if d == 3 else [2.0 * arm] * 4)
-    for arm in arms[1:]:
-        kind += [scales.SPEED] * (2 if d == 3 else 3) + [scales.RATE] * (1 if d == 3 else 3)
-        lever += [1.0] * (2 if d == 3 else 3) + [arm] * (1 if d == 3 else 3)
+    arms, width = levers(at, size), 2 if d == 3 else 3
+    bodies, nodes = arms[1 : at.n_rigid], arms[at.n_rigid :]
+    for arm in bodies:
+        kind += [scales.LENGTH] * width + [scales.ANGLE] * (1 if d == 3 else 4)
+        lever += [1.0] * width + ([arm] if d == 3 else [2.0 * arm] * 4)
+    for arm in nodes:
+        kind += [scales.LENGTH] * width + [scales.ANGLE] * width
+        lever += [1.0] * width + [arm] * width
+    for arm in bodies:
+        kind += [scales.SPEED] * width + [scales.RATE] * (1 if d == 3 else 3)
+        lever += [1.0] * width + [arm] * (1 if d == 3 else 3)
+    for arm in nodes:
+        kind += [scales.SPEED] * width + [scales.RATE] * width
+        lever += [1.0] * width + [arm] * width
     kind += [scales.OUTSIDE] * N_BOOK
     lever += [1.0] * N_BOOK
     for scale, _ in at.states:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 # word -> section of the scenario it may stand in
 ELEMENTS = {
     "rigid_body": "bodies",
+    "ancf_cable": "bodies",  # also a rigid_body with the key `flexible`
     "revolute": "joints",
     "spherical": "joints",
     "prismatic": "joints",

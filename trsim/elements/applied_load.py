@@ -45,8 +45,8 @@ class AppliedLoad(Spec):
 
 
 def pack(name, spec, at):
-    i = at.body(spec.body)
-    frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame")
+    i = at.body(spec.body, "body", near=spec.at)
+    frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame", near=spec.at, off=1.0)
     place = at.centre(i) if spec.at is None else spec.at
     # the direction is drawn in world axes at t = 0 and then turns with its frame
     n = at.axes(frame, direction(spec.direction))

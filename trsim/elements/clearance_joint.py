@@ -122,7 +122,7 @@ def friction_numbers(friction):
 
 
 def pack(name, spec, at):
-    i, j = at.bodies(spec.bodies)
+    i, j = at.bodies(spec.bodies, spec.at)
     law = at.contact_law(spec.contact)
     if law.bearing_radius is None:
         raise ScenarioError(

@@ -106,6 +106,7 @@ class Row:
     con: tuple[int, ...]
     par: tuple[float, ...]
     contact: Contact | None = None
+    channels: tuple[Channel, ...] | None = None  # of this instance, where they are not its kind's
 
 
 @dataclass(frozen=True)

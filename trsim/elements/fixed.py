@@ -20,7 +20,7 @@ class Fixed(Joint):
 
 
 def pack(name, spec, at):
-    i, j = at.bodies(spec.bodies)
+    i, j = at.bodies(spec.bodies, spec.at)
     axes = triads(i, j, (0.0, 0.0, 1.0), at)
     return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *axes))
 

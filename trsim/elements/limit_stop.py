@@ -109,13 +109,15 @@ def pack(name, spec, at):
     law = (spec.stiffness, spec.damping, spec.ramp)
     contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0)
     if spec.joint is None:
-        i, j = at.body(spec.wall.body, "wall", "body"), at.body(spec.point.body, "point", "body")
-        if i == j:
+        if spec.wall.body == spec.point.body:
             raise ScenarioError(
                 f"point and wall are both on '{spec.wall.body}'",
                 "name two different bodies",
                 ("point", "body"),
             )
+        # on a flexible bar the wall belongs to the node that is nearest to it
+        i = at.body(spec.wall.body, "wall", "body", near=spec.wall.at, off=1.0)
+        j = at.body(spec.point.body, "point", "body", near=spec.point.at)
         n = at.axes(i, direction(spec.wall.normal))
         places = (*at.local(i, spec.wall.at), *at.local(j, spec.point.at))
         return Row((i, j, -1, ON_WALL), (*places, *n, *law, 0.0, 0.0), contact)

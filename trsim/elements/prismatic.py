@@ -39,7 +39,7 @@ class Prismatic(Spec):
 
 
 def pack(name, spec, at):
-    i, j = at.bodies(spec.bodies)
+    i, j = at.bodies(spec.bodies, spec.at)
     place = at.centre(j) if spec.at is None else spec.at
     return Row((i, j, -1), (*at.local(i, place), *at.local(j, place), *triads(i, j, spec.axis, at)))
 

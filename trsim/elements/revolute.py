@@ -35,7 +35,7 @@ class Revolute(Joint):
 
 
 def pack(name, spec, at):
-    i, j = at.bodies(spec.bodies)
+    i, j = at.bodies(spec.bodies, spec.at)
     return Row(
         (i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *triads(i, j, spec.axis, at))
     )

@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar
 
 from annotated_types import Ge
 
+from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Row, kernel
 from trsim.fields import Spec, Unit, vector
 
@@ -29,6 +30,8 @@ class RigidBody(Spec):
     velocity          of the centre of mass at the start; where any body has a velocity, clearance
                       joints start free, otherwise as ideal ones
     angular_velocity  at the start, world axes
+    flexible          what makes it an ancf_cable: a straight bar between the two of its joints that
+                      lie farthest apart; its mass is the body's unless a density is given
     """
 
     type: ClassVar[str] = "rigid_body"
@@ -49,6 +52,7 @@ class RigidBody(Spec):
     angle: Annotated[float, Unit("rad")] = 0.0
     velocity: vector("m/s") = (0.0, 0.0, 0.0)
     angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
+    flexible: Cable | None = None
 
 
 def tensor(inertia):

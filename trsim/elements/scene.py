@@ -5,7 +5,8 @@ Frames 0..n-1, 0 the ground.  State of the motion, one vector
     y = [q (n_q) | v (n_v) | z (n_z)]
 
 planar (d = 3): q = x, y, angle and v = their rates of each moving body;
-spatial (d = 6): q = position and quaternion (7), v = velocity and body-axes angular velocity (6).
+spatial (d = 6): q = position and quaternion (7), v = velocity and body-axes angular velocity (6);
+nodes of beams follow, each with place and slope and their rates.
 Only `poses` in assemble/equations.py knows this; kernels see poses, twists and joint coordinates.
 """
 
@@ -26,10 +27,14 @@ class Model(Packed):
     Its type is the same for every scenario, so the solver compiles once per installation.
     """
 
-    d: i8  # unknowns of a moving body: 3 planar, 6 spatial
+    d: i8  # unknowns of a rigid body: 3 planar, 6 spatial
+    d_node: i8  # unknowns of a node of a beam: 4 planar, 6 spatial
     n: i8  # frames
+    n_r: i8  # of these the ground and the rigid bodies; nodes of beams follow
     n_q: i8
     n_v: i8
+    q_node: i8  # where the nodes begin in q
+    v_node: i8  # and in v
     n_z: i8
     m: i8  # constraint rows in the solve
     n_s: i8  # entries of S
@@ -41,6 +46,10 @@ class Model(Packed):
     mass_inverse: A1  # (n) 0 for the ground
     inertia_inverse: A2  # (n, 9) body axes; planar: [8] is 1 / Izz
     depth: A1  # (n) z of the centre of mass in a planar scene, m
+    beam: I2  # (n_beams, 3) first frame, nodes, first row of band          assemble/beams.py
+    band: A2  # (2 nodes, 4) its mass matrix as L D L^T: 1 / D, three entries of L below
+    consistent: A2  # (2 nodes, 4) the same as it is: diagonal and three entries below
+    across: A2  # (pairs on beams, 4) M^-1 between their nodes: places, slopes
     con: I2  # (N, n_con) where               elements/contract.py
     par: A2  # (N, n_par) how much
     tab: A1  # everything of variable length   laws/functions.py
@@ -89,6 +98,9 @@ class Model(Packed):
 class Scene(Model):
     """A model and the workspace of its equations; holds the last evaluation."""
 
+    element: A2  # (3, 12) coordinates, rates and forces of one element of a beam
+    G: A2  # (n, 6) slope of a node, and its rate; world axes
+    Q: A2  # (n, 3) elastic force along the slope of a node, N*m
     X: A2  # (n, 12) position of the centre of mass, rotation matrix row by row
     V: A2  # (n, 6) velocity, angular velocity, world axes
     A: A2  # (n, 6) their rates
@@ -142,6 +154,9 @@ def scene(model: Model) -> Scene:
     return Scene(
         **constants,
         X=X,
+        element=np.zeros((3, 12)),
+        G=np.zeros((n, 6)),
+        Q=np.zeros((n, 3)),
         V=np.zeros((n, 6)),
         A=np.zeros((n, 6)),
         S=np.zeros((max(model.n_s, 1), 2)),

@@ -44,8 +44,8 @@ class SpringDamper(Spec):
 
 
 def pack(name, spec, at):
-    i, j = at.bodies(spec.bodies)
     p, q = spec.points
+    i, j = at.bodies(spec.bodies, p, q)
     drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
     free = drawn if spec.free_length is None else spec.free_length
     return Row(

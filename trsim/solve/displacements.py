@@ -1,7 +1,8 @@
 """Displacements: the small moves that go with the velocities, against the generalised coordinates.
 
 An implicit method works with w = (v, states of elements) and with displacements dx counted in the
-axes of the velocities: three (planar) or six numbers a body, turns as vectors in body axes.
+axes of the velocities: three (planar) or six numbers a body, turns as vectors in body axes; of a
+node of a beam the coordinates themselves.
 """
 
 from math import cos, sin, sqrt
@@ -25,8 +26,8 @@ def w_index(s, k):
 @internal
 def displace(s, y, k, part):
     """Move y by `part` along the k-th displacement.  Returns nothing; y changes in place."""
-    if s.d == 3:
-        y[k] += part
+    if s.d == 3 or k >= s.v_node:
+        y[place_of(s, k)] += part
         return
     f, a = k // 6, k % 6
     q = 7 * f
@@ -55,14 +56,16 @@ def displace(s, y, k, part):
 @internal
 def place_of(s, k):
     """Entry of y whose weight goes with the k-th displacement."""
+    if k >= s.v_node:
+        return s.q_node + k - s.v_node
     return k if s.d == 3 else 7 * (k // 6) + k % 6
 
 
 @internal
 def twisted(s, r, k, source):
     """The k-th displacement that a change `source` of the generalised coordinates means."""
-    if s.d == 3:
-        return source[k]
+    if s.d == 3 or k >= s.v_node:
+        return source[place_of(s, k)]
     f, a = k // 6, k % 6
     q = 7 * f
     if a < 3:
@@ -80,6 +83,8 @@ def twisted(s, r, k, source):
 @internal
 def moved_by(s, y, q, w):
     """Rate of the q-th of the generalised coordinates y when the velocities are w."""
+    if q >= s.q_node:
+        return w[s.v_node + q - s.q_node]
     if s.d == 3:
         return w[q]
     f, a = q // 7, q % 7

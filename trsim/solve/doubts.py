@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.reduce import world_rates
 from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
-from trsim.solve.velocities import world_velocities
 
 Array = NDArray[np.float64]
 
@@ -56,10 +56,10 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
             "joints and drives at t = 0; correct the points"
         )
     given = given_velocities(mechanism, begun)
-    real = world_velocities(mechanism.model, begun.y).reshape(-1, 6)
+    real = world_rates(mechanism.model, begun.y).reshape(-1, 6)
     for name, frame in mechanism.frames.items():
-        if frame == 0:
-            continue  # the ground
+        if frame == 0 or frame >= mechanism.model.n_r:
+            continue  # the ground; nodes of a beam move with it
         for key, unit, part in VELOCITIES:
             was, now = (v[frame - 1, part] for v in (given, real))
             size = float(np.linalg.norm(was))

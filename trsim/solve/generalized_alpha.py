@@ -113,7 +113,9 @@ def arrive(s, r, b, h):
         for k in range(s.n_q):
             y1[k] = y[k] + K[MOVE, k]
         return
-    for f in range(s.n - 1):
+    for k in range(s.v_node, s.n_v):
+        y1[s.q_node + k - s.v_node] = y[s.q_node + k - s.v_node] + K[MOVE, k]
+    for f in range(s.n_r - 1):
         q, v = 7 * f, 6 * f
         for a in range(3):
             y1[q + a] = y[q + a] + K[MOVE, v + a]

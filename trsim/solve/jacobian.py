@@ -44,7 +44,7 @@ def jacobian(s, r, b, setting, t, trial, rates):
     for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed
         unit = 1.0 / (b.weight[place_of(s, k)] * tolerance)
-        if s.d == 6 and k % 6 > 2:
+        if s.d == 6 and k < s.v_node and k % 6 > 2:
             unit *= 2.0  # half a turn vector makes a quaternion
         copy_to(trial, r.y)
         displace(s, trial, k, PART * unit)

@@ -2,6 +2,7 @@
 
 from math import nan
 
+from trsim.assemble.beams import slope_force
 from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.assemble.schur import velocity_residual
@@ -84,7 +85,16 @@ def flush(y):
 def position_work(s, before, after):
     """- F . dx of the displacement from one q to another, with the forces of the second, J."""
     work, F, X = 0.0, s.F, s.X
-    for f in range(1, s.n):
+    for k in range(s.v_node, s.n_v):
+        q, f, c = (
+            s.q_node + k - s.v_node,
+            s.n_r + (k - s.v_node) // s.d_node,
+            (k - s.v_node) % s.d_node,
+        )
+        width = s.d_node // 2
+        along = F[f, c] if c < width else slope_force(s, f, c - width)
+        work -= along * (after[q] - before[q])
+    for f in range(1, s.n_r):
         if s.d == 3:
             q = 3 * (f - 1)
             work -= F[f, 0] * (after[q] - before[q]) + F[f, 1] * (after[q + 1] - before[q + 1])

@@ -1,6 +1,6 @@
 """The motion close to a start, on the constraints: M xi'' + C xi' + K xi = 0.
 
-    dx = Z xi,             J Z = 0,   Z^T M Z = 1       world-axes twists of all bodies
+    dx = Z xi,             J Z = 0,   Z^T M Z = 1       world-axes rates of all bodies
     dv = Z eta + ...,      J v + Phi_t = 0
     xi'  = eta + Z^T M (omega x) Z xi                   small rotations of a body that spins
     eta' = Z^T M v'(x, v, s),                           s: states of elements, such as bristles
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import constraints, derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
-from trsim.assemble.reduce import IN_PLANE, jacobian
+from trsim.assemble.reduce import IN_PLANE, in_solve_axes, jacobian, moves, world_rates
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
@@ -56,7 +56,7 @@ class Linearised:
     K: Array  # (f, f) 1/s^2
     A: Array  # (2 f + n_s, 2 f + n_s) state matrix of (xi, xi', s)
     Z: Array  # (n_v, f) motions of the freedoms, axes of the solve
-    twists: Array  # (6 (n - 1), f) the same as world-axes twists of the moving frames
+    twists: Array  # (6 (n - 1), f) the same as world-axes rates of the moving frames
 
 
 def linearised(mechanism: Mechanism, begun: Start) -> Linearised:
@@ -110,7 +110,17 @@ def smooth(mechanism: Mechanism) -> Model:
 def mass_matrix(work: Scene) -> Array:
     """M (n_v, n_v) in the axes of the solve."""
     M = np.zeros((work.n_v, work.n_v))
-    for f in range(1, work.n):
+    for first, nodes, at in work.beam.tolist():
+        width = work.d_node // 2
+        band = work.consistent[at : at + 2 * nodes]
+        o = work.v_node + work.d_node * (first - work.n_r)
+        for c in range(width):
+            # places and slopes of one direction, node by node
+            own = o + c + width * np.arange(2 * nodes)
+            for p in range(band.shape[1]):
+                M[own[p:], own[: 2 * nodes - p]] = band[: 2 * nodes - p, p]
+                M[own[: 2 * nodes - p], own[p:]] = band[: 2 * nodes - p, p]
+    for f in range(1, work.n_r):
         o = work.d * (f - 1)
         if work.d == 3:
             M[o : o + 3, o : o + 3] = np.diag([work.mass[f], work.mass[f], work.inertia[f, 8]])
@@ -137,10 +147,13 @@ class Probe:
         """Z, M Z and the M-weighted pseudoinverse of J; in world axes and those of the solve."""
         work = self.work
         J = jacobian(work, 0.0, self.y)[2]
-        self.given = work.V[1:].ravel().copy()
-        # columns: what a unit of every velocity of the solve does to the world-axes twists
+        self.given = world_rates(work, self.y)
+        # columns: what a unit of every velocity of the solve does to the world-axes rates
         T = np.zeros((6 * (work.n - 1), self.n_v))
-        for f, R in enumerate(work.X[1:, 3:].reshape(-1, 3, 3)):
+        T[6 * (work.n_r - 1) :, work.v_node :] = np.eye(6 * (work.n - work.n_r))[
+            :, moves(work, work.d == 3)[6 * (work.n_r - 1) :]
+        ]
+        for f, R in enumerate(work.X[1 : work.n_r, 3:].reshape(-1, 3, 3)):
             if work.d == 3:
                 T[[6 * f + c for c in IN_PLANE], range(3 * f, 3 * f + 3)] = 1.0
             else:
@@ -154,7 +167,7 @@ class Probe:
             rank = int(np.sum(s > FREE * s.max(initial=0.0)))
             self.pseudo = back @ vt[:rank].T @ (u[:, :rank] / s[:rank]).T
             self.Z = back @ vt[rank:].T
-        self.twists, self.momenta = T @ self.Z, T @ M @ self.Z
+        self.twists, self.momenta = T @ self.Z, M @ self.Z
 
     def scales(self, begun: Start) -> None:
         """How far probes go: m and m/s of the point that moves most."""
@@ -193,7 +206,7 @@ class Probe:
         y[self.own] += states
         yd = np.zeros_like(y)
         derivative(work, 0.0, y, yd)
-        return np.concatenate([self.momenta.T @ work.A[1:].ravel(), yd[self.own]])
+        return np.concatenate([self.momenta.T @ yd[n : n + self.n_v], yd[self.own]])
 
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
@@ -205,8 +218,12 @@ class Probe:
 
     def turning(self) -> Array:
         """Z^T M (omega x) Z: a body that spins carries its small rotations along."""
-        turned = self.twists.reshape(self.work.n - 1, 6, self.twists.shape[1]).copy()
-        spin = self.given.reshape(-1, 6)[:, 3:]
+        work, freedoms = self.work, self.twists.shape[1]
+        turned = self.twists.reshape(work.n - 1, 6, freedoms).copy()
+        spin = self.given.reshape(-1, 6)[:, 3:].copy()
+        spin[work.n_r - 1 :] = 0.0  # nodes of beams have no axes of their own
         turned[:, 3:] = np.cross(spin[:, :, None], turned[:, 3:], axis=1)
         turned[:, :3] = 0.0
-        return np.asarray(self.momenta.T @ turned.reshape(self.twists.shape))
+        columns = turned.reshape(self.twists.shape).T
+        own = [in_solve_axes(work, column) for column in columns]
+        return np.asarray(self.momenta.T @ np.array(own).reshape(freedoms, self.n_v).T)

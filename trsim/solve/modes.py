@@ -66,7 +66,7 @@ def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
 
 
 def shape(mechanism: Mechanism, twists: np.ndarray) -> tuple[Moved, ...]:
-    """The bodies that move, from complex world-axes twists of all of them."""
+    """The bodies that move, from complex world-axes rates of all of them."""
     moves = twists.reshape(-1, 6) * np.array([1.0] * 3 + [mechanism.model.size] * 3)
     largest = moves.flat[int(np.argmax(np.abs(moves)))] if moves.size else 0.0
     if largest == 0.0:

@@ -173,7 +173,11 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
     speeds = np.abs(r.y[model.n_q : model.n_q + model.n_v])
     if not np.max(speeds, initial=0.0) > rec.FASTEST:
         return ""
-    frame = int(np.argmax(speeds)) // model.d + 1
+    k = int(np.argmax(speeds))
+    if k < model.v_node:
+        frame = k // model.d + 1
+    else:
+        frame = model.n_r + (k - model.v_node) // model.d_node
     body = next(name for name, f in mechanism.frames.items() if f == frame)
     return (
         f"'{body}' is faster than {rec.FASTEST:.0e} m/s or rad/s: does a load run away, "

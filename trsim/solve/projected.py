@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import jacobian
+from trsim.assemble.reduce import jacobian, world_rates
 from trsim.elements.scene import Model, scene
 from trsim.solve.angles import follow
 from trsim.solve.start import Start
-from trsim.solve.velocities import world_velocities
 
 Array = NDArray[np.float64]
 
@@ -61,17 +60,17 @@ def projected(mechanism: Mechanism, begun: Start) -> Projected:
 
 
 def given_velocities(mechanism: Mechanism, begun: Start) -> Array:
-    """World-axes twists of the bodies at their places of the start, as given, (n - 1, 6)."""
+    """World-axes rates of the bodies at their places of the start, as given, (n - 1, 6)."""
     model = mechanism.model
     y = begun.y.copy()
     y[model.n_q : model.n_q + model.n_v] = mechanism.y0[model.n_q : model.n_q + model.n_v]
-    return world_velocities(model, y).reshape(-1, 6)
+    return world_rates(model, y).reshape(-1, 6)
 
 
 def changes(mechanism: Mechanism, begun: Start) -> tuple[Array, Array]:
     """|change| of every velocity (m/s) and angular velocity (rad/s) that is not given as zero."""
     was = given_velocities(mechanism, begun)
-    now = world_velocities(mechanism.model, begun.y).reshape(-1, 6)
+    now = world_rates(mechanism.model, begun.y).reshape(-1, 6)
     parts = (slice(3), slice(3, 6))
     slips, spins = (
         np.linalg.norm(now[:, k] - was[:, k], axis=1) * np.any(was[:, k], axis=1) for k in parts
@@ -81,10 +80,8 @@ def changes(mechanism: Mechanism, begun: Start) -> tuple[Array, Array]:
 
 def rates(model: Model, y: Array) -> Array:
     """|J v + Phi_t| of every row."""
-    w = scene(model)
-    poses(w, y)
-    v = w.V[1:].ravel().copy()
     _, phi_t, J = jacobian(model, 0.0, y)
+    v = world_rates(model, y)
     return np.asarray(np.abs(J @ v + phi_t))
 
 

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import gaps, poses
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.reduce import against_rates
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR, R_B, C
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
@@ -191,11 +192,11 @@ def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float
 
 
 def gradient(w: Scene, i: int, j: int, c_i: Array, c_j: Array, n: Array) -> Array:
-    """n . (v_j - v_i) of two points, arms c_i and c_j, against all world-axes twists."""
+    """n . (v_j - v_i) of two points, arms c_i and c_j, against all world-axes rates."""
     g = np.zeros(6 * w.n)
     g[6 * i : 6 * i + 6] -= np.concatenate([n, np.cross(c_i, n)])
     g[6 * j : 6 * j + 6] += np.concatenate([n, np.cross(c_j, n)])
-    return g[6:]
+    return against_rates(w, g[None, 6:])[0]
 
 
 def ramp(w: Scene, e: int, key: str) -> float:

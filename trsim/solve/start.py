@@ -31,6 +31,7 @@ from trsim.elements.contract import (
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, with_scene
+from trsim.solve.bars import as_flexible, as_rigid
 from trsim.solve.blame import refuse_no_number
 from trsim.solve.statics import equilibrium
 from trsim.solve.velocities import velocities
@@ -148,8 +149,9 @@ def positions(
         return mechanism.y0, 0.0, {}
     playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
     ideal = frozenset(playing - set(initial.equilibrium))
+    drives = holding_drives(scenario, initial)
     try:
-        held = with_scene(assemble(scenario, ideal, holding_drives(scenario, initial)))
+        held = with_scene(assemble(scenario, ideal, drives, stiff=True))
     except ModelError as error:
         name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
         if name not in initial.values:
@@ -172,7 +174,25 @@ def positions(
         y, residual = approach(held, y, targets, settle)
     remember(held.model, y)
     angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
+    if mechanism.beams:
+        y, residual = bent(
+            mechanism, held, y, with_scene(assemble(scenario, ideal, drives)), settle
+        )
+        return y, residual, angles
     return back(mechanism, held, y), residual, angles
+
+
+def bent(
+    mechanism: Mechanism, stiff: Any, y: Array, held: Any, settle: bool
+) -> tuple[Array, float]:
+    """The start found with stiff bars as that of flexible ones; their equilibrium where asked."""
+    for name in held.coordinates.keys() & stiff.coordinates.keys():
+        angle = stiff.model.S[stiff.coordinates[name].entry, 0]
+        held.model.branch[held.coordinates[name].entry] = angle
+    straight, residual = follow(held, as_flexible(held, stiff, y)), 0.0
+    if settle:
+        straight, residual = equilibrium(held, straight)
+    return back(mechanism, held, straight), residual
 
 
 def by_ideal_joints(
@@ -183,7 +203,8 @@ def by_ideal_joints(
     A journal would leave its bearing with every step of the way, and be pressed back through it.
     """
     try:
-        bare = with_scene(assemble(scenario, playing, holding_drives(scenario, initial)))
+        drives = holding_drives(scenario, initial)
+        bare = with_scene(assemble(scenario, playing, drives, stiff=True))
         y, _ = equilibrium(bare, follow(bare, carried(bare, bare)))
         targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
         y, _ = approach(bare, y, targets, True)
@@ -244,7 +265,9 @@ def approach(held: Any, y: Array, targets: dict[int, float], settle: bool) -> tu
 
 
 def carried(mechanism: Mechanism, other: Mechanism) -> Array:
-    """y of one assembly as y of another with the same bodies."""
+    """y of one assembly as y of another with the same bodies, or with stiff bars."""
+    if mechanism.beams and not other.beams:
+        return as_rigid(mechanism, other, mechanism.y0)
     n = mechanism.model.n_q + mechanism.model.n_v
     y = np.zeros(n + other.model.n_z)
     y[:n] = mechanism.y0[:n]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import forces, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import closest, displaced, jacobian
+from trsim.assemble.reduce import against_rates, closest, displaced, jacobian, moves
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
@@ -29,30 +29,25 @@ INDIFFERENT = 1e-6  # of the largest eigenvalue scale: see `equilibrium`
 
 
 def static_forces(model: Model, y: Array) -> Array:
-    """World-axes wrenches of the moving frames at rest, N and N*m, one vector."""
+    """Forces along the world-axes rates of the moving frames at rest, N and N*m, one vector."""
     w = workspace(model)
     w.mem[:, PHASE], w.mem[:, IMPACT_SPEED] = UNLOCATED, 1.0
     still = y.copy()
     still[model.n_q : model.n_q + model.n_v] = 0.0
     poses(w, still)
     forces(w, 0.0)
-    return w.F[1:].ravel().copy()
+    F = against_rates(w, w.F[1:].reshape(1, -1)).reshape(-1, 6)
+    F[w.n_r - 1 :, 3:] += w.Q[w.n_r :]
+    return F.ravel().copy()
 
 
 def mass_matrix(model: Model, y: Array) -> Array:
-    """Diagonal of M against world-axes twists (inertias by their largest moment)."""
+    """Diagonal of M against world-axes rates (inertias by their largest moment)."""
     blocks = []
     for f in range(1, model.n):
         I = model.inertia[f]
         blocks.append([model.mass[f]] * 3 + [max(I[0], I[4], I[8])] * 3)
     return np.array(blocks).ravel()
-
-
-def movable(model: Model) -> NDArray[np.bool_]:
-    """Twist components that exist in the scene."""
-    inside = np.zeros((model.n - 1, 6), bool)
-    inside[:, [0, 1, 5] if model.d == 3 else range(6)] = True
-    return inside.ravel()
 
 
 def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
@@ -94,7 +89,7 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     """The equilibrium reached from y, drives held at t = 0; and the force left, N."""
     model = workspace(mechanism.model)
     y, _ = closest(model, 0.0, y)
-    free, mass = movable(model), mass_matrix(model, y)
+    free, mass = moves(model, model.d == 3), mass_matrix(model, y)
     gaps = [c for c in model.contact_par[:, 3] if np.isfinite(c)]
     reach = min([0.2 * c for c in gaps], default=0.02 * model.size)
     patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach

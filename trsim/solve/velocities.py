@@ -7,13 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.assemble import assemble
-from trsim.assemble.equations import gaps, poses
+from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import jacobian, weights
+from trsim.assemble.projection import project_velocities
+from trsim.assemble.reduce import in_solve_axes, jacobian, weights, world_rates
 from trsim.elements.drive import K, rates_at
-from trsim.elements.scene import Model, workspace
+from trsim.elements.scene import Model, scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import follow
+from trsim.solve.bars import as_rigid, moving_as_rigid
 
 Array = NDArray[np.float64]
 
@@ -29,11 +31,14 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     given = any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
     joints = scenario.joints.items() if not given else ()
     playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
-    ideal = assemble(scenario, playing, coordinates=named)
+    ideal = assemble(scenario, playing, coordinates=named, stiff=True)
     model = workspace(ideal.model)
-    y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
-    n = model.n_q + model.n_v
-    y_ideal[:n] = y[:n]
+    if mechanism.beams:
+        y_ideal = as_rigid(mechanism, ideal, y)
+    else:
+        y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
+        n = model.n_q + model.n_v
+        y_ideal[:n] = y[:n]
     y_ideal = follow(ideal, y_ideal)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
@@ -47,7 +52,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
         more = np.vstack([J, wish])
         if np.linalg.matrix_rank(more * scale, 1e-8) > np.linalg.matrix_rank(J * scale, 1e-8):
             J, rate = more, np.append(rate, wanted)
-    v = world_velocities(model, y_ideal)
+    v = world_rates(model, y_ideal)
     if len(J):
         v = v + scale * np.linalg.lstsq(J * scale, rate - J @ v, rcond=1e-10)[0]
     left = np.max(np.abs(J @ v - rate), initial=0.0)
@@ -56,7 +61,18 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
             f"no velocities at t = 0 satisfy the joints and drives (off by {left:.3g})",
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
+    if mechanism.beams:
+        v = moving_as_rigid(mechanism, ideal, y, v)
+        return allowed(mechanism.model, with_velocities(mechanism.model, y, v))
     return with_velocities(mechanism.model, y, v)
+
+
+def allowed(model: Model, y: Array) -> Array:
+    """y with the nearest velocities that the constraints allow: a bent bar is no rigid one."""
+    w, y = scene(model), y.copy()
+    derivative(w, 0.0, y, np.zeros_like(y))
+    project_velocities(w, y)
+    return y
 
 
 def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]]:
@@ -88,31 +104,17 @@ def closed_stops(model: Model, y: Array) -> list[Array]:
     return [twist_gradient(model, y, lambda moving, e=e: rate(moving, e)) for e in closed]
 
 
-def world_velocities(model: Model, y: Array) -> Array:
-    """World-axes twists of the moving frames, one vector."""
-    w = workspace(model)
-    poses(w, y)
-    return w.V[1:].ravel().copy()
-
-
 def with_velocities(model: Model, y: Array, v: Array) -> Array:
-    """y with the given world-axes twists."""
+    """y with the given world-axes rates (6 (n-1)) of the moving frames."""
     w = workspace(model)
     poses(w, y)
     y = y.copy()
-    for f in range(1, model.n):
-        twist = v[6 * (f - 1) : 6 * f]
-        o = model.n_q + model.d * (f - 1)
-        if model.d == 3:
-            y[o : o + 3] = twist[[0, 1, 5]]
-        else:
-            y[o : o + 3] = twist[:3]
-            y[o + 3 : o + 6] = w.X[f, 3:].reshape(3, 3).T @ twist[3:]
+    y[model.n_q : model.n_q + model.n_v] = in_solve_axes(w, v)
     return y
 
 
 def coordinate_gradient(model: Model, y: Array, s: int) -> Array:
-    """Rate of a joint coordinate per unit of every twist component."""
+    """Rate of a joint coordinate per unit of every world-axes rate."""
     w = workspace(model)
 
     def rate(moving: Array) -> float:
@@ -123,7 +125,7 @@ def coordinate_gradient(model: Model, y: Array, s: int) -> Array:
 
 
 def twist_gradient(model: Model, y: Array, rate: Callable[[Array], float]) -> Array:
-    """A rate, linear in the velocities, per unit of every twist component."""
+    """A rate, linear in the velocities, per unit of every world-axes rate."""
     gradient = np.zeros(6 * (model.n - 1))
     for k in range(gradient.size):
         unit = np.zeros_like(gradient)

@@ -40,7 +40,7 @@ def lint(scenario: Any) -> tuple[str, ...]:
 
 def _inertias(scenario: Any) -> Iterator[str]:
     """Principal inertias no body can have."""
-    for name, body in scenario.bodies.items():
+    for name, body in plausible.rigid(scenario):
         if isinstance(body.inertia, float):
             continue
         low, middle, high = sorted(_principal(body.inertia))
@@ -72,10 +72,10 @@ def _sizes(scenario: Any) -> Iterator[str]:
     """Radius of gyration against the reach of the points where others hold the body."""
     points = plausible.points(scenario)
     everywhere = [p for of_body in points.values() for p in of_body]
-    everywhere += [body.at for body in scenario.bodies.values()]
+    everywhere += [body.at for _, body in plausible.rigid(scenario)]
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)
     slides = {b for j in scenario.joints.values() if j.type == "prismatic" for b in j.bodies}
-    for name, body in scenario.bodies.items():
+    for name, body in plausible.rigid(scenario):
         about_z = isinstance(body.inertia, float)
         largest = body.inertia if about_z else max(_principal(body.inertia))
         if name in slides or largest <= 0.0:  # does not turn; a point
@@ -171,6 +171,10 @@ def _reduced(scenario: Any, bodies: Any, joint: bool = False) -> float:
         body = scenario.bodies.get(name)
         if body is None:
             continue  # the ground
+        if body.type == "ancf_cable":
+            mass = body.per_length * body.length
+            inverse += 1.0 / (mass * body.length**2 / 12.0 if joint else mass)
+            continue
         inertia = body.inertia if isinstance(body.inertia, float) else body.inertia[2]
         inverse += 1.0 / (inertia if joint else body.mass) if (inertia and body.mass) else inf
     return 1.0 / inverse if inverse else inf

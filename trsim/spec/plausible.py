@@ -75,11 +75,16 @@ def coefficients(scenario: Any) -> Iterator[str]:
                 )
 
 
+def rigid(scenario: Any) -> Iterator[tuple[str, Any]]:
+    """The bodies with a mass and an inertia; an ancf_cable has neither."""
+    return ((name, body) for name, body in scenario.bodies.items() if body.type == "rigid_body")
+
+
 def densities(scenario: Any) -> Iterator[str]:
     """Mass of each body against its extent; a body held at one point has none to speak of."""
     held = points(scenario)
     slides = {b for j in scenario.joints.values() if j.type == "prismatic" for b in j.bodies}
-    for name, body in scenario.bodies.items():
+    for name, body in rigid(scenario):
         places = [*held.get(name, ()), body.at]
         reach = max((dist(p, q) for p, q in combinations(places, 2)), default=0.0)
         if reach == 0.0 or body.mass == 0.0:

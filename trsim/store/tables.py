@@ -16,7 +16,7 @@ KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user")
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
     """The table of one contact: its channels at every accepted step in touch."""
     fields, start = [time_field], 2
-    for c in instance.element.channels:
+    for c in instance.channels:
         fields.append(Field(c.name, c.unit, c.meaning, start, c.size))
         start += c.size
     return Growing(file["steps"].create_group(instance.name), fields, start, EXPECTED)
@@ -26,7 +26,7 @@ def force_column(instance: Any) -> int:
     """The column of a line of steps that holds the contact force."""
     start = {}
     column = 2
-    for c in instance.element.channels:
+    for c in instance.channels:
         start[c.name], column = column, column + c.size
     return start.get("contact_force", start.get("normal_force", 1))
 

@@ -1,0 +1,87 @@
+"""The mass matrices of beams: bands of scalars, factorised once.                assemble/beams.py
+
+One element of length l, against (place, slope) of its two nodes,
+
+                     | 156    22 l   54   -13 l  |
+    M = rho A l/420  |  22 l   4 l^2  13 l  -3 l^2 |         int rho A S_i S_j dx
+                     |  54    13 l  156   -22 l  |
+                     | -13 l  -3 l^2 -22 l   4 l^2 |
+
+times the unit matrix of two or three directions [BerzeriShabana2000].
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.members import Beam
+from trsim.assemble.pattern import slots
+from trsim.laws.cable import mass_matrix
+
+Array = NDArray[np.float64]
+
+WIDTH = 4  # diagonal and three entries below it
+
+
+def scalar_mass(beam: Beam) -> Array:
+    """M of a beam against place and slope of its nodes in one direction (2 nodes, 2 nodes)."""
+    M = np.zeros((2 * beam.nodes, 2 * beam.nodes))
+    element = element_mass(beam.length, beam.per_length)
+    for k in range(beam.nodes - 1):
+        M[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += element
+    return M
+
+
+def element_mass(l: float, per_length: float) -> Array:
+    """The matrix above (4, 4)."""
+    return np.asarray(mass_matrix(l, per_length))
+
+
+def banded(M: Array) -> Array:
+    """Diagonal and the three entries below it of every column."""
+    band = np.zeros((len(M), WIDTH))
+    for p in range(WIDTH):
+        band[: len(M) - p, p] = np.diagonal(M, -p)
+    return band
+
+
+def factorised(band: Array) -> Array:
+    """L D L^T in place of M: 1 / D and the three entries below it in L."""
+    A, n = band.copy(), len(band)
+    for k in range(n):
+        for p in range(1, min(WIDTH, n - k)):
+            L = A[k, p] / A[k, 0]
+            for o in range(p, min(WIDTH, n - k)):
+                A[k + p, o - p] -= L * A[k, o]
+        A[k, 1:] /= A[k, 0]
+        A[k, 0] = 1.0 / A[k, 0]
+    return A
+
+
+def band_tables(beams: list[Beam], row_frames: list[tuple[int, int]]) -> dict[str, Any]:
+    """`beam`, `band`, `consistent` and `across` of a model."""
+    if not beams:
+        none = np.zeros((0, WIDTH))
+        return {"beam": np.zeros((0, 3), np.int64), "band": none, "consistent": none.copy(),
+                "across": none.copy()}  # fmt: skip
+    n = beams[-1].first + beams[-1].nodes
+    of_frame = slots(row_frames, n)
+    rows, bands, across, at = [], [], [], 0
+    for beam in beams:
+        M = scalar_mass(beam)
+        band = banded(M)
+        inverse = np.linalg.inv(M)
+        rows.append((beam.first, beam.nodes, at))
+        bands.append(band)
+        at += 2 * beam.nodes
+        nodes = [k for k in range(beam.nodes) for _ in of_frame[beam.first + k]]
+        for last, p in enumerate(nodes):
+            for o in nodes[: last + 1]:
+                across.append(inverse[2 * p : 2 * p + 2, 2 * o : 2 * o + 2].ravel())
+    return {
+        "beam": np.array(rows, np.int64),
+        "band": np.vstack([factorised(band) for band in bands]),
+        "consistent": np.vstack(bands),
+        "across": np.array(across, float).reshape(-1, WIDTH),
+    }

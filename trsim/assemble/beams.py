@@ -1,0 +1,237 @@
+"""Nodes of beams: poses, rows and inertia.                                   elements/ancf_cable.py
+
+A node is a frame as every other: kernels see its pose and twist, and push and turn it.  Its
+coordinates are its place r and its slope g = dr/dx (x: undeformed length), and so are its rates,
+
+    tangent  t = g / |g|,        omega = g x g' / |g|^2        no spin about the tangent: no torsion
+    omega' = g x g'' / |g|^2 - 2 sigma omega,                  sigma = g . g' / |g|^2
+    a moment m on the node is the slope force  m x g / |g|^2
+
+A beam's mass matrix is constant; node by node it is a band of scalars times the unit matrix, so
+M^-1 costs one pass along the beam and back, and rows of J that meet on a beam meet through the few
+entries of M^-1 between their nodes (`across`).
+"""
+
+from math import sqrt
+
+from trsim.elements.vectors import internal as equation
+
+BACK = 1e-12  # of 1 + t_x: the tangent points against the x axis, where the cross-section may turn
+
+
+@equation
+def components(s):
+    """Directions a node moves in: two in a plane, three in space."""
+    return s.d_node // 2
+
+
+@equation
+def node_poses(s, y):
+    """X, V and the slopes G of all nodes."""
+    X, V, G, width = s.X, s.V, s.G, components(s)
+    q, v = s.q_node, s.n_q + s.v_node
+    for f in range(s.n_r, s.n):
+        for c in range(width):
+            X[f, c], V[f, c] = y[q + c], y[v + c]
+            G[f, c], G[f, 3 + c] = y[q + width + c], y[v + width + c]
+        q, v = q + s.d_node, v + s.d_node
+        g0, g1, g2 = G[f, 0], G[f, 1], G[f, 2]
+        w0, w1, w2 = G[f, 3], G[f, 4], G[f, 5]
+        square = g0 * g0 + g1 * g1 + g2 * g2
+        inverse = 1.0 / sqrt(square) if square > 0.0 else 0.0
+        t0, t1, t2 = g0 * inverse, g1 * inverse, g2 * inverse
+        inverse *= inverse
+        V[f, 3] = (g1 * w2 - g2 * w1) * inverse
+        V[f, 4] = (g2 * w0 - g0 * w2) * inverse
+        V[f, 5] = (g0 * w1 - g1 * w0) * inverse
+        X[f, 3], X[f, 6], X[f, 9] = t0, t1, t2
+        X[f, 4], X[f, 5] = -t1, -t2
+        if width == 2:
+            X[f, 7] = t0
+        else:  # the cross-section turned from that of the x axis along the shortest way
+            k = 1.0 / max(1.0 + t0, BACK)
+            X[f, 7], X[f, 8] = 1.0 - k * t1 * t1, -k * t1 * t2
+            X[f, 10], X[f, 11] = -k * t1 * t2, 1.0 - k * t2 * t2
+
+
+@equation
+def slope_force(s, f, c):
+    """What acts along component c of the slope of node f: the elastic force and the moments."""
+    G, F = s.G, s.F
+    square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
+    a, b = (c + 1) % 3, (c + 2) % 3
+    return s.Q[f, c] + (F[f, 3 + a] * G[f, b] - F[f, 3 + b] * G[f, a]) / square
+
+
+@equation
+def node_accelerations(s):
+    """free = M^-1 F of all nodes."""
+    width = components(s)
+    for f in range(s.n_r, s.n):
+        for c in range(width):
+            s.free[f, c] = s.F[f, c]
+            s.free[f, width + c] = slope_force(s, f, c)
+    divide_by_mass(s, s.free)
+
+
+@equation
+def divide_by_mass(s, u):
+    """u <- M^-1 u on the rows of all nodes: one pass along every beam and one back."""
+    width = components(s)
+    for b in range(s.beam.shape[0]):
+        first, rows, at = s.beam[b, 0], 2 * s.beam[b, 1], s.beam[b, 2]
+        for c in range(width):
+            substitute(s.band, at, rows, u, first, c, width)
+
+
+@equation
+def substitute(band, at, rows, u, first, c, width):
+    """Solve L D L^T x = u for one component; row 2k is the place of node k, 2k + 1 its slope.
+
+    band: 1 / D and the three entries below it in L.
+    """
+    for k in range(rows):
+        x = u[first + k // 2, c + width * (k % 2)]
+        for p in range(1, 4):
+            if k >= p:
+                x -= band[at + k - p, p] * u[first + (k - p) // 2, c + width * ((k - p) % 2)]
+        u[first + k // 2, c + width * (k % 2)] = x
+    for back in range(rows):
+        k = rows - 1 - back
+        x = u[first + k // 2, c + width * (k % 2)] * band[at + k, 0]
+        for p in range(1, 4):
+            if k + p < rows:
+                x -= band[at + k, p] * u[first + (k + p) // 2, c + width * ((k + p) % 2)]
+        u[first + k // 2, c + width * (k % 2)] = x
+
+
+@equation
+def node_rows(s, pair):
+    """B of the slots on nodes, and what they add to S; pair: of `entry`, the first of theirs."""
+    J, B, G, value, entry, across = s.J, s.B, s.G, s.value, s.entry, s.across
+    width = components(s)
+    start = pair
+    for b in range(s.beam.shape[0]):
+        first, end = s.beam[b, 0], s.beam[b, 0] + s.beam[b, 1]
+        for f in range(first, end):
+            square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                k, o = s.slot_row[p], s.slot_column[p]
+                for c in range(width):
+                    x, y = (c + 1) % 3, (c + 2) % 3
+                    B[p, c] = J[k, o + c]
+                    B[p, width + c] = (
+                        J[k, o + 3 + x] * G[f, y] - J[k, o + 3 + y] * G[f, x]
+                    ) / square
+        for p in range(s.frame_start[first], s.frame_start[end]):
+            for o in range(s.frame_start[first], p + 1):
+                total = 0.0
+                for c in range(width):
+                    d = width + c
+                    total += B[p, c] * (
+                        across[pair - start, 0] * B[o, c] + across[pair - start, 1] * B[o, d]
+                    )
+                    total += B[p, d] * (
+                        across[pair - start, 2] * B[o, c] + across[pair - start, 3] * B[o, d]
+                    )
+                value[entry[pair]] += total
+                pair += 1
+
+
+@equation
+def node_plain_rows(s, pair, turn):
+    """J J^T of the slots on nodes; slopes are weighed by `turn`."""
+    B, value, width = s.B, s.value, components(s)
+    for b in range(s.beam.shape[0]):
+        first, end = s.beam[b, 0], s.beam[b, 0] + s.beam[b, 1]
+        for f in range(first, end):
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                for o in range(s.frame_start[first], p + 1):
+                    if o >= s.frame_start[f]:
+                        for c in range(width):
+                            value[s.entry[pair]] += B[p, c] * B[o, c]
+                            value[s.entry[pair]] += B[p, width + c] * B[o, width + c] * turn
+                    pair += 1
+
+
+@equation
+def node_right_hand_side(s, x):
+    """x += J M^-1 F + 2 sigma J_omega omega of the slots on nodes."""
+    B, G, V, free = s.B, s.G, s.V, s.free
+    for f in range(s.n_r, s.n):
+        if s.frame_start[f] == s.frame_start[f + 1]:
+            continue
+        square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
+        sigma = (G[f, 0] * G[f, 3] + G[f, 1] * G[f, 4] + G[f, 2] * G[f, 5]) / square
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            k, o = s.slot_row[p], s.slot_column[p]
+            total = 0.0
+            for c in range(s.d_node):
+                total += B[p, c] * free[f, c]
+            for c in range(3):
+                total -= 2.0 * sigma * s.J[k, o + 3 + c] * V[f, 3 + c]
+            x[k] += total
+
+
+@equation
+def gathered(s, u, x):
+    """u = J^T x on the rows of all nodes."""
+    for f in range(s.n_r, s.n):
+        for c in range(s.d_node):
+            u[f, c] = 0.0
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for c in range(s.d_node):
+                u[f, c] += s.B[p, c] * x[s.slot_row[p]]
+
+
+@equation
+def pull_nodes(s, x):
+    """free -= M^-1 J^T x of all nodes."""
+    u = s.moved
+    gathered(s, u, x)
+    divide_by_mass(s, u)
+    for f in range(s.n_r, s.n):
+        for c in range(s.d_node):
+            s.free[f, c] -= u[f, c]
+
+
+@equation
+def node_rates(s, y, yd):
+    """q' and V' of all nodes into yd, and V' as twists into A."""
+    A, G, V, width = s.A, s.G, s.V, components(s)
+    q, v = s.q_node, s.n_q + s.v_node
+    for f in range(s.n_r, s.n):
+        for c in range(s.d_node):
+            yd[q + c], yd[v + c] = y[v + c], s.free[f, c]
+        q, v = q + s.d_node, v + s.d_node
+        square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
+        sigma = (G[f, 0] * G[f, 3] + G[f, 1] * G[f, 4] + G[f, 2] * G[f, 5]) / square
+        w0, w1 = s.free[f, width], s.free[f, width + 1]
+        w2 = s.free[f, 5] if width == 3 else 0.0
+        for c in range(width):
+            A[f, c] = s.free[f, c]
+        A[f, 3] = (G[f, 1] * w2 - G[f, 2] * w1) / square - 2.0 * sigma * V[f, 3]
+        A[f, 4] = (G[f, 2] * w0 - G[f, 0] * w2) / square - 2.0 * sigma * V[f, 4]
+        A[f, 5] = (G[f, 0] * w1 - G[f, 1] * w0) / square - 2.0 * sigma * V[f, 5]
+
+
+@equation
+def node_kinetic(s, y):
+    """Kinetic energy of all beams, J: 1/2 v^T M v with M as it was before it was factorised."""
+    T, width = 0.0, components(s)
+    for b in range(s.beam.shape[0]):
+        first, rows, at = s.beam[b, 0], 2 * s.beam[b, 1], s.beam[b, 2]
+        v = s.n_q + s.v_node + s.d_node * (first - s.n_r)
+        for c in range(width):
+            for k in range(rows):
+                here = y[v + s.d_node * (k // 2) + width * (k % 2) + c]
+                T += 0.5 * s.consistent[at + k, 0] * here * here
+                for p in range(1, 4):
+                    if k + p < rows:
+                        o = k + p
+                        T += (
+                            s.consistent[at + k, p]
+                            * here
+                            * y[v + s.d_node * (o // 2) + width * (o % 2) + c]
+                        )
+    return T

@@ -1,0 +1,262 @@
+"""ANCF cable: a bar that stretches and bends, in elements of cubic position r(x).
+
+    M e'' = F - dU/de - damping,     U = 1/2 int EA eps^2 + EI kappa^2 dx        laws/cable.py
+
+A gradient-deficient element of the absolute nodal coordinate formulation: its nodes have a place r
+and a slope dr/dx, M is constant, and no rotation is needed however far it turns
+[BerzeriShabana2000].  In a planar scene the element has 8 coordinates instead of 12.  It has no
+torsion, no shear and no rotary inertia.
+
+Its nodes are frames (assemble/beams.py); joints, loads and contacts act on them.  The axes of the
+body are those of its chord, from the first node to the last.
+"""
+
+from math import sqrt
+from typing import ClassVar
+
+from pydantic import model_validator
+
+from trsim.elements.cable import Cable
+from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
+from trsim.elements.frames import cross, dot, helper
+from trsim.errors import ScenarioError
+from trsim.fields import vector
+from trsim.laws import cable
+
+
+class AncfCable(Cable):
+    """A flexible bar, straight as drawn.
+
+    start             place of its first node
+    end               place of its last node
+    velocity          of its centre at the start
+    angular_velocity  at the start, as one rigid bar
+    """
+
+    type: ClassVar[str] = "ancf_cable"
+    start: vector("m")
+    end: vector("m")
+    velocity: vector("m/s") = (0.0, 0.0, 0.0)
+    angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
+
+    @model_validator(mode="after")
+    def a_length(self):
+        if self.start == self.end:
+            raise ScenarioError("a bar has a length", "let start and end differ", ("end",))
+        if self.density is None and self.mass is None:
+            raise ScenarioError("give a `density` or a `mass`", path=("density",))
+        return self
+
+    @property
+    def length(self) -> float:
+        return sqrt(sum((b - a) ** 2 for a, b in zip(self.start, self.end, strict=True)))
+
+    @property
+    def per_length(self) -> float:
+        """rho A, kg/m."""
+        if self.mass is not None:
+            return self.mass / self.length
+        assert self.density is not None  # noqa: S101
+        return self.density * self.numbers[0]
+
+
+# con: where; par: how much
+FIRST, NODES, STRAIN, CURVATURE, PLANAR = 0, 1, 2, 3, 4
+LENGTH, STIFFNESS, BENDING, BETA, MASS, FIELD = 0, 1, 2, 3, 4, 5
+E_NOW, E_RATE, E_FORCE = 0, 1, 2  # rows of scene.element
+
+
+def pack(name, spec, at):
+    beam = at.beams[name]
+    area, moment, _ = spec.numbers
+    E, field = spec.youngs_modulus, at.scenario.gravity
+    return Row(
+        (beam.first, beam.nodes, cable.STRAINS[spec.strain], cable.CURVATURES[spec.curvature]),
+        (beam.length, E * area, E * moment, spec.damping, spec.per_length, *field),
+        channels=channels(beam.nodes),
+    )
+
+
+def channels(nodes):
+    """What a beam of so many nodes records."""
+    return (
+        Channel("position", "m", "centre of mass, world axes", 3),
+        Channel("velocity", "m/s", "of the centre of mass, world axes", 3),
+        Channel("angular_velocity", "rad/s", "of the chord between its ends, world axes", 3),
+        Channel("tip", "m", "place of the last node, world axes", 3),
+        Channel("middle", "m", "place halfway along the bar, world axes", 3),
+        Channel("deflection", "m", "largest distance of a node from the chord between the ends"),
+        Channel("strain_energy", "J", "stored in stretching and bending"),
+        Channel("stretching_energy", "J", "of it in stretching"),
+        Channel("axial_force", "N", "along the bar, at its nodes; tension is positive", nodes),
+        Channel("bending_moment", "N*m", "magnitude, at its nodes", nodes),
+        Channel("shape", "m", "places of the nodes, world axes", 3 * nodes),
+    )
+
+
+@helper
+def gathered(scene, i):
+    """Coordinates and rates of the element between nodes i and i + 1, into scene.element."""
+    X, V, G, element = scene.X, scene.V, scene.G, scene.element
+    for n in range(2):
+        for c in range(3):
+            element[E_NOW, 6 * n + c] = X[i + n, c]
+            element[E_NOW, 6 * n + 3 + c] = G[i + n, c]
+            element[E_RATE, 6 * n + c] = V[i + n, c]
+            element[E_RATE, 6 * n + 3 + c] = G[i + n, 3 + c]
+            element[E_FORCE, 6 * n + c] = 0.0
+            element[E_FORCE, 6 * n + 3 + c] = 0.0
+
+
+@kernel
+def force(t, scene, a, b):
+    con, par, F, Q, element = scene.con, scene.par, scene.F, scene.Q, scene.element
+    for e in range(a, b):
+        l, mass = par[e, LENGTH], par[e, MASS]
+        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+            gathered(scene, i)
+            cable.add_force(
+                element[E_NOW], element[E_RATE], l, par[e, STIFFNESS], par[e, BENDING],
+                par[e, BETA], con[e, STRAIN], con[e, CURVATURE], element[E_FORCE],
+            )  # fmt: skip
+            for c in range(3):
+                weight = mass * l * par[e, FIELD + c]
+                F[i, c] += element[E_FORCE, c] + 0.5 * weight
+                Q[i, c] += element[E_FORCE, 3 + c] + weight * l / 12.0
+                F[i + 1, c] += element[E_FORCE, 6 + c] + 0.5 * weight
+                Q[i + 1, c] += element[E_FORCE, 9 + c] - weight * l / 12.0
+            if par[e, BETA] > 0.0:
+                scene.zd[DAMPERS] += damping_power(scene, par, con, e)
+
+
+@helper
+def damping_power(scene, par, con, e):
+    """Power of the damping forces of the element last gathered, W; never positive."""
+    element = scene.element
+    power = 0.0
+    for k in range(12):
+        power += element[E_FORCE, k] * element[E_RATE, k]
+        element[E_FORCE, k] = 0.0
+    cable.add_force(
+        element[E_NOW], element[E_RATE], par[e, LENGTH], par[e, STIFFNESS], par[e, BENDING],
+        0.0, con[e, STRAIN], con[e, CURVATURE], element[E_FORCE],
+    )  # fmt: skip
+    for k in range(12):
+        power -= element[E_FORCE, k] * element[E_RATE, k]
+    return power
+
+
+@kernel
+def energy(t, scene, a, b):
+    con, par, E, element = scene.con, scene.par, scene.E, scene.element
+    for e in range(a, b):
+        l, mass = par[e, LENGTH], par[e, MASS]
+        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+            gathered(scene, i)
+            stretching, bending = cable.energies(
+                element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
+                con[e, CURVATURE],
+            )  # fmt: skip
+            E[SPRINGS] += stretching + bending
+            for c in range(3):
+                E[GRAVITY] -= mass * par[e, FIELD + c] * moment(element[E_NOW], l, c)
+
+
+@helper
+def moment(x, l, c):
+    """int x_c dx over an element: its length times the place of its centre."""
+    return l * (0.5 * (x[c] + x[6 + c]) + l / 12.0 * (x[3 + c] - x[9 + c]))
+
+
+@kernel
+def measure(t, scene, a, b):
+    X, V, con, par, wanted, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
+    element = scene.element
+    for e in range(a, b):
+        o = wanted[e]
+        if o < 0:
+            continue
+        first, nodes, l = con[e, FIRST], con[e, NODES], par[e, LENGTH]
+        last = first + nodes - 1
+        whole = l * (nodes - 1)
+        forces, moments, shape = o + 18, o + 18 + nodes, o + 18 + 2 * nodes
+        for k in range(18 + 2 * nodes):
+            out[o + k] = 0.0
+        for i in range(first, last):
+            gathered(scene, i)
+            x, v = element[E_NOW], element[E_RATE]
+            for c in range(3):
+                out[o + c] += moment(x, l, c) / whole
+                out[o + 3 + c] += moment(v, l, c) / whole
+            stretching, bending = cable.energies(
+                x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE]
+            )
+            out[o + 16] += stretching + bending
+            out[o + 17] += stretching
+            for n in range(2):
+                N, M = cable.section_forces(
+                    x, float(n), l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
+                    con[e, CURVATURE],
+                )  # fmt: skip
+                # a node between two elements has the mean of both
+                share = 1.0 if i + n == first or i + n == last else 0.5
+                out[forces + i + n - first] += share * N
+                out[moments + i + n - first] += share * M
+            if 2 * (i - first) + 1 == nodes - 1:
+                for c in range(3):
+                    out[o + 12 + c] = 0.5 * (x[c] + x[6 + c]) + l / 8.0 * (x[3 + c] - x[9 + c])
+            if 2 * (i - first) == nodes - 1:
+                for c in range(3):
+                    out[o + 12 + c] = x[c]
+        chord_spin(X, V, first, last, out, o + 6)
+        for c in range(3):
+            out[o + 9 + c] = X[last, c]
+        out[o + 15] = deflection(X, first, last)
+        for k in range(nodes):
+            for c in range(3):
+                out[shape + 3 * k + c] = X[first + k, c]
+
+
+@helper
+def chord_spin(X, V, first, last, out, o):
+    """Angular velocity of the line from one frame to another, without spin about it."""
+    d = (X[last, 0] - X[first, 0], X[last, 1] - X[first, 1], X[last, 2] - X[first, 2])
+    w = (V[last, 0] - V[first, 0], V[last, 1] - V[first, 1], V[last, 2] - V[first, 2])
+    n, square = cross(d, w), dot(d, d)
+    for c in range(3):
+        out[o + c] = n[c] / square if square > 0.0 else 0.0
+
+
+@helper
+def deflection(X, first, last):
+    """Largest distance of a frame between two from the line through them, m."""
+    d = (X[last, 0] - X[first, 0], X[last, 1] - X[first, 1], X[last, 2] - X[first, 2])
+    square, most = dot(d, d), 0.0
+    for i in range(first + 1, last):
+        n = cross(d, (X[i, 0] - X[first, 0], X[i, 1] - X[first, 1], X[i, 2] - X[first, 2]))
+        most = max(most, dot(n, n) / square if square > 0.0 else 0.0)
+    return sqrt(most)
+
+
+ELEMENT = Element(
+    key="ancf_cable",
+    section="bodies",
+    spec=AncfCable,
+    pack=pack,
+    channels=channels(5),
+    kernels={"force": force, "energy": energy, "measure": measure},
+    example="""
+bodies:
+  rope:
+    type: ancf_cable
+    start: [0, 0]
+    end: [1 m, 0]
+    section: {diameter: 5 mm}
+    youngs_modulus: 1.6 MPa
+    density: 320 kg/m^3
+joints:
+  pin: {type: revolute, bodies: [ground, rope], at: [0, 0]}
+gravity: [0, -9.81, 0]
+solver: {end: 0.1 s, tolerance: 1e-4}
+""",
+)
