@@ -54,11 +54,11 @@ def without(scenario, mechanism, gone):
     at, instances = pack(scenario, frozenset(), None, ())
     rows = [r for r in all_rows(instances) if f"{r.element}.{r.axis}" not in gone]
     full, y = build(scenario, at, instances, rows, 6), drawn(at, 6)
-    keep = moves(full, mechanism.planar)
+    keep = np.flatnonzero(moves(full, mechanism.planar))
     J = jacobian(full, 0.0, y)[2][:, keep]
     inside = np.flatnonzero(np.abs(J).max(axis=1) > 1e-9).tolist()
     geometric = [k for k in inside if rows[k].element in scenario.joints]
-    found = dependences(full, y, keep, inside, geometric)
+    found = dependences(full, y, moves(full, mechanism.planar), inside, geometric)
     unique = unique_reactions(J[inside], weights(full)[keep])
     return [f.row for f in found if f.everywhere], len(keep) - len(inside), unique.all()
 
