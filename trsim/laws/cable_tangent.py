@@ -62,12 +62,26 @@ def fill(row, c, v, d, w):
 
 
 @law
-def add_product(M, h, x, y):
-    """M += h (x y^T + y x^T)."""
+def add_square(M, h, x):
+    """M += h x x^T."""
     for i in range(12):
-        s, t = x[i], y[i]
         for j in range(12):
-            M[i, j] += h * (s * y[j] + t * x[j])
+            M[i, j] += h * (x[i] * x[j])
+
+
+@law
+def add_form(M, aa, ab, ac, bb, G):
+    """M += aa a a^T + ab (a b^T + b a^T) + ac (a c^T + c a^T) + bb b b^T, a, b, c the rows of G."""
+    a, b, c = G[0], G[1], G[2]
+    for i in range(12):
+        x, y, z = a[i], b[i], c[i]
+        for j in range(12):
+            M[i, j] += (
+                aa * (x * a[j])
+                + ab * (x * b[j] + y * a[j])
+                + ac * (x * c[j] + z * a[j])
+                + bb * (y * b[j])
+            )
 
 
 @law
@@ -115,7 +129,7 @@ def add_axial(n, P, l, EA, strain, G, K):
     if strain == ENGINEERING:
         again = turn * turn * turn
     fill(G[0], c, r1, c, r1)
-    add_product(K, 0.125 * EA * again, G[0], G[0])
+    add_square(K, 0.25 * EA * again, G[0])
     add_units(K, 0.5 * EA * eps * turn, c, c)
 
 
@@ -132,10 +146,7 @@ def add_bending(n, P, l, EI, curvature, G, K):
         fill(G[0], c1, r1, c1, r1)
         fill(G[1], c1, r2, c2, r1)
         fill(G[2], c2, r2, c2, r2)
-        add_product(K, 0.5 * EI * aa, G[0], G[0])
-        add_product(K, EI * ab, G[0], G[1])
-        add_product(K, EI * ac, G[0], G[2])
-        add_product(K, 0.5 * EI * bb, G[1], G[1])
+        add_form(K, EI * aa, EI * ab, EI * ac, EI * bb, G)
         add_units(K, EI * k_a, c1, c1)
         add_units(K, EI * k_b, c1, c2)
     add_units(K, EI * k_c, c2, c2)
@@ -169,7 +180,7 @@ def add_axial_damping(n, P, l, EA_beta, strain, G, C):
     r1 = mixed((1.0, n, n * n), P)
     _, turn = stretch(dot(r1, r1), strain)
     fill(G[0], c, r1, c, r1)
-    add_product(C, 0.125 * EA_beta * turn * turn, G[0], G[0])
+    add_square(C, 0.25 * EA_beta * turn * turn, G[0])
 
 
 @law
@@ -186,16 +197,16 @@ def add_bending_damping(n, P, l, EI_beta, curvature, G, C):
     to_r1 = mixed((2.0 * k_a, k_b, 0.0), (r1, r2, r2))
     to_r2 = mixed((k_b, 2.0 * k_c, 0.0), (r1, r2, r2))
     fill(G[0], c, to_r1, d, to_r2)
-    add_product(C, 0.5 * m, G[0], G[0])
+    add_square(C, m, G[0])
     # what straight places add
     m *= 2.0 * k_c * k0
     across = d[0] - s * c[0], d[1] - s * c[1], d[2] - s * c[2], d[3] - s * c[3]
     fill(G[1], across, r1, across, r1)
     add_units(C, 0.5 * m, across, across)
-    add_product(C, -0.125 * m / a, G[1], G[1])
+    add_square(C, -0.25 * m / a, G[1])
     if curvature == PAPER:
         fill(G[2], c, r2, d, r1)
-        add_product(C, 0.5 * m / a, G[2], G[2])
+        add_square(C, m / a, G[2])
 
 
 @law
