@@ -1,0 +1,186 @@
+"""Cable elements put together: elastica, frequencies of a beam, a flexible pendulum."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from trsim.laws.cable import ENGINEERING, EXACT, GERSTMAYR, GREEN, PAPER, add_force
+from trsim.laws.cable_section import mass, uniform_shares
+from trsim.laws.cable_tangent import add_stiffness
+
+DATA = Path(__file__).parents[1] / "data"
+BETA_L = (1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349, 14.1371683910)
+STIFF = 1.2e5  # EA L^2 / EI of a beam that hardly stretches
+
+
+def table(name):
+    lines = [s for s in (DATA / name).read_text().splitlines() if s[0] in "-0123456789"]
+    return np.array([[float(x) for x in line.split(",")] for line in lines])
+
+
+def straight(n):
+    """A cable of n elements and length 1 along x."""
+    q = np.zeros(6 * (n + 1))
+    q[0::6], q[3::6] = np.linspace(0.0, 1.0, n + 1), 1.0
+    return q
+
+
+def tangent_system(q, n, EA, EI, form):
+    """Force and stiffness of n elements with a total length of 1."""
+    F, K, workspace = np.zeros(q.size), np.zeros((q.size, q.size)), np.zeros((3, 12))
+    for k in range(n):
+        at, add = slice(6 * k, 6 * k + 12), np.zeros((12, 12))
+        add_force(q[at], q[at], 1 / n, EA, EI, 0.0, *form, F[at])
+        add_stiffness(q[at], 1 / n, EA, EI, *form, workspace, add)
+        K[at, at] += add
+    return F, K
+
+
+def mass_matrix(n, rho_A):
+    M = np.zeros((6 * (n + 1), 6 * (n + 1)))
+    for k in range(n):
+        at = slice(6 * k, 6 * k + 12)
+        M[at, at] += np.kron(np.array(mass(1 / n, rho_A)), np.eye(3))
+    return M
+
+
+def clamped(n):
+    """Planar coordinates that are free when r_a and the direction of r_xa are held."""
+    return np.array([k for k in range(6 * (n + 1)) if k % 3 != 2 and k not in (0, 1, 4)])
+
+
+def pushed(q, P):
+    """A dead transverse force at the tip, and its derivative."""
+    Q = np.zeros(q.size)
+    Q[-5] = P
+    return Q, np.zeros((q.size, q.size))
+
+
+def twisted(q, T):
+    """A moment at the tip: it turns the slope, T d atan2(r_xy, r_xx), and its derivative."""
+    Q, D = np.zeros(q.size), np.zeros((q.size, q.size))
+    x, y = q[-3], q[-2]
+    s = x * x + y * y
+    Q[-3], Q[-2] = -T * y / s, T * x / s
+    D[-3:-1, -3:-1] = np.array([[2 * x * y, y * y - x * x], [y * y - x * x, -2 * x * y]]) * T / s**2
+    return Q, D
+
+
+def bent(n, EA, form, load, values):
+    """Tip x, y and angle of a cantilever with EI = 1 under each of the increasing loads."""
+    q, free, last, shapes = straight(n), clamped(n), 0.0, []
+    for value in values:
+        for part in np.linspace(last, value, int(np.ceil(value - last)) + 1)[1:]:
+            for _ in range(40):
+                F, K = tangent_system(q, n, EA, 1.0, form)
+                Q, D = load(q, part)
+                change = np.linalg.solve((K - D)[np.ix_(free, free)], (F + Q)[free])
+                q[free] += change * min(1.0, 0.2 / abs(change).max())
+                if abs(change).max() < 1e-9:
+                    break
+            else:
+                raise AssertionError(f"no equilibrium at {part}")
+        last = value
+        shapes.append((q[-6], q[-5], np.arctan2(q[-2], q[-3])))
+    return np.array(shapes)
+
+
+def worst(n, EA, form, rows):
+    """Largest error of the tip's place under the tip forces rows[:, 0]."""
+    found = bent(n, EA, form, pushed, rows[:, 0])
+    return max(abs(found[:, 1] - rows[:, 1]).max(), abs(1 - found[:, 0] - rows[:, 2]).max())
+
+
+def extensible(EA):
+    rows = table("elastica_extensible.csv")
+    return rows[rows[:, 0] == EA][:, 1:]
+
+
+@pytest.mark.parametrize("strain", [GREEN, ENGINEERING])
+@pytest.mark.parametrize("curvature", [EXACT, GERSTMAYR, PAPER])
+def test_elastica(strain, curvature):
+    rows = table("elastica_tip_force.csv")
+    assert (
+        worst(16, STIFF, (strain, curvature), rows[(rows[:, 0] <= 10) & (rows[:, 0] >= 1)]) < 1e-4
+    )
+
+
+@pytest.mark.parametrize("strain", [GREEN, ENGINEERING])
+@pytest.mark.parametrize("EA", [1200, 4800, 30000, 120000])
+def test_extensible_elastica(strain, EA):
+    """The moment goes with the change of angle per undeformed length: the gerstmayr form."""
+    assert worst(16, EA, (strain, GERSTMAYR), extensible(EA)) < 1e-4
+
+
+def test_other_curvatures_are_other_beams_where_much_is_stretched():
+    assert worst(16, 1200, (GREEN, EXACT), extensible(1200)) == pytest.approx(4.6e-3, rel=0.02)
+    assert worst(16, 120000, (GREEN, EXACT), extensible(120000)) < 1e-4
+    assert worst(16, 1200, (GREEN, PAPER), extensible(1200)) == pytest.approx(3.7e-3, rel=0.02)
+
+
+def test_tip_moment_bends_a_circle():
+    rows = table("elastica_tip_moment.csv")[:5]
+    found = bent(16, STIFF, (ENGINEERING, GERSTMAYR), twisted, rows[:, 0] * 2 * np.pi)
+    assert abs(found[:, 0] - 1 - rows[:, 1]).max() < 1e-4
+    assert abs(found[:, 1] - rows[:, 2]).max() < 1e-4
+
+
+def test_elastica_converges():
+    """Order 4 as soon as the mesh resolves the bend."""
+    rows = extensible(1200)[-1:]
+    coarse, fine = (worst(n, 1200, (ENGINEERING, GERSTMAYR), rows) for n in (4, 8))
+    assert np.log2(coarse / fine) > 3.5
+
+
+def frequencies(n, form):
+    """Of a cantilever with EI = rho A = 1 across its axis."""
+    across = np.array([k for k in range(6 * (n + 1)) if k % 3 == 1 and k not in (1, 4)])
+    K = tangent_system(straight(n), n, 1.0, 1.0, form)[1]
+    M = mass_matrix(n, 1.0)
+    pick = np.ix_(across, across)
+    return np.sqrt(eigh(K[pick], M[pick], eigvals_only=True)[:5])
+
+
+@pytest.mark.parametrize("curvature", [EXACT, GERSTMAYR, PAPER])
+def test_cantilever_frequencies(curvature):
+    exact = np.square(BETA_L)
+    errors = {n: frequencies(n, (ENGINEERING, curvature)) / exact - 1 for n in (8, 16, 32)}
+    assert abs(errors[32]).max() < 1e-4
+    assert np.log2(errors[8] / errors[16])[2:].min() > 3.8
+
+
+def pendulum(n, end, h):
+    """Tip and mid-point every 10 ms of a flexible spatial pendulum, by Runge and Kutta's method."""
+    E, A, I, rho = 1.6e6, 2.5e-5, 5e-3**4 / 12, 320.0
+    q, v, gravity = straight(n), np.zeros(6 * (n + 1)), np.zeros(6 * (n + 1))
+    v[2::6], v[5::6] = -4.0 * q[0::6], -4.0
+    for k in range(n):
+        gravity[6 * k + 1 : 6 * k + 12 : 3] -= 9.81 * rho * A * np.array(uniform_shares(1 / n))
+    inverse = np.zeros((q.size, q.size))
+    inverse[3:, 3:] = np.linalg.inv(mass_matrix(n, rho * A)[3:, 3:])
+
+    def rates(y):
+        F = gravity.copy()
+        for k in range(0, 6 * n, 6):
+            e = y[0, k : k + 12]
+            add_force(e, e, 1 / n, E * A, E * I, 0.0, ENGINEERING, GERSTMAYR, F[k : k + 12])
+        return np.array([y[1], inverse @ F])
+
+    y, rows = np.array([q, v]), []
+    for k in range(1, round(end / h) + 1):
+        k1 = rates(y)
+        k2 = rates(y + h / 2 * k1)
+        k3 = rates(y + h / 2 * k2)
+        k4 = rates(y + h * k3)
+        y = y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        if k % round(0.01 / h) == 0:
+            rows.append([*y[0, -6:-3], *y[0, 3 * n : 3 * n + 3]])
+    return np.array(rows)
+
+
+def test_flexible_pendulum():
+    """The same mesh, computed independently: says strain, curvature and Gauss points."""
+    reference = table("p2_pendulum_8_elements.csv")[1:51, 1:]
+    assert abs(pendulum(8, 0.5, 2.5e-4) - reference).max() < 1e-7

@@ -1,0 +1,299 @@
+"""Cable: one gradient-deficient ANCF element, cubic, without shear, twist or rotations.
+
+    r(x)  = S1 r_a + S2 r_xa + S3 r_b + S4 r_xb          e = (r_a, r_xa, r_b, r_xb), 12 numbers
+    U     = 1/2 int EA eps^2 + EI kappa^2 dx             0 <= x <= l
+    F     = -dU/de - damping                             [BerzeriShabana2000] [Gerstmayr2008]
+
+    strain     engineering   eps = |r'| - 1
+               green         eps = (r'.r' - 1) / 2
+    curvature  exact         kappa = |r' x r''| / |r'|^3
+               gerstmayr     kappa = |r' x r''| / |r'|^2, per undeformed length
+               paper         kappa = |r''|, a constant matrix K_t
+
+' is d/dx in the undeformed length.  r' is a parabola in n = x / l - 1/2,
+
+    r' = P_0 + n P_1 + n^2 P_2,     l r'' = P_1 + 2 n P_2
+
+so all strains are functions of the products P_i . P_j, and through them of
+
+    a = r'.r',    b = r'.r'',    c = r''.r''            kappa^2 = (c - b^2 / a) a^-q
+
+with q = 2 exact, 1 gerstmayr; paper: kappa^2 = c.  The force on P_i is -sum_j M_ij P_j with M_ij
+symmetric: no rigid motion is resisted, and a planar cable has zeros where it has no z.
+
+Damping is proportional to the stiffness, as in a material of Kelvin and Voigt: the section
+carries EA (eps + beta eps') and, on kappa, EI (kappa + beta kappa').  The power is
+-beta int EA eps'^2 + EI kappa'^2 dx.  A cable does not know how it spins about itself, so at a
+straight place no curvature has a direction, and every one that grows is resisted there:
+
+    EI beta [kappa^2 kappa'^2 + k0^2 |k'|^2] / (kappa^2 + k0^2),      k0 = STRAIGHT / l
+
+with k' = a^(-q/2) (r'' - b/a r')' across the tangent.  The blend makes the force differentiable.
+"""
+
+from math import sqrt
+
+from trsim.laws import law
+
+GREEN, ENGINEERING = 0, 1
+EXACT, GERSTMAYR, PAPER = 0, 1, 2
+STRAINS = {"green": GREEN, "engineering": ENGINEERING}  # the words of a scenario
+CURVATURES = {"exact": EXACT, "gerstmayr": GERSTMAYR, "paper": PAPER}
+
+STRAIGHT = 1e-6  # rad, bend of an element below which it counts as straight, for damping alone
+
+# Gauss points -+n and the middle with their weights: five for the stretch, three for the bend
+FAR, FAR_WEIGHT = 0.453089922969332, 0.11846344252809454
+NEAR, NEAR_WEIGHT = 0.26923465505284155, 0.23931433524968324
+BENDING, BENDING_WEIGHT = 0.3872983346207417, 5.0 / 18.0
+MIDDLE_OF_5, MIDDLE_OF_3 = 64.0 / 225.0, 4.0 / 9.0
+
+
+@law
+def dot(x, y):
+    """x . y"""
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
+
+
+@law
+def mixed(c, P):
+    """c_0 P_0 + c_1 P_1 + c_2 P_2"""
+    x, y, z = P
+    return (
+        c[0] * x[0] + c[1] * y[0] + c[2] * z[0],
+        c[0] * x[1] + c[1] * y[1] + c[2] * z[1],
+        c[0] * x[2] + c[1] * y[2] + c[2] * z[2],
+    )
+
+
+@law
+def parabola(e, l):
+    """P_0, P_1, P_2 of r', each a vector; of the rates of e, their rates."""
+    u = 1.0 / l
+    g = (
+        (u * (e[6] - e[0]), u * (e[7] - e[1]), u * (e[8] - e[2])),
+        (e[3], e[4], e[5]),
+        (e[9], e[10], e[11]),
+    )
+    return mixed((1.5, -0.25, -0.25), g), mixed((0.0, -1.0, 1.0), g), mixed((-6.0, 3.0, 3.0), g)
+
+
+@law
+def products(P, R):
+    """(p00, p01, 2 p02 + p11, p12, p22, p11) of p_ij = (P_i . R_j + P_j . R_i) / 2."""
+    p11 = dot(P[1], R[1])
+    return (
+        dot(P[0], R[0]),
+        0.5 * (dot(P[0], R[1]) + dot(P[1], R[0])),
+        dot(P[0], R[2]) + dot(P[2], R[0]) + p11,
+        0.5 * (dot(P[1], R[2]) + dot(P[2], R[1])),
+        dot(P[2], R[2]),
+        p11,
+    )
+
+
+@law
+def squared(p, n):
+    """a = r'.r' at n from `products`."""
+    return p[0] + n * (2.0 * p[1] + n * (p[2] + n * (2.0 * p[3] + n * p[4])))
+
+
+@law
+def invariants(p, n, u):
+    """a = r'.r', b = r'.r'', c = r''.r'' at n from `products`; u = 1 / l."""
+    b = p[1] + n * (p[2] + n * (3.0 * p[3] + n * 2.0 * p[4]))
+    c = p[5] + 4.0 * n * (p[3] + n * p[4])
+    return squared(p, n), u * b, u * u * c
+
+
+@law
+def stretch(a, strain):
+    """Axial strain eps of a = r'.r', and 2 d eps / da."""
+    if strain == GREEN:
+        return 0.5 * (a - 1.0), 1.0
+    s = sqrt(a)
+    return s - 1.0, 1.0 / s
+
+
+@law
+def bend(a, b, c, curvature):
+    """kappa^2 and the derivatives of kappa^2 / 2 in a, b and c; 1/m^2, ..."""
+    if curvature == PAPER:
+        return c, 0.0, 0.0, 0.5
+    y = 1.0 / a
+    s = b * y
+    across = max(c - b * s, 0.0)
+    q = 1.0
+    weight = y
+    if curvature == EXACT:
+        q = 2.0
+        weight = y * y
+    return weight * across, 0.5 * weight * (s * s - q * across * y), -weight * s, 0.5 * weight
+
+
+@law
+def tension(p, p_dot, n, EA, beta, strain):
+    """Axial force over |r'| (green: the axial force) at n, N."""
+    eps, turn = stretch(squared(p, n), strain)
+    if beta > 0.0:
+        eps += beta * turn * squared(p_dot, n)
+    return EA * eps * turn
+
+
+@law
+def pulled(p, p_dot, l, EA, beta, strain):
+    """What the stretch adds to M: m00, m01, m02, m11, m12, m22, N*m."""
+    EAl = EA * l
+    middle = MIDDLE_OF_5 * tension(p, p_dot, 0.0, EAl, beta, strain)
+    i, j = FAR_WEIGHT * EAl, NEAR_WEIGHT * EAl
+    f0, f1 = tension(p, p_dot, -FAR, i, beta, strain), tension(p, p_dot, FAR, i, beta, strain)
+    n0, n1 = tension(p, p_dot, -NEAR, j, beta, strain), tension(p, p_dot, NEAR, j, beta, strain)
+    even_f, even_n = FAR * FAR * (f0 + f1), NEAR * NEAR * (n0 + n1)
+    odd_f, odd_n = FAR * (f1 - f0), NEAR * (n1 - n0)
+    m02 = even_f + even_n
+    return (
+        middle + (f0 + f1) + (n0 + n1),
+        odd_f + odd_n,
+        m02,
+        m02,
+        FAR * FAR * odd_f + NEAR * NEAR * odd_n,
+        FAR * FAR * even_f + NEAR * NEAR * even_n,
+    )
+
+
+@law
+def flexed(p, p_dot, n, l, EI, beta, curvature):
+    """EI times the derivatives of kappa^2 / 2 at n, damped: of r'.r', 2 r'.r'' / l, r''.r'' / l^2.
+
+    Each twice: they are what r' feels of r', r' of r'' and r'' of r''.
+    """
+    u = 1.0 / l
+    a, b, c = invariants(p, n, u)
+    kk, k_a, k_b, k_c = bend(a, b, c, curvature)
+    if beta > 0.0:
+        a_dot, b_dot, c_dot = invariants(p_dot, n, u)
+        k0 = STRAIGHT * u
+        EI *= 1.0 + 2.0 * beta * (k_a * a_dot + k_b * b_dot + k_c * c_dot) / (kk + k0 * k0)
+    return 2.0 * EI * k_a, EI * u * k_b, 2.0 * EI * u * u * k_c
+
+
+@law
+def bent(p, p_dot, l, EI, beta, curvature):
+    """What the bend adds to M: m00, m01, m02, m11, m12, m22, N*m."""
+    i, j = BENDING_WEIGHT * l * EI, MIDDLE_OF_3 * l * EI
+    n = BENDING
+    x0, y0, z0 = flexed(p, p_dot, -n, l, i, beta, curvature)
+    x, y, z = flexed(p, p_dot, 0.0, l, j, beta, curvature)
+    x1, y1, z1 = flexed(p, p_dot, n, l, i, beta, curvature)
+    m02 = n * (n * (x0 + x1) + 2.0 * (y1 - y0))
+    return (
+        x + (x0 + x1),
+        n * (x1 - x0) + y + (y0 + y1),
+        m02,
+        m02 + z + (z0 + z1),
+        n * (n * (n * (x1 - x0) + 3.0 * (y0 + y1)) + 2.0 * (z1 - z0)),
+        n * n * (m02 + 2.0 * n * (y1 - y0) + 4.0 * (z0 + z1)),
+    )
+
+
+@law
+def straight_resistance(P, P_dot, n, l, EI_beta, curvature):
+    """Forces on r' and r'' of the damping that straight places have alone, N and N*m."""
+    u = 1.0 / l
+    r1, r2 = mixed((1.0, n, n * n), P), mixed((0.0, u, 2.0 * n * u), P)
+    v1, v2 = mixed((1.0, n, n * n), P_dot), mixed((0.0, u, 2.0 * n * u), P_dot)
+    a, b = dot(r1, r1), dot(r1, r2)
+    kk, _, _, half = bend(a, b, dot(r2, r2), curvature)
+    k0 = STRAIGHT * STRAIGHT * u * u
+    m = 2.0 * half * EI_beta * k0 / (kk + k0)
+    s = b / a
+    along = (dot(r1, v2) - s * dot(r1, v1)) / a
+    grown = 0.0
+    if curvature == PAPER:  # its kappa counts what r'' has along the tangent too
+        grown = m * (dot(r1, v2) + dot(r2, v1)) / a
+    f2 = mixed((m, -m * s, -m * along), (v2, v1, r1))
+    f1 = mixed((-s, grown, 0.0), (f2, r2, r2))
+    return f1, mixed((1.0, grown, 0.0), (f2, r1, r1))
+
+
+@law
+def add_to_ends(G, l, F):
+    """F -= forces G on P_0, P_1, P_2, as felt by the twelve coordinates."""
+    chord = mixed((1.5, 0.0, -6.0), G)
+    at_a, at_b = mixed((-0.25, -1.0, 3.0), G), mixed((-0.25, 1.0, 3.0), G)
+    u = 1.0 / l
+    F[0] += u * chord[0]
+    F[1] += u * chord[1]
+    F[2] += u * chord[2]
+    F[3] -= at_a[0]
+    F[4] -= at_a[1]
+    F[5] -= at_a[2]
+    F[6] -= u * chord[0]
+    F[7] -= u * chord[1]
+    F[8] -= u * chord[2]
+    F[9] -= at_b[0]
+    F[10] -= at_b[1]
+    F[11] -= at_b[2]
+
+
+@law
+def add_straight_damping(P, P_dot, n, l, EI_beta, curvature, F):
+    """F += what straight places add to the damping, at n."""
+    u = 1.0 / l
+    f1, f2 = straight_resistance(P, P_dot, n, l, EI_beta, curvature)
+    G = f1, mixed((n, u, 0.0), (f1, f2, f2)), mixed((n * n, 2.0 * n * u, 0.0), (f1, f2, f2))
+    add_to_ends(G, l, F)
+
+
+@law
+def add_force(e, v, l, EA, EI, beta, strain, curvature, F):
+    """F += elastic and damping force of one element.
+
+    Parameters
+    ----------
+    e : (12,)            r_a, r_xa, r_b, r_xb: positions, m, and slopes
+    v : (12,)            their rates; of no influence where beta is 0
+    l : float            undeformed length, m
+    EA, EI : float       stiffness against stretching, N, and bending, N*m^2
+    beta : float         damping / stiffness, s; a straight bar's damping ratio is beta omega / 2
+    strain : int         GREEN or ENGINEERING
+    curvature : int      EXACT, GERSTMAYR or PAPER
+    F : (12,)            generalised force, N and N*m, added to
+
+    Notes
+    -----
+    Five Gauss points for the stretch, three for the bend.  Where r' vanishes F is not finite.
+    """
+    P = parabola(e, l)
+    p = p_dot = products(P, P)
+    if beta > 0.0:
+        P_dot = parabola(v, l)
+        p_dot = products(P, P_dot)
+        side, middle = BENDING_WEIGHT * l * EI * beta, MIDDLE_OF_3 * l * EI * beta
+        add_straight_damping(P, P_dot, -BENDING, l, side, curvature, F)
+        add_straight_damping(P, P_dot, 0.0, l, middle, curvature, F)
+        add_straight_damping(P, P_dot, BENDING, l, side, curvature, F)
+    x, y = pulled(p, p_dot, l, EA, beta, strain), bent(p, p_dot, l, EI, beta, curvature)
+    m00, m01, m02 = x[0] + y[0], x[1] + y[1], x[2] + y[2]
+    m11, m12, m22 = x[3] + y[3], x[4] + y[4], x[5] + y[5]
+    G = mixed((m00, m01, m02), P), mixed((m01, m11, m12), P), mixed((m02, m12, m22), P)
+    add_to_ends(G, l, F)
+
+
+@law
+def energies(e, l, EA, EI, strain, curvature):
+    """Energy of the stretch and of the bend, J.  Parameters as in `add_force`."""
+    P = parabola(e, l)
+    p = products(P, P)
+    stretched = MIDDLE_OF_5 * stretch(squared(p, 0.0), strain)[0] ** 2
+    for n in (-FAR, FAR):
+        stretched += FAR_WEIGHT * stretch(squared(p, n), strain)[0] ** 2
+    for n in (-NEAR, NEAR):
+        stretched += NEAR_WEIGHT * stretch(squared(p, n), strain)[0] ** 2
+    u = 1.0 / l
+    a, b, c = invariants(p, 0.0, u)
+    flexed = MIDDLE_OF_3 * bend(a, b, c, curvature)[0]
+    for n in (-BENDING, BENDING):
+        a, b, c = invariants(p, n, u)
+        flexed += BENDING_WEIGHT * bend(a, b, c, curvature)[0]
+    return 0.5 * EA * l * stretched, 0.5 * EI * l * flexed
