@@ -1,13 +1,7 @@
 """The mass matrices of beams: bands of scalars, factorised once.                assemble/beams.py
 
-One element of length l, against (place, slope) of its two nodes,
-
-                     | 156    22 l   54   -13 l  |
-    M = rho A l/420  |  22 l   4 l^2  13 l  -3 l^2 |         int rho A S_i S_j dx
-                     |  54    13 l  156   -22 l  |
-                     | -13 l  -3 l^2 -22 l   4 l^2 |
-
-times the unit matrix of two or three directions [BerzeriShabana2000].
+Node by node, place and slope, M is a band four wide, times the unit matrix of two or three
+directions: that of one element is `mass` of laws/cable_section.py.
 """
 
 from typing import Any
@@ -17,7 +11,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.members import Beam
 from trsim.assemble.pattern import slots
-from trsim.laws.cable import mass_matrix
+from trsim.laws.cable_section import mass
 
 Array = NDArray[np.float64]
 
@@ -27,15 +21,10 @@ WIDTH = 4  # diagonal and three entries below it
 def scalar_mass(beam: Beam) -> Array:
     """M of a beam against place and slope of its nodes in one direction (2 nodes, 2 nodes)."""
     M = np.zeros((2 * beam.nodes, 2 * beam.nodes))
-    element = element_mass(beam.length, beam.per_length)
+    element = np.array(mass.python(beam.length, beam.per_length))
     for k in range(beam.nodes - 1):
         M[2 * k : 2 * k + 4, 2 * k : 2 * k + 4] += element
     return M
-
-
-def element_mass(l: float, per_length: float) -> Array:
-    """The matrix above (4, 4)."""
-    return np.asarray(mass_matrix(l, per_length))
 
 
 def banded(M: Array) -> Array:
@@ -63,7 +52,7 @@ def band_tables(beams: list[Beam], row_frames: list[tuple[int, int]]) -> dict[st
     """`beam`, `band`, `consistent` and `across` of a model."""
     if not beams:
         none = np.zeros((0, WIDTH))
-        return {"beam": np.zeros((0, 3), np.int64), "band": none, "consistent": none.copy(),
+        return {"beam": np.zeros((0, 4), np.int64), "band": none, "consistent": none.copy(),
                 "across": none.copy()}  # fmt: skip
     n = beams[-1].first + beams[-1].nodes
     of_frame = slots(row_frames, n)
@@ -72,7 +61,7 @@ def band_tables(beams: list[Beam], row_frames: list[tuple[int, int]]) -> dict[st
         M = scalar_mass(beam)
         band = banded(M)
         inverse = np.linalg.inv(M)
-        rows.append((beam.first, beam.nodes, at))
+        rows.append((beam.first, beam.nodes, at, beam.element))
         bands.append(band)
         at += 2 * beam.nodes
         nodes = [k for k in range(beam.nodes) for _ in of_frame[beam.first + k]]

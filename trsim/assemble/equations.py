@@ -244,6 +244,12 @@ def accelerations(s, y, yd):
 
 
 @compiled(AT)
+def stiffnesses(s, t):
+    """Stiffness and damping of the elements of beams, at the poses of the last evaluation."""
+    call_all(s, s.stiffness, t)
+
+
+@compiled(AT)
 def gaps(s, t):
     """Penetration and its rate of every contact, at the poses of the last evaluation."""
     call_all(s, s.gaps, t)

@@ -19,11 +19,13 @@ class Beam(NamedTuple):
 
     first: int  # frame of its first node
     nodes: int
+    element: int  # its first one among the elements of all beams
     whole: float  # m, of the bar
     tangent: tuple[float, float, float]
     axes: Array  # (3, 3) of its nodes, the tangent first
     places: Array  # (nodes, 3)
     per_length: float  # kg/m
+    stiffness: float  # EA, N
 
     @property
     def length(self) -> float:
@@ -97,7 +99,8 @@ def stiffened(bar: Any) -> Any:
 
 def beams(bodies: dict[str, Any], first: int) -> dict[str, Beam]:
     """The beams among the bodies; frame `first` is the first of their nodes."""
-    found = {}
+    found: dict[str, Beam] = {}
+    element = 0
     for name, bar in bodies.items():
         if bar.type != "ancf_cable":
             continue
@@ -106,9 +109,17 @@ def beams(bodies: dict[str, Any], first: int) -> dict[str, Beam]:
         places = (1.0 - part) * np.array(bar.start) + part * np.array(bar.end)
         t = tangent(bar)
         found[name] = Beam(
-            first, nodes, bar.length, (t[0], t[1], t[2]), axes(t), places, bar.per_length
+            first,
+            nodes,
+            element,
+            bar.length,
+            (t[0], t[1], t[2]),
+            axes(t),
+            places,
+            bar.per_length,
+            bar.youngs_modulus * bar.numbers[0],
         )
-        first += nodes
+        first, element = first + nodes, element + bar.elements
     return found
 
 

@@ -1,9 +1,9 @@
 """The sparsity of S = J M^-1 J^T and the program of its factorisation L D L^T, made once.
 
 Two rows of J meet in S where they share a moving body: a frame, or the nodes of a beam.  A
-minimum-degree order keeps the fill small [George1989]: for an open chain the cost of factorising grows linearly with its length.
-The numeric part (equations.py, linear.py) only walks the index lists made here, each from its
-beginning to its end.
+minimum-degree order keeps the fill small [George1989]: for an open chain the cost of factorising
+grows linearly with its length.  The numeric part (equations.py, linear.py) only walks the index
+lists made here, each from its beginning to its end.
 """
 
 from heapq import heapify, heappop, heappush

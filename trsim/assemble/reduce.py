@@ -44,7 +44,11 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     J = np.zeros((model.m, model.n, 6))
     for end, block in ((0, w.J[:, :6]), (1, w.J[:, 6:])):
         J[np.arange(model.m), model.row_frame[:, end]] = block
-    return w.phi.copy(), w.phi_t.copy(), against_rates(w, J[:, 1:].reshape(model.m, 6 * (model.n - 1)))
+    return (
+        w.phi.copy(),
+        w.phi_t.copy(),
+        against_rates(w, J[:, 1:].reshape(model.m, 6 * (model.n - 1))),
+    )
 
 
 def moves(model: Model, planar: bool) -> NDArray[np.bool_]:

@@ -19,9 +19,12 @@ from pydantic import model_validator
 from trsim.elements.cable import Cable
 from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
 from trsim.elements.frames import cross, dot, helper
+from trsim.elements.vectors import clear_table
 from trsim.errors import ScenarioError
 from trsim.fields import vector
 from trsim.laws import cable
+from trsim.laws.cable_section import position, stress, uniform_shares
+from trsim.laws.cable_tangent import add_damping, add_stiffness
 
 
 class AncfCable(Cable):
@@ -61,9 +64,9 @@ class AncfCable(Cable):
 
 
 # con: where; par: how much
-FIRST, NODES, STRAIN, CURVATURE, PLANAR = 0, 1, 2, 3, 4
+FIRST, NODES, STRAIN, CURVATURE, ELEMENT_0 = 0, 1, 2, 3, 4
 LENGTH, STIFFNESS, BENDING, BETA, MASS, FIELD = 0, 1, 2, 3, 4, 5
-E_NOW, E_RATE, E_FORCE = 0, 1, 2  # rows of scene.element
+E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 
 
 def pack(name, spec, at):
@@ -71,7 +74,13 @@ def pack(name, spec, at):
     area, moment, _ = spec.numbers
     E, field = spec.youngs_modulus, at.scenario.gravity
     return Row(
-        (beam.first, beam.nodes, cable.STRAINS[spec.strain], cable.CURVATURES[spec.curvature]),
+        (
+            beam.first,
+            beam.nodes,
+            cable.STRAINS[spec.strain],
+            cable.CURVATURES[spec.curvature],
+            beam.element,
+        ),
         (beam.length, E * area, E * moment, spec.damping, spec.per_length, *field),
         channels=channels(beam.nodes),
     )
@@ -119,12 +128,13 @@ def force(t, scene, a, b):
                 element[E_NOW], element[E_RATE], l, par[e, STIFFNESS], par[e, BENDING],
                 par[e, BETA], con[e, STRAIN], con[e, CURVATURE], element[E_FORCE],
             )  # fmt: skip
+            s1, s2, s3, s4 = uniform_shares(l)
             for c in range(3):
-                weight = mass * l * par[e, FIELD + c]
-                F[i, c] += element[E_FORCE, c] + 0.5 * weight
-                Q[i, c] += element[E_FORCE, 3 + c] + weight * l / 12.0
-                F[i + 1, c] += element[E_FORCE, 6 + c] + 0.5 * weight
-                Q[i + 1, c] += element[E_FORCE, 9 + c] - weight * l / 12.0
+                weight = mass * par[e, FIELD + c]
+                F[i, c] += element[E_FORCE, c] + s1 * weight
+                Q[i, c] += element[E_FORCE, 3 + c] + s2 * weight
+                F[i + 1, c] += element[E_FORCE, 6 + c] + s3 * weight
+                Q[i + 1, c] += element[E_FORCE, 9 + c] + s4 * weight
             if par[e, BETA] > 0.0:
                 scene.zd[DAMPERS] += damping_power(scene, par, con, e)
 
@@ -147,6 +157,28 @@ def damping_power(scene, par, con, e):
 
 
 @kernel
+def stiffness(t, scene, a, b):
+    con, par, element = scene.con, scene.par, scene.element
+    for e in range(a, b):
+        l, beta = par[e, LENGTH], par[e, BETA]
+        for k in range(con[e, NODES] - 1):
+            gathered(scene, con[e, FIRST] + k)
+            row = 12 * (con[e, ELEMENT_0] + k)
+            K, C = scene.tangent[row : row + 12], scene.viscous[row : row + 12]
+            clear_table(K)
+            add_stiffness(
+                element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
+                con[e, CURVATURE], element[ROOM:], K,
+            )  # fmt: skip
+            if beta > 0.0:
+                clear_table(C)
+                add_damping(
+                    element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], beta, con[e, STRAIN],
+                    con[e, CURVATURE], element[ROOM:], C,
+                )  # fmt: skip
+
+
+@kernel
 def energy(t, scene, a, b):
     con, par, E, element = scene.con, scene.par, scene.E, scene.element
     for e in range(a, b):
@@ -165,7 +197,8 @@ def energy(t, scene, a, b):
 @helper
 def moment(x, l, c):
     """int x_c dx over an element: its length times the place of its centre."""
-    return l * (0.5 * (x[c] + x[6 + c]) + l / 12.0 * (x[3 + c] - x[9 + c]))
+    s1, s2, s3, s4 = uniform_shares(l)
+    return s1 * x[c] + s2 * x[3 + c] + s3 * x[6 + c] + s4 * x[9 + c]
 
 
 @kernel
@@ -194,20 +227,18 @@ def measure(t, scene, a, b):
             out[o + 16] += stretching + bending
             out[o + 17] += stretching
             for n in range(2):
-                N, M = cable.section_forces(
-                    x, float(n), l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                    con[e, CURVATURE],
+                N, M = stress(
+                    x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE],
+                    float(n),
                 )  # fmt: skip
                 # a node between two elements has the mean of both
                 share = 1.0 if i + n == first or i + n == last else 0.5
                 out[forces + i + n - first] += share * N
                 out[moments + i + n - first] += share * M
-            if 2 * (i - first) + 1 == nodes - 1:
+            if 2 * (i - first) in (nodes - 1, nodes - 2):
+                middle = position(x, l, 0.5 * (nodes - 1) - (i - first))
                 for c in range(3):
-                    out[o + 12 + c] = 0.5 * (x[c] + x[6 + c]) + l / 8.0 * (x[3 + c] - x[9 + c])
-            if 2 * (i - first) == nodes - 1:
-                for c in range(3):
-                    out[o + 12 + c] = x[c]
+                    out[o + 12 + c] = middle[c]
         chord_spin(X, V, first, last, out, o + 6)
         for c in range(3):
             out[o + 9 + c] = X[last, c]
@@ -244,7 +275,7 @@ ELEMENT = Element(
     spec=AncfCable,
     pack=pack,
     channels=channels(5),
-    kernels={"force": force, "energy": energy, "measure": measure},
+    kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:
   rope:

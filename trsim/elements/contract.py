@@ -19,6 +19,7 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
                 corners (< 0: inside), and the branch to go on with; `force` keeps the largest
                 such value it meets in left[e]
     energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
+    stiffness   tangent, viscous: minus the derivatives of the forces of each element of a beam
     measure     out[wanted[e] + c] = channel c; wanted[e] < 0 when nobody asked.  May also read
                 the accelerations A = V' and the multipliers lam
 
@@ -34,7 +35,7 @@ from trsim.elements.machine import Compiled
 from trsim.elements.scene import Scene
 from trsim.elements.signatures import Signature, f8, i8, void
 
-KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "measure")
+KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
 
 # con: the first columns of every element that joins two frames
 I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3

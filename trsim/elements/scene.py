@@ -46,7 +46,7 @@ class Model(Packed):
     mass_inverse: A1  # (n) 0 for the ground
     inertia_inverse: A2  # (n, 9) body axes; planar: [8] is 1 / Izz
     depth: A1  # (n) z of the centre of mass in a planar scene, m
-    beam: I2  # (n_beams, 3) first frame, nodes, first row of band          assemble/beams.py
+    beam: I2  # (n_beams, 4) first frame, nodes, first row of band, first element  beams.py
     band: A2  # (2 nodes, 4) its mass matrix as L D L^T: 1 / D, three entries of L below
     consistent: A2  # (2 nodes, 4) the same as it is: diagonal and three entries below
     across: A2  # (pairs on beams, 4) M^-1 between their nodes: places, slopes
@@ -60,6 +60,7 @@ class Model(Packed):
     gaps: I2
     corners: I2
     energy: I2
+    stiffness: I2
     measure: I2
     row_frame: I2  # (m, 2) frames i and j of a row                        assemble/pattern.py
     frame_start: I1  # (n+1) slots of a frame: one per row that touches it, the ground has none
@@ -98,7 +99,9 @@ class Model(Packed):
 class Scene(Model):
     """A model and the workspace of its equations; holds the last evaluation."""
 
-    element: A2  # (3, 12) coordinates, rates and forces of one element of a beam
+    element: A2  # (6, 12) coordinates, rates and forces of one element of a beam; room
+    tangent: A2  # (12 n_elements, 12) its stiffness against places and slopes
+    viscous: A2  # (12 n_elements, 12) its damping against their rates
     G: A2  # (n, 6) slope of a node, and its rate; world axes
     Q: A2  # (n, 3) elastic force along the slope of a node, N*m
     X: A2  # (n, 12) position of the centre of mass, rotation matrix row by row
@@ -147,6 +150,7 @@ def scene(model: Model) -> Scene:
     from trsim.elements.contract import N_MEM
 
     n, m, slots = model.n, model.m, len(model.slot_row)
+    elements = int(np.sum(model.beam[:, 1] - 1))
     X = np.zeros((n, 12))
     X[:, [3, 7, 11]] = 1.0
     X[:, 2] = model.depth
@@ -154,7 +158,9 @@ def scene(model: Model) -> Scene:
     return Scene(
         **constants,
         X=X,
-        element=np.zeros((3, 12)),
+        element=np.zeros((6, 12)),
+        tangent=np.zeros((12 * elements, 12)),
+        viscous=np.zeros((12 * elements, 12)),
         G=np.zeros((n, 6)),
         Q=np.zeros((n, 3)),
         V=np.zeros((n, 6)),

@@ -110,7 +110,7 @@ def smooth(mechanism: Mechanism) -> Model:
 def mass_matrix(work: Scene) -> Array:
     """M (n_v, n_v) in the axes of the solve."""
     M = np.zeros((work.n_v, work.n_v))
-    for first, nodes, at in work.beam.tolist():
+    for first, nodes, at, _ in work.beam.tolist():
         width = work.d_node // 2
         band = work.consistent[at : at + 2 * nodes]
         o = work.v_node + work.d_node * (first - work.n_r)

@@ -11,17 +11,18 @@ the clearance.  A motion that stays without stiffness is indifferent, and refuse
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import forces, poses
+from trsim.assemble.equations import forces, poses, stiffnesses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import against_rates, closest, displaced, jacobian, moves
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
-from trsim.elements.scene import Model, workspace
+from trsim.elements.scene import Model, scene, workspace
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
 
 BALANCED = 1e-11  # of the largest force
 ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from none
+ELASTIC = 1e-5  # of EA: strains are known to rounding, so are forces to as much of that
 STEPS = 200
 STALLED = 1e-3  # of the force: a smaller change, step after step, is none
 PATIENCE = 30  # steps without a change, and those that cross the widest clearance
@@ -64,9 +65,12 @@ def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
     return Z
 
 
-def stiffness(model: Model, y: Array, Z: Array, lam: Array, J_of_lam: Array, step: float) -> Array:
-    """- d(F - J^T lam)/dq along the columns of Z, by central differences; Z^T K Z."""
+def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Array:
+    """- d(F - J^T lam)/dq along the columns of Z: of beams as it is, of all else by central
+    differences; Z^T K Z."""
     K = np.empty((Z.shape[1], Z.shape[1]))
+    elastic = elastic_stiffness(model, y, Z)
+    model = without_beams(model)
     for k in range(Z.shape[1]):
         size = step / max(float(np.max(np.abs(Z[:, k]))), 1e-300)
         total = []
@@ -74,7 +78,28 @@ def stiffness(model: Model, y: Array, Z: Array, lam: Array, J_of_lam: Array, ste
             near = displaced(model, y, sign * size * Z[:, k])
             total.append(static_forces(model, near) - jacobian(model, 0.0, near)[2].T @ lam)
         K[:, k] = -Z.T @ (total[0] - total[1]) / (2.0 * size)
-    return 0.5 * (K + K.T)
+    return np.asarray(0.5 * (K + K.T) + elastic)
+
+
+def elastic_stiffness(model: Model, y: Array, Z: Array) -> Array:
+    """Z^T K Z of the elements of beams."""
+    w = workspace(model)
+    poses(w, y)
+    stiffnesses(w, 0.0)
+    found = np.zeros((Z.shape[1], Z.shape[1]))
+    for first, nodes, _, element in model.beam.tolist():
+        for k in range(nodes - 1):
+            part = Z[6 * (first + k - 1) : 6 * (first + k + 1)]
+            found += part.T @ w.tangent[12 * (element + k) : 12 * (element + k + 1)] @ part
+    return found
+
+
+def without_beams(model: Model) -> Model:
+    """The model without the kernels that have a tangent of their own: the forces of all else."""
+    if not len(model.stiffness):
+        return model
+    others = [row for row in model.force.tolist() if row[1:] not in model.stiffness[:, 1:].tolist()]
+    return scene(model.replaced(force=np.array(others, np.int64).reshape(-1, 3)))
 
 
 def balance(
@@ -95,6 +120,7 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach
     probe = 1e-9 * model.size if not gaps else min(1e-9 * model.size, 1e-5 * min(gaps))
     push, scale, load = 0.0, 1e-300, 1e-300
+    stiff = ELASTIC * max((bar.stiffness for bar in mechanism.beams.values()), default=0.0)
     changed, before = 0, 0.0  # the step at which the force last changed, and to what
     F, J, Z = balance(model, y, free, mass)
     for count in range(STEPS):
@@ -104,10 +130,10 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         if len(J):
             lam = np.asarray(np.linalg.lstsq(J.T[free], F[free], rcond=1e-12)[0])
         r = Z.T @ F
-        K = stiffness(model, y, Z, lam, J, probe)
+        K = stiffness(model, y, Z, lam, probe)
         values, vectors = np.linalg.eigh(K)
         # bodies in balance have no net force left: the largest one met is the scale
-        acting = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
+        acting = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)), stiff)
         scale = max(scale, acting)
         size = float(np.linalg.norm(r))
         left = float(np.linalg.norm((Z @ r) * mass))
