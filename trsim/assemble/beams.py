@@ -76,33 +76,32 @@ def node_accelerations(s):
 
 @equation
 def divide_by_mass(s, u):
-    """u <- M^-1 u on the rows of all nodes: one pass along every beam and one back."""
-    width = components(s)
-    for b in range(s.beam.shape[0]):
-        first, rows, at = s.beam[b, 0], 2 * s.beam[b, 1], s.beam[b, 2]
-        for c in range(width):
-            substitute(s.band, at, rows, u, first, c, width)
+    """u <- M^-1 u on the rows of all nodes: one pass along every beam and one back.
 
-
-@equation
-def substitute(band, at, rows, u, first, c, width):
-    """Solve L D L^T x = u for one component; row 2k is the place of node k, 2k + 1 its slope.
-
-    band: 1 / D and the three entries below it in L.
+    M = L D L^T; a row of L meets place and slope of its own node and of the one before.
     """
-    for k in range(rows):
-        x = u[first + k // 2, c + width * (k % 2)]
-        for p in range(1, 4):
-            if k >= p:
-                x -= band[at + k - p, p] * u[first + (k - p) // 2, c + width * ((k - p) % 2)]
-        u[first + k // 2, c + width * (k % 2)] = x
-    for back in range(rows):
-        k = rows - 1 - back
-        x = u[first + k // 2, c + width * (k % 2)] * band[at + k, 0]
-        for p in range(1, 4):
-            if k + p < rows:
-                x -= band[at + k, p] * u[first + (k + p) // 2, c + width * ((k + p) % 2)]
-        u[first + k // 2, c + width * (k % 2)] = x
+    L, width = s.band, components(s)
+    for b in range(s.beam.shape[0]):
+        first, nodes, at = s.beam[b, 0], s.beam[b, 1], s.beam[b, 2]
+        for n in range(nodes):
+            f, k = first + n, at + 2 * n
+            for c in range(width):
+                place, slope = u[f, c], u[f, width + c]
+                if n > 0:
+                    r, g = u[f - 1, c], u[f - 1, width + c]
+                    place -= L[k - 2, 2] * r + L[k - 1, 1] * g
+                    slope -= L[k - 2, 3] * r + L[k - 1, 2] * g
+                u[f, c], u[f, width + c] = place, slope - L[k, 1] * place
+        for back in range(nodes):
+            n = nodes - 1 - back
+            f, k = first + n, at + 2 * n
+            for c in range(width):
+                place, slope = u[f, c] * L[k, 0], u[f, width + c] * L[k + 1, 0]
+                if back > 0:
+                    r, g = u[f + 1, c], u[f + 1, width + c]
+                    place -= L[k, 2] * r + L[k, 3] * g
+                    slope -= L[k + 1, 1] * r + L[k + 1, 2] * g
+                u[f, c], u[f, width + c] = place - L[k, 1] * slope, slope
 
 
 @equation
