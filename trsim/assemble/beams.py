@@ -105,23 +105,26 @@ def divide_by_mass(s, u):
 
 
 @equation
-def node_rows(s, pair):
-    """B of the slots on nodes, and what they add to S; pair: of `entry`, the first of theirs."""
-    J, B, G, value, entry, across = s.J, s.B, s.G, s.value, s.entry, s.across
-    width = components(s)
+def node_rows(s):
+    """B of the slots on nodes."""
+    J, B, G, width = s.J, s.B, s.G, components(s)
+    for f in range(s.n_r, s.n):
+        square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            k, o = s.slot_row[p], s.slot_column[p]
+            for c in range(width):
+                x, y = (c + 1) % 3, (c + 2) % 3
+                B[p, c] = J[k, o + c]
+                B[p, width + c] = (J[k, o + 3 + x] * G[f, y] - J[k, o + 3 + y] * G[f, x]) / square
+
+
+@equation
+def node_products(s, B, pair):
+    """What the slots on nodes add to S, with their rows in B; pair: of `entry`, the first."""
+    value, entry, across, width = s.value, s.entry, s.across, components(s)
     start = pair
     for b in range(s.beam.shape[0]):
         first, end = s.beam[b, 0], s.beam[b, 0] + s.beam[b, 1]
-        for f in range(first, end):
-            square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
-            for p in range(s.frame_start[f], s.frame_start[f + 1]):
-                k, o = s.slot_row[p], s.slot_column[p]
-                for c in range(width):
-                    x, y = (c + 1) % 3, (c + 2) % 3
-                    B[p, c] = J[k, o + c]
-                    B[p, width + c] = (
-                        J[k, o + 3 + x] * G[f, y] - J[k, o + 3 + y] * G[f, x]
-                    ) / square
         for p in range(s.frame_start[first], s.frame_start[end]):
             for o in range(s.frame_start[first], p + 1):
                 total = 0.0

@@ -8,6 +8,7 @@ let go by user events are counted as they are in any stage, so the coupling is t
 from typing import Any, NamedTuple
 
 from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.assemble.members import Beam
 from trsim.elements.contract import N_BOOK
 
 # where the state of an element stands in its Row.con
@@ -20,6 +21,7 @@ class Nodes(NamedTuple):
     bodies: int
     states: int
     groups: tuple[frozenset[int], ...]  # nodes that are coupled with each other, once each
+    alone: frozenset[int] = frozenset()  # nodes of beams on which nothing else acts
 
     def neighbours(self) -> list[set[int]]:
         """For each node the others it is coupled with."""
@@ -35,7 +37,17 @@ def nodes(scenario: Any, mechanism: Mechanism) -> Nodes:
     bodies, states = mechanism.model.n - 1, mechanism.model.n_z - N_BOOK
     of = _Coupling(scenario, mechanism, bodies)
     groups = {of.group(instance) for instance in mechanism.instances}
-    return Nodes(bodies, states, tuple(sorted((g for g in groups if len(g) > 1), key=sorted)))
+    of_beams = {k for beam in mechanism.beams.values() for k in nodes_of(beam)}
+    alone = of_beams.difference(*groups)
+    for beam in mechanism.beams.values():
+        groups |= {frozenset((k, k + 1)) for k in nodes_of(beam)[:-1]}
+    coupled = tuple(sorted((g for g in groups if len(g) > 1), key=sorted))
+    return Nodes(bodies, states, coupled, frozenset(alone))
+
+
+def nodes_of(beam: Beam) -> range:
+    """The nodes of a beam."""
+    return range(beam.first - 1, beam.first - 1 + beam.nodes)
 
 
 class _Coupling:

@@ -43,6 +43,8 @@ def derivative(s, t, y, yd):
     poses(s, y)
     forces(s, t)
     free_accelerations(s)
+    if s.n_r < s.n:
+        node_accelerations(s)
     if s.m > 0:
         constraints(s, t)
         rows(s)
@@ -143,10 +145,8 @@ def constraints(s, t):
 
 @equation
 def free_accelerations(s):
-    """M^-1 (F - omega x I omega), in the axes of the solve."""
+    """M^-1 (F - omega x I omega) of the rigid bodies, in the axes of the solve."""
     X, V, F, a = s.X, s.V, s.F, s.free
-    if s.n_r < s.n:
-        node_accelerations(s)
     if s.d == 3:
         for f in range(1, s.n_r):
             a[f, 0] = F[f, 0] * s.mass_inverse[f]

@@ -9,7 +9,7 @@ angular velocity),
 so every loop here goes through the bodies once, and through lists from beginning to end.
 """
 
-from trsim.assemble.beams import node_plain_rows, node_rows
+from trsim.assemble.beams import node_plain_rows, node_products, node_rows
 from trsim.elements.vectors import clear
 from trsim.elements.vectors import internal as equation
 
@@ -20,7 +20,8 @@ def rows(s):
     clear(s.value)
     pair = planar_rows(s) if s.d == 3 else spatial_rows(s)
     if s.n_r < s.n:
-        node_rows(s, pair)
+        node_rows(s)
+        node_products(s, s.B, pair)
 
 
 @equation

@@ -24,6 +24,18 @@ def w_index(s, k):
 
 
 @internal
+def first_of(s, f):
+    """Where the velocities of frame f begin in v."""
+    return s.d * (f - 1) if f < s.n_r else s.v_node + s.d_node * (f - s.n_r)
+
+
+@internal
+def width_of(s, f):
+    """How many there are."""
+    return s.d if f < s.n_r else s.d_node
+
+
+@internal
 def displace(s, y, k, part):
     """Move y by `part` along the k-th displacement.  Returns nothing; y changes in place."""
     if s.d == 3 or k >= s.v_node:

@@ -7,11 +7,12 @@ index 2, with positions and velocities on their constraints at every stage of a 
 but for the error of the method.  x are displacements, B the rows of J in the axes of the solve.
 """
 
+from trsim.assemble.beams import divide_by_mass, slope_force
 from trsim.assemble.equations import constraints, forces, free_accelerations, poses
 from trsim.assemble.schur import rows
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.vectors import internal
-from trsim.solve.displacements import moved_by
+from trsim.solve.displacements import first_of, moved_by, width_of
 
 
 @internal
@@ -24,7 +25,11 @@ def pull(s, t, y, lam, out):
     forces(s, t)
     free_accelerations(s)
     constraints(s, t)
-    for f in range(1, s.n):
+    for f in range(s.n_r, s.n):
+        v, width = first_of(s, f), s.d_node // 2
+        for c in range(width):
+            out[v + c], out[v + width + c] = s.F[f, c], slope_force(s, f, c)
+    for f in range(1, s.n_r):
         v, a = s.d * (f - 1), s.free[f]
         if s.d == 3:
             out[v], out[v + 1], out[v + 2] = s.F[f, 0], s.F[f, 1], s.F[f, 5]
@@ -63,7 +68,15 @@ def mass_times(s, b, x, out):
 @internal
 def unweighed(s, x, out):
     """out (n_v) <- M^-1 x."""
-    for f in range(1, s.n):
+    if s.n_r < s.n:
+        for k in range(s.v_node, s.n_v):
+            f, c = s.n_r + (k - s.v_node) // s.d_node, (k - s.v_node) % s.d_node
+            s.moved[f, c] = x[k]
+        divide_by_mass(s, s.moved)
+        for k in range(s.v_node, s.n_v):
+            f, c = s.n_r + (k - s.v_node) // s.d_node, (k - s.v_node) % s.d_node
+            out[k] = s.moved[f, c]
+    for f in range(1, s.n_r):
         v, I = s.d * (f - 1), s.inertia_inverse[f]
         if s.d == 3:
             out[v], out[v + 1] = x[v] * s.mass_inverse[f], x[v + 1] * s.mass_inverse[f]
@@ -80,10 +93,10 @@ def unweighed(s, x, out):
 def add_product(s, at, part, x, out):
     """out (m) += part times A x, with A (m, n_v) kept slot by slot in `at`."""
     for f in range(1, s.n):
-        v = s.d * (f - 1)
+        v, width = first_of(s, f), width_of(s, f)
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             total = 0.0
-            for k in range(s.d):
+            for k in range(width):
                 total += at[p, k] * x[v + k]
             out[s.slot_row[p]] += part * total
 
@@ -92,7 +105,29 @@ def add_product(s, at, part, x, out):
 def away(s, at, mu, x):
     """x (n_v) <- x - A^T mu, with A^T kept slot by slot in `at`."""
     for f in range(1, s.n):
+        v, width = first_of(s, f), width_of(s, f)
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for k in range(width):
+                x[v + k] -= at[p, k] * mu[s.slot_row[p]]
+
+
+@internal
+def across(s, at, weighed, mu, x):
+    """x (n_v) <- x - M^-1 A^T mu, with A^T slot by slot in `at`; weighed: M^-1 A^T, of the rigid
+    bodies, whose M is a block for each frame."""
+    for f in range(1, s.n_r):
         v = s.d * (f - 1)
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for k in range(s.d):
-                x[v + k] -= at[p, k] * mu[s.slot_row[p]]
+                x[v + k] -= weighed[p, k] * mu[s.slot_row[p]]
+    if s.n_r == s.n:
+        return
+    for f in range(s.n_r, s.n):
+        for c in range(s.d_node):
+            s.moved[f, c] = 0.0
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for c in range(s.d_node):
+                s.moved[f, c] += at[p, c] * mu[s.slot_row[p]]
+    divide_by_mass(s, s.moved)
+    for k in range(s.v_node, s.n_v):
+        x[k] -= s.moved[s.n_r + (k - s.v_node) // s.d_node, (k - s.v_node) % s.d_node]

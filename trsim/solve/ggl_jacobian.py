@@ -6,13 +6,13 @@ are those of jacobian.py.
 
 from math import sqrt
 
-from trsim.assemble.equations import evaluate
+from trsim.assemble.equations import evaluate, poses, stiffnesses
 from trsim.assemble.linear import substitute
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.vectors import clear, copy_to, internal
 from trsim.solve.auto import ITERATIONS, grown, sown
-from trsim.solve.displacements import active, displace, place_of, w_index
-from trsim.solve.ggl_equations import add_product, away, pull, unweighed
+from trsim.solve.displacements import active, displace, first_of, place_of, w_index, width_of
+from trsim.solve.ggl_equations import across, add_product, pull, unweighed
 from trsim.solve.jacobian import PART
 from trsim.solve.record import FRESH, JACOBIAN, JACOBIANS, TOLERANCE
 
@@ -25,7 +25,7 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
     copy_to(lam, s.lam)
     pull(s, t, r.y, lam, b.pull0)
     for p in range(s.slot_row.size):
-        for c in range(s.d):
+        for c in range(6):
             r.at_rows[p, c] = s.B[p, c]
     for j in range(s.m):
         b.rate0[j] = velocity_residual(s, j)
@@ -41,7 +41,7 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
             for q in range(first, end):
                 k = b.group[q]
                 divide(b, r.at_place, k, step_of_place(s, b, tolerance, k))
-            turning(s, r, b, g, b.group[first] % s.d, tolerance)
+            turning(s, r, b, g, part_of(s, b.group[first]), tolerance)
         copy_to(trial, r.y)
         for q in range(first, end):
             i = w_index(s, b.group[q])
@@ -55,16 +55,42 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
                 if b.state_row[e, 1] == k:
                     change = r.at_state[e] + s.phi[b.state_row[e, 0]]
                     r.at_state[e] = change / (trial[i] - r.y[i])
+    if s.n_r < s.n:
+        elastic(s, r, b, t)
     r.count[JACOBIAN] = FRESH
     r.count[JACOBIANS] += 1
+
+
+@internal
+def elastic(s, r, b, t):
+    """The columns of nodes on which nothing but their beam acts, from its tangent."""
+    for k in range(s.v_node, s.n_v):
+        if b.in_group[k] < 0:
+            for e in range(b.column_start[k], b.column_start[k + 1]):
+                r.at_place[e], r.at_rate[e] = 0.0, 0.0
+    poses(s, r.y)
+    stiffnesses(s, t)
+    for n in range(b.entry_beam.shape[0]):
+        for i in range(12):
+            for j in range(12):
+                e = b.entry_beam[n, 12 * i + j]
+                if e >= 0:
+                    r.at_place[e] -= s.tangent[12 * n + i, j]
+                    r.at_rate[e] -= s.viscous[12 * n + i, j]
+
+
+@internal
+def part_of(s, k):
+    """Which of the velocities of its frame the k-th is."""
+    return k % s.d if k < s.v_node else (k - s.v_node) % s.d_node
 
 
 @internal
 def turning(s, r, b, g, a, tolerance):
     """Change of Phi' with the a-th displacement of the bodies of a group, at the same v."""
     for f in range(1, s.n):
-        k = s.d * (f - 1) + a
-        if b.in_group[k] == g:
+        k = first_of(s, f) + a
+        if a < width_of(s, f) and b.in_group[k] == g:
             for p in range(s.frame_start[f], s.frame_start[f + 1]):
                 j = s.slot_row[p]
                 change = velocity_residual(s, j) - b.rate0[j]
@@ -74,7 +100,8 @@ def turning(s, r, b, g, a, tolerance):
 @internal
 def step_of_place(s, b, tolerance, k):
     """Step of the k-th displacement: a part of the unit of its velocity's partner."""
-    half = 2.0 if s.d == 6 and k % 6 > 2 else 1.0  # half a turn vector makes a quaternion
+    turns = s.d == 6 and k < s.v_node and k % 6 > 2
+    half = 2.0 if turns else 1.0  # half a turn vector makes a quaternion
     return PART * half / (b.weight[place_of(s, k)] * tolerance)
 
 
@@ -110,7 +137,7 @@ def fastest(s, r, b):
         clear(mu)
         add_product(s, r.at_rows, 1.0, v, mu)
         substitute(s, b.schur, mu)
-        away(s, b.across, mu, v)
+        across(s, r.at_rows, b.across, mu, v)
         copy_to(u, v)
         growth = grown(s, n, x, w, u)
         if growth == 0.0:

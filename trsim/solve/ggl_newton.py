@@ -18,11 +18,12 @@ taken into dlam, and damping of dmu, left to the next iteration.  f_x holds the 
 all derivatives are differences, many columns at a time [CurtisPowellReid1974].
 """
 
+from trsim.assemble.beams import node_products
 from trsim.assemble.linear import factorise, substitute
 from trsim.elements.contract import N_BOOK
 from trsim.elements.vectors import clear, copy_to, internal
-from trsim.solve.displacements import active, moved_by, twisted, w_index
-from trsim.solve.ggl_equations import add_product, away
+from trsim.solve.displacements import active, moved_by, twisted, w_index, width_of
+from trsim.solve.ggl_equations import across, add_product
 from trsim.solve.ggl_jacobian import fastest
 from trsim.solve.record import JACOBIAN_RATE, JACOBIANS
 from trsim.solve.sparse_lu import (
@@ -57,7 +58,7 @@ def schur(s, r, b):
     """M^-1 B^T and the factors of S of the Jacobian, into b."""
     clear(s.value)
     pair = 0
-    for f in range(1, s.n):
+    for f in range(1, s.n_r):
         I = s.inertia_inverse[f]
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             B, W = r.at_rows[p], b.across[p]
@@ -71,6 +72,8 @@ def schur(s, r, b):
                 for k in range(s.d):
                     s.value[s.entry[pair]] += r.at_rows[o, k] * W[k]
                 pair += 1
+    if s.n_r < s.n:
+        node_products(s, r.at_rows, pair)
     factorise(s)
     s.status[2] -= 1  # a run that goes on makes them again: not counted
     copy_to(b.schur, s.value)
@@ -88,12 +91,13 @@ def assembled(s, r, b, a, c):
             else:
                 re[b.entry[e]] = a * b.mass[e] - r.at_rate[e]
                 im[b.entry[e]] = c * b.mass[e]
-    for p in range(s.slot_row.size):
-        for k in range(s.d):
-            re[b.entry_row[p, k]] = r.at_rows[p, k]
-            re[b.entry_across[p, k]] = r.at_rows[p, k]
-            im[b.entry_row[p, k]] = 0.0
-            im[b.entry_across[p, k]] = 0.0
+    for f in range(1, s.n):
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for k in range(width_of(s, f)):
+                re[b.entry_row[p, k]] = r.at_rows[p, k]
+                re[b.entry_across[p, k]] = r.at_rows[p, k]
+                im[b.entry_row[p, k]] = 0.0
+                im[b.entry_across[p, k]] = 0.0
     for k in range(b.entry_state.size):
         re[b.entry_state[k]] = r.at_state[k]
         im[b.entry_state[k]] = 0.0
@@ -148,8 +152,8 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
     dx, dy = b.move[0], b.move[1]  # u = r_x - M^-1 B^T dmu for now
     for k in range(s.n_v):
         dx[k], dy[k] = x[k], y[k]
-    away(s, b.across, b.mu[0], dx)
-    away(s, b.across, b.mu[1], dy)
+    across(s, r.at_rows, b.across, b.mu[0], dx)
+    across(s, r.at_rows, b.across, b.mu[1], dy)
     loaded(s, r, b, f, dx, dy, a, c, b.side[0])
     loaded(s, r, b, g, dy, dx, a, -c, b.side[1])
     for j in range(s.m):
@@ -165,8 +169,8 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
         x[k] -= a * dx[k] - c * dy[k]  # r_x - (a + i c) dx
         y[k] -= a * dy[k] + c * dx[k]
     corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held)
-    away(s, b.across, u, x)
-    away(s, b.across, w, y)
+    across(s, r.at_rows, b.across, u, x)
+    across(s, r.at_rows, b.across, w, y)
     advanced(s, r, b, f, g, a, c)
 
 

@@ -8,7 +8,7 @@ from trsim.assemble.equations import evaluate
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve.displacements import twisted, w_index
-from trsim.solve.ggl_equations import add_product, away, mass_times, moving, pull
+from trsim.solve.ggl_equations import across, add_product, mass_times, moving, pull
 from trsim.solve.radau import ALPHA, BETA, GAMMA, T_INVERSE, C, F, T, W, Z
 
 # rows of K after those of radau.py, three each: lam of the stages, mu, right-hand sides and
@@ -31,7 +31,7 @@ def residuals(s, r, b, t, h):
         for k in range(s.n_v):
             x[k] = b.y1[s.n_q + k]
             f[s.n_q + k] = b.pull[k]
-        away(s, s.W, K[MU + i], x)
+        across(s, s.B, s.W, K[MU + i], x)
         for k in range(s.m):
             K[RP + i, k], K[RR + i, k] = -s.phi[k], -velocity_residual(s, k)
         moving(s, b.y1, x, f)

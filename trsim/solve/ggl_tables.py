@@ -37,7 +37,8 @@ class SparseBuffers(Buffers):
     mass: A1  # (nnz) the mass matrix; 1 for the rate of a state
     group_start: I1  # (groups+1) columns whose rows have nothing in common
     group: I1  # (n_w)
-    in_group: I1  # (n_w) the group of a column
+    in_group: I1  # (n_w) the group of a column; -1: known without a difference
+    entry_beam: I2  # (elements of beams, 144) entries of the Jacobian their tangents add to, or -1
     state_row: I2  # (rows with a state, 2) constraint row, its unknown of w
     # the constrained system: where its entries stand, row by row in the order of elimination
     entry_start: I1  # (N+1)
@@ -74,7 +75,7 @@ class SparseBuffers(Buffers):
 
 def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -> SparseRecord:
     """A Record with room for a sparse Jacobian, for any stage of the mechanism."""
-    starts, _ = columns(nodes(scenario, mechanism), mechanism.model.d)
+    starts, _ = columns(nodes(scenario, mechanism), mechanism.model)
     rows = sum(len(instance.element.rows) for instance in mechanism.instances)
     return SparseRecord(
         **{**dense.arrays(), "past": np.zeros((past_rows, dense.y.size))},
@@ -93,13 +94,15 @@ def buffers(dense: Buffers, scenario: Any, mechanism: Mechanism, model: Model) -
     return SparseBuffers(**{**own, **tables(found, mechanism, model)})
 
 
-def sizes(found: Nodes, d: int) -> list[int]:
-    return [d] * found.bodies + [1] * found.states
+def sizes(found: Nodes, model: Model) -> list[int]:
+    """Unknowns of every node: rigid bodies, nodes of beams, states."""
+    bars = model.n - model.n_r
+    return [model.d] * (found.bodies - bars) + [model.d_node] * bars + [1] * found.states
 
 
-def columns(found: Nodes, d: int) -> tuple[Any, Any]:
+def columns(found: Nodes, model: Model) -> tuple[Any, Any]:
     """Column by column the rows of the Jacobian: blocks of coupled nodes."""
-    size = sizes(found, d)
+    size = sizes(found, model)
     first = np.concatenate([[0], np.cumsum(size)]).astype(np.int64)
     start, row = [0], []
     for node, others in enumerate(found.neighbours()):
@@ -123,17 +126,36 @@ def colours(found: Nodes) -> list[list[int]]:
     return sets
 
 
-def groups(found: Nodes, d: int) -> tuple[Any, Any]:
+def groups(found: Nodes, model: Model) -> tuple[Any, Any]:
     """Columns of w that one difference tells of: the a-th of every body of a colour; states."""
+    size = sizes(found, model)
+    first = np.concatenate([[0], np.cumsum(size)]).astype(np.int64)
+    kinds = (range(model.n_r - 1), range(model.n_r - 1, found.bodies),
+             range(found.bodies, found.bodies + found.states))  # fmt: skip
     taken: list[list[int]] = []
     for nodes_of in colours(found):
-        bodies = [node for node in nodes_of if node < found.bodies]
-        taken += [[d * node + a for node in bodies] for a in range(d) if bodies]
-        states = [node for node in nodes_of if node >= found.bodies]
-        if states:
-            taken.append([d * found.bodies + node - found.bodies for node in states])
+        for kind in kinds:
+            own = [node for node in nodes_of if node in kind and node not in found.alone]
+            taken += [[first[node] + a for node in own] for a in range(size[own[0]] if own else 0)]
     start = np.concatenate([[0], np.cumsum([len(g) for g in taken])]).astype(np.int64)
     return start, np.array([k for g in taken for k in g], np.int64)
+
+
+def beam_entries(model: Model, start: Any, row: Any, in_group: Any) -> Any:
+    """Where the tangent of every element of a beam stands in the Jacobian."""
+    width = model.d_node // 2
+    place = {(int(row[e]), k): e for k in range(model.v_node, model.n_v)
+             for e in range(start[k], start[k + 1])}  # fmt: skip
+    found = np.full((int(np.sum(model.beam[:, 1] - 1)), 12, 12), -1, np.int64)
+    local = [(3 * part + c, width * part + c) for part in range(4) for c in range(width)]
+    for first, nodes, _, element in model.beam.tolist():
+        for n in range(nodes - 1):
+            at = model.v_node + model.d_node * (first - model.n_r + n)
+            for i, own_i in local:
+                for j, own_j in local:
+                    if in_group[at + own_j] < 0:
+                        found[element + n, i, j] = place[at + own_i, at + own_j]
+    return found.reshape(-1, 144)
 
 
 def state_rows(mechanism: Mechanism, model: Model) -> list[tuple[int, int]]:
@@ -152,6 +174,7 @@ def state_rows(mechanism: Mechanism, model: Model) -> list[tuple[int, int]]:
 def mass(model: Model, start: Any, row: Any) -> Any:
     """The entries of the mass matrix on the pattern of the Jacobian."""
     d, full = model.d, np.zeros((model.n, 6, 6))
+    nodal = node_masses(model)
     for a in range(3):
         full[:, a, a] = model.mass
     full[:, 3:, 3:] = model.inertia.reshape(-1, 3, 3)
@@ -161,16 +184,31 @@ def mass(model: Model, start: Any, row: Any) -> Any:
         for e in range(start[column], start[column + 1]):
             if column >= model.n_v:
                 value[e] = float(row[e] == column)
-            elif row[e] < model.n_v and row[e] // d == column // d:
+            elif column >= model.v_node:
+                value[e] = nodal.get((int(row[e]), column), 0.0)
+            elif row[e] < model.v_node and row[e] // d == column // d:
                 value[e] = full[1 + column // d, kept[row[e] % d], kept[column % d]]
     return value
 
 
+def node_masses(model: Model) -> dict[tuple[int, int], float]:
+    """The entries of the mass matrix between velocities of nodes."""
+    width, found = model.d_node // 2, {}
+    for first, nodes, at, _ in model.beam.tolist():
+        o = model.v_node + model.d_node * (first - model.n_r)
+        for k in range(2 * nodes):
+            for p in range(min(model.consistent.shape[1], 2 * nodes - k)):
+                for c in range(width):
+                    i, j = o + width * k + c, o + width * (k + p) + c
+                    found[i, j] = found[j, i] = float(model.consistent[at + k, p])
+    return found
+
+
 def tables(found: Nodes, mechanism: Mechanism, model: Model) -> dict[str, Any]:
     """The fields SparseBuffers adds to Buffers."""
-    start, row = columns(found, model.d)
-    group_start, group = groups(found, model.d)
-    in_group = np.empty(len(group), np.int64)
+    start, row = columns(found, model)
+    group_start, group = groups(found, model)
+    in_group = np.full(len(start) - 1, -1, np.int64)
     in_group[group] = np.repeat(np.arange(len(group_start) - 1), np.diff(group_start))
     held = np.array(state_rows(mechanism, model), np.int64).reshape(-1, 2)
     order = eliminated(found, model, held)
@@ -182,6 +220,7 @@ def tables(found: Nodes, mechanism: Mechanism, model: Model) -> dict[str, Any]:
         "group_start": group_start,
         "group": group,
         "in_group": in_group,
+        "entry_beam": beam_entries(model, start, row, in_group),
         "state_row": held,
         **places,
         **order._asdict(),
@@ -197,7 +236,7 @@ def eliminated(found: Nodes, model: Model, held: Any) -> Elimination:
     for k, (_, on) in enumerate(joints):
         for node in on:
             near[node].add(free + k)
-    size = sizes(found, model.d) + [len(rows) for rows, _ in joints]
+    size = sizes(found, model) + [len(rows) for rows, _ in joints]
     order = elimination(near, size, free)
     number = np.array([*range(n_w), *(n_w + j for rows, _ in joints for j in rows)], np.int64)
     rank = np.zeros(n_w + model.m, np.int64)
@@ -207,19 +246,26 @@ def eliminated(found: Nodes, model: Model, held: Any) -> Elimination:
 
 def entries(model: Model, start: Any, row: Any, held: Any, rank: Any) -> dict[str, Any]:
     """Where Jacobian, B, B^T and Phi_z stand among the entries, sorted by row and column."""
-    d, n_w, slots = model.d, len(start) - 1, len(model.slot_row)
+    n_w, slots = len(start) - 1, len(model.slot_row)
     frame = np.repeat(np.arange(model.n), np.diff(model.frame_start))
     at = np.repeat(np.arange(n_w), np.diff(start))
-    b_row = n_w + np.repeat(model.slot_row, d)
-    b_column = (d * (frame - 1)[:, None] + np.arange(d)).ravel()
+    rigid = frame < model.n_r
+    width = np.where(rigid, model.d, model.d_node)
+    first = np.where(
+        rigid, model.d * (frame - 1), model.v_node + model.d_node * (frame - model.n_r)
+    )
+    inside = np.arange(6) < width[:, None]  # (slots, 6)
+    b_row = n_w + np.repeat(model.slot_row, width)
+    b_column = (first[:, None] + np.arange(6))[inside]
     rows = rank[np.concatenate([row, b_row, b_column, n_w + held[:, 0]])]
     cols = rank[np.concatenate([at, b_column, b_row, held[:, 1]])]
     sorted_by = np.lexsort((cols, rows))
     places = np.empty(len(rows), np.int64)
     places[sorted_by] = np.arange(len(rows))
-    jacobian, b, across, state = np.split(places, np.cumsum([len(row), slots * d, slots * d]))
+    parts = np.cumsum([len(row), len(b_row), len(b_row)])
+    jacobian, b, across, state = np.split(places, parts)
     wide = np.zeros((2, slots, 6), np.int64)
-    wide[0, :, :d], wide[1, :, :d] = b.reshape(slots, d), across.reshape(slots, d)
+    wide[0][inside], wide[1][inside] = b, across
     return {
         "entry_start": np.searchsorted(rows[sorted_by], np.arange(len(rank) + 1)).astype(np.int64),
         "entry_column": cols[sorted_by],
