@@ -148,8 +148,8 @@ def beam_entries(model: Model, start: Any, row: Any, in_group: Any) -> Any:
              for e in range(start[k], start[k + 1])}  # fmt: skip
     found = np.full((int(np.sum(model.beam[:, 1] - 1)), 12, 12), -1, np.int64)
     local = [(3 * part + c, width * part + c) for part in range(4) for c in range(width)]
-    for first, nodes, _, element in model.beam.tolist():
-        for n in range(nodes - 1):
+    for first, count, _, element in model.beam.tolist():
+        for n in range(count - 1):
             at = model.v_node + model.d_node * (first - model.n_r + n)
             for i, own_i in local:
                 for j, own_j in local:
@@ -194,10 +194,10 @@ def mass(model: Model, start: Any, row: Any) -> Any:
 def node_masses(model: Model) -> dict[tuple[int, int], float]:
     """The entries of the mass matrix between velocities of nodes."""
     width, found = model.d_node // 2, {}
-    for first, nodes, at, _ in model.beam.tolist():
+    for first, count, at, _ in model.beam.tolist():
         o = model.v_node + model.d_node * (first - model.n_r)
-        for k in range(2 * nodes):
-            for p in range(min(model.consistent.shape[1], 2 * nodes - k)):
+        for k in range(2 * count):
+            for p in range(min(model.consistent.shape[1], 2 * count - k)):
                 for c in range(width):
                     i, j = o + width * k + c, o + width * (k + p) + c
                     found[i, j] = found[j, i] = float(model.consistent[at + k, p])

@@ -88,10 +88,7 @@ def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     if solver.formulation is None:
         large, touches = mechanism.model.n_v >= SPARSE_FROM, len(mechanism.model.contact) > 0
         held = solver.stabilisation == "baumgarte"  # whose terms belong to the accelerations
-        beams = len(mechanism.beams) > 0
-        sparse = (
-            large and not beams and not touches and not held and solver.tolerance >= SPARSE_UNTIL
-        )
+        sparse = large and not touches and not held and solver.tolerance >= SPARSE_UNTIL
     known = COMPILED.get(solver.method, ())
     return tuple("radau_ggl" if sparse and name == "radau" else name for name in known)
 
