@@ -218,6 +218,29 @@ def node_rates(s, y, yd):
 
 
 @equation
+def times_mass(s, v, x, o, out):
+    """out <- M x of all nodes; their entries begin at x[v] and at out[o]."""
+    M, width, step = s.consistent, components(s), s.d_node
+    for b in range(s.beam.shape[0]):
+        first, nodes, at = s.beam[b, 0], s.beam[b, 1], s.beam[b, 2]
+        for n in range(nodes):
+            i, k = step * (first - s.n_r + n), at + 2 * n
+            for c in range(width):
+                r, g = x[v + i + c], x[v + i + width + c]
+                place = M[k, 0] * r + M[k, 1] * g
+                slope = M[k, 1] * r + M[k + 1, 0] * g
+                if n > 0:
+                    r, g = x[v + i - step + c], x[v + i - step + width + c]
+                    place += M[k - 2, 2] * r + M[k - 1, 1] * g
+                    slope += M[k - 2, 3] * r + M[k - 1, 2] * g
+                if n + 1 < nodes:
+                    r, g = x[v + i + step + c], x[v + i + step + width + c]
+                    place += M[k, 2] * r + M[k, 3] * g
+                    slope += M[k + 1, 1] * r + M[k + 1, 2] * g
+                out[o + i + c], out[o + i + width + c] = place, slope
+
+
+@equation
 def node_kinetic(s, y):
     """Kinetic energy of all beams, J: 1/2 v^T M v with M as it was before it was factorised."""
     T, width = 0.0, components(s)

@@ -7,7 +7,7 @@ index 2, with positions and velocities on their constraints at every stage of a 
 but for the error of the method.  x are displacements, B the rows of J in the axes of the solve.
 """
 
-from trsim.assemble.beams import divide_by_mass, slope_force
+from trsim.assemble.beams import divide_by_mass, slope_force, times_mass
 from trsim.assemble.equations import constraints, forces, free_accelerations, poses
 from trsim.assemble.schur import rows
 from trsim.elements.contract import DRIVES, N_BOOK
@@ -54,15 +54,20 @@ def moving(s, y, x, out):
 
 
 @internal
-def mass_times(s, b, x, out):
-    """out (n_v) <- M x, on the pattern of the Jacobian."""
-    for k in range(s.n_v):
-        out[k] = 0.0
-    for k in range(s.n_v):
-        if x[k] != 0.0:
-            for e in range(b.column_start[k], b.column_start[k + 1]):
-                if b.mass[e] != 0.0:
-                    out[b.row[e]] += b.mass[e] * x[k]
+def mass_times(s, x, out):
+    """out (n_v) <- M x."""
+    if s.n_r < s.n:
+        times_mass(s, s.v_node, x, s.v_node, out)
+    for f in range(1, s.n_r):
+        v, m, I = s.d * (f - 1), s.mass[f], s.inertia[f]
+        if s.d == 3:
+            out[v], out[v + 1], out[v + 2] = m * x[v], m * x[v + 1], I[8] * x[v + 2]
+        else:
+            for i in range(3):
+                out[v + i] = m * x[v + i]
+                out[v + 3 + i] = (
+                    I[3 * i] * x[v + 3] + I[3 * i + 1] * x[v + 4] + I[3 * i + 2] * x[v + 5]
+                )
 
 
 @internal

@@ -23,7 +23,7 @@ from trsim.assemble.linear import factorise, substitute
 from trsim.elements.contract import N_BOOK
 from trsim.elements.vectors import clear, copy_to, internal
 from trsim.solve.displacements import active, moved_by, twisted, w_index, width_of
-from trsim.solve.ggl_equations import across, add_product
+from trsim.solve.ggl_equations import across, add_product, mass_times
 from trsim.solve.ggl_jacobian import fastest
 from trsim.solve.record import JACOBIAN_RATE, JACOBIANS
 from trsim.solve.sparse_lu import (
@@ -33,7 +33,8 @@ from trsim.solve.sparse_lu import (
     solve_sparse_complex,
 )
 
-MADE_OF, MADE_FOR = 0, 1  # b.made: number of the Jacobian, step size of the factors
+# b.made: number of the Jacobian, step size of the factors, whether anything depends on rates
+MADE_OF, MADE_FOR, RESISTED = 0, 1, 2
 
 
 @internal
@@ -42,6 +43,7 @@ def sparse_factors(s, r, b, h, g, a, c):
     if b.made[MADE_OF] != r.count[JACOBIANS]:
         schur(s, r, b)
         b.made[MADE_OF], b.made[MADE_FOR] = r.count[JACOBIANS], 0.0
+        b.made[RESISTED] = 1.0 if some(r.at_rate) else 0.0
         r.clock[JACOBIAN_RATE] = fastest(s, r, b)
     if b.made[MADE_FOR] == h:
         return True
@@ -51,6 +53,15 @@ def sparse_factors(s, r, b, h, g, a, c):
     pair = factorise_sparse_complex(b, b.value, b.complex_l, b.complex_u, b.complex_d, b.work)
     b.made[MADE_FOR] = h if real >= 0 and pair >= 0 else 0.0
     return real >= 0 and pair >= 0
+
+
+@internal
+def some(x):
+    """Whether an entry is not zero."""
+    for k in range(x.size):  # noqa: SIM110 - a generator does not compile
+        if x[k] != 0.0:
+            return True
+    return False
 
 
 @internal
@@ -126,10 +137,17 @@ def loaded(s, r, b, f, x, y, a, c, side):
     n_w = active(s)
     for i in range(n_w):
         side[b.rank[i]] = f[w_index(s, i)]
+    u, weighed = b.pull, b.pull0
+    for k in range(s.n_v):
+        u[k] = a * x[k] - c * y[k]
+    mass_times(s, u, weighed)
+    for k in range(s.n_v):
+        side[b.rank[k]] += weighed[k]
+    if b.made[RESISTED] == 0.0:
+        return
     for k in range(s.n_v):
         for e in range(b.column_start[k], b.column_start[k + 1]):
-            place = b.rank[b.row[e]]
-            side[place] += b.mass[e] * (a * x[k] - c * y[k]) - r.at_rate[e] * x[k]
+            side[b.rank[b.row[e]]] -= r.at_rate[e] * x[k]
 
 
 @internal
@@ -146,16 +164,20 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
     with_states(s, r, b, u, f, 1.0)
     with_states(s, r, b, w, g, 1.0)
     multipliers(s, r, b, 0, u, x, p, q, a, c)
-    multipliers(s, r, b, 1, w, y, q, p, a, -c)
+    if c != 0.0:
+        multipliers(s, r, b, 1, w, y, q, p, a, -c)
+    else:
+        clear(b.mu[1])
     with_states(s, r, b, u, f, -1.0)
     with_states(s, r, b, w, g, -1.0)
     dx, dy = b.move[0], b.move[1]  # u = r_x - M^-1 B^T dmu for now
     for k in range(s.n_v):
         dx[k], dy[k] = x[k], y[k]
     across(s, r.at_rows, b.across, b.mu[0], dx)
-    across(s, r.at_rows, b.across, b.mu[1], dy)
+    if c != 0.0:
+        across(s, r.at_rows, b.across, b.mu[1], dy)
+        loaded(s, r, b, g, dy, dx, a, -c, b.side[1])
     loaded(s, r, b, f, dx, dy, a, c, b.side[0])
-    loaded(s, r, b, g, dy, dx, a, -c, b.side[1])
     for j in range(s.m):
         b.side[0, b.rank[n_w + j]], b.side[1, b.rank[n_w + j]] = p[j], q[j]
     if c == 0.0:
@@ -170,7 +192,8 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
         y[k] -= a * dy[k] + c * dx[k]
     corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held)
     across(s, r.at_rows, b.across, u, x)
-    across(s, r.at_rows, b.across, w, y)
+    if c != 0.0:
+        across(s, r.at_rows, b.across, w, y)
     advanced(s, r, b, f, g, a, c)
 
 
@@ -183,9 +206,10 @@ def corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held):
         p[j] = b.side[0, k] + a * b.mu[0, j] - c * b.mu[1, j]
         q[j] = b.side[1, k] + a * b.mu[1, j] + c * b.mu[0, j]
     add_product(s, r.at_turn, -held, b.move[0], u)
-    add_product(s, r.at_turn, -held, b.move[1], w)
     multipliers(s, r, b, 0, u, x, u, w, 0.0, 0.0)
-    multipliers(s, r, b, 1, w, y, u, w, 0.0, 0.0)
+    if c != 0.0:
+        add_product(s, r.at_turn, -held, b.move[1], w)
+        multipliers(s, r, b, 1, w, y, u, w, 0.0, 0.0)
     for j in range(s.m):
         u[j], w[j] = b.mu[0, j], b.mu[1, j]
         p[j] -= a * u[j] - c * w[j]

@@ -60,7 +60,7 @@ def left_over(s, r, b, h, forces):
             else:
                 K[F + i, k] -= rate
         if forces:
-            mass_times(s, b, b.move[0], b.slope[0])
+            mass_times(s, b.move[0], b.slope[0])
             for k in range(s.n_v):
                 K[F + i, s.n_q + k] -= b.slope[0, k]
 
@@ -114,8 +114,8 @@ def unconstrained(s, r, b, f, g, p, q, u, w, a, c):
         j, i = b.state_row[k, 0], w_index(s, b.state_row[k, 1])
         p[j] += r.at_state[k] * (f[i] * a + g[i] * c) / size
         q[j] += r.at_state[k] * (g[i] * a - f[i] * c) / size
-    mass_times(s, b, dx, x)
-    mass_times(s, b, dy, y)
+    mass_times(s, dx, x)
+    mass_times(s, dy, y)
     for k in range(s.n_v):
         f[s.n_q + k], g[s.n_q + k] = x[k], y[k]
 

@@ -53,7 +53,7 @@ class SparseBuffers(Buffers):
     lower_start: I1
     lower: I1
     # numbers
-    made: A1  # [0] the Jacobian, [1] the step the factors below were made of
+    made: A1  # see ggl_newton.py
     across: A2  # (slots, 6) M^-1 B^T
     schur: A1  # factors of B M^-1 B^T
     value: A2  # (2, entries)
@@ -287,7 +287,7 @@ def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]
         **{name: np.zeros(n_w) for name in ("pull", "pull0")},
         "real_d": np.zeros(N),
         "value": np.zeros((2, n_entries)),
-        "made": np.zeros(2),
+        "made": np.zeros(3),
         "rate0": np.zeros(m),
         "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),
