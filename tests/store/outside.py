@@ -43,13 +43,13 @@ def warm():
         small.run(Path(folder) / "run.h5")
 
 
-def started(folder, *words, stdout=subprocess.PIPE, **environment):
+def started(folder, *words, stdin=None, stdout=subprocess.PIPE, **environment):
     """Python in a process of its own, with these words on its command line."""
     warm()
     return subprocess.Popen(  # noqa: S603
         [sys.executable, *words], cwd=folder, text=True,
         env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        stdout=stdout, stderr=subprocess.PIPE,
+        stdin=stdin, stdout=stdout, stderr=subprocess.PIPE,
     )  # fmt: skip
 
 
