@@ -23,6 +23,12 @@ def w_index(s, k):
 
 
 @internal
+def frame_of(s, k):
+    """The frame whose velocity is the k-th entry of w; the ground for states of elements."""
+    return 1 + k // s.d if k < s.n_v else 0
+
+
+@internal
 def displace(s, y, k, part):
     """Move y by `part` along the k-th displacement.  Returns nothing; y changes in place."""
     if s.d == 3:
