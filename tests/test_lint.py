@@ -7,6 +7,8 @@ import pytest
 from trsim.spec.lint import lint
 from trsim.spec.load import load, loads
 
+from .small import SLIDER_CRANK
+
 FOLDER = Path(__file__).parent.parent / "scenarios"
 
 SCENARIO = """\
@@ -47,6 +49,14 @@ def test_silent_on_the_repository(path):
         assert len(notes) == 1 and "radius of gyration" in notes[0]
     else:
         assert notes == ()
+
+
+def test_points_too_near_for_a_volume():
+    """The cube of their distance is zero."""
+    slider = "slider: {mass: 0.14, inertia: 1e-4, at: [0.17, %s]}"
+    assert slider % "0" in SLIDER_CRANK
+    apart = [SLIDER_CRANK.replace(slider % "0", slider % y) for y in ("0", "-1e-300")]
+    assert lint(loads(apart[0])) == lint(loads(apart[1]))
 
 
 CASES = [

@@ -11,7 +11,10 @@ from trsim.spec.meanings import meanings, specs
 from trsim.spec.scenario import Scenario
 
 EVERYTHING = explained()
-SPECS = {spec for word in elements.ELEMENTS for spec in specs(elements.load(word).spec)}
+# each once, in an order of its own: processes that share the tests must collect the same ones
+SPECS = list(
+    dict.fromkeys(spec for word in elements.ELEMENTS for spec in specs(elements.load(word).spec))
+)
 
 
 @pytest.mark.parametrize("page", EVERYTHING["elements"], ids=lambda page: page["word"])

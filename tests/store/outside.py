@@ -4,7 +4,9 @@ import os
 import subprocess
 import sys
 import time
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from tests import small
 
@@ -34,12 +36,20 @@ main(["run", *sys.argv[1:], "-q"])
 """
 
 
-def started(folder, *words, stdout=subprocess.PIPE, **environment):
+@cache
+def warm():
+    """Have the kernels compiled before a clock runs, or an eye is kept on processes."""
+    with TemporaryDirectory() as folder:
+        small.run(Path(folder) / "run.h5")
+
+
+def started(folder, *words, stdin=None, stdout=subprocess.PIPE, **environment):
     """Python in a process of its own, with these words on its command line."""
+    warm()
     return subprocess.Popen(  # noqa: S603
         [sys.executable, *words], cwd=folder, text=True,
         env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        stdout=stdout, stderr=subprocess.PIPE,
+        stdin=stdin, stdout=stdout, stderr=subprocess.PIPE,
     )  # fmt: skip
 
 

@@ -65,18 +65,23 @@ def test_the_dead_lock_nothing(going, tmp_path):
 
 def test_same_instant(tmp_path):
     """Of many that take the lock at once one has it; the others are told of it."""
-    at = time.time() + 1.5
     code = (
-        "import sys, time; from pathlib import Path; from trsim.store.lock import writing\n"
-        f"time.sleep(max({at} - time.time(), 0))\n"
+        "from pathlib import Path; from trsim.store.lock import writing\n"
+        "print('ready', flush=True); input()\n"
         "try:\n"
-        "    with writing(Path('x.h5')): print('mine'); time.sleep(1.5)\n"
-        "except Exception as error: print(error)\n"
+        "    with writing(Path('x.h5')): print('mine', flush=True); input()\n"
+        "except Exception as error: print(error, flush=True)\n"
     )
-    many = [outside.started(tmp_path, "-c", code) for _ in range(5)]
-    told = sorted(process.communicate(timeout=30)[0] for process in many)
+    many = [outside.started(tmp_path, "-c", code, stdin=subprocess.PIPE) for _ in range(5)]
+    assert [process.stdout.readline() for process in many] == ["ready\n"] * 5
+    for process in many:
+        process.stdin.write("\n")
+        process.stdin.flush()
+    told = sorted(process.stdout.readline() for process in many)
     assert told[:1] == ["mine\n"] and told[1:2] != ["mine\n"], told
     assert all("x.h5 is being written by process" in text for text in told[1:])
+    for process in many:
+        process.communicate("\n", timeout=30)
 
 
 def test_one_after_the_other(tmp_path):

@@ -137,6 +137,14 @@ def call_all(s, kernels, t):
         call_kernel(kernels[k, 0], t, s, kernels[k, 1], kernels[k, 2])
 
 
+@equation
+def call_one(s, kernels, t, e):
+    """Call the kernel of a table that instance e has, for e alone."""
+    for k in range(kernels.shape[0]):
+        if kernels[k, 1] <= e < kernels[k, 2]:
+            call_kernel(kernels[k, 0], t, s, e, e + 1)
+
+
 @compiled(AT)
 def constraints(s, t):
     """Phi, Phi_t, J and gamma of all rows."""

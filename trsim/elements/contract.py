@@ -13,7 +13,8 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
 
     force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
     constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma
-    coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to
+    coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to,
+                the angle itself in a planar scene
     gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s)
     corners     corner[e] = how far the element has left the branch in mem[e, BRANCH] of a law with
                 corners (< 0: inside), and the branch to go on with; `force` keeps the largest

@@ -51,15 +51,18 @@ def constraint(t, scene, a, b):
         i, j = con[e, 0], con[e, 1]
         p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
         p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-        u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
         a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
-        along_row(scene, i, p_i, u, j, p_j, con[e, 3])
-        along_row(scene, i, p_i, w, j, p_j, con[e, 4])
-        perpendicular_row(scene, i, u, j, a_j, con[e, 5])
-        perpendicular_row(scene, i, w, j, a_j, con[e, 6])
-        perpendicular_row(scene, i, w, j, u_j, con[e, 7])
+        k3, k4, k5, k6, k7 = con[e, 3], con[e, 4], con[e, 5], con[e, 6], con[e, 7]
+        if k3 >= 0 or k5 >= 0:
+            u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+            along_row(scene, i, p_i, u, j, p_j, k3)
+            perpendicular_row(scene, i, u, j, a_j, k5)
+        if k4 >= 0 or k6 >= 0 or k7 >= 0:
+            w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+            u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
+            along_row(scene, i, p_i, w, j, p_j, k4)
+            perpendicular_row(scene, i, w, j, a_j, k6)
+            perpendicular_row(scene, i, w, j, u_j, k7)
 
 
 @kernel

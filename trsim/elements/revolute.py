@@ -66,13 +66,14 @@ def coordinate(t, scene, a, b):
         if s < 0:
             continue
         i, j = con[e, 0], con[e, 1]
-        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
         axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
-        u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
         o_i, o_j = spin(V, i), spin(V, j)
-        angle = atan2(dot(w, u_j), dot(u, u_j)) + par[e, 21]
-        S[s, 0] = nearest_branch(angle, S[s, 0])
+        if scene.d == 6:  # in a plane what comes in is the angle itself
+            u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+            w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+            u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
+            angle = atan2(dot(w, u_j), dot(u, u_j)) + par[e, 21]
+            S[s, 0] = nearest_branch(angle, S[s, 0])
         S[s, 1] = dot(axis, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
 
 

@@ -13,7 +13,7 @@ one as well.
 
 from math import sqrt
 
-from trsim.elements.vectors import internal
+from trsim.elements.vectors import clear, internal
 from trsim.solve import dop853_tableau
 from trsim.solve.displacements import active
 from trsim.solve.record import (
@@ -29,6 +29,7 @@ from trsim.solve.record import (
     JACOBIAN,
     JACOBIAN_RATE,
     METHOD,
+    NO_HISTORY,
     NO_JACOBIAN,
     NOT_STIFF,
     PAST_ERROR,
@@ -82,7 +83,7 @@ def change(s, r, b, method, load):
     """Go on with the other method; the line says how stiff the last step was."""
     r.count[METHOD] = method
     r.count[STIFF], r.count[NOT_STIFF] = 0, 0
-    r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
     r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
     r.count[SWITCHES] += 1
     line = b.events[r.count[EVENT_ROWS]]
@@ -117,13 +118,13 @@ def implicit_rate(s, r, b):
     sown(s, n, x, w)
     product = 1.0
     for turn in range(ITERATIONS):
-        for i in range(n):
-            total = 0.0
-            for k in range(n_v):
-                total += r.by_place[i, k] * x[k]
-            for k in range(n):
-                total += r.by_rate[i, k] * w[k]
-            u[i] = total
+        clear(u)
+        for k in range(n_v):
+            for i in range(n):
+                u[i] += r.by_place[i, k] * x[k]
+        for k in range(n):
+            for i in range(n):
+                u[i] += r.by_rate[i, k] * w[k]
         growth = grown(s, n, x, w, u)
         if growth == 0.0:
             return 0.0

@@ -17,15 +17,18 @@ from trsim.solve.norm import grow
 from trsim.solve.peaks import near_peak, peaks_inside, refine
 from trsim.solve.phases import change_phases, latch
 from trsim.solve.record import (
+    BEHIND,
     BUFFERS,
     DENSE_BUILT,
     ENERGY_0,
     EVERY,
     HISTORY,
+    JACOBIAN,
     LARGEST_ENERGY,
     LARGEST_RESIDUAL,
     LENGTH,
     LOCATE,
+    NEXT_JACOBIAN,
     NEXT_ROW,
     PAST_H,
     RECORD,
@@ -104,7 +107,8 @@ def complete(s, r, b, setting, method, h, built):
     if method[IMPLICIT_AT] > 0:
         for k in range(r.past.shape[0]):
             copy_to(r.past[k], b.P[k])
-        r.clock[PAST_H], r.count[HISTORY] = h, 1
+        r.clock[PAST_H], r.count[HISTORY] = h, BEHIND
+        r.count[JACOBIAN] = r.count[NEXT_JACOBIAN]
     if setting[LOCATE] == 0.0:
         latch(s, r)
     if event:

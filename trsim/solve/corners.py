@@ -5,7 +5,7 @@ smooth functions; where the element leaves its branch is an event like a touch. 
 where the branch is left at the end of a step or at any stage of it.
 """
 
-from trsim.assemble.equations import corners, poses
+from trsim.assemble.equations import call_one, poses
 from trsim.elements.contract import BRANCH, CONTACT, PHASE, WHOLE
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
@@ -31,7 +31,7 @@ def beyond_inside(s, P, y, t, h, theta, c, scratch, interpolate):
     """How far contact c has left its branch at t + theta h."""
     call_interpolate(interpolate, P, y, theta, scratch)
     poses(s, scratch)
-    corners(s, t + theta * h)
+    call_one(s, s.corners, t + theta * h, s.contact[c])
     return s.corner[s.contact[c], 0]
 
 
@@ -77,5 +77,5 @@ def look(s, c):
     e = s.contact[c]
     s.mem[e, BRANCH] = WHOLE
     s.corner[e, 1] = WHOLE  # stays where the element has no corners
-    corners(s, 0.0)
+    call_one(s, s.corners, 0.0, e)
     s.mem[e, BRANCH] = s.corner[e, 1]

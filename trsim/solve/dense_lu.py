@@ -1,6 +1,7 @@
 """Small dense systems, real and complex: LU with partial pivoting, in place.
 
 Complex matrices are two real ones: rows of `re` and `im`.  Meant for some tens of unknowns.
+Substitution goes column by column: no number waits for the one before it, as in a sum along a row.
 """
 
 from trsim.elements.vectors import internal
@@ -37,16 +38,15 @@ def solve_real(A, pivot, x, n):
         p = pivot[k]
         if p != k:
             x[k], x[p] = x[p], x[k]
-    for i in range(1, n):
-        total = x[i]
-        for j in range(i):
-            total -= A[i, j] * x[j]
-        x[i] = total
-    for i in range(n - 1, -1, -1):
-        total = x[i]
-        for j in range(i + 1, n):
-            total -= A[i, j] * x[j]
-        x[i] = total / A[i, i]
+    for j in range(n - 1):
+        known = x[j]
+        for i in range(j + 1, n):
+            x[i] -= A[i, j] * known
+    for j in range(n - 1, -1, -1):
+        known = x[j] / A[j, j]
+        x[j] = known
+        for i in range(j):
+            x[i] -= A[i, j] * known
 
 
 @internal
@@ -85,17 +85,16 @@ def solve_complex(re, im, pivot, x, y, n):
         if p != k:
             x[k], x[p] = x[p], x[k]
             y[k], y[p] = y[p], y[k]
-    for i in range(1, n):
-        a, c = x[i], y[i]
-        for j in range(i):
-            a -= re[i, j] * x[j] - im[i, j] * y[j]
-            c -= re[i, j] * y[j] + im[i, j] * x[j]
-        x[i], y[i] = a, c
-    for i in range(n - 1, -1, -1):
-        a, c = x[i], y[i]
-        for j in range(i + 1, n):
-            a -= re[i, j] * x[j] - im[i, j] * y[j]
-            c -= re[i, j] * y[j] + im[i, j] * x[j]
-        size = re[i, i] ** 2 + im[i, i] ** 2
-        x[i] = (a * re[i, i] + c * im[i, i]) / size
-        y[i] = (c * re[i, i] - a * im[i, i]) / size
+    for j in range(n - 1):
+        a, c = x[j], y[j]
+        for i in range(j + 1, n):
+            x[i] -= re[i, j] * a - im[i, j] * c
+            y[i] -= re[i, j] * c + im[i, j] * a
+    for j in range(n - 1, -1, -1):
+        p, q = re[j, j], im[j, j]
+        size = p * p + q * q
+        a, c = (x[j] * p + y[j] * q) / size, (y[j] * p - x[j] * q) / size
+        x[j], y[j] = a, c
+        for i in range(j):
+            x[i] -= re[i, j] * a - im[i, j] * c
+            y[i] -= re[i, j] * c + im[i, j] * a

@@ -36,6 +36,14 @@ def width_of(s, f):
 
 
 @internal
+def frame_of(s, k):
+    """The frame whose velocity is the k-th entry of w; the ground for states of elements."""
+    if k < s.v_node:
+        return 1 + k // s.d
+    return s.n_r + (k - s.v_node) // s.d_node if k < s.n_v else 0
+
+
+@internal
 def displace(s, y, k, part):
     """Move y by `part` along the k-th displacement.  Returns nothing; y changes in place."""
     if s.d == 3 or k >= s.v_node:

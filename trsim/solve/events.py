@@ -6,7 +6,7 @@ where its rate turns inside the step and the cubic through both ends may reach z
 two points in flight, a separation between two points in contact).
 """
 
-from trsim.assemble.equations import gaps, poses
+from trsim.assemble.equations import call_one, poses
 from trsim.elements.contract import CONTACT, FLIGHT, PHASE, UNLOCATED
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
@@ -45,8 +45,8 @@ def inside(s, P, y, t, h, theta, c, scratch, interpolate):
         if entry < 0:
             return t + theta * h - value, 1.0
         return s.S[entry, 0] - value, s.S[entry, 1]
-    gaps(s, t + theta * h)
     e = s.contact[c]
+    call_one(s, s.gaps, t + theta * h, e)
     return s.gap[e, 0], s.gap[e, 1]
 
 

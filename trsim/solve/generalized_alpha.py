@@ -30,6 +30,7 @@ from trsim.solve.record import (
     ITERATIONS,
     JACOBIAN,
     NEWTON_RATE,
+    NEXT_JACOBIAN,
     NO_JACOBIAN,
     OLD,
     PAST_H,
@@ -80,8 +81,7 @@ def step(s, r, b, setting, t, h):
     else:
         return HALVE
     error = estimate(s, r, b, h)
-    if error <= 1.0:
-        r.count[JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
     return error
 
 

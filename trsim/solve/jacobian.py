@@ -12,7 +12,7 @@ smallest penetration that matters.
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.vectors import copy_to, internal
-from trsim.solve.displacements import active, displace, place_of, w_index
+from trsim.solve.displacements import active, displace, frame_of, place_of, w_index
 from trsim.solve.record import (
     FRESH,
     JACOBIAN,
@@ -37,7 +37,8 @@ def missing(r):
 def jacobian(s, r, b, setting, t, trial, rates):
     """Fill by_place and by_rate at (t, r.y), where y' is r.yd.  trial, rates: scratch (n_y).
 
-    After a corner of friction only by_rate is new: what is left of the other is good enough.
+    After a corner of friction only the columns of by_rate are new that belong to the bodies which
+    rub there: the law has no jump, and what is left of the others is good enough.
     """
     n_w, tolerance = active(s), setting[TOLERANCE]
     places = r.count[JACOBIAN] != NO_RATES
@@ -53,6 +54,8 @@ def jacobian(s, r, b, setting, t, trial, rates):
             i = w_index(s, row)
             r.by_place[row, k] = (rates[i] - r.yd[i]) / (PART * unit)
     for k in range(n_w):
+        if not places and r.stale[frame_of(s, k)] == 0:
+            continue
         i = w_index(s, k)
         unit = 1.0 / (b.weight[i] * tolerance) if b.weight[i] > 0.0 else 1.0
         copy_to(trial, r.y)
@@ -62,6 +65,9 @@ def jacobian(s, r, b, setting, t, trial, rates):
         for row in range(n_w):
             i = w_index(s, row)
             r.by_rate[row, k] = (rates[i] - r.yd[i]) / part
+    for f in range(s.n):
+        r.stale[f] = 0
     r.count[JACOBIAN] = FRESH if places else OLD
     r.count[JACOBIANS] += 1
-    r.clock[JACOBIAN_RATE] = -1.0  # not known yet
+    if places:
+        r.clock[JACOBIAN_RATE] = -1.0  # not known yet

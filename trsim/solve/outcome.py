@@ -141,6 +141,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         slope=np.zeros(len(model.contact)),
         by_place=np.zeros((n_w, n_v)),
         by_rate=np.zeros((n_w, n_w)),
+        stale=np.zeros(model.n, np.int64),
         lu=np.zeros((3 * n_w, n_w)),
         pivot=np.zeros((2, n_w), np.int64),
         past=np.zeros((past_rows, begun.y.size)),

@@ -5,7 +5,7 @@ step is then searched on its dense output, for all channels, since reactions and
 with it.
 """
 
-from trsim.assemble.equations import call_all, evaluate, poses
+from trsim.assemble.equations import call_one, evaluate, poses
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import FLIGHT, PHASE
 from trsim.elements.vectors import copy_to, internal
@@ -64,12 +64,11 @@ def extreme(p, t, value):
 
 
 @internal
-def ahead_of(s, y, yd, t, ahead):
-    """Move y along y' and measure everything there."""
+def ahead_of(s, y, yd, ahead):
+    """Move y along y', and the poses with it."""
     for k in range(y.size):
         y[k] += ahead * yd[k]
     poses(s, y)
-    call_all(s, s.measure, t)
 
 
 @internal
@@ -78,19 +77,25 @@ def force_rate(s, y, yd, t, ahead, c):
 
     y is moved to and fro; it ends where the channel was looked at last.
     """
-    o = s.wanted[s.contact[c]]
-    ahead_of(s, y, yd, t - ahead, -ahead)
-    before = s.out[o]
-    ahead_of(s, y, yd, t + ahead, 2.0 * ahead)
-    return (s.out[o] - before) / (2.0 * ahead)
+    ahead_of(s, y, yd, -ahead)
+    before = force(s, t - ahead, c)
+    ahead_of(s, y, yd, 2.0 * ahead)
+    return (force(s, t + ahead, c) - before) / (2.0 * ahead)
+
+
+@internal
+def force(s, t, c):
+    """The first channel of contact c, at the poses as they are."""
+    call_one(s, s.measure, t, s.contact[c])
+    return s.out[s.wanted[s.contact[c]]]
 
 
 @internal
 def near_peak(s, r, b, t, h, last):
     """Whether a contact force passes a maximum, one of its largest, inside the step just made.
 
-    Fills b.slope1 with the rate of every contact force at the end of the step, all from the same
-    two places.
+    Fills b.slope1 with the rate of every contact force at the end of the step, all from one place
+    a little ahead and from b.out.
     """
     rates, touching = b.slope1, False
     for c in range(s.contact.size):
@@ -100,15 +105,11 @@ def near_peak(s, r, b, t, h, last):
         return False
     ahead = AHEAD * h
     copy_to(b.y2, b.y1)
-    ahead_of(s, b.y2, b.K[last], t - ahead, -ahead)
-    for c in range(s.contact.size):
-        if loaded(s, c):
-            rates[c] = -s.out[s.wanted[s.contact[c]]]
-    ahead_of(s, b.y2, b.K[last], t + ahead, 2.0 * ahead)
+    ahead_of(s, b.y2, b.K[last], ahead)
     near = False
     for c in range(s.contact.size):
         if loaded(s, c):
-            rates[c] = (rates[c] + s.out[s.wanted[s.contact[c]]]) / (2.0 * ahead)
+            rates[c] = (force(s, t + ahead, c) - b.out[s.wanted[s.contact[c]]]) / ahead
             near = near or passes(s, r, b, c, h)
     return near
 

@@ -11,6 +11,8 @@ from trsim.elements.contract import (
     IMPACT_SPEED,
     PHASE,
     SCENE,
+    I,
+    J,
     compiled,
 )
 from trsim.elements.packed import A1
@@ -36,6 +38,7 @@ from trsim.solve.record import (
     JACOBIAN,
     LAST_EVENT,
     LOCATE,
+    NO_HISTORY,
     NO_JACOBIAN,
     NO_RATES,
     NOT_STIFF,
@@ -71,7 +74,9 @@ def change_phases(s, r, b, setting, t1):
     corners(s, t1)
     for c in range(s.contact.size):
         if b.corner_root[c] <= first + SAME:
-            s.mem[s.contact[c], BRANCH] = s.corner[s.contact[c], 1]
+            e = s.contact[c]
+            s.mem[e, BRANCH] = s.corner[e, 1]
+            r.stale[s.con[e, I]] = r.stale[s.con[e, J]] = 1
             r.count[CORNERS] += 1
     touched = fire(s, r, b, first) > 0
     h = 1e300
@@ -105,7 +110,7 @@ def change_phases(s, r, b, setting, t1):
             r.mem[e, IMPACT_SPEED] = 0.0
     if touched:
         r.clock[LAST_EVENT] = t1
-        r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+        r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
     elif r.count[JACOBIAN] != NO_JACOBIAN:
         r.count[JACOBIAN] = NO_RATES  # the force itself has no jump: a kink in its slope
     evaluate(s, t1, r.y, r.yd)
@@ -160,7 +165,7 @@ def evaluate_all(s, r, setting, t):
 def settle(s, r, b, setting):
     """Go on with other equations: nothing that was learnt from the old ones counts any more."""
     evaluate_all(s, r, setting, r.clock[T])
-    r.count[HISTORY], r.count[JACOBIAN] = 0, NO_JACOBIAN
+    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
     r.count[STIFF], r.count[NOT_STIFF] = 0, 0
     r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
     measure(s, r.clock[T], r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])

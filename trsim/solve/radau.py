@@ -25,13 +25,19 @@ from trsim.solve.displacements import active, moved_by, twisted, w_index
 from trsim.solve.jacobian import jacobian, missing
 from trsim.solve.record import (
     AFTER_REJECTION,
+    AHEAD,
+    BEHIND,
+    CONTRACTION,
     FACTORED_H,
     FRESH,
     HISTORY,
     ITERATIONS,
     JACOBIAN,
     NEWTON_RATE,
+    NEXT_JACOBIAN,
+    NO_HISTORY,
     NO_JACOBIAN,
+    NO_RATES,
     OLD,
     PAST_H,
 )
@@ -70,15 +76,18 @@ E = np.array([-13.0 - 7.0 * _S6, -13.0 + 7.0 * _S6, -1.0]) / 3.0  # of the error
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
 MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
+SHARPEST = 0.01  # contraction that is believed without a second iteration
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
 HALVE = NO_STEP  # Newton failed: take about half the step
 
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
+    corner = r.count[JACOBIAN] == NO_RATES
     for attempt in range(3):
         if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
             jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
+            r.clock[CONTRACTION] = 1.0
             r.clock[FACTORED_H] = 0.0
         elif attempt > 0:
             return HALVE
@@ -91,14 +100,19 @@ def step(s, r, b, setting, t, h):
             break
         if converged < 0 and r.count[JACOBIAN] == FRESH:
             return np.inf
+        if corner:  # the step is too long for the new branch, more often than its matrix too old
+            return HALVE
     else:
         return HALVE
     n = r.y.size
     for c in range(n):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
     error = estimate(s, r, b, t, h)
-    if error <= 1.0:  # the state moves on; its matrix is good for as long as Newton is quick
-        r.count[JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    # a shorter step from the same state, to an event or after a rejection, begins on this one
+    collocation(b.K, r.y, b.y1, r.past)
+    r.clock[PAST_H], r.count[HISTORY] = h, AHEAD
+    # where the state moves on its matrix is good for as long as Newton is quick
+    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
     return error
 
 
@@ -112,12 +126,13 @@ def factorised(s, r, h):
     real, re, im = r.lu[:n], r.lu[n : 2 * n], r.lu[2 * n :]
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
     size = a * a + c * c
+    by_g, by_a, by_c = 1.0 / g, a / size, c / size
     for i in range(n):
         for k in range(n):
             B = r.by_place[i, k] if k < s.n_v else 0.0
-            real[i, k] = -r.by_rate[i, k] - B / g
-            re[i, k] = -r.by_rate[i, k] - B * a / size
-            im[i, k] = B * c / size
+            real[i, k] = -r.by_rate[i, k] - B * by_g
+            re[i, k] = -r.by_rate[i, k] - B * by_a
+            im[i, k] = B * by_c
         real[i, i] += g
         re[i, i] += a
         im[i, i] += c
@@ -131,14 +146,15 @@ def factorised(s, r, h):
 
 @internal
 def guess(s, r, b, h):
-    """Start Newton from the polynomial of the step before, drawn on; W = T^-1 Z."""
+    """Start Newton from the polynomial of the step before, drawn on, or from that of a longer
+    trial of this one; W = T^-1 Z."""
     K, n = b.K, r.y.size
-    if r.count[HISTORY] > 0:
-        ratio = h / r.clock[PAST_H]
+    if r.count[HISTORY] != NO_HISTORY:
+        ahead = 1.0 if r.count[HISTORY] == AHEAD else 0.0
         for i in range(3):
-            theta = C[i] * ratio
+            theta = C[i] * h / r.clock[PAST_H] - ahead
             for c in range(n):
-                K[Z + i, c] = polynomial(r.past, c, theta)
+                K[Z + i, c] = ahead * r.past[3, c] + polynomial(r.past, c, theta)
     else:
         for i in range(3):
             for c in range(n):
@@ -163,6 +179,9 @@ def newton(s, r, b, t, h):
             counted += 1
             floor = max(floor, 2.0e-15 * abs(r.y[k]) * weight[k])
     kappa = max(KAPPA, floor)
+    # once measured, a contraction is trusted less with every use              [HairerWanner1996]
+    expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8
+    r.clock[CONTRACTION] = expected
     before, rate = 0.0, 1.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1
@@ -181,7 +200,7 @@ def newton(s, r, b, t, h):
             K[F, k] = p - g * K[W, k]
             K[F + 1, k] = u - (a * w1 - c * w2)
             K[F + 2, k] = v - (c * w1 + a * w2)
-        corrected(s, r, K[F], K[DX], K[DW], g)
+        corrected(s, r, K[F], K[DW], g)
         corrected_pair(s, r, K[F + 1], K[F + 2], K[DX], K[DW], a, c)
         moved = 0.0
         for i in range(3):
@@ -196,11 +215,14 @@ def newton(s, r, b, t, h):
             return -1
         if iteration > 0:
             rate = moved / before if before > 0.0 else 0.0
+            r.clock[CONTRACTION] = rate
             if rate >= 2.0 and moved > kappa:
                 return 0
             left = MOST_ITERATIONS - 1 - iteration
             if rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa:
                 return 0
+        elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
+            return 1
         r.clock[NEWTON_RATE] = rate
         if moved == 0.0 or (iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa):
             return 1
@@ -212,16 +234,15 @@ def newton(s, r, b, t, h):
 
 
 @internal
-def corrected(s, r, f, x, w, mu):
-    """f <- (mu - J)^-1 f with the real factors; x, w: scratch."""
+def corrected(s, r, f, w, mu):
+    """f <- (mu - J)^-1 f with the real factors; w: scratch."""
     n = active(s)
-    for k in range(s.n_v):
-        x[k] = twisted(s, r, k, f) / mu
     for i in range(n):
-        total = f[w_index(s, i)]
-        for k in range(s.n_v):
-            total += r.by_place[i, k] * x[k]
-        w[i] = total
+        w[i] = f[w_index(s, i)]
+    for k in range(s.n_v):
+        x = twisted(s, r, k, f) / mu
+        for i in range(n):
+            w[i] += r.by_place[i, k] * x
     solve_real(r.lu[:n], r.pivot[0], w, n)
     for q in range(s.n_q):
         f[q] = (f[q] + moved_by(s, r.y, q, w)) / mu
@@ -264,15 +285,15 @@ def estimate(s, r, b, t, h):
         e[c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
         K[F + 1, c] = e[c]
         e[c] += r.yd[c]
-    corrected(s, r, e, K[DX], K[DW], GAMMA / h)
+    corrected(s, r, e, K[DW], GAMMA / h)
     error = norm(e, weight)
-    if error >= 1.0 and (r.count[HISTORY] == 0 or r.count[AFTER_REJECTION] > 0):
+    if error >= 1.0 and (r.count[HISTORY] != BEHIND or r.count[AFTER_REJECTION] > 0):
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
         for c in range(n):
             e[c] += K[F + 1, c]
-        corrected(s, r, e, K[DX], K[DW], GAMMA / h)
+        corrected(s, r, e, K[DW], GAMMA / h)
         error = norm(e, weight)
     return max(error, 1e-10)
 

@@ -60,6 +60,7 @@ from trsim.solve.record import (
     ITERATIONS,
     JACOBIAN,
     NEWTON_RATE,
+    NEXT_JACOBIAN,
     NO_JACOBIAN,
     OLD,
     PAST_ERROR,
@@ -110,8 +111,7 @@ def step(s, r, b, setting, t, h):
     for c in range(r.y.size):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
     error = estimate(s, r, b, t, h)
-    if error <= 1.0:
-        r.count[JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
     return error
 
 

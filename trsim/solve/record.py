@@ -22,10 +22,11 @@ from trsim.elements.scene import Model
     PAST_ERROR,  # error of the last step, for the controller; 0 after an event
     OLD_H,  # s, its length
     FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
+    CONTRACTION,  # of the matrix at hand, as far as it was measured
     NEWTON_RATE,  # contraction of the last Newton iterations
     JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
     N_CLOCK,
-) = range(18)
+) = range(19)
 
 # count: integer state of the march
 (
@@ -44,16 +45,18 @@ from trsim.elements.scene import Model
     SWITCHES,  # changes of method
     STIFF,  # steps in a row that looked stiff to an explicit method, or not to an implicit one
     NOT_STIFF,  # steps in a row that speak against it
-    HISTORY,  # 1: `past` holds the polynomial of the step before
+    HISTORY,  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
     JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
+    NEXT_JACOBIAN,  # its state once the last trial is accepted: OLD, or NO_JACOBIAN
     JACOBIANS,  # made so far
     ITERATIONS,  # of Newton, so far
     CRAWLED,  # trial steps in a row that were vanishingly short
     FIRED,  # user events at the end of the last step, not yet acted on
     N_COUNT,
-) = range(22)
+) = range(23)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
+NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
 
 # settings: constants of the march
 (
@@ -104,9 +107,10 @@ class Record(Packed):
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
     by_place: A2  # (n_w, n_v) w' against displacements
     by_rate: A2  # (n_w, n_w) w' against w
+    stale: I1  # (n) frames whose columns of `by_rate` a corner made old
     lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
     pivot: I2  # (2, n_w)
-    past: A2  # (dense rows, n_y) dense output of the step before
+    past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
 

@@ -87,7 +87,7 @@ def densities(scenario: Any) -> Iterator[str]:
     for name, body in rigid(scenario):
         places = [*held.get(name, ()), body.at]
         reach = max((dist(p, q) for p, q in combinations(places, 2)), default=0.0)
-        if reach == 0.0 or body.mass == 0.0:
+        if reach**3 == 0.0 or body.mass == 0.0:  # the cube of 1e-108 m is none
             continue
         inertia = body.inertia if isinstance(body.inertia, float) else max(body.inertia[:3])
         L = max(reach, 0.0 if name in slides else sqrt(12.0 * max(inertia, 0.0) / body.mass))
