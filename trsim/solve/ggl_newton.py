@@ -25,7 +25,7 @@ from trsim.elements.vectors import clear, copy_to, internal
 from trsim.solve.displacements import active, moved_by, twisted, w_index, width_of
 from trsim.solve.ggl_equations import across, add_product, mass_times
 from trsim.solve.ggl_jacobian import fastest
-from trsim.solve.record import JACOBIAN_RATE, JACOBIANS
+from trsim.solve.record import CHOOSES, JACOBIAN_RATE, JACOBIANS
 from trsim.solve.sparse_lu import (
     factorise_sparse,
     factorise_sparse_complex,
@@ -33,18 +33,21 @@ from trsim.solve.sparse_lu import (
     solve_sparse_complex,
 )
 
-# b.made: number of the Jacobian, step size of the factors, whether anything depends on rates
-MADE_OF, MADE_FOR, RESISTED = 0, 1, 2
+# b.made: number of the Jacobian, step size of the factors, whether loads depend on rates, and rows
+# of constraints on places
+MADE_OF, MADE_FOR, RESISTED, TURNS = 0, 1, 2, 3
 
 
 @internal
-def sparse_factors(s, r, b, h, g, a, c):
+def sparse_factors(s, r, b, setting, h, g, a, c):
     """Factors of the systems for g and for a + i c, of the Jacobian in r.  False: not finite."""
     if b.made[MADE_OF] != r.count[JACOBIANS]:
         schur(s, r, b)
         b.made[MADE_OF], b.made[MADE_FOR] = r.count[JACOBIANS], 0.0
         b.made[RESISTED] = 1.0 if some(r.at_rate) else 0.0
-        r.clock[JACOBIAN_RATE] = fastest(s, r, b)
+        b.made[TURNS] = 1.0 if some_of(r.at_turn) else 0.0
+        if setting[CHOOSES] > 0.0:
+            r.clock[JACOBIAN_RATE] = fastest(s, r, b)
     if b.made[MADE_FOR] == h:
         return True
     assembled(s, r, b, g, 0.0)
@@ -60,6 +63,15 @@ def some(x):
     """Whether an entry is not zero."""
     for k in range(x.size):  # noqa: SIM110 - a generator does not compile
         if x[k] != 0.0:
+            return True
+    return False
+
+
+@internal
+def some_of(table):
+    """The same of a table."""
+    for k in range(table.shape[0]):  # noqa: SIM110 - a generator does not compile
+        if some(table[k]):
             return True
     return False
 

@@ -287,7 +287,7 @@ def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]
         **{name: np.zeros(n_w) for name in ("pull", "pull0")},
         "real_d": np.zeros(N),
         "value": np.zeros((2, n_entries)),
-        "made": np.zeros(3),
+        "made": np.zeros(4),
         "rate0": np.zeros(m),
         "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),

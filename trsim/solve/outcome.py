@@ -99,6 +99,7 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
             ("output", "every"),
         )
     located = adaptive if solver.locate_events is None else solver.locate_events
+    s[rec.CHOOSES] = float(solver.method == "auto")
     s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
     return s
 
@@ -175,10 +176,8 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
     if not np.max(speeds, initial=0.0) > rec.FASTEST:
         return ""
     k = int(np.argmax(speeds))
-    if k < model.v_node:
-        frame = k // model.d + 1
-    else:
-        frame = model.n_r + (k - model.v_node) // model.d_node
+    own, node = divmod(k, model.d), divmod(k - model.v_node, model.d_node)
+    frame = 1 + own[0] if k < model.v_node else model.n_r + node[0]
     body = next(name for name, f in mechanism.frames.items() if f == frame)
     return (
         f"'{body}' is faster than {rec.FASTEST:.0e} m/s or rad/s: does a load run away, "

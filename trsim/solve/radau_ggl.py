@@ -22,7 +22,7 @@ from trsim.elements.vectors import copy_to, internal
 from trsim.solve import ggl_stages, ggl_tables, radau
 from trsim.solve.calls import DENSE
 from trsim.solve.ggl_jacobian import sparse_jacobian
-from trsim.solve.ggl_newton import solved, sparse_factors
+from trsim.solve.ggl_newton import TURNS, solved, sparse_factors
 from trsim.solve.ggl_stages import (
     LAM,
     MU,
@@ -75,6 +75,7 @@ SPARSE = ggl_tables  # its records have tables of their own
 interpolate = radau.interpolate
 
 QUICK = 0.02  # contraction with which a matrix is kept: a new one is cheap
+QUICK_FIXED = 0.06  # the same where no row of a constraint turns with its bodies
 UNKNOWN = 1e-2  # error of a first step, as a part of that allowed
 KEPT = radau.DENSE_ROWS  # rows of the dense output from which on lam of the stages is kept
 DENSE_ROWS = KEPT + 3
@@ -95,7 +96,7 @@ def step(s, r, b, setting, t, h):
             # past a singular position: rows that change their sense cannot be brought to zero with
             # those of the start, but accelerations are there on both sides
             stabilised = False
-        if not sparse_factors(s, r, b, h, GAMMA / h, ALPHA / h, BETA / h):
+        if not sparse_factors(s, r, b, setting, h, GAMMA / h, ALPHA / h, BETA / h):
             return HALVE
         guess(s, r, b, h)
         guess_multipliers(s, r, b, t, h)
@@ -111,7 +112,8 @@ def step(s, r, b, setting, t, h):
     for c in range(r.y.size):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
     error = estimate(s, r, b, t, h)
-    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    quick = QUICK if b.made[TURNS] > 0.0 else QUICK_FIXED
+    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < quick else NO_JACOBIAN
     return error
 
 
@@ -180,11 +182,13 @@ def newton(s, r, b, setting, t, h, stabilised):
             counted += 1
             floor = max(floor, 2.0e-15 * abs(r.y[k]) * weight[k])
     enough = max(KAPPA, floor)
-    # rows turn with their bodies, so iterations leave more than those of radau.py: to make errors
-    # as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is small
+    # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
+    # errors as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is
+    # small
     made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
-    wanted = max(min(KAPPA, sqrt(setting[TOLERANCE])) * made, floor) if stabilised else enough
+    strict = stabilised and b.made[TURNS] > 0.0
+    wanted = max(min(KAPPA, sqrt(setting[TOLERANCE])) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1

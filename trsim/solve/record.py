@@ -66,8 +66,9 @@ NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
     EVERY,  # s between output rows
     FIXED_STEP,  # s, 0 where the method controls its step
     LOCATE,  # 1: contact onset and separation are located
+    CHOOSES,  # 1: between two methods, by the fastest motion
     N_SETTINGS,
-) = range(7)
+) = range(8)
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
