@@ -6,6 +6,7 @@ from importlib import import_module
 NAMES = (
     *("startup", "memory", "reverser", "skipping"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain"),
+    "flexible_pendulum",
 )
 
 

@@ -220,4 +220,63 @@ def crank_model(sensor: bool) -> Planar:
     return model
 
 
-PROBLEMS = {"slider_crank": slider_crank, "andrews": andrews, "windows": four_bars, "chain": rods}
+def flexible_pendulum(n: int) -> Iterator[Measured]:
+    """P2 in cables of |r' x r''| / |r'|^2 and |r'| - 1, trsim's `gerstmayr` and `engineering`."""
+    from benchmarks.flexible_pendulum import SCENARIO, reference
+
+    scenario = load(SCENARIO, [f"bodies.rod.elements={n}"])
+    for step in (1e-3, 5e-4, 2.5e-4):
+        mbs, nodes = cable_model(scenario.bodies["rod"], scenario.gravity)
+        s = settings(2.0, step, n)
+        s.linearSolverType = exu.LinearSolverType.EigenSparse
+        cpu = cpu_of(lambda mbs=mbs, s=s: solved(mbs, s))
+        mbs, nodes = cable_model(scenario.bodies["rod"], scenario.gravity)
+        place = exu.OutputVariableType.Position
+        watched = [mbs.AddSensor(items.SensorNode(
+            nodeNumber=k, storeInternal=True, outputVariableType=place))
+            for k in (nodes[-1], nodes[n // 2])]  # fmt: skip
+        mbs.Assemble()
+        s.solutionSettings.sensorsWritePeriod = 0.01
+        solved(mbs, s)
+        found = np.hstack([mbs.GetSensorStoredData(k)[:, 1:] for k in watched])
+        error = float(np.max(np.abs(found - reference(n))))
+        yield Measured(f"generalised-alpha {step:g} s", cpu, error, round(2.0 / step))
+
+
+def cable_model(bar: Any, gravity: Any) -> tuple[Any, list[Any]]:
+    """A cable pinned at its start, with the velocities of a rigid bar; and its nodes."""
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    area, moment, _ = bar.numbers
+    a, b, omega = (np.array(x) for x in (bar.start, bar.end, bar.angular_velocity))
+    t = (b - a) / bar.length
+    nodes = []
+    for k in range(bar.elements + 1):
+        r = a + k / bar.elements * (b - a)
+        v = np.array(bar.velocity) + np.cross(omega, r - 0.5 * (a + b))
+        nodes.append(mbs.AddNode(items.NodePointSlope1(
+            referenceCoordinates=[*r, *t], initialVelocities=[*v, *np.cross(omega, t)])))  # fmt: skip
+    for ends in zip(nodes, nodes[1:], strict=False):
+        cable = mbs.AddObject(items.ObjectANCFCable(
+            physicsLength=bar.length / bar.elements, physicsMassPerLength=bar.per_length,
+            physicsBendingStiffness=bar.youngs_modulus * moment,
+            physicsAxialStiffness=bar.youngs_modulus * area, nodeNumbers=list(ends)))  # fmt: skip
+        weight = mbs.AddMarker(items.MarkerBodyMass(bodyNumber=cable))
+        mbs.AddLoad(items.LoadMassProportional(markerNumber=weight, loadVector=list(gravity)))
+    ground = mbs.AddObject(items.ObjectGround(referencePosition=list(a)))
+    pins = [
+        mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=ground, localPosition=[0.0, 0.0, 0.0])),
+        mbs.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[0])),
+    ]
+    mbs.AddObject(items.ObjectJointSpherical(markerNumbers=pins))
+    mbs.Assemble()
+    return mbs, nodes
+
+
+PROBLEMS = {
+    "slider_crank": slider_crank,
+    "andrews": andrews,
+    "windows": four_bars,
+    "chain": rods,
+    "flexible_pendulum": flexible_pendulum,
+}
