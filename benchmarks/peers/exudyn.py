@@ -5,6 +5,7 @@ for the contact the index-2 trapezoidal rule without the recommended step size; 
 from ten bodies on.
 """
 
+import itertools
 import time
 from collections.abc import Iterator
 from math import pi
@@ -255,8 +256,9 @@ def cable_model(bar: Any, gravity: Any) -> tuple[Any, list[Any]]:
         r = a + k / bar.elements * (b - a)
         v = np.array(bar.velocity) + np.cross(omega, r - 0.5 * (a + b))
         nodes.append(mbs.AddNode(items.NodePointSlope1(
-            referenceCoordinates=[*r, *t], initialVelocities=[*v, *np.cross(omega, t)])))  # fmt: skip
-    for ends in zip(nodes, nodes[1:], strict=False):
+            referenceCoordinates=[*r, *t],
+            initialVelocities=[*v, *np.cross(omega, t)])))  # fmt: skip
+    for ends in itertools.pairwise(nodes):
         cable = mbs.AddObject(items.ObjectANCFCable(
             physicsLength=bar.length / bar.elements, physicsMassPerLength=bar.per_length,
             physicsBendingStiffness=bar.youngs_modulus * moment,

@@ -11,6 +11,7 @@ from trsim.assemble.mechanism import Instance, Mechanism
 from trsim.assemble.members import Beam
 from trsim.elements.contract import N_BOOK
 
+AT_A_NODE = 1e-9  # of the mechanism's size: an arm so long has no lever
 # where the state of an element stands in its Row.con
 STATE = {"drive": 3, "clearance_joint": 3}
 
@@ -38,11 +39,23 @@ def nodes(scenario: Any, mechanism: Mechanism) -> Nodes:
     of = _Coupling(scenario, mechanism, bodies)
     groups = {of.group(instance) for instance in mechanism.instances}
     of_beams = {k for beam in mechanism.beams.values() for k in nodes_of(beam)}
-    alone = of_beams.difference(*groups)
+    acting = (of.group(i) for i in mechanism.instances if not holds_still(i, mechanism))
+    alone = of_beams.difference(*acting)
     for beam in mechanism.beams.values():
         groups |= {frozenset((k, k + 1)) for k in nodes_of(beam)[:-1]}
     coupled = tuple(sorted((g for g in groups if len(g) > 1), key=sorted))
     return Nodes(bodies, states, coupled, frozenset(alone))
+
+
+def holds_still(instance: Instance, mechanism: Mechanism) -> bool:
+    """Whether an element is a pin right at its nodes of beams, along world axes: whatever these do,
+    its rows stay as they are."""
+    key, con, par = instance.element.key, instance.row.con, instance.row.par
+    if key != "spherical" and not (key == "revolute" and mechanism.planar):
+        return False
+    first = mechanism.model.n_r
+    arms = [par[3 * end : 3 * end + 3] for end in (0, 1) if con[end] >= first]
+    return all(abs(x) <= AT_A_NODE * mechanism.model.size for arm in arms for x in arm)
 
 
 def nodes_of(beam: Beam) -> range:

@@ -75,7 +75,9 @@ SPARSE = ggl_tables  # its records have tables of their own
 interpolate = radau.interpolate
 
 QUICK = 0.02  # contraction with which a matrix is kept: a new one is cheap
-QUICK_FIXED = 0.06  # the same where no row of a constraint turns with its bodies
+# where no row of a constraint turns with its bodies: the same, and what Newton may leave, as a part
+# of the error allowed [HairerWanner1996]
+QUICK_FIXED, KAPPA_FIXED = 0.06, 0.03
 UNKNOWN = 1e-2  # error of a first step, as a part of that allowed
 KEPT = radau.DENSE_ROWS  # rows of the dense output from which on lam of the stages is kept
 DENSE_ROWS = KEPT + 3
@@ -181,13 +183,13 @@ def newton(s, r, b, setting, t, h, stabilised):
         if weight[k] > 0.0:
             counted += 1
             floor = max(floor, 2.0e-15 * abs(r.y[k]) * weight[k])
-    enough = max(KAPPA, floor)
+    strict = stabilised and b.made[TURNS] > 0.0
+    enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
     # errors as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is
     # small
     made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
-    strict = stabilised and b.made[TURNS] > 0.0
     wanted = max(min(KAPPA, sqrt(setting[TOLERANCE])) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
