@@ -66,6 +66,7 @@ class AncfCable(Cable):
 # con: where; par: how much
 FIRST, NODES, STRAIN, CURVATURE, ELEMENT_0 = 0, 1, 2, 3, 4
 LENGTH, STIFFNESS, BENDING, BETA, MASS, FIELD = 0, 1, 2, 3, 4, 5
+BAR, AT_NODE = 18, 5  # columns of a bar, and of each of its nodes
 E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 
 
@@ -97,9 +98,16 @@ def channels(nodes):
         Channel("deflection", "m", "largest distance of a node from the chord between the ends"),
         Channel("strain_energy", "J", "stored in stretching and bending"),
         Channel("stretching_energy", "J", "of it in stretching"),
-        Channel("axial_force", "N", "along the bar, at its nodes; tension is positive", nodes),
-        Channel("bending_moment", "N*m", "magnitude, at its nodes", nodes),
-        Channel("shape", "m", "places of the nodes, world axes", 3 * nodes),
+        *(channel for k in range(nodes) for channel in at_node(k)),
+    )
+
+
+def at_node(k):
+    """What is recorded at every node; forces where two elements meet are their mean."""
+    return (
+        Channel(f"node{k}.position", "m", "place of the node, world axes", 3),
+        Channel(f"node{k}.axial_force", "N", "along the bar; tension is positive"),
+        Channel(f"node{k}.bending_moment", "N*m", "magnitude"),
     )
 
 
@@ -212,8 +220,7 @@ def measure(t, scene, a, b):
         first, nodes, l = con[e, FIRST], con[e, NODES], par[e, LENGTH]
         last = first + nodes - 1
         whole = l * (nodes - 1)
-        forces, moments, shape = o + 18, o + 18 + nodes, o + 18 + 2 * nodes
-        for k in range(18 + 2 * nodes):
+        for k in range(BAR + AT_NODE * nodes):
             out[o + k] = 0.0
         for i in range(first, last):
             gathered(scene, i)
@@ -233,8 +240,9 @@ def measure(t, scene, a, b):
                 )  # fmt: skip
                 # a node between two elements has the mean of both
                 share = 1.0 if i + n == first or i + n == last else 0.5
-                out[forces + i + n - first] += share * N
-                out[moments + i + n - first] += share * M
+                place = o + BAR + AT_NODE * (i + n - first)
+                out[place + 3] += share * N
+                out[place + 4] += share * M
             if 2 * (i - first) in (nodes - 1, nodes - 2):
                 middle = position(x, l, 0.5 * (nodes - 1) - (i - first))
                 for c in range(3):
@@ -245,7 +253,7 @@ def measure(t, scene, a, b):
         out[o + 15] = deflection(X, first, last)
         for k in range(nodes):
             for c in range(3):
-                out[shape + 3 * k + c] = X[first + k, c]
+                out[o + BAR + AT_NODE * k + c] = X[first + k, c]
 
 
 @helper
