@@ -14,6 +14,7 @@ from trsim.spec.load import load
 IDEAL = SCENARIOS / "thrust_reverser" / "ideal.yaml"
 ONE = SCENARIOS / "thrust_reverser" / "clearance_b_0.3mm.yaml"
 TWO = SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml"
+FLEXIBLE = SCENARIOS / "thrust_reverser" / "flexible_rod_paper_damped.yaml"
 NO_ROWS = ("output.channels=[]",)
 BODIES = {"fairing": 2.667, "door": 1.584e-2, "large_rod": 2.017e-3, "transfer": 1.777e-4}
 SPACE = ("planar=false", *(f"bodies.{name}.inertia=[{x}, {x}, {x}]" for name, x in BODIES.items()))
@@ -26,17 +27,19 @@ CASES = {
     "clearance at B, in space": (ONE, SPACE),
     "clearance at A and B": (TWO, ()),
     "clearance at A and B, no channels": (TWO, NO_ROWS),
+    "clearance at B, rod flexible (1e-4)": (FLEXIBLE, ()),
+    "clearance at B, rod flexible (1e-4), no channels": (FLEXIBLE, NO_ROWS),
 }
 REPEATS = 5
 
 
 def main() -> None:
     """Print the table."""
-    print(f"  {'':38s} {'CPU s':>8s} {'rhs':>8s} {'us/rhs':>8s} {'unknowns':>9s} {'rows':>5s}")
+    print(f"  {'':48s} {'CPU s':>8s} {'rhs':>8s} {'us/rhs':>8s} {'unknowns':>9s} {'rows':>5s}")
     for label, (file, sets) in CASES.items():
         scenario = load(file, sets)
         mechanism = assemble(scenario)
         runs = [marched(scenario, mechanism)[1].statistics for _ in range(REPEATS + 1)][1:]
         cpu, looks = median(run["integration_cpu"] for run in runs), runs[0]["evaluations"]
-        print(f"  {label:38s} {cpu:8.4f} {looks:8d} {1e6 * cpu / looks:8.2f} "
+        print(f"  {label:48s} {cpu:8.4f} {looks:8d} {1e6 * cpu / looks:8.2f} "
               f"{mechanism.model.n_v:9d} {mechanism.model.m:5d}")  # fmt: skip
