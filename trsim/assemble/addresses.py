@@ -110,6 +110,10 @@ class Addresses:
         """Whether a frame is a node of a flexible bar."""
         return i >= self.n_rigid
 
+    def tangent(self, i: int) -> tuple[float, ...]:
+        """Of a node of a flexible bar as drawn; of other frames none."""
+        return tuple(self.rotation[i][:, 0].tolist()) if self.is_node(i) else ()
+
     def centre(self, i: int) -> tuple[float, ...]:
         """Centre of mass as drawn."""
         return tuple(self.at_start[i])

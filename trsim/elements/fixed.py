@@ -21,7 +21,8 @@ class Fixed(Joint):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    axes = triads(i, j, (0.0, 0.0, 1.0), at)
+    # about the tangent of a flexible bar the weld holds nothing: that is the row `turn`
+    axes = triads(i, j, at.tangent(j) or at.tangent(i) or (0.0, 0.0, 1.0), at)
     return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *axes))
 
 
