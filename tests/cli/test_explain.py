@@ -95,7 +95,7 @@ def test_meanings_of_docstrings():
                     "force: true or false, default false", "max_steps: whole number > 0"]),
         ("contact_laws", ["K = 4/(3 (s_i + s_j))", "stiffness: internal | paper | cylinder or numb",
                           "friction.law: none | coulomb"]),
-        ("initial", ["equilibrium: list of text", "NAME: number"]),
+        ("initial", ["equilibrium: all or list of text", "NAME: number"]),
         ("forces", ["applied_load", "limit_stop"]),
         ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial;"]),
         ("at", ["applied_load.at", "limit_stop.wall.at", "revolute.at"]),

@@ -76,6 +76,14 @@ def against_rates(work: Scene, rows: Array) -> Array:
     return rows.reshape(shape)
 
 
+def along_rates(work: Scene, wrenches: Array) -> Array:
+    """Wrenches (n, 6) on the frames, and the elastic forces along the slopes of the workspace, as
+    forces along the world-axes rates (6 (n-1))."""
+    found = against_rates(work, wrenches[1:].reshape(1, -1)).reshape(-1, 6).copy()
+    found[work.n_r - 1 :, 3:] += work.Q[work.n_r :]
+    return found.ravel()
+
+
 def world_rates(model: Model, y: Array) -> Array:
     """Rates of the moving frames, one vector (6 (n-1)): the twist of a rigid body in world axes;
     of a node of a beam those of its place and of its slope."""

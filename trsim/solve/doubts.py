@@ -44,7 +44,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
 def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]:
     """Positions and velocities that had to give way to joints and drives."""
     initial, p = scenario.initial, projected(mechanism, begun)
-    asked = initial.equilibrium or initial.values  # then it is moved on purpose
+    asked = initial.settles or initial.values  # then it is moved on purpose
     if not asked and p.shift > MOVED * mechanism.model.size:
         yield (
             f"bodies.{p.shift_body}: starts {p.shift:.2g} m from where it is drawn, to meet joints "

@@ -5,9 +5,12 @@
     xi'  = eta + Z^T M (omega x) Z xi                   small rotations of a body that spins
     eta' = Z^T M v'(x, v, s),                           s: states of elements, such as bristles
 
-A is the Jacobian of the right-hand sides against (xi, eta, s), by central differences of the full
-equations of motion: the velocities of every probe are brought back to the constraints by Newton
-steps with the pseudoinverse of the start, so that no constraint is violated to first order.  Exact
+    Z^T M v' = Z^T (F - gyroscopic - J^T lam)           lam: of the start, to first order
+
+A is the Jacobian of the right-hand sides against (xi, eta, s), by central differences, and that of
+the elastic forces of flexible bars from their tangent: the velocities of every probe are brought
+back to the constraints by Newton steps with the pseudoinverse of the start, so that no constraint
+is violated to first order.  Exact
 for small motions about an equilibrium or a steady rotation; where the start moves otherwise it is
 the Jacobian frozen there.  Time stands still: what drives prescribe, and their states, are held.
 """
@@ -18,15 +21,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import constraints, derivative, gaps, poses
+from trsim.assemble.equations import constraints, derivative, forces, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
-from trsim.assemble.reduce import IN_PLANE, in_solve_axes, jacobian, moves, world_rates
+from trsim.assemble.reduce import IN_PLANE, along_rates, in_solve_axes, jacobian, moves, world_rates
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
 from trsim.errors import ModelError
 from trsim.laws.friction import CODES
+from trsim.solve.elastic import acted_on, bars_alone, elastic_stiffness
 from trsim.solve.start import Start
 from trsim.solve.velocities import with_velocities
 
@@ -65,19 +69,26 @@ def linearised(mechanism: Mechanism, begun: Start) -> Linearised:
     work.mem[:] = begun.mem
     work.branch[:] = begun.branch
     probe = Probe(mechanism, work, begun)
-    f, own = probe.Z.shape[1], probe.own
+    f, r, own = *probe.ways.shape, probe.own
     n = 2 * f + len(own)
     A = np.zeros((n, n))
     A[:f, f : 2 * f] = np.eye(f)
     A[:f, :f] = probe.turning()
-    none = np.zeros(f), np.zeros(f), np.zeros(len(own))
-    for k in range(n):
-        kind, place = (0, k) if k < f else (1, k - f) if k < 2 * f else (2, k - 2 * f)
+    columns = np.zeros((f + len(own), 2 * r + len(own)))
+    for k in range(columns.shape[1]):
+        kind, place = (0, k) if k < r else (1, k - r) if k < 2 * r else (2, k - 2 * r)
+        ahead = [np.zeros(f), np.zeros(f), np.zeros(len(own))]
         step = probe.steps(kind, place)
-        ahead = [part.copy() for part in none]
-        ahead[kind][place] = step
+        ahead[kind] += step * (np.eye(len(own)) if kind == 2 else probe.ways)[:, place]
         back = [-part for part in ahead]
-        A[f:, k] = (probe.rates(*ahead) - probe.rates(*back)) / (2.0 * step)
+        columns[:, k] = (probe.rates(*ahead) - probe.rates(*back)) / (2.0 * step)
+    A[f:, :f], A[f:, f : 2 * f] = (
+        columns[:, :r] @ probe.ways.T,
+        columns[:, r : 2 * r] @ probe.ways.T,
+    )
+    A[f:, 2 * f :] = columns[:, 2 * r :]
+    if mechanism.beams:
+        A[f : 2 * f, :f] -= probe.twists.T @ elastic_stiffness(work, begun.y) @ probe.twists
     if not np.all(np.isfinite(A)):
         worst = int(np.argmin(np.isfinite(A).all(axis=0)))
         raise ModelError(
@@ -137,11 +148,14 @@ class Probe:
         self.work, self.y = work, begun.y
         self.n_q, self.n_v = work.n_q, work.n_v
         self.names = [name for name, f in mechanism.frames.items() if f > 0]
-        self.own = [
-            self.n_q + self.n_v + N_BOOK + k for k, s in enumerate(mechanism.follows) if s < 0
-        ]
+        self.states = [N_BOOK + k for k, s in enumerate(mechanism.follows) if s < 0]
+        self.own = [self.n_q + self.n_v + k for k in self.states]
+        self.bars = bars_alone(mechanism, work) if mechanism.beams else None
         self.basis()
+        self.ways = self.directions(mechanism)
         self.scales(begun)
+        derivative(work, 0.0, self.y, np.zeros_like(self.y))
+        self.lam = work.lam.copy()
 
     def basis(self) -> None:
         """Z, M Z and the M-weighted pseudoinverse of J; in world axes and those of the solve."""
@@ -169,6 +183,15 @@ class Probe:
             self.Z = back @ vt[rank:].T
         self.twists, self.momenta = T @ self.Z, M @ self.Z
 
+    def directions(self, mechanism: Mechanism) -> Array:
+        """Orthonormal combinations of the freedoms to probe along, columns: in all others nothing
+        moves but nodes of bars on which only their elastic forces act."""
+        f = self.Z.shape[1]
+        if not mechanism.beams:
+            return np.eye(f)
+        _, s, vt = np.linalg.svd(self.twists[acted_on(mechanism)], full_matrices=False)
+        return np.asarray(vt[s > FREE * s.max(initial=0.0)].T).reshape(f, -1)
+
     def scales(self, begun: Start) -> None:
         """How far probes go: m and m/s of the point that moves most."""
         work = self.work
@@ -179,7 +202,7 @@ class Probe:
         self.length = min([REACH * work.size, *(PRESSED * d for d in depths)])
         slowest = [v for v in work.contact_par[:, 4].tolist() if v > 0.0]
         self.speed = min([REACH * begun.speed, FASTEST, *(PRESSED * v for v in slowest)])
-        parts = np.abs(self.twists).reshape(work.n - 1, 6, self.Z.shape[1])
+        parts = np.abs(self.twists @ self.ways).reshape(work.n - 1, 6, self.ways.shape[1])
         points = np.maximum(parts[:, :3].max(axis=1), work.size * parts[:, 3:].max(axis=1))
         self.most = points.max(axis=0, initial=1e-300)
 
@@ -189,7 +212,7 @@ class Probe:
         return self.names[int(np.argmax(twist)) // 6]
 
     def steps(self, kind: int, place: int) -> float:
-        """Step along a freedom (0), its rate (1), a state of an element (2)."""
+        """Step along a way (0), its rate (1), a state of an element (2)."""
         if kind == 2:
             return float(REACH * self.work.scale[self.own[place]])
         return (self.length, self.speed)[kind] / float(self.most[place])
@@ -204,9 +227,28 @@ class Probe:
             constraints(work, 0.0)
             y[n : n + self.n_v] -= self.pseudo @ self.drift()
         y[self.own] += states
-        yd = np.zeros_like(y)
-        derivative(work, 0.0, y, yd)
-        return np.concatenate([self.momenta.T @ yd[n : n + self.n_v], yd[self.own]])
+        return np.concatenate([self.Z.T @ self.loads(y), work.zd[self.states]])
+
+    def loads(self, y: Array) -> Array:
+        """F - gyroscopic - J^T lam in the axes of the solve, but for the elastic forces of bars."""
+        work = self.work
+        poses(work, y)
+        constraints(work, 0.0)
+        forces(work, 0.0)
+        wrenches = work.F.copy()
+        for end, part in enumerate((work.J[:, :6], work.J[:, 6:])):
+            np.subtract.at(wrenches, work.row_frame[:, end], self.lam[:, None] * part)
+        F = along_rates(work, wrenches)
+        if self.bars:
+            poses(self.bars, y)
+            forces(self.bars, 0.0)
+            F = F - along_rates(self.bars, self.bars.F)
+        found = in_solve_axes(work, F)
+        for f in range(1, work.n_r if work.d == 6 else 1):
+            o = 6 * (f - 1) + 3
+            omega = y[self.n_q + o : self.n_q + o + 3]
+            found[o : o + 3] -= np.cross(omega, work.inertia[f].reshape(3, 3) @ omega)
+        return found
 
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""

@@ -12,7 +12,9 @@ from math import pi
 
 import numpy as np
 
+from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
+from trsim.elements.scene import scene
 from trsim.solve.linearised import linearised, rounding
 from trsim.solve.start import Start
 
@@ -24,7 +26,7 @@ OSCILLATES, DECAYS, GROWS, FREE = "oscillates", "decays", "grows", "free"
 class Moved:
     """What a body does in a mode, largest of all bodies 1; at the phase of the largest motion."""
 
-    body: str
+    body: str  # or a node of a flexible bar, `rod[3]`
     translation: tuple[float, float, float]
     rotation: tuple[float, float, float]  # rad times the mechanism's size
 
@@ -47,9 +49,9 @@ def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
         return []
     values, vectors = np.linalg.eig(linear.A)
     least = rounding(values, begun)
-    freedoms = linear.Z.shape[1]
+    moved = turned(mechanism, begun, linear.twists) @ vectors[: linear.Z.shape[1]]
     found = []
-    for value, vector in zip(values, vectors.T, strict=True):
+    for value, vector in zip(values, moved.T, strict=True):
         if value.imag < 0.0:
             continue  # the other of its pair
         rate = float(value.real) if abs(value) > least else 0.0
@@ -60,9 +62,21 @@ def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
             frequency=float(value.imag) / (2.0 * pi) if swings else 0.0,
             damping_ratio=-rate / size if swings and abs(rate) > UNDAMPED * size else 0.0,
             rate=rate,
-            shape=shape(mechanism, linear.twists @ vector[:freedoms]),
+            shape=shape(mechanism, vector),
         ))  # fmt: skip
     return sorted(found, key=lambda mode: (mode.kind != FREE, mode.frequency, abs(mode.rate)))
+
+
+def turned(mechanism: Mechanism, begun: Start, rates: np.ndarray) -> np.ndarray:
+    """World-axes rates (6 (n-1), columns) as twists: a node turns with its slope g, g x g' / g^2."""
+    w = scene(mechanism.model)
+    poses(w, begun.y)
+    nodes = rates.reshape(w.n - 1, 6, -1).copy()
+    g = w.G[w.n_r :, :3, None]
+    nodes[w.n_r - 1 :, 3:] = np.cross(g, nodes[w.n_r - 1 :, 3:], axis=1) / np.sum(
+        g * g, axis=1, keepdims=True
+    )
+    return np.asarray(nodes.reshape(rates.shape))
 
 
 def shape(mechanism: Mechanism, twists: np.ndarray) -> tuple[Moved, ...]:

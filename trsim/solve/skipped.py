@@ -62,7 +62,7 @@ def _stabilisation(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
 def _start(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     if not any(scenario.gravity):
         yield "weight: `gravity` is not given"
-    if not scenario.initial.equilibrium:
+    if not scenario.initial.settles:
         yield "static equilibrium: `initial` asks for none, the start is as drawn"
 
 

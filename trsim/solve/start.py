@@ -33,6 +33,7 @@ from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, with_scene
 from trsim.solve.bars import as_flexible, as_rigid
 from trsim.solve.blame import refuse_no_number
+from trsim.solve.softening import softened
 from trsim.solve.statics import equilibrium
 from trsim.solve.velocities import velocities
 
@@ -145,7 +146,7 @@ def positions(
     scenario: Any, mechanism: Mechanism, initial: Any
 ) -> tuple[Array, float, dict[str, float]]:
     """q as drawn, at the given joint values, in equilibrium; the static force left, N; angles."""
-    if not initial.equilibrium and not initial.values:
+    if not initial.settles and not initial.values:
         return mechanism.y0, 0.0, {}
     playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
     ideal = frozenset(playing - set(initial.equilibrium))
@@ -164,35 +165,29 @@ def positions(
     y = follow(held, carried(mechanism, held))
     residual = 0.0
     targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
-    settle = bool(initial.equilibrium)
+    settle = initial.settles
     there = None
     if settle and targets and playing:
         there = by_ideal_joints(scenario, initial, frozenset(playing), held)
     if settle:
-        y, residual = equilibrium(held, y if there is None else there)
+        y, residual = equilibrium(held, y if there is None else there, not mechanism.beams)
     if targets and there is None:
         y, residual = approach(held, y, targets, settle)
     remember(held.model, y)
-    angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
     if mechanism.beams:
-        y, residual = bent(
-            mechanism, held, y, with_scene(assemble(scenario, ideal, drives)), settle
-        )
-        return y, residual, angles
+        stiff, held = held, with_scene(assemble(scenario, ideal, drives))
+        y, residual = bent(stiff, held, y, settle)
+        remember(held.model, y)
+    angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
     return back(mechanism, held, y), residual, angles
 
 
-def bent(
-    mechanism: Mechanism, stiff: Any, y: Array, held: Any, settle: bool
-) -> tuple[Array, float]:
+def bent(stiff: Any, held: Any, y: Array, settle: bool) -> tuple[Array, float]:
     """The start found with stiff bars as that of flexible ones; their equilibrium where asked."""
-    for name in held.coordinates.keys() & stiff.coordinates.keys():
-        angle = stiff.model.S[stiff.coordinates[name].entry, 0]
-        held.model.branch[held.coordinates[name].entry] = angle
-    straight, residual = follow(held, as_flexible(held, stiff, y)), 0.0
-    if settle:
-        straight, residual = equilibrium(held, straight)
-    return back(mechanism, held, straight), residual
+    for name, x in held.coordinates.items():
+        held.model.branch[x.entry] = stiff.model.S[stiff.coordinates[name].entry, 0]
+    straight = follow(held, as_flexible(held, stiff, y))
+    return softened(held, straight) if settle else (straight, 0.0)
 
 
 def by_ideal_joints(
@@ -205,7 +200,7 @@ def by_ideal_joints(
     try:
         drives = holding_drives(scenario, initial)
         bare = with_scene(assemble(scenario, playing, drives, stiff=True))
-        y, _ = equilibrium(bare, follow(bare, carried(bare, bare)))
+        y, _ = equilibrium(bare, follow(bare, carried(bare, bare)), False)
         targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
         y, _ = approach(bare, y, targets, True)
     except ModelError:

@@ -11,18 +11,17 @@ the clearance.  A motion that stays without stiffness is indifferent, and refuse
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import forces, poses, stiffnesses
+from trsim.assemble.equations import forces, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import against_rates, closest, displaced, jacobian, moves
+from trsim.assemble.reduce import along_rates, closest, displaced, jacobian, moves
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
-from trsim.elements.scene import Model, scene, workspace
+from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
 
 BALANCED = 1e-11  # of the largest force
 ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from none
-ELASTIC = 1e-5  # of EA: strains are known to rounding, so are forces to as much of that
 STEPS = 200
 STALLED = 1e-3  # of the force: a smaller change, step after step, is none
 PATIENCE = 30  # steps without a change, and those that cross the widest clearance
@@ -37,9 +36,7 @@ def static_forces(model: Model, y: Array) -> Array:
     still[model.n_q : model.n_q + model.n_v] = 0.0
     poses(w, still)
     forces(w, 0.0)
-    F = against_rates(w, w.F[1:].reshape(1, -1)).reshape(-1, 6)
-    F[w.n_r - 1 :, 3:] += w.Q[w.n_r :]
-    return F.ravel().copy()
+    return along_rates(w, w.F)
 
 
 def mass_matrix(model: Model, y: Array) -> Array:
@@ -66,11 +63,8 @@ def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
 
 
 def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Array:
-    """- d(F - J^T lam)/dq along the columns of Z: of beams as it is, of all else by central
-    differences; Z^T K Z."""
+    """-Z^T d(F - J^T lam)/dq Z by central differences of the projected forces."""
     K = np.empty((Z.shape[1], Z.shape[1]))
-    elastic = elastic_stiffness(model, y, Z)
-    model = without_beams(model)
     for k in range(Z.shape[1]):
         size = step / max(float(np.max(np.abs(Z[:, k]))), 1e-300)
         total = []
@@ -78,28 +72,13 @@ def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Arra
             near = displaced(model, y, sign * size * Z[:, k])
             total.append(static_forces(model, near) - jacobian(model, 0.0, near)[2].T @ lam)
         K[:, k] = -Z.T @ (total[0] - total[1]) / (2.0 * size)
-    return np.asarray(0.5 * (K + K.T) + elastic)
+    return np.asarray(0.5 * (K + K.T))
 
 
-def elastic_stiffness(model: Model, y: Array, Z: Array) -> Array:
-    """Z^T K Z of the elements of beams."""
-    w = workspace(model)
-    poses(w, y)
-    stiffnesses(w, 0.0)
-    found = np.zeros((Z.shape[1], Z.shape[1]))
-    for first, nodes, _, element in model.beam.tolist():
-        for k in range(nodes - 1):
-            part = Z[6 * (first + k - 1) : 6 * (first + k + 1)]
-            found += part.T @ w.tangent[12 * (element + k) : 12 * (element + k + 1)] @ part
-    return found
-
-
-def without_beams(model: Model) -> Model:
-    """The model without the kernels that have a tangent of their own: the forces of all else."""
-    if not len(model.stiffness):
-        return model
-    others = [row for row in model.force.tolist() if row[1:] not in model.stiffness[:, 1:].tolist()]
-    return scene(model.replaced(force=np.array(others, np.int64).reshape(-1, 3)))
+def probe(model: Model) -> float:
+    """Step of the differences, m and rad: far below every clearance."""
+    gaps = [c for c in model.contact_par[:, 3].tolist() if np.isfinite(c)]
+    return min([1e-9 * model.size, *(1e-5 * c for c in gaps)])
 
 
 def balance(
@@ -110,17 +89,18 @@ def balance(
     return F, J, free_motions(J, free, mass)
 
 
-def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
-    """The equilibrium reached from y, drives held at t = 0; and the force left, N."""
+def equilibrium(mechanism: Mechanism, y: Array, held: bool = True) -> tuple[Array, float]:
+    """The equilibrium reached from y, drives held at t = 0; and the force left, N.
+
+    held: refuse one that is indifferent.  (Stiff bars may spin about themselves, flexible do not.)
+    """
     model = workspace(mechanism.model)
     y, _ = closest(model, 0.0, y)
     free, mass = moves(model, model.d == 3), mass_matrix(model, y)
     gaps = [c for c in model.contact_par[:, 3] if np.isfinite(c)]
     reach = min([0.2 * c for c in gaps], default=0.02 * model.size)
     patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach
-    probe = 1e-9 * model.size if not gaps else min(1e-9 * model.size, 1e-5 * min(gaps))
     push, scale, load = 0.0, 1e-300, 1e-300
-    stiff = ELASTIC * max((bar.stiffness for bar in mechanism.beams.values()), default=0.0)
     changed, before = 0, 0.0  # the step at which the force last changed, and to what
     F, J, Z = balance(model, y, free, mass)
     for count in range(STEPS):
@@ -130,15 +110,16 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         if len(J):
             lam = np.asarray(np.linalg.lstsq(J.T[free], F[free], rcond=1e-12)[0])
         r = Z.T @ F
-        K = stiffness(model, y, Z, lam, probe)
+        K = stiffness(model, y, Z, lam, probe(model))
         values, vectors = np.linalg.eigh(K)
         # bodies in balance have no net force left: the largest one met is the scale
-        acting = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)), stiff)
+        acting = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
         scale = max(scale, acting)
         size = float(np.linalg.norm(r))
         left = float(np.linalg.norm((Z @ r) * mass))
         if left <= BALANCED * scale or size == 0.0:
-            check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
+            if held:
+                check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
             return y, left
         if count == 0:
             push, load = max(abs(values[0]), size / reach), acting
@@ -153,7 +134,8 @@ def equilibrium(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
         turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
         # a stiff contact turns the rounding of a position into a force: no step is left to take
         if max(longest, turned) < ROUNDING * model.size and left < 1e-6 * scale:
-            check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
+            if held:
+                check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))

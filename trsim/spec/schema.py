@@ -12,7 +12,7 @@ from trsim import elements
 from trsim.fields import Spec
 from trsim.spec.load import unit_of
 from trsim.spec.meanings import description, meanings, specs
-from trsim.spec.scenario import DEFAULT, Scenario
+from trsim.spec.scenario import ALL, DEFAULT, Scenario
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 EXTENDS = {
@@ -24,9 +24,8 @@ INITIAL = {
     "type": "object",
     "properties": {
         "equilibrium": {
-            "description": "joints that are free in the balance of forces",
-            "type": "array",
-            "items": {"type": "string"},
+            "description": "joints that are free in the balance of forces, or `all`",
+            "anyOf": [{"enum": [ALL]}, {"type": "array", "items": {"type": "string"}}],
         }
     },
     "additionalProperties": {"description": "coordinate of the joint (rad or m)", **NUMBER},

@@ -1,0 +1,115 @@
+"""Static equilibrium of a mechanism with flexible bars, reached from that with stiff ones.
+
+    F_e(q) / s + F(q) - J^T lam = 0,    Phi(q) = 0,    s from 0, rigid bars, to 1
+
+F_e: elastic forces of the bars, F: all others.  Without others that bend them, bars softened by s
+are as bent as under loads s F: the way is that of a load put on bit by bit, and keeps the branch.
+Every s is reached by Newton's method,
+
+    [ K  J^T ] [ dq      ]   [ F_e / s + F ]        K = -d(F_e / s + F - J^T lam)/dq
+    [ J  0   ] [ lam new ] = [ -Phi        ]
+
+with the tangent of the bars as it is, and of all else by differences.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.reduce import displaced, jacobian, moves
+from trsim.elements.scene import Scene, workspace
+from trsim.errors import ModelError
+from trsim.solve.angles import remember
+from trsim.solve.elastic import acted_on, bars_alone, elastic_stiffness, softened_bars
+from trsim.solve.statics import check_stable, free_motions, probe, static_forces
+
+Array = NDArray[np.float64]
+
+TURN = 0.5  # rad, or of a slope: as far as one softening may turn anything
+ITERATIONS = 15
+CLOSE = 1e-9  # of the mechanism's size, and rad: quadratic from here, the next step is rounding
+SHORTEST = 1e-7  # of the way from rigid to soft
+
+
+def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
+    """The equilibrium reached from y, straight bars, drives held at t = 0; and the force left, N.
+
+    Raises ModelError where there is none, or where nothing holds a motion.
+    """
+    work = workspace(mechanism.model)
+    lam: Array = np.zeros(work.m)
+    done, ahead = 0.0, 1.0
+    while done < 1.0:
+        to = min(1.0, done + ahead)
+        found = balanced(mechanism, softened_bars(mechanism, work, to), y, lam)
+        if isinstance(found, float):
+            ahead = found * (to - done)
+            if ahead < SHORTEST:
+                raise ModelError(
+                    "no static equilibrium found: beyond "
+                    f"{100 * done:.3g} % of the loads the flexible bars have none near by",
+                    "do they buckle, or is there a load that nothing holds? drop `equilibrium` to "
+                    "start as drawn",
+                    ("initial", "equilibrium"),
+                )
+            continue
+        (y, lam), done, ahead = found, to, 2.0 * (to - done)
+        remember(work, y)
+    return y, checked(mechanism, work, y, lam)
+
+
+def balanced(
+    mechanism: Mechanism, work: Scene, y: Array, lam: Array
+) -> tuple[Array, Array] | float:
+    """y and lam in equilibrium; or which part of the way to try instead."""
+    free = moves(work, work.d == 3)
+    last = np.inf
+    for count in range(ITERATIONS):
+        phi, _, J = jacobian(work, 0.0, y)
+        J = J[:, free]
+        K = tangent(mechanism, work, y, lam)[np.ix_(free, free)]
+        system = np.block([[K, J.T], [J, np.zeros((work.m, work.m))]])
+        try:
+            x = np.linalg.solve(system, np.append(static_forces(work, y)[free], -phi))
+        except np.linalg.LinAlgError:
+            return 0.5
+        dq = np.zeros(free.size)
+        dq[free] = x[: -work.m or None]
+        parts = np.abs(dq).reshape(-1, 6)
+        far = max(float(parts[:, :3].max()) / work.size, float(parts[:, 3:].max()))
+        if not far < TURN:  # not a number, too
+            return max(0.1, 0.7 * TURN / far) if count == 0 and np.isfinite(far) else 0.5
+        y, lam = displaced(work, y, dq), x[len(x) - work.m :]
+        if far < CLOSE:
+            return y, lam
+        if count > 4 and far > last:
+            return 0.5
+        last = far
+    return 0.5
+
+
+def checked(mechanism: Mechanism, work: Scene, y: Array, lam: Array) -> float:
+    """The force left, N; refuses an equilibrium that is indifferent."""
+    free = moves(work, work.d == 3)
+    J, F = jacobian(work, 0.0, y)[2], static_forces(work, y)
+    Z = free_motions(J, free, np.ones(free.size))
+    K = Z.T @ tangent(mechanism, work, y, lam) @ Z
+    values, vectors = np.linalg.eigh(0.5 * (K + K.T))
+    load = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
+    check_stable(mechanism, values, Z @ vectors, load, work)
+    return float(np.linalg.norm((F - J.T @ lam)[free]))
+
+
+def tangent(mechanism: Mechanism, work: Scene, y: Array, lam: Array) -> Array:
+    """-d(F_e + F - J^T lam)/dq against the world-axes rates (6 (n-1), 6 (n-1))."""
+    K, size, bars = elastic_stiffness(work, y), probe(work), bars_alone(mechanism, work)
+    for k in acted_on(mechanism):
+        change = np.zeros(len(K))
+        change[k] = size
+        ends = []
+        for sign in (1.0, -1.0):
+            near = displaced(work, y, sign * change)
+            others = static_forces(work, near) - static_forces(bars, near)
+            ends.append(others - jacobian(work, 0.0, near)[2].T @ lam)
+        K[:, k] -= (ends[0] - ends[1]) / (2.0 * size)
+    return K
