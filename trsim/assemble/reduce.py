@@ -64,7 +64,7 @@ def moves(model: Model, planar: bool) -> NDArray[np.bool_]:
 def against_rates(work: Scene, rows: Array) -> Array:
     """Rows against world-axes twists (k, 6 (n-1)) as rows against world-axes rates.
 
-    What turns a node of a beam moves its slope g: omega = g x g' / |g|^2.
+    What turns a node of a beam moves its slope g: omega = g x g' / |g|^2; m -> m x g / |g|^2.
     """
     if work.n_r == work.n:
         return rows
@@ -72,7 +72,8 @@ def against_rates(work: Scene, rows: Array) -> Array:
     rows = rows.reshape(len(rows), work.n - 1, 6).copy()
     g = work.G[work.n_r :, :3]
     square = np.sum(g * g, axis=1)[:, None]
-    rows[:, work.n_r - 1 :, 3:] = np.cross(rows[:, work.n_r - 1 :, 3:], g) / square
+    m, on, back = rows[:, work.n_r - 1 :, 3:], [1, 2, 0], [2, 0, 1]
+    rows[:, work.n_r - 1 :, 3:] = (m[..., on] * g[:, back] - m[..., back] * g[:, on]) / square
     return rows.reshape(shape)
 
 

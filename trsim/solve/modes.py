@@ -68,7 +68,7 @@ def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
 
 
 def turned(mechanism: Mechanism, begun: Start, rates: np.ndarray) -> np.ndarray:
-    """World-axes rates (6 (n-1), columns) as twists: a node turns with its slope g, g x g' / g^2."""
+    """World-axes rates (6 (n-1), columns) as twists: omega = g x g' / g^2 of a slope g."""
     w = scene(mechanism.model)
     poses(w, begun.y)
     nodes = rates.reshape(w.n - 1, 6, -1).copy()

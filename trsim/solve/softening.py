@@ -41,7 +41,7 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     done, ahead = 0.0, 1.0
     while done < 1.0:
         to = min(1.0, done + ahead)
-        found = balanced(mechanism, softened_bars(mechanism, work, to), y, lam)
+        found = balanced(Parts(mechanism, work, to), y, lam)
         if isinstance(found, float):
             ahead = found * (to - done)
             if ahead < SHORTEST:
@@ -58,25 +58,37 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     return y, checked(mechanism, work, y, lam)
 
 
-def balanced(
-    mechanism: Mechanism, work: Scene, y: Array, lam: Array
-) -> tuple[Array, Array] | float:
+class Parts:
+    """The mechanism with bars softened by s, and what of it is differentiated how."""
+
+    def __init__(self, mechanism: Mechanism, work: Scene, s: float) -> None:
+        self.work = softened_bars(mechanism, work, s)
+        self.bars = bars_alone(mechanism, self.work)
+        self.acted = acted_on(mechanism)
+
+
+def balanced(parts: Parts, y: Array, lam: Array) -> tuple[Array, Array] | float:
     """y and lam in equilibrium; or which part of the way to try instead."""
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import splu
+
+    work = parts.work
     free = moves(work, work.d == 3)
     last = np.inf
     for count in range(ITERATIONS):
         phi, _, J = jacobian(work, 0.0, y)
         J = J[:, free]
-        K = tangent(mechanism, work, y, lam)[np.ix_(free, free)]
+        K = tangent(parts, y, lam)[np.ix_(free, free)]
         system = np.block([[K, J.T], [J, np.zeros((work.m, work.m))]])
         try:
-            x = np.linalg.solve(system, np.append(static_forces(work, y)[free], -phi))
-        except np.linalg.LinAlgError:
+            factors = splu(csc_array(system))
+        except RuntimeError:  # singular
             return 0.5
+        x = factors.solve(np.append(static_forces(work, y)[free], -phi))
         dq = np.zeros(free.size)
         dq[free] = x[: -work.m or None]
-        parts = np.abs(dq).reshape(-1, 6)
-        far = max(float(parts[:, :3].max()) / work.size, float(parts[:, 3:].max()))
+        each = np.abs(dq).reshape(-1, 6)
+        far = max(float(each[:, :3].max()) / work.size, float(each[:, 3:].max()))
         if not far < TURN:  # not a number, too
             return max(0.1, 0.7 * TURN / far) if count == 0 and np.isfinite(far) else 0.5
         y, lam = displaced(work, y, dq), x[len(x) - work.m :]
@@ -93,23 +105,24 @@ def checked(mechanism: Mechanism, work: Scene, y: Array, lam: Array) -> float:
     free = moves(work, work.d == 3)
     J, F = jacobian(work, 0.0, y)[2], static_forces(work, y)
     Z = free_motions(J, free, np.ones(free.size))
-    K = Z.T @ tangent(mechanism, work, y, lam) @ Z
+    K = Z.T @ tangent(Parts(mechanism, work, 1.0), y, lam) @ Z
     values, vectors = np.linalg.eigh(0.5 * (K + K.T))
     load = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
     check_stable(mechanism, values, Z @ vectors, load, work)
     return float(np.linalg.norm((F - J.T @ lam)[free]))
 
 
-def tangent(mechanism: Mechanism, work: Scene, y: Array, lam: Array) -> Array:
+def tangent(parts: Parts, y: Array, lam: Array) -> Array:
     """-d(F_e + F - J^T lam)/dq against the world-axes rates (6 (n-1), 6 (n-1))."""
-    K, size, bars = elastic_stiffness(work, y), probe(work), bars_alone(mechanism, work)
-    for k in acted_on(mechanism):
+    work = parts.work
+    K, size = elastic_stiffness(work, y), probe(work)
+    for k in parts.acted:
         change = np.zeros(len(K))
         change[k] = size
         ends = []
         for sign in (1.0, -1.0):
             near = displaced(work, y, sign * change)
-            others = static_forces(work, near) - static_forces(bars, near)
+            others = static_forces(work, near) - static_forces(parts.bars, near)
             ends.append(others - jacobian(work, 0.0, near)[2].T @ lam)
         K[:, k] -= (ends[0] - ends[1]) / (2.0 * size)
     return K
