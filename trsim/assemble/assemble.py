@@ -11,7 +11,7 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
-from trsim.assemble.layout import layout
+from trsim.assemble.layout import Column, layout
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.members import members
 from trsim.assemble.pattern import pattern
@@ -73,7 +73,9 @@ def assemble(
     d = 3 if planar else 6
     model = build(scenario, at, instances, kept, d)
     y0 = drawn(at, d)
-    model, columns = layout(scenario, model, instances, at, planar)
+    columns: list[Column] = []
+    if drives is None and not stiff:  # nobody asks for channels of a start
+        model, columns = layout(scenario, model, instances, at, planar)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     return Mechanism(

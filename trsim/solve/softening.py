@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 TURN = 0.5  # rad, or of a slope: as far as one softening may turn anything
 ITERATIONS = 15
 CLOSE = 1e-9  # of the mechanism's size, and rad: quadratic from here, the next step is rounding
+HELD = 1e-14  # of the largest stiffness, added: what nothing holds and nothing pushes stays
 SHORTEST = 1e-7  # of the way from rigid to soft
 
 
@@ -79,6 +80,7 @@ def balanced(parts: Parts, y: Array, lam: Array) -> tuple[Array, Array] | float:
         phi, _, J = jacobian(work, 0.0, y)
         J = J[:, free]
         K = tangent(parts, y, lam)[np.ix_(free, free)]
+        K[np.diag_indices_from(K)] += HELD * np.abs(K).max()
         system = np.block([[K, J.T], [J, np.zeros((work.m, work.m))]])
         try:
             factors = splu(csc_array(system))
