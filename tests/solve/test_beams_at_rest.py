@@ -7,6 +7,7 @@ from math import pi, sqrt
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
 from trsim.errors import ModelError, ScenarioError
 from trsim.solve.bars import places
@@ -107,10 +108,10 @@ def test_in_space_it_bends_as_in_the_plane():
 
 
 def test_a_heavy_bar_hangs_on_its_ends():
-    """A chain of next to no stiffness: the catenary of length 1 over a span of 0.8."""
+    """A rope of next to no stiffness, pulled by its weight times a: half of it is a sinh(1)."""
     text = """
 gravity: [0, -9.81]
-bodies: {rope: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 32, area: 1e-4,
+bodies: {rope: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 16, area: 1e-4,
                 second_moment: 1e-12, youngs_modulus: 1e8, density: 1000}}
 joints:
   left: {type: revolute, bodies: [ground, rope], at: [0, 0]}
@@ -125,7 +126,42 @@ forces: {pull: {type: applied_load, body: shoe, direction: [1, 0, 0], force: PUL
     mechanism, at = begun(scenario(text, "solver.end=1"))
     r = places(mechanism, mechanism.beams["rope"], at.y)[0]
     assert r[-1, 0] == pytest.approx(span, abs=1e-3)
-    assert r[16, 1] == pytest.approx(a - a * np.cosh(1.0), abs=1e-3)
+    assert r[8, 1] == pytest.approx(a - a * np.cosh(1.0), abs=1e-3)
+
+
+COLUMN = """
+planar: true
+bodies:
+  column: {type: ancf_cable, start: [0, 0], end: [0, 1], elements: 16, area: 1,
+           second_moment: 1e-6, youngs_modulus: 1e6, density: 1}
+joints: {clamp: {type: fixed, bodies: [ground, column], at: [0, 0]}}
+forces:
+  weight: {type: applied_load, body: column, at: [0, 1], direction: [0, -1, 0], force: WEIGHT}
+  aside: {type: applied_load, body: column, at: [0, 1], direction: [1, 0, 0], force: ASIDE}
+initial: {equilibrium: all}
+"""
+
+
+def column(weight, aside):
+    read = scenario(COLUMN.replace("WEIGHT", repr(weight)).replace("ASIDE", repr(aside)),
+                    "solver.end=1")  # fmt: skip
+    mechanism, at = begun(read)
+    return places(mechanism, mechanism.beams["column"], at.y)[0][-1]
+
+
+def test_a_column_bends_over_when_its_load_is_more_than_eulers():
+    """P / P_cr = (2 K(k) / pi)^2, sideways 2 k / K, k = sin(a / 2), a the slope of the tip."""
+    k = np.sin(pi / 3)
+    K = ellipk(k * k)
+    x, _, _ = column(float(K * K), 1e-3)
+    assert x == pytest.approx(2 * k / K, abs=1e-3)
+
+
+def test_a_column_that_may_bend_to_both_sides_is_refused_above_eulers_load():
+    assert column(0.99 * pi**2 / 4, 0.0)[0] == pytest.approx(0.0, abs=1e-9)
+    with pytest.raises(ModelError, match="beyond 50 % of the loads") as caught:
+        column(2.0 * pi**2 / 4, 0.0)
+    assert "buckle" in caught.value.hint
 
 
 def test_all_is_what_names_all_joints():

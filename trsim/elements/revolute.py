@@ -68,7 +68,8 @@ def coordinate(t, scene, a, b):
         i, j = con[e, 0], con[e, 1]
         axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
         o_i, o_j = spin(V, i), spin(V, j)
-        if scene.d == 6:  # in a plane what comes in is the angle itself
+        # of rigid bodies in a plane what comes in is the angle itself
+        if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
             u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
             w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
             u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])

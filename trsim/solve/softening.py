@@ -9,7 +9,8 @@ Every s is reached by Newton's method,
     [ K  J^T ] [ dq      ]   [ F_e / s + F ]        K = -d(F_e / s + F - J^T lam)/dq
     [ J  0   ] [ lam new ] = [ -Phi        ]
 
-with the tangent of the bars as it is, and of all else by differences.
+with the tangent of the bars as it is, and of all else by differences.  A step that leaves more
+motions unstable is too long: beyond, a bar has buckled.
 """
 
 import numpy as np
@@ -25,10 +26,12 @@ from trsim.solve.statics import check_stable, free_motions, probe, static_forces
 
 Array = NDArray[np.float64]
 
+FIRST = 1e-3  # softening: bars that are next to rigid
 TURN = 0.5  # rad, or of a slope: as far as one softening may turn anything
 ITERATIONS = 15
 CLOSE = 1e-9  # of the mechanism's size, and rad: quadratic from here, the next step is rounding
 HELD = 1e-14  # of the largest stiffness, added: what nothing holds and nothing pushes stays
+NEGLIGIBLE = 1e-12  # of the largest eigenvalue
 SHORTEST = 1e-7  # of the way from rigid to soft
 
 
@@ -39,22 +42,23 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     """
     work = workspace(mechanism.model)
     lam: Array = np.zeros(work.m)
-    done, ahead = 0.0, 1.0
+    done, ahead, allowed = 0.0, FIRST, work.n_v
     while done < 1.0:
         to = min(1.0, done + ahead)
-        found = balanced(Parts(mechanism, work, to), y, lam)
+        found = balanced(Parts(mechanism, work, to), y, lam, allowed)
         if isinstance(found, float):
             ahead = found * (to - done)
             if ahead < SHORTEST:
                 raise ModelError(
                     "no static equilibrium found: beyond "
                     f"{100 * done:.3g} % of the loads the flexible bars have none near by",
-                    "do they buckle, or is there a load that nothing holds? drop `equilibrium` to "
-                    "start as drawn",
+                    "do they buckle? a small load to one side shows them where to; or drop "
+                    "`equilibrium` to start as drawn",
                     ("initial", "equilibrium"),
                 )
             continue
-        (y, lam), done, ahead = found, to, 2.0 * (to - done)
+        y, lam, allowed = found
+        done, ahead = to, 2.0 * (to - done) if done else 1.0
         remember(work, y)
     return y, checked(mechanism, work, y, lam)
 
@@ -68,15 +72,16 @@ class Parts:
         self.acted = acted_on(mechanism)
 
 
-def balanced(parts: Parts, y: Array, lam: Array) -> tuple[Array, Array] | float:
-    """y and lam in equilibrium; or which part of the way to try instead."""
+def balanced(parts: Parts, y: Array, lam: Array, allowed: int) -> tuple[Array, Array, int] | float:
+    """y and lam in equilibrium, and how many motions are unstable there, at most `allowed`;
+    or which part of the way to try instead."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
     work = parts.work
     free = moves(work, work.d == 3)
     last = np.inf
-    for count in range(ITERATIONS):
+    for turn in range(ITERATIONS):
         phi, _, J = jacobian(work, 0.0, y)
         J = J[:, free]
         K = tangent(parts, y, lam)[np.ix_(free, free)]
@@ -92,14 +97,23 @@ def balanced(parts: Parts, y: Array, lam: Array) -> tuple[Array, Array] | float:
         each = np.abs(dq).reshape(-1, 6)
         far = max(float(each[:, :3].max()) / work.size, float(each[:, 3:].max()))
         if not far < TURN:  # not a number, too
-            return max(0.1, 0.7 * TURN / far) if count == 0 and np.isfinite(far) else 0.5
+            return max(0.1, 0.7 * TURN / far) if turn == 0 and np.isfinite(far) else 0.5
         y, lam = displaced(work, y, dq), x[len(x) - work.m :]
         if far < CLOSE:
-            return y, lam
-        if count > 4 and far > last:
+            count = unstable(K, J)
+            return (y, lam, count) if count <= allowed else 0.5
+        if turn > 4 and far > last:
             return 0.5
         last = far
     return 0.5
+
+
+def unstable(K: Array, J: Array) -> int:
+    """How many of the motions that J allows have a negative stiffness: Sylvester's law."""
+    J = J * (np.abs(K).max() / np.abs(J).max(initial=1e-300))  # of the size of K, lest it is lost
+    bordered = np.block([[0.5 * (K + K.T), J.T], [J, np.zeros((len(J), len(J)))]])
+    values = np.linalg.eigvalsh(bordered)
+    return int(np.sum(values < -NEGLIGIBLE * np.abs(values).max())) - len(J)
 
 
 def checked(mechanism: Mechanism, work: Scene, y: Array, lam: Array) -> float:
