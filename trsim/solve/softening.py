@@ -27,7 +27,7 @@ from trsim.solve.statics import check_stable, free_motions, probe, static_forces
 Array = NDArray[np.float64]
 
 FIRST = 1e-3  # softening: bars that are next to rigid
-TURN = 0.5  # rad, or of a slope: as far as one softening may turn anything
+TURN = 0.5  # rad, or of a slope: as far as a correction may turn anything
 ITERATIONS = 15
 CLOSE = 1e-9  # of the mechanism's size, and rad: quadratic from here, the next step is rounding
 HELD = 1e-14  # of the largest stiffness, added: what nothing holds and nothing pushes stays
@@ -42,12 +42,14 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     """
     work = workspace(mechanism.model)
     lam: Array = np.zeros(work.m)
-    done, ahead, allowed = 0.0, FIRST, work.n_v
+    done, ahead, allowed, failed = 0.0, FIRST, work.n_v, False
+    rate = np.zeros_like(y)  # of the way, with s
     while done < 1.0:
         to = min(1.0, done + ahead)
-        found = balanced(Parts(mechanism, work, to), y, lam, allowed)
+        begin = y + (to - done) * rate
+        found = balanced(Parts(mechanism, work, to), begin, lam, allowed)
         if isinstance(found, float):
-            ahead = found * (to - done)
+            ahead, failed = found * (to - done), True
             if ahead < SHORTEST:
                 raise ModelError(
                     "no static equilibrium found: beyond "
@@ -57,8 +59,10 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
                     ("initial", "equilibrium"),
                 )
             continue
+        rate = (found[0] - y) / (to - done) if done else rate
         y, lam, allowed = found
-        done, ahead = to, 2.0 * (to - done) if done else 1.0
+        done, ahead = to, 1.0 if not done else (to - done) * (1.0 if failed else 2.0)
+        failed = False
         remember(work, y)
     return y, checked(mechanism, work, y, lam)
 
