@@ -165,14 +165,14 @@ def positions(
     y = follow(held, carried(mechanism, held))
     residual = 0.0
     targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
-    settle = initial.settles
+    settle, rigid = initial.settles, not mechanism.beams
     there = None
     if settle and targets and playing:
-        there = by_ideal_joints(scenario, initial, frozenset(playing), held)
+        there = by_ideal_joints(scenario, initial, frozenset(playing), held, rigid)
     if settle:
-        y, residual = equilibrium(held, y if there is None else there, not mechanism.beams)
+        y, residual = equilibrium(held, y if there is None else there, rigid)
     if targets and there is None:
-        y, residual = approach(held, y, targets, settle)
+        y, residual = approach(held, y, targets, settle, rigid)
     remember(held.model, y)
     if mechanism.beams:
         stiff, held = held, with_scene(assemble(scenario, ideal, drives))
@@ -191,7 +191,7 @@ def bent(stiff: Any, held: Any, y: Array, settle: bool) -> tuple[Array, float]:
 
 
 def by_ideal_joints(
-    scenario: Any, initial: Any, playing: frozenset[str], held: Any
+    scenario: Any, initial: Any, playing: frozenset[str], held: Any, rigid: bool
 ) -> Array | None:
     """y of `held` where all joints are ideal and `initial` is reached; None where it is not.
 
@@ -200,9 +200,9 @@ def by_ideal_joints(
     try:
         drives = holding_drives(scenario, initial)
         bare = with_scene(assemble(scenario, playing, drives, stiff=True))
-        y, _ = equilibrium(bare, follow(bare, carried(bare, bare)), False)
+        y, _ = equilibrium(bare, follow(bare, carried(bare, bare)), rigid)
         targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
-        y, _ = approach(bare, y, targets, True)
+        y, _ = approach(bare, y, targets, True, rigid)
     except ModelError:
         return None
     remember(bare.model, y)
@@ -226,7 +226,9 @@ def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     return drives
 
 
-def approach(held: Any, y: Array, targets: dict[int, float], settle: bool) -> tuple[Array, float]:
+def approach(
+    held: Any, y: Array, targets: dict[int, float], settle: bool, rigid: bool
+) -> tuple[Array, float]:
     """Move joint coordinates to their targets by quasi-static steps that keep the branch."""
     model = held.model
     place = {s: model.n_q + model.n_v + N_BOOK + k for k, s in enumerate(held.follows) if s >= 0}
@@ -242,7 +244,7 @@ def approach(held: Any, y: Array, targets: dict[int, float], settle: bool) -> tu
             if left > 1e-9 * model.size:
                 raise ModelError("the joints cannot be closed")
             if settle:
-                trial, residual = equilibrium(held, trial)
+                trial, residual = equilibrium(held, trial, rigid)
         except ModelError as error:
             step *= 0.5
             failed += 1

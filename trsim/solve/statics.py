@@ -89,10 +89,11 @@ def balance(
     return F, J, free_motions(J, free, mass)
 
 
-def equilibrium(mechanism: Mechanism, y: Array, held: bool = True) -> tuple[Array, float]:
+def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Array, float]:
     """The equilibrium reached from y, drives held at t = 0; and the force left, N.
 
-    held: refuse one that is indifferent.  (Stiff bars may spin about themselves, flexible do not.)
+    rigid: no body is a flexible bar made stiff, which may spin about itself; an equilibrium that
+    is indifferent is refused.
     """
     model = workspace(mechanism.model)
     y, _ = closest(model, 0.0, y)
@@ -118,7 +119,7 @@ def equilibrium(mechanism: Mechanism, y: Array, held: bool = True) -> tuple[Arra
         size = float(np.linalg.norm(r))
         left = float(np.linalg.norm((Z @ r) * mass))
         if left <= BALANCED * scale or size == 0.0:
-            if held:
+            if rigid:
                 check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
             return y, left
         if count == 0:
@@ -134,7 +135,7 @@ def equilibrium(mechanism: Mechanism, y: Array, held: bool = True) -> tuple[Arra
         turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
         # a stiff contact turns the rounding of a position into a force: no step is left to take
         if max(longest, turned) < ROUNDING * model.size and left < 1e-6 * scale:
-            if held:
+            if rigid:
                 check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
