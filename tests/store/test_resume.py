@@ -17,7 +17,7 @@ import pytest
 from tests import small
 from tests.store import outside
 from trsim.assemble.assemble import assemble
-from trsim.assemble.layout import Column
+from trsim.assemble.mechanism import Column
 from trsim.solve import simulate as solver
 from trsim.spec.load import loads
 from trsim.store import checkpoint, describe, hdf5, peaks, resume

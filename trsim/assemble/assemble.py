@@ -11,8 +11,8 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
-from trsim.assemble.layout import Column, layout
-from trsim.assemble.mechanism import Instance, Mechanism, RowName
+from trsim.assemble.layout import layout
+from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName
 from trsim.assemble.members import members
 from trsim.assemble.pattern import pattern
 from trsim.assemble.rows import (

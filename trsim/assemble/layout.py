@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trsim.assemble.mechanism import Column, Instance
 from trsim.assemble.outputs import energy_columns
 from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import Model
@@ -13,20 +14,8 @@ from trsim.errors import ScenarioError, known
 
 if TYPE_CHECKING:
     from trsim.assemble.addresses import Addresses
-    from trsim.assemble.mechanism import Instance
 
 NOT_BY_DEFAULT = ("*.rotation",)
-
-
-class Column(NamedTuple):
-    """One channel of the output rows."""
-
-    name: str
-    unit: str
-    meaning: str
-    start: int
-    size: int
-    wanted: bool
 
 
 def matches(name: str, patterns: tuple[str, ...]) -> bool:
@@ -34,7 +23,7 @@ def matches(name: str, patterns: tuple[str, ...]) -> bool:
     return any(fnmatchcase(name, p) or name.startswith(p + ".") for p in patterns)
 
 
-def unit(instance: "Instance", channel: Channel, at: "Addresses") -> str:
+def unit(instance: Instance, channel: Channel, at: "Addresses") -> str:
     """The unit of a channel; some depend on whether a joint turns or slides."""
     if channel.unit == channel.unit_on("rad") == channel.unit_on("m"):
         return channel.unit
@@ -47,7 +36,7 @@ def unit(instance: "Instance", channel: Channel, at: "Addresses") -> str:
     return channel.unit_on("rad" if x is not None and x.kind == "angle" else "m")
 
 
-def all_names(instances: Iterable["Instance"], jumps: int) -> list[str]:
+def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
     """Every channel one may ask for, and the elements that have some."""
     names = []
     for instance in instances:
@@ -58,7 +47,7 @@ def all_names(instances: Iterable["Instance"], jumps: int) -> list[str]:
 
 
 def layout(
-    scenario: Any, model: Model, instances: list["Instance"], at: "Addresses", planar: bool
+    scenario: Any, model: Model, instances: list[Instance], at: "Addresses", planar: bool
 ) -> tuple[Model, list[Column]]:
     """The model with its output tables filled, and the columns."""
     patterns = tuple(scenario.output.channels)

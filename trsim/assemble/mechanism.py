@@ -2,12 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.layout import Column
 from trsim.assemble.members import Beam
 from trsim.elements.contract import Channel, Element, Row
 from trsim.elements.scene import Model
@@ -16,6 +15,17 @@ if TYPE_CHECKING:
     from trsim.assemble.stages import Stages
 
 Array = NDArray[np.float64]
+
+
+class Column(NamedTuple):
+    """One channel of the output rows."""
+
+    name: str
+    unit: str
+    meaning: str
+    start: int
+    size: int
+    wanted: bool
 
 
 @dataclass(frozen=True)
