@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from trsim.assemble.members import Beam, beams
+from trsim.assemble.members import Beam, beams, cable
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import names
@@ -105,6 +105,13 @@ class Addresses:
             )
         i = self.body(pair[0], "bodies", 0, near=at)
         return i, self.body(pair[1], "bodies", 1, near=at if other is None else other)
+
+    def bar(self, name: str) -> Any:
+        """The spec of a flexible bar, also where it is stiff for a start; None of others."""
+        spec = self.scenario.bodies.get(name)
+        if spec is None or (spec.type == "rigid_body" and spec.flexible is None):
+            return None
+        return spec if spec.type == "ancf_cable" else cable(name, spec, self.scenario)
 
     def is_node(self, i: int) -> bool:
         """Whether a frame is a node of a flexible bar."""

@@ -74,18 +74,21 @@ class _Coupling:
         if instance.section not in ("joints", "drives", "forces", "events"):
             return frozenset()
         con, key = instance.row.con, instance.element.key
-        frames = {con[0], con[1]}
+        frames = set(instance.element.acts_on(instance.row))
         states = {con[STATE[key]]} if key in STATE else set()
         if key == "drive":
             states |= {state for state, _ in self.motions.get(instance.name, ())}
-        if key == "applied_load":
+        if key in ("applied_load", "distributed_load"):
             frames |= self.read(self.scenario.forces[instance.name])
         own = {f - 1 for f in frames if f > 0}
         return frozenset(own | {self.bodies + z - N_BOOK for z in states if z >= 0})
 
     def read(self, load: Any) -> set[int]:
         """The bodies whose motion a load depends on through sensors."""
-        function = load.torque if load.force is None else load.force
+        if load.type == "distributed_load":
+            function = load.force_per_length
+        else:
+            function = load.torque if load.force is None else load.force
         joints = [self.scenario.sensors[n].joint for n in function.names - {"t", "pi"}]
         found = [self.coordinates[joint] for joint in joints]
         return {frame for x in found for frame in (x.i, x.j)}

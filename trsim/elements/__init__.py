@@ -21,6 +21,7 @@ ELEMENTS = {
     "sensor": "sensors",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
+    "distributed_load": "forces",
     "spring_damper": "forces",
     "torsion_spring": "forces",
     "limit_stop": "forces",

@@ -111,6 +111,11 @@ class Row:
     channels: tuple[Channel, ...] | None = None  # of this instance, where they are not its kind's
 
 
+def ends(row: Row) -> frozenset[int]:
+    """The first two columns of con: the frames that most elements join."""
+    return frozenset(row.con[:2])
+
+
 @dataclass(frozen=True)
 class Element:
     """One kind of element, as the rest of trsim sees it."""
@@ -122,6 +127,7 @@ class Element:
     rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
     coordinate: str = ""  # name of the joint coordinate: angle, stroke
     channels: tuple[Channel, ...] = ()
+    acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     n_mem: int = 0
     n_state: int = 0  # entries of z an instance owns
     kernels: dict[str, Compiled] = field(default_factory=dict)

@@ -58,7 +58,7 @@ def acted_on(mechanism: Mechanism) -> NDArray[np.int64]:
     frames = {x for c in mechanism.coordinates.values() for x in (c.i, c.j)}
     for instance in mechanism.instances:
         if instance.section in ("joints", "drives", "forces", "events"):
-            frames |= set(instance.row.con[:2])
+            frames |= instance.element.acts_on(instance.row)
         elif instance.element.key == "ancf_cable" and instance.row.par[BETA] > 0.0:
             first, nodes = instance.row.con[:2]
             frames |= set(range(first, first + nodes))
