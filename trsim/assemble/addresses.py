@@ -5,15 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from trsim.assemble.members import Beam, beams, cable
+from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import names
 from trsim.laws import functions
 from trsim.laws.tables import akima_coefficients
 from trsim.units import quantity, unit
-
-AT_A_NODE = 1e-6  # of a bar's length: a joint so far from a node is at it
 
 
 class JointCoordinate(NamedTuple):
@@ -72,7 +70,7 @@ class Addresses:
     def body(self, name: str, *path: str | int, near: Any = None, off: float = AT_A_NODE) -> int:
         """Frame of a body; ground is 0.  Of a flexible bar the node at the place `near`.
 
-        off: how far from a node that place may be, in lengths of the bar.
+        near: its middle unless given; off: how far from a node that may be, in lengths of the bar.
         """
         if name in self.beams:
             return self._node(name, path, near, off)
@@ -83,18 +81,14 @@ class Addresses:
 
     def _node(self, name: str, path: tuple[str | int, ...], near: Any, off: float) -> int:
         beam = self.beams[name]
-        if near is None:
-            near = beam.places[beam.nodes // 2]
-        away = np.linalg.norm(beam.places - np.array(near), axis=1)
+        place = 0.5 * (beam.places[0] + beam.places[-1]) if near is None else np.array(near)
+        away = np.linalg.norm(beam.places - place, axis=1)
         k = int(np.argmin(away))
         if away[k] > off * beam.whole:
-            x, y, z = beam.places[k]
-            raise ScenarioError(
-                f"is {away[k]:.3g} m away from the nearest node of '{name}'",
-                f"that one is at [{x:.6g}, {y:.6g}, {z:.6g}]: choose `elements` so that a node "
-                "lies at every joint and load",
-                path,
-            )
+            what, hint = off_the_nodes(self.scenario, name, beam, place)
+            if near is None:
+                what = f"without `at` this is at the middle of '{name}', and that {what}"
+            raise ScenarioError(what, hint, path)
         return beam.first + k
 
     def bodies(self, pair: tuple[str, str], at: Any, other: Any = None) -> tuple[int, int]:

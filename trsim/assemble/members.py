@@ -1,16 +1,20 @@
 """Which bodies there are: rigid ones, and flexible bars as beams or, for a start, as rigid ones."""
 
-from math import sqrt
+from itertools import islice
+from math import dist
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.errors import ScenarioError
+from trsim.spec.slender import ends
 
 Array = NDArray[np.float64]
 
 SLENDER = 1e-6  # of its inertia across: what a bar without width has about its own line
+AT_A_NODE = 1e-6  # of its length: a joint so far from a node is at it
+MOST_TRIED = 100  # elements
 ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
@@ -51,18 +55,22 @@ def cable(name: str, spec: Any, scenario: Any) -> Any:
     """The rigid bar `spec` as a flexible one, between its joints."""
     from trsim.elements.ancf_cable import AncfCable
 
-    ends = [j.at for j in scenario.joints.values() if name in j.bodies and j.at is not None]
-    pairs = [(a, b) for a in ends for b in ends]
-    start, end = max(pairs, key=lambda pair: distance(*pair), default=((), ()))
-    if not start or start == end:
+    start, end = ends(scenario, name)
+    if start == end:
         raise ScenarioError(
             "a flexible bar lies between two of its joints, and this one has fewer",
             "give it joints at both ends, or make it an ancf_cable with `start` and `end`",
             ("flexible",),
         )
+    if spec.mass == 0.0 and spec.flexible.density is None and spec.flexible.mass is None:
+        raise ScenarioError(
+            "a flexible bar needs a mass",
+            "give the body a `mass`, or `flexible` a `density`",
+            ("mass",),
+        )
     middle = tuple(0.5 * (a + b) for a, b in zip(start, end, strict=True))
-    away = distance(middle, spec.at)
-    if away > ON_LINE * distance(start, end):
+    away = dist(middle, spec.at)
+    if away > ON_LINE * dist(start, end):
         raise ScenarioError(
             f"its centre of mass is {away:.3g} m away from the middle between its joints",
             "a flexible bar is straight and alike all along; make it an ancf_cable with `start` "
@@ -140,5 +148,59 @@ def tangent(bar: Any) -> Array:
     return (np.array(bar.end) - np.array(bar.start)) / bar.length
 
 
-def distance(a: tuple[float, ...], b: tuple[float, ...]) -> float:
-    return sqrt(sum((x - y) ** 2 for x, y in zip(a, b, strict=True)))
+def off_the_nodes(scenario: Any, name: str, beam: Beam, place: Array) -> tuple[str, str]:
+    """What is wrong with a place that is at no node, and what to do about it."""
+    away = np.linalg.norm(beam.places - place, axis=1)
+    nearest = shown(beam.places[int(np.argmin(away))])
+    along, off = on_line(beam, place)
+    if off > AT_A_NODE or not -AT_A_NODE <= along <= 1.0 + AT_A_NODE:
+        return (
+            f"is not on the line of '{name}', from {shown(beam.places[0])} to "
+            f"{shown(beam.places[-1])}",
+            f"a flexible bar is joined and loaded at its nodes, the nearest is at {nearest}; fix a "
+            "rigid body to the bar to reach further",
+        )
+    fits = counts([on_line(beam, np.array(p))[0] for p in [*held(scenario, name), place]])
+    hint = (
+        f"the nearest is at {nearest}; `elements: {fits[0]}` puts nodes at all joints and loads of "
+        f"'{name}'" + (f", and so do {' and '.join(map(str, fits[1:]))}" if fits[1:] else "")
+        if fits
+        else f"the nearest is at {nearest}, and no number of elements up to {MOST_TRIED} puts nodes "
+        f"at all joints and loads of '{name}': move one of them"
+    )
+    return f"is {away.min():.3g} m away from the nearest node of '{name}'", hint
+
+
+def held(scenario: Any, name: str) -> list[tuple[float, ...]]:
+    """Where joints and forces need a node of a body."""
+    found = [j.at for j in scenario.joints.values() if name in j.bodies]
+    for force in scenario.forces.values():
+        point = getattr(force, "point", None)
+        pairs = [
+            (getattr(force, "body", None), getattr(force, "at", None)),
+            *zip(getattr(force, "bodies", ()), getattr(force, "points", ()), strict=False),
+            (getattr(point, "body", None), getattr(point, "at", None)),
+        ]
+        found += [at for body, at in pairs if body == name]
+    return [at for at in found if at is not None]
+
+
+def on_line(beam: Beam, place: Array) -> tuple[float, float]:
+    """How far along a bar a place is and how far off its line, both in lengths of the bar."""
+    r = (place - beam.places[0]) / beam.whole
+    along = float(r @ np.array(beam.tangent))
+    return along, float(np.linalg.norm(r - along * np.array(beam.tangent)))
+
+
+def counts(places: list[float]) -> list[int]:
+    """The first numbers of elements with nodes at all places (0..1 along the bar)."""
+    fit = (
+        n
+        for n in range(1, MOST_TRIED + 1)
+        if all(abs(s - round(s * n) / n) <= AT_A_NODE for s in places)
+    )
+    return list(islice(fit, 3))
+
+
+def shown(place: Array) -> str:
+    return f"[{place[0]:.6g}, {place[1]:.6g}, {place[2]:.6g}]"

@@ -24,6 +24,8 @@ from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
 
+ALONG, PARTLY = 1.0 - 1e-9, 0.1  # cosines of a torque against the tangent of a flexible bar
+
 
 def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowName]:
     """Every constraint row of the elements, in three dimensions.
@@ -138,6 +140,7 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
                 "use a round or square section, or draw the mechanism in the x-y plane",
                 ("bodies", name),
             )
+    loads(at, instances)
     for instance in instances:
         i, j = (*instance.row.con[:2], 0)[:2] if instance.section == "joints" else (0, 0)
         free = instance.element.key in ("spherical", "fixed")
@@ -147,4 +150,28 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
                 "and in space that has no torsion",
                 "join it by `spherical` or `fixed`, or draw the mechanism in the x-y plane",
                 ("joints", instance.name),
+            )
+
+
+def loads(at: Addresses, instances: list[Instance]) -> None:
+    """A torque along a flexible bar in space, which turns nothing: refused, or told."""
+    for instance in instances:
+        if instance.element.key != "applied_load":
+            continue
+        node, frame, _, is_torque = instance.row.con[:4]
+        if not is_torque or not at.is_node(node):
+            continue
+        along = at.rotation[frame] @ np.array(instance.row.par[3:6]) @ at.rotation[node][:, 0]
+        turns = at.owners[frame] == at.owners[node]
+        if turns and abs(along) > ALONG:
+            raise ModelError(
+                f"turns '{at.owners[node]}' about itself, and in space that has no torsion",
+                "let it act on a rigid body at the end of the bar, or give it another direction",
+                ("forces", instance.name, "direction"),
+            )
+        if abs(along) > PARTLY:
+            at.notes.append(
+                f"forces.{instance.name}: {abs(along):.0%} of this torque points along "
+                f"'{at.owners[node]}' as drawn; a flexible bar in space has no torsion, so that "
+                "part turns nothing"
             )

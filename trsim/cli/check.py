@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from trsim.cli.bars import bar_lines
 from trsim.cli.frame import Answer, framed
 from trsim.cli.modes import mode_lines
 from trsim.cli.source import loaded
@@ -123,6 +124,7 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
 def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
     from trsim.solve import doubts
+    from trsim.solve.bar_scales import bar_scales
     from trsim.solve.modes import modes
     from trsim.solve.projected import projected
     from trsim.solve.scales import scales
@@ -151,6 +153,8 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
         },
         "doubts": list(doubts.of_start(scenario, mechanism, at)),
         "scales": {**found, "end": end},
+        "flexible": [asdict(bar) for bar in bar_scales(scenario, mechanism, of_start.contacts)],
+        "every": scenario.output.every or (end / 1000.0 if end is not None else None),
         **({"modes": [asdict(mode) for mode in modes(mechanism, at)]} if shapes else {}),
     }
 
@@ -177,6 +181,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         *mobility_lines(found),
         *start_lines(found["start"]),
         *scale_lines(found["scales"], found["mobility"]),
+        *bar_lines(found),
         *(mode_lines(found["modes"]) if "modes" in found else ()),
         *(f"  skipped     {text}" for text in found["skipped"]),
         *(f"  note        {note}" for note in found["notes"]),
@@ -254,6 +259,7 @@ def scale_lines(scales: dict[str, Any], mobility: int) -> list[str]:
     told = []
     if not scales["eigenvalues"]:
         why = "mobility 0" if mobility == 0 else "no stiffness at the start"
+        why = "too many nodes for them" if scales["fastest_is"].startswith("the mesh") else why
         told.append(f"no eigenvalues: {why}")
     else:
         fastest = [f"{scales['frequency'] / (2 * pi):.3g} Hz"] if scales["frequency"] else []

@@ -47,7 +47,8 @@ class AncfCable(Cable):
         if self.start == self.end:
             raise ScenarioError("a bar has a length", "let start and end differ", ("end",))
         if self.density is None and self.mass is None:
-            raise ScenarioError("give a `density` or a `mass`", path=("density",))
+            hint = "for example `density: 7850 kg/m^3`; `mass` is that of the whole bar"
+            raise ScenarioError("give a `density` or a `mass`", hint)
         return self
 
     @property

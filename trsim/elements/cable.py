@@ -7,7 +7,7 @@ It stands in two places: under the key `flexible` of a rigid body that is a stra
 part of an ancf_cable, a body of its own.
 """
 
-from math import pi
+from math import pi, sqrt
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt, Interval
@@ -91,12 +91,16 @@ class Cable(Spec):
     def one_section(self):
         given = (self.area is not None, self.second_moment is not None)
         if self.section is not None and any(given):
-            raise ScenarioError("give either a `section` or `area` and `second_moment`")
+            hint = "A and I follow from the section: leave the two out"
+            raise ScenarioError(
+                "give either a `section` or `area` and `second_moment`", hint, ("section",)
+            )
         if self.section is None and not all(given):
             hint = "for example `section: {diameter: 45 mm}`"
             raise ScenarioError("give a `section`, or `area` and `second_moment`", hint)
         if self.density is not None and self.mass is not None:
-            raise ScenarioError("give either `density` or `mass`", path=("mass",))
+            hint = "the mass of a bar is its density times its volume: leave one of the two out"
+            raise ScenarioError("give either `density` or `mass`", hint, ("mass",))
         return self
 
     @property
@@ -106,3 +110,12 @@ class Cable(Spec):
             return self.section.numbers
         assert self.area and self.second_moment  # noqa: S101
         return self.area, self.second_moment, True
+
+    @property
+    def thickness(self) -> float:
+        """In the direction of bending, m; without a shape that of a rectangle."""
+        if self.section is not None:
+            section = self.section
+            return section.diameter or section.height or section.width or 0.0
+        area, moment, _ = self.numbers
+        return sqrt(12.0 * moment / area)

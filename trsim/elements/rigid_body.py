@@ -6,9 +6,10 @@ Its axes are the world's at t = 0 unless `angle` turns them about z.  There is n
 equations of motion hold the masses (assemble/equations.py).
 """
 
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge
+from pydantic import BeforeValidator
 
 from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Row, kernel
@@ -16,6 +17,14 @@ from trsim.fields import Spec, Unit, vector
 
 KG_M2 = Unit("kg*m^2")
 INERTIA = Annotated[float, Ge(0), KG_M2]
+
+
+def _switched_off(value: Any) -> Any:
+    """`false` is none: how a file that extends another makes its bar rigid again."""
+    return None if value is False else value
+
+
+SWITCH = BeforeValidator(_switched_off, json_schema_input_type=Cable | Literal[False] | None)
 
 
 class RigidBody(Spec):
@@ -31,7 +40,8 @@ class RigidBody(Spec):
                       joints start free, otherwise as ideal ones
     angular_velocity  at the start, world axes
     flexible          what makes it an ancf_cable: a straight bar between the two of its joints that
-                      lie farthest apart; its mass is the body's unless a density is given
+                      lie farthest apart; its mass is the body's unless a density is given, its
+                      inertia that of the bar; `false` in a file that extends makes it rigid again
     """
 
     type: ClassVar[str] = "rigid_body"
@@ -52,7 +62,7 @@ class RigidBody(Spec):
     angle: Annotated[float, Unit("rad")] = 0.0
     velocity: vector("m/s") = (0.0, 0.0, 0.0)
     angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
-    flexible: Cable | None = None
+    flexible: Annotated[Cable | None, SWITCH] = None
 
 
 def tensor(inertia):

@@ -34,6 +34,7 @@ from trsim.solve.velocities import twist_gradient
 Array = NDArray[np.float64]
 
 REAL, IMAGINARY = 2.785, 2.828  # where the stability region of rk4 ends
+LARGEST = 600  # velocities of a mechanism with flexible bars that is linearised: some seconds
 SLOWEST = 1e-3  # m/s: speed of an impact where none is given
 DIRECTIONS = 8  # of the normal of a journal that touches nothing yet
 IMMOVABLE = 1e-4  # of what the bodies alone would give: a contact that joints and drives fix
@@ -73,6 +74,8 @@ class Scales:
 
 def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
     """Time scales of a mechanism at its start."""
+    if mechanism.beams and mechanism.model.n_v > LARGEST:
+        return of_meshes(scenario, mechanism, begun)
     linear = linearised(mechanism, begun)
     natural = float(begun.speed / begun.length)
     every = np.linalg.eigvals(linear.A) if linear.A.size else np.zeros(0)
@@ -92,6 +95,25 @@ def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
         contacts=contacts,
         fastest=fastest,
         fastest_is=words,
+        explicit_step=step,
+    )
+
+
+def of_meshes(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
+    """What is known without a linearisation, which so many nodes would make slow."""
+    from trsim.solve.bar_scales import bar_scales
+
+    step, name = min((bar.explicit_step, bar.name) for bar in bar_scales(scenario, mechanism, ()))
+    return Scales(
+        eigenvalues=(),
+        zeros=0,
+        decay=0.0,
+        growth=0.0,
+        frequency=IMAGINARY / step,
+        natural_time=float(begun.length / begun.speed),
+        contacts=(),
+        fastest=IMAGINARY / step,
+        fastest_is=f"the mesh of '{name}'",
         explicit_step=step,
     )
 

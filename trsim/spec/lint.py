@@ -16,6 +16,7 @@ from trsim.laws.contact import (
     hertz_peak,
 )
 from trsim.spec import plausible
+from trsim.spec.slender import slender
 
 LARGE, SMALL = 3.0, 0.01  # radius of gyration over the reach of the joints
 ROUNDED = 1e-3  # inertias are typed with three or four digits
@@ -31,6 +32,7 @@ def lint(scenario: Any) -> tuple[str, ...]:
     checks = (
         *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
         *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
+        slender,
     )
     return tuple(message for check in checks for message in check(scenario))
 

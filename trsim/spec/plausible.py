@@ -29,7 +29,7 @@ def moduli(scenario: Any) -> Iterator[str]:
             if E is not None and not SOFTEST <= E <= HARDEST:
                 yield (
                     f"contact_laws.{name}.{key}: {E:.3g} Pa; solids have 1 MPa (rubber) to 1 TPa "
-                    f"(diamond), steel 2.1e+11 Pa: {_prefix(E)}"
+                    f"(diamond), steel 2.1e+11 Pa: {prefix(E)}"
                 )
     for name, joint in scenario.joints.items():
         law = scenario.contact_laws.get(getattr(joint, "contact", None))
@@ -53,7 +53,7 @@ def modulus(K: float, R: float, c: float) -> float:
     return 1.5 * K * (1.0 - POISSON**2) / sqrt(R * (R - c) / c)
 
 
-def _prefix(E: float) -> str:
+def prefix(E: float) -> str:
     """The unit that was meant, if one fits: left out, or written after a number in Pa."""
     for unit, factor in (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)):
         if E < SOFTEST <= E * factor <= HARDEST:

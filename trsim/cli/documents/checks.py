@@ -134,6 +134,38 @@ class Scales(TypedDict):
     end: Number
 
 
+class Bar(TypedDict):
+    """What a flexible bar gives way, and its slowest and fastest motion.
+
+    name            of the body
+    elements        how many
+    length          m
+    mass            kg
+    axial           compliance along it, L/EA, m/N
+    bending         across, in the middle between hinges at its ends, L^3/(48 EI), m/N
+    cantilever      across, at the end of a cantilever, L^3/(3 EI), m/N
+    lowest          bending frequency between hinges, Hz
+    wave            time an axial wave takes from end to end, s
+    highest         largest frequency of its mesh, Hz
+    explicit_step   largest step of rk4 that is stable for it, s
+    contact_shares  joint with clearance -> its compliance at the load of the start, as a part of
+                    that of contact and bar in line
+    """
+
+    name: str
+    elements: int
+    length: Number
+    mass: Number
+    axial: Number
+    bending: Number
+    cantilever: Number
+    lowest: Number
+    wave: Number
+    highest: Number
+    explicit_step: Number
+    contact_shares: dict[str, Number]
+
+
 class Moved(TypedDict):
     """What a body does in a mode; the largest motion of all is 1.
 
@@ -189,6 +221,8 @@ class Checked(TypedDict):
     notes              what looks wrong
     start              where a run would start
     scales             stiffness and time scales
+    flexible           each flexible bar
+    every              time between two rows of the output, s; null where it has no end
     modes              small motions about the start, slowest first; with --modes
     skipped            what a run leaves out, and why
     """
@@ -215,6 +249,8 @@ class Checked(TypedDict):
     notes: list[str]
     start: Start
     scales: Scales
+    flexible: list[Bar]
+    every: Number
     modes: NotRequired[list[Mode]]
     skipped: list[str]
 

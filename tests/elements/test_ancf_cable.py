@@ -1,0 +1,258 @@
+"""What a user of flexible bars may get wrong: each slip is refused, or told, where it stands."""
+
+import pytest
+
+from trsim.assemble.assemble import assemble
+from trsim.errors import TrsimError
+from trsim.spec.lint import lint
+from trsim.spec.load import loads, locate
+
+BAR = """\
+bodies:
+  rod:
+    type: ancf_cable
+    start: [0, 0]
+    end: [1, 0]
+    elements: 4
+    section: {diameter: 20 mm}
+    youngs_modulus: 207 GPa
+    density: 7850
+  tip: {mass: 0.5, inertia: [1e-3, 1e-3, 1e-3], at: [1, 0]}
+joints:
+  pin: {type: spherical, bodies: [ground, rod], at: [0, 0]}
+  weld: {type: fixed, bodies: [rod, tip], at: [1, 0]}
+gravity: [0, -9.81]
+solver: {end: 0.1}
+"""
+FLEXIBLE = """\
+bodies:
+  rod:
+    mass: 2.466
+    inertia: 0.2055
+    at: [0.5, 0]
+    flexible: {section: {diameter: 20 mm}, youngs_modulus: 207 GPa}
+  tip: {mass: 0.5, inertia: 1e-3, at: [1, 0]}
+joints:
+  pin: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+  hinge: {type: revolute, bodies: [rod, tip], at: [1, 0]}
+solver: {end: 0.1}
+"""
+SPACE = "planar: false\n"
+LOAD = "forces: {{f: {{type: applied_load, body: rod, {}}}}}\n"
+
+
+def refused(text: str, *changes: tuple[str, str], sets: tuple[str, ...] = ()) -> TrsimError:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    with pytest.raises(TrsimError) as caught:
+        scenario = loads(text, sets)
+        try:
+            assemble(scenario)
+        except TrsimError as error:
+            raise locate(error, scenario) from None
+    return caught.value
+
+
+def told(text: str, *changes: tuple[str, str]) -> str:
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    return "\n".join(lint(loads(text)))
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "line", "words"),
+    [
+        (("7850", "-7850"), "rod.density", 9, "must be > 0"),
+        (("end: [1", "end: [0"), "rod.end", 5, "a bar has a length"),
+        (("diameter: 20 mm", "diameter: 20 mm, width: 3 mm"), "rod.section", 7, "either `diam"),
+        (("{diameter: 20 mm}", "20 mm"), "rod.section", 7, "must be a mapping"),
+        (("20 mm}", "20 mm}\n    area: 1e-4"), "rod.section", 7, "the section: leave the two out"),
+        (("    section: {diameter: 20 mm}\n", ""), "rod", 2, "give a `section`, or `area`"),
+        (("20 mm}", "20 mm, wall: 12 mm}"), "rod.section.wall", 7, "half of its diameter"),
+        (("20 mm}", "20 mm, height: 12 mm}"), "rod.section.height", 7, "belongs to a width"),
+        (("elements: 4", "elements: 0"), "rod.elements", 6, "must be >= 1"),
+        (("elements: 4", "elements: 2.5"), "rod.elements", 6, "a whole number"),
+        (("elements: 4", "strain: grean"), "rod.strain", 6, "Did you mean 'green'?"),
+        (("elements: 4", "curvature: papr"), "rod.curvature", 6, "Did you mean 'paper'?"),
+        (("elements: 4", "mass: 2"), "rod.mass", 6, "either `density` or `mass`"),
+        (("    density: 7850\n", ""), "rod", 2, "give a `density` or a `mass`"),
+        (("207 GPa", "207 mm"), "rod.youngs_modulus", 8, "wrong unit: 'mm' is a length"),
+        (("7850", "7850 kg"), "rod.density", 9, "is a density, in kg/m^3"),
+        (("elements: 4", "damping: 2 N"), "rod.damping", 6, "is a time, in s"),
+        (("elements: 4", "damping: -1"), "rod.damping", 6, "must be >= 0"),
+    ],
+)
+def test_words_of_a_bar(change, path, line, words):
+    error = refused(BAR, change)
+    assert ".".join(map(str, error.path)) == f"bodies.{path}"
+    assert error.exit_code == 3 and error.place.line == line and words in error.show()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("area: A", "area: 1e-4 m"), "is an area, in m^2"),
+        (("moment: I", "moment: 1e-9 m^3"), "is a second moment of area, in m^4"),
+    ],
+)
+def test_units_of_a_section(change, words):
+    text = BAR.replace("section: {diameter: 20 mm}", "area: A\n    second_moment: I")
+    text = text.replace(*change).replace(": A", ": 1e-4").replace(": I", ": 1e-9")
+    assert words in refused(text).show()
+
+
+@pytest.mark.parametrize(
+    ("at", "words"),
+    [
+        ("[0.9, 0]", "`elements: 10` puts nodes at all joints and loads of 'rod', and so do 20"),
+        ("[0.3333333333, 0]", "`elements: 3` puts nodes"),
+        ("[0.7071, 0]", "no number of elements up to 100"),
+        ("[0.5, 0.1]", "is not on the line of 'rod', from [0, 0, 0] to [1, 0, 0]"),
+        ("[1.5, 0]", "is not on the line of 'rod'"),
+    ],
+)
+def test_a_joint_away_from_the_nodes(at, words):
+    error = refused(BAR, ("bodies: [rod, tip], at: [1, 0]", f"bodies: [rod, tip], at: {at}"))
+    assert error.place.line == 13 and error.path[:2] == ("joints", "weld")
+    assert words in error.show() and "the nearest is at [" in error.show()
+
+
+def test_the_count_that_is_proposed_is_accepted():
+    text = BAR.replace("bodies: [rod, tip], at: [1, 0]", "bodies: [rod, tip], at: [0.9, 0]")
+    assemble(loads(text, ["bodies.rod.elements=10"]))
+
+
+def test_a_load_without_a_place_is_at_the_middle():
+    text = BAR + LOAD.format("direction: [0, 1], force: 3")
+    assert assemble(loads(text)).model.n
+    error = refused(text, ("elements: 4", "elements: 3"))
+    assert "without `at` this is at the middle of 'rod'" in error.what
+    assert "`elements: 2` puts nodes" in error.hint
+
+
+@pytest.mark.parametrize("key", ["points: [[0, 1], [0.3, 0]], stiffness: 3"])
+def test_a_spring_away_from_the_nodes(key):
+    text = BAR + f"forces: {{s: {{type: spring_damper, bodies: [ground, rod], {key}}}}}\n"
+    assert "nearest node of 'rod'" in refused(text).what
+
+
+@pytest.mark.parametrize(
+    ("joint", "words"),
+    [
+        ("revolute", "a revolute holds the turning of a flexible bar about itself"),
+        ("prismatic, axis: [0, 1, 0]", "a prismatic holds the turning"),
+        ("revolute, clearance: 1 mm, contact: c", "a clearance_joint holds the turning"),
+    ],
+)
+def test_joints_that_hold_torsion_in_space(joint, words):
+    law = "contact_laws: {c: {normal: flores, stiffness: 1e9, restitution: 0.9, " + (
+        "bearing_radius: 10 mm}}\n"
+    )
+    text = SPACE + BAR.replace("type: spherical", f"type: {joint}") + law
+    error = refused(text)
+    assert error.exit_code == 4 and error.path == ("joints", "pin") and words in error.what
+
+
+def test_a_section_that_does_not_bend_alike_in_space():
+    change = ("{diameter: 20 mm}", "{width: 20 mm, height: 30 mm}")
+    assert "bends alike in all directions" in refused(SPACE + BAR, change).what
+    assert assemble(loads(BAR.replace(*change))).planar
+
+
+def test_a_torque_along_a_bar_in_space():
+    text = SPACE + BAR + LOAD.format("at: [0.5, 0], direction: [1, 0, 0], torque: 3, frame: rod")
+    error = refused(text)
+    assert error.exit_code == 4 and "about itself" in error.what
+    assert error.path == ("forces", "f", "direction") and error.place.line == 17
+    (note,) = assemble(loads(text.replace("frame: rod", "frame: world"))).notes
+    assert "100% of this torque points along 'rod'" in note
+    across = text.replace("[1, 0, 0]", "[0, 1, 0]")
+    assert not assemble(loads(across)).notes
+
+
+# --- `flexible` ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "words"),
+    [
+        (("bodies: [rod, tip]", "bodies: [ground, tip]"), ("flexible",), "two of its joints"),
+        (("at: [0.5, 0]", "at: [0.6, 0]"), ("flexible",), "0.1 m away from the middle"),
+        (("mass: 2.466", "mass: 0"), ("mass",), "a flexible bar needs a mass"),
+        (("{section: {diameter: 20 mm}, y", "{y"), ("flexible",), "give a `section`"),
+        ((", youngs_modulus: 207 GPa", ""), ("flexible",), "field required: youngs_modulus (Pa)"),
+    ],
+)
+def test_words_of_flexible(change, path, words):
+    error = refused(FLEXIBLE, change)
+    assert error.path == ("bodies", "rod", *path) and words in error.show()
+    assert error.exit_code == 3 and error.place.line
+
+
+def test_elements_are_set_on_the_command_line():
+    scenario = loads(FLEXIBLE, ["bodies.rod.flexible.elements=8"])
+    assert assemble(scenario).beams["rod"].nodes == 9
+    error = refused(FLEXIBLE, sets=("bodies.rod.flexible.elemets=8",))
+    assert "Did you mean 'elements'?" in error.hint
+
+
+@pytest.mark.parametrize("off", ["false", "null"])
+def test_a_file_that_extends_switches_it_on_and_off(off, tmp_path):
+    rigid = FLEXIBLE.replace(
+        "    flexible: {section: {diameter: 20 mm}, youngs_modulus: 207 GPa}\n", ""
+    )
+    (tmp_path / "rigid.yaml").write_text(rigid)
+    words = "{elements: 2, section: {diameter: 20 mm}, youngs_modulus: 207 GPa}"
+    on = f"extends: rigid.yaml\nbodies: {{rod: {{flexible: {words}}}}}\n"
+    (tmp_path / "bars.yaml").write_text(on)
+    assert assemble(loads(on, folder=tmp_path)).beams["rod"].nodes == 3
+    again = f"extends: bars.yaml\nbodies: {{rod: {{flexible: {off}}}}}\n"
+    assert not assemble(loads(again, folder=tmp_path)).beams
+
+
+# --- magnitudes ------------------------------------------------------------------------------
+
+
+def test_a_sound_bar_is_not_mentioned():
+    assert told(BAR) == told(FLEXIBLE) == ""
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("207 GPa", "207"), "is `207 GPa` meant?"),
+        (("7850", "0.5"), "steel has 7850: check mass, density and section"),
+        (("density: 7850", "density: 7850\n    damping: 1"), "times critical for its slowest"),
+        (("20 mm", "200 mm"), "only 5 times as long as thick; shear, which is left out, would add"),
+        (("20 mm", "2 m"), "thicker (2e+03 mm) than long (1e+03 mm)"),
+        (("elements: 4", "elements: 1"), "rod.elements: one element bends as one cubic"),
+        (("elements: 4", "elements: 60"), "shorter (16.7 mm) than thick (20 mm)"),
+        (("20 mm}", "5 mm}\n    curvature: paper"), "(membrane locking); take 8 or more"),
+        (("207 GPa", "1 MPa"), "under its own weight the bar bends within 0.069"),
+    ],
+)
+def test_magnitudes_of_a_bar(change, words):
+    assert words in told(BAR, change)
+
+
+def test_too_many_elements():
+    thin = BAR.replace("20 mm", "5 mm")
+    assert "so that 8 to 32 are enough" in told(thin, ("elements: 4", "elements: 150"))
+
+
+def test_numbers_of_the_rigid_body_that_do_not_count():
+    change = ("inertia: 0.2055", "inertia: 0.3")
+    assert "an even bar has an inertia of 0.206 kg*m^2 where `inertia` says 0.3" in told(
+        FLEXIBLE, change
+    )
+    change = ("207 GPa}", "207 GPa, mass: 4 kg}")
+    assert "the bar has 4 kg where `mass` says 2.47 kg" in told(FLEXIBLE, change)
+
+
+def test_a_clearance_larger_than_the_bar():
+    law = "contact_laws: {c: {normal: identified, stiffness: 1e9, bearing_radius: 9, %s}}\n"
+    text = FLEXIBLE + law % "restitution: 0.9"
+    change = ("tip], at: [1, 0]}", "tip], at: [1, 0], clearance: 1.5 m, contact: c}")
+    assert "is larger than 'rod' is long (1e+03 mm)" in told(text, change)
