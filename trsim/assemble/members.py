@@ -30,6 +30,7 @@ class Beam(NamedTuple):
     places: Array  # (nodes, 3)
     per_length: float  # kg/m
     stiffness: float  # EA, N
+    bending: float  # EI, N*m^2
 
     @property
     def length(self) -> float:
@@ -126,6 +127,7 @@ def beams(bodies: dict[str, Any], first: int) -> dict[str, Beam]:
             places,
             bar.per_length,
             bar.youngs_modulus * bar.numbers[0],
+            bar.youngs_modulus * bar.numbers[1],
         )
         first, element = first + nodes, element + bar.elements
     return found

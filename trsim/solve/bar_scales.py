@@ -55,7 +55,7 @@ def bar_scales(
     found = []
     stiffness = {contact.name: contact.stiffness for contact in contacts}
     for name, beam in mechanism.beams.items():
-        EI, L, per_length = bending_stiffness(scenario, name), beam.whole, beam.per_length
+        EI, L, per_length = beam.bending, beam.whole, beam.per_length
         axial = L / beam.stiffness
         highest = largest(beam.stiffness, EI, per_length, beam.length, beam.nodes - 1)
         shares = {
@@ -80,13 +80,6 @@ def bar_scales(
             )
         )
     return tuple(found)
-
-
-def bending_stiffness(scenario: Any, name: str) -> float:
-    """EI of a flexible bar, N*m^2."""
-    body = scenario.bodies[name]
-    spec = body if body.type == "ancf_cable" else body.flexible
-    return float(spec.youngs_modulus * spec.numbers[1])
 
 
 def largest(EA: float, EI: float, per_length: float, l: float, elements: int) -> float:

@@ -12,6 +12,7 @@ from trsim.errors import ModelError
 from trsim.solve import record as rec
 from trsim.solve.locked import locked
 from trsim.solve.record import Record
+from trsim.solve.strained import ALMOST, NEARLY, collapsed
 
 Array = NDArray[np.float64]
 
@@ -68,4 +69,9 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on from its record, in words; empty where nothing is found."""
-    return told(scenario, mechanism, r) or locked(mechanism, float(r.clock[rec.T]), r.y)
+    t = float(r.clock[rec.T])
+    return (
+        collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
+        or told(scenario, mechanism, r)
+        or locked(mechanism, t, r.y)
+    )

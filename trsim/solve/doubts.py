@@ -3,6 +3,7 @@
 start      a position or a velocity is not the one that was given
 contacts   pressed in by more than their law is made for: a half width of the contact of half the
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
+bars       strained by more than a linear law holds                          solve/strained.py
 energy     the book of the run does not close
 """
 
@@ -18,6 +19,7 @@ from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
+from trsim.solve.strained import of_bars
 
 Array = NDArray[np.float64]
 
@@ -37,6 +39,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *unread(scenario),
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
+        *of_bars(scenario, mechanism, outcome.peaks),
         *of_books(mechanism, outcome),
     )
 

@@ -30,6 +30,7 @@ from trsim.solve.outcome import (
 )
 from trsim.solve.record import Record, fresh_buffers
 from trsim.solve.start import start
+from trsim.solve.strained import collapsed
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -47,6 +48,7 @@ SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured o
 SPARSE_UNTIL = 1e-11  # tolerance
 GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again after these
 VISIT, LIGHT = 5000, 30  # steps between two looks at the outside world, of so many velocities
+BARS = 50  # times as often where flexible bars may collapse
 
 NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
 REASONS = {
@@ -145,7 +147,8 @@ def compiled(
         begin(work, r, b, setting)
         r.clock[rec.H] = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
-    visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v))
+    often = BARS if mechanism.beams else 1
+    visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v) // often)
     ended = None  # by a user event
     while True:
         most = min(visit, limit - int(r.count[rec.STEPS]))
@@ -156,6 +159,9 @@ def compiled(
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
                 b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
+        if reason in GO_ON and ended is None and mechanism.beams:
+            text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
+            ended = ("failed", text) if text else None
         cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
             methods[:] = [method_table(method) for method in used]
