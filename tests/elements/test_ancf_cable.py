@@ -1,11 +1,22 @@
 """What a user of flexible bars may get wrong: each slip is refused, or told, where it stands."""
 
+import json
+from math import pi, sqrt
+
 import pytest
+from click.testing import CliRunner
 
 from trsim.assemble.assemble import assemble
+from trsim.cli import program
 from trsim.errors import TrsimError
+from trsim.solve.bar_scales import bar_scales
+from trsim.solve.doubts import doubts
+from trsim.solve.scales import scales
+from trsim.solve.start import start
 from trsim.spec.lint import lint
 from trsim.spec.load import loads, locate
+
+from ..runs import run
 
 BAR = """\
 bodies:
@@ -256,3 +267,102 @@ def test_a_clearance_larger_than_the_bar():
     text = FLEXIBLE + law % "restitution: 0.9"
     change = ("tip], at: [1, 0]}", "tip], at: [1, 0], clearance: 1.5 m, contact: c}")
     assert "is larger than 'rod' is long (1e+03 mm)" in told(text, change)
+
+
+# --- check and run ---------------------------------------------------------------------------
+
+
+def test_check_tells_what_a_bar_gives_way(tmp_path):
+    """Compliances of a steel bar of 1 m and 20 mm, by hand; frequencies of the linearised run."""
+    (tmp_path / "bar.yaml").write_text(BAR)
+    ran = CliRunner().invoke(program, ["check", str(tmp_path / "bar.yaml"), "--json"])
+    (found,) = json.loads(ran.output)["scenarios"]
+    (bar,) = found["flexible"]
+    EA, EI = 207e9 * pi * 0.01**2, 207e9 * pi / 4.0 * 0.01**4
+    assert (bar["elements"], bar["length"]) == (4, 1.0)
+    assert bar["mass"] == pytest.approx(7850 * pi * 0.01**2)
+    assert bar["axial"] == pytest.approx(1.0 / EA)
+    assert bar["bending"] == pytest.approx(1.0 / (48.0 * EI))
+    assert bar["cantilever"] == pytest.approx(1.0 / (3.0 * EI))
+    assert bar["lowest"] == pytest.approx(pi / 2.0 * sqrt(EI / bar["mass"]))
+    assert bar["wave"] == pytest.approx(sqrt(7850 / 207e9))
+    # bodies and joints that are added make nothing faster
+    motion = found["scales"]["frequency"] / (2.0 * pi)
+    assert 0.5 * bar["highest"] < motion < 1.0001 * bar["highest"]
+    text = CliRunner().invoke(program, ["check", str(tmp_path / "bar.yaml")]).output
+    assert "flexible    rod: 4 elements on 1 m, 2.47 kg" in text
+    assert "gives way 1.54e-08 m/N along (L/EA)" in text
+
+
+def test_a_free_bar_has_the_frequency_of_its_mesh():
+    text = BAR.partition("  tip")[0] + "solver: {end: 0.1}\n"
+    mechanism = assemble(loads(text))
+    begun = start(loads(text), mechanism, located=True)
+    found = scales(loads(text), mechanism, begun)
+    (bar,) = bar_scales(loads(text), mechanism, found.contacts)
+    assert found.frequency / (2.0 * pi) == pytest.approx(bar.highest, rel=1e-5)
+    assert found.explicit_step == pytest.approx(bar.explicit_step, rel=1e-5)
+
+
+def test_the_share_of_a_contact():
+    law = "contact_laws: {c: {normal: identified, stiffness: 1e8, exponent: 1, restitution: 0.9, "
+    text = FLEXIBLE + law + "bearing_radius: 20 mm}}\n"
+    text = text.replace("tip], at: [1, 0]}", "tip], at: [1, 0], clearance: 1 mm, contact: c}")
+    mechanism = assemble(loads(text))
+    found = scales(loads(text), mechanism, start(loads(text), mechanism, located=True))
+    (bar,) = bar_scales(loads(text), mechanism, found.contacts)
+    assert bar.contact_shares == pytest.approx({"hinge": 1e-8 / (1e-8 + bar.axial)})
+
+
+def test_so_many_elements_are_checked_without_a_linearisation():
+    scenario = loads(BAR, ["bodies.rod.elements=300", "bodies.rod.section.diameter=1 mm"])
+    mechanism = assemble(scenario)
+    found = scales(scenario, mechanism, start(scenario, mechanism, located=True))
+    assert not found.eigenvalues and found.fastest_is == "the mesh of 'rod'"
+    (bar,) = bar_scales(scenario, mechanism, ())
+    assert found.explicit_step == bar.explicit_step < 1e-5
+
+
+PULLED = """
+bodies:
+  rope: {{type: ancf_cable, start: [0, 0], end: [1, 0], section: {{diameter: 20 mm}},
+         youngs_modulus: 1 MPa, density: 1000, strain: {}}}
+joints: {{pin: {{type: revolute, bodies: [ground, rope], at: [0, 0]}}}}
+forces:
+  f: {{type: applied_load, body: rope, at: [1, 0], direction: [1, 0], force: "{}"}}
+solver: {{end: 2, method: dop853, tolerance: 1e-6}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("strain", "force", "words"),
+    [
+        ("engineering", "-1000*t", "is squeezed to"),
+        ("green", "-1000*t", "is squeezed to"),
+        ("engineering", "1000*t", "is stretched to"),
+        ("green", "2000*t", "is stretched to"),
+    ],
+)
+def test_a_bar_that_collapses_ends_the_run(strain, force, words):
+    r = run(PULLED.format(strain, force), fails=True)
+    assert r.outcome.status == "failed" and len(r.rows) > 10
+    assert r.outcome.reason.startswith("bodies.rope (<text>:3:")
+    assert f"element 4 {words}" in r.outcome.reason
+    assert f"t = {r.outcome.time:.6g} s" in r.outcome.reason
+
+
+def test_a_bar_strained_beyond_its_law_is_told():
+    text = PULLED.replace("end: 2", "end: 0.2")
+    r = run(text.format("green", "100*smoothstep(t/0.1)"))
+    (told,) = doubts(r.scenario, r.mechanism, r.outcome)
+    assert told.startswith("bodies.rope: strained by 0.") and "along, at node" in told
+    r = run(text.format("green", "10*smoothstep(t/0.1)"))
+    assert not doubts(r.scenario, r.mechanism, r.outcome)
+
+
+def test_a_bar_bent_beyond_its_law_is_told():
+    text = PULLED.format("green", "3*smoothstep(t/0.1)").replace("[1, 0], force", "[0, 1], force")
+    text = text.replace("revolute", "fixed").replace("end: 2", "end: 1")
+    r = run(text)
+    *_, told = doubts(r.scenario, r.mechanism, r.outcome)
+    assert "at its surface by bending, at node 0" in told

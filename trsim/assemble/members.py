@@ -167,8 +167,8 @@ def off_the_nodes(scenario: Any, name: str, beam: Beam, place: Array) -> tuple[s
         f"the nearest is at {nearest}; `elements: {fits[0]}` puts nodes at all joints and loads of "
         f"'{name}'" + (f", and so do {' and '.join(map(str, fits[1:]))}" if fits[1:] else "")
         if fits
-        else f"the nearest is at {nearest}, and no number of elements up to {MOST_TRIED} puts nodes "
-        f"at all joints and loads of '{name}': move one of them"
+        else f"the nearest is at {nearest}, and no number of elements up to {MOST_TRIED} puts "
+        f"nodes at all joints and loads of '{name}': move one of them"
     )
     return f"is {away.min():.3g} m away from the nearest node of '{name}'", hint
 

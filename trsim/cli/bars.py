@@ -10,15 +10,17 @@ def bar_lines(found: dict[str, Any]) -> list[str]:
         told += [
             f"  flexible    {bar['name']}: {bar['elements']} elements on {bar['length']:.4g} m, "
             f"{bar['mass']:.3g} kg",
-            f"              gives way {bar['axial']:.2e} m/N along (L/EA), {bar['bending']:.2e} m/N "
-            f"in its middle between hinges (L^3/48EI), {bar['cantilever']:.2e} m/N as a cantilever",
+            f"              gives way {bar['axial']:.2e} m/N along (L/EA), {bar['bending']:.2e} "
+            f"m/N in its middle between hinges (L^3/48EI), {bar['cantilever']:.2e} m/N as a "
+            "cantilever (L^3/3EI)",
             *(
-                f"              {joint}: {share:.0%} of the compliance of contact and bar in line is "
-                "the contact's, at the load of the start"
+                f"              {joint}: {share:.0%} of the compliance of contact and bar in line "
+                "is the contact's, at the load of the start"
                 for joint, share in bar["contact_shares"].items()
             ),
             f"              bends at {bar['lowest']:.3g} Hz and above between hinges; the mesh "
-            f"reaches {bar['highest']:.3g} Hz: explicit steps below {bar['explicit_step']:.1e} s",
+            f"reaches at most {bar['highest']:.3g} Hz: explicit steps below "
+            f"{bar['explicit_step']:.1e} s",
             f"              a wave along it takes {bar['wave']:.1e} s" + rows_line(found, bar),
         ]
     return told

@@ -63,7 +63,8 @@ class Section(Spec):
 class Cable(Spec):
     """A straight bar that stretches and bends; it does not resist torsion.
 
-    elements        how many of equal length it is divided into
+    elements        how many of equal length it is divided into; joints and loads stand where they
+                    meet, or at the ends
     section         shape of its cross-section
     area            of the cross-section, where no shape is given
     second_moment   of the area, where no shape is given

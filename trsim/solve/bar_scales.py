@@ -6,8 +6,9 @@
     pi/2 sqrt(EI/(rho A L^4))      its lowest bending frequency between hinges, Hz
     L sqrt(rho A/EA)               time of an axial wave from end to end
 
-The fastest motion is one of the mesh: the largest eigenvalue of its stiffness against its mass, free
-at both ends, along and across.  No joint and no body that is added makes it faster; a load does.
+The fastest motion is one of the mesh: the largest eigenvalue of its stiffness against its mass,
+free at both ends, along and across.  No joint and no body that is added makes it faster; a load
+does.
 """
 
 from collections.abc import Iterable

@@ -1,6 +1,6 @@
 """Flexible bars that are strained beyond what their law means.
 
-    |r'| at the ends and in the middle of every element:  0 is squeezed to nothing, 2 twice as long
+    |r'| at some places of every element:  0 is squeezed to nothing, 2 twice as long
 
 A bar that is pressed together turns inside out without a force against it (green strain), or its
 force loses its direction; one that is twice as long is no bar any more.  Such a run is ended.
@@ -17,6 +17,7 @@ from trsim.solve.bars import places
 
 Array = NDArray[np.float64]
 
+PLACES = 9  # of an element that are looked at
 NOTHING, TWICE = 0.01, 2.0  # of |r'|: ends a run
 NEARLY, ALMOST = 0.2, 1.8  # of |r'|: explains one that could not go on
 MUCH = 0.1  # strain beyond which metals flow and the law of the bar ends; told after a run
@@ -34,8 +35,10 @@ def stretches(mechanism: Mechanism, y: Array) -> Iterator[Stretch]:
     """The least and the largest |r'| of each flexible bar."""
     for name, beam in mechanism.beams.items():
         r, g = places(mechanism, beam, y)
-        middle = 1.5 * np.diff(r, axis=0) / beam.length - 0.25 * (g[1:] + g[:-1])
-        found = np.linalg.norm(np.stack([g[:-1], middle, g[1:]]), axis=2)
+        s = np.linspace(0.0, 1.0, PLACES)[:, None, None]
+        along = 6.0 * s * (1.0 - s) * np.diff(r, axis=0) / beam.length
+        slope = along + (1.0 - s) * (1.0 - 3.0 * s) * g[:-1] + s * (3.0 * s - 2.0) * g[1:]
+        found = np.linalg.norm(slope, axis=2)
         for k in (int(np.argmin(found.min(axis=0))), int(np.argmax(found.max(axis=0)))):
             part = found[:, k]
             value = part.max() if part.max() - 1.0 > 1.0 - part.min() else part.min()
@@ -74,10 +77,10 @@ def of_bars(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
             ("bending_moment", half / beam.bending, "at its surface by bending"),
         )
         for channel, per_unit, words in kinds:
-            start = column.get(f"{name}.{channel}")
-            if start is None:
-                continue
-            most = peaks[start : start + beam.nodes]
+            names = [f"{name}.node{k}.{channel}" for k in range(beam.nodes)]
+            if not all(n in column for n in names):
+                continue  # not recorded
+            most = peaks[[column[n] for n in names]]
             found = np.abs(most[:, [0, 2]]) * per_unit
             node, side = np.unravel_index(int(np.argmax(found)), found.shape)
             strain = float(found[node, side])

@@ -139,6 +139,8 @@ def worded(rule: dict[str, Any]) -> str:
         return _any(rule["anyOf"])
     if "$ref" in rule:
         return "mapping"
+    if rule.get("const") is False:
+        return "false"
     if rule.get("type") == "object":
         return "mapping of names" if rule.get("additionalProperties") else "mapping"
     if rule.get("type") == "array":

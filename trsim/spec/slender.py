@@ -103,8 +103,8 @@ def _shape(bar: Bar) -> Iterator[str]:
         )
     elif ratio < STUBBY:
         yield (
-            f"{bar.where}: only {ratio:.2g} times as long as thick; shear, which is left out, would "
-            f"add about {SHEAR / ratio**2:.0%} to its bending: it is stiffer than the real one"
+            f"{bar.where}: only {ratio:.2g} times as long as thick; shear, which is left out, "
+            f"would add about {SHEAR / ratio**2:.0%} to its bending, so it is too stiff"
         )
 
 
@@ -140,9 +140,9 @@ def _elements(bar: Bar, gravity: float) -> Iterator[str]:
         )
     elif n < FEW and area * bar.length**2 / moment > LOCKS:
         yield (
-            f"{where}: EA L^2/EI = {area * bar.length**2 / moment:.1e}: with {n} elements stretching "
-            "spoils large bending by about 1e-4 to 5e-4 of the length (membrane locking); take "
-            f"{FEW} or more"
+            f"{where}: EA L^2/EI = {area * bar.length**2 / moment:.1e}: with {n} elements "
+            "stretching spoils large bending by about 1e-4 to 5e-4 of the length (membrane "
+            f"locking); take {FEW} or more"
         )
 
 

@@ -16,6 +16,7 @@ from trsim.cli.documents.certificate import (
     Quantity,
 )
 from trsim.cli.documents.checks import (
+    Bar,
     Check,
     Checked,
     ContactScale,
@@ -39,6 +40,7 @@ from trsim.cli.documents.runs import (
 from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema, SectionPage
 
 __all__ = [
+    "Bar",
     "Bench",
     "Certificate",
     "Certified",
