@@ -48,7 +48,7 @@ SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured o
 SPARSE_UNTIL = 1e-11  # tolerance
 GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again after these
 VISIT, LIGHT = 5000, 30  # steps between two looks at the outside world, of so many velocities
-BARS = 50  # times as often where flexible bars may collapse
+BARS = 100  # steps, where flexible bars may collapse
 
 NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
 REASONS = {
@@ -147,8 +147,8 @@ def compiled(
         begin(work, r, b, setting)
         r.clock[rec.H] = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
-    often = BARS if mechanism.beams else 1
-    visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v) // often)
+    visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v))
+    visit = min(visit, BARS) if mechanism.beams else visit
     ended = None  # by a user event
     while True:
         most = min(visit, limit - int(r.count[rec.STEPS]))
