@@ -366,3 +366,23 @@ def test_a_bar_bent_beyond_its_law_is_told():
     r = run(text)
     *_, told = doubts(r.scenario, r.mechanism, r.outcome)
     assert "at its surface by bending, at node 0" in told
+
+
+def test_a_velocity_that_was_not_kept_is_told():
+    text = BAR.replace("spherical", "revolute").replace("end: 0.1", "end: 1e-3")
+    text = text.replace("at: [1, 0]}\njoints", "at: [1, 0], velocity: [0, 3], %s}\njoints")
+    text %= "angular_velocity: [0, 0, 3]"
+    fits = "elements: 4\n    velocity: [0, 1.5]\n    angular_velocity: [0, 0, 3]"
+    r = run(text.replace("elements: 4", fits))
+    assert not doubts(r.scenario, r.mechanism, r.outcome)
+    r = run(text.replace("elements: 4", fits.replace("[0, 1.5]", "[2, 1.5]")))
+    (told,) = doubts(r.scenario, r.mechanism, r.outcome)
+    assert told.startswith("bodies.rod.velocity: given as [2, 1.5, 0], starts with [")
+
+
+@pytest.mark.parametrize("do", ["release: [pin]", "release: [weld]", "lock: [pin]"])
+def test_user_events_at_a_bar(do):
+    text = BAR.replace("spherical", "revolute").replace("207 GPa", "2 GPa")
+    r = run(text + f"events: {{e: {{when: t, value: 0.02, do: {{{do}}}}}}}\n")
+    assert r.outcome.fired == {"e": 1}
+    assert r.outcome.statistics["energy_residual_relative"] < 1e-9

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import world_rates
+from trsim.solve.bars import places
 from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
 from trsim.solve.skipped import unread
@@ -58,13 +59,11 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
             f"bodies.{p.turn_body}: starts turned by {p.turn:.2g} rad against the drawing, to meet "
             "joints and drives at t = 0; correct the points"
         )
-    given = given_velocities(mechanism, begun)
-    real = world_rates(mechanism.model, begun.y).reshape(-1, 6)
-    for name, frame in mechanism.frames.items():
-        if frame == 0 or frame >= mechanism.model.n_r:
-            continue  # the ground; nodes of a beam move with it
+    given = twists(mechanism, begun, given_velocities(mechanism, begun))
+    real = twists(mechanism, begun, world_rates(mechanism.model, begun.y).reshape(-1, 6))
+    for name in given:
         for key, unit, part in VELOCITIES:
-            was, now = (v[frame - 1, part] for v in (given, real))
+            was, now = (v[name][part] for v in (given, real))
             size = float(np.linalg.norm(was))
             if np.linalg.norm(now - was) > CHANGED * size > 0.0:
                 yield (
@@ -72,6 +71,19 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
                     f"{vector(now, size)} {unit}, the nearest that joints and drives allow; give "
                     "velocities that fit together"
                 )
+
+
+def twists(mechanism: Mechanism, begun: Start, rates: Array) -> dict[str, Array]:
+    """Velocity and angular velocity (6) of each body; of a flexible bar those of its chord."""
+    model = mechanism.model
+    found = {n: rates[f - 1] for n, f in mechanism.frames.items() if 0 < f < model.n_r}
+    for name, beam in mechanism.beams.items():
+        r, _ = places(mechanism, beam, begun.y)
+        first, last = rates[beam.first - 1, :3], rates[beam.first + beam.nodes - 2, :3]
+        chord = r[-1] - r[0]
+        spin = np.cross(chord, last - first) / (chord @ chord)
+        found[name] = np.concatenate([0.5 * (first + last), spin])
+    return found
 
 
 def vector(v: Array, size: float) -> str:
