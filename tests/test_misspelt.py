@@ -8,11 +8,10 @@ from trsim import elements
 from trsim.errors import TrsimError
 from trsim.fields import Spec
 from trsim.spec.load import loads
-from trsim.spec.scenario import Scenario
+from trsim.spec.scenario import DEFAULT, Scenario
 
 LETTERS = "abcdefghijklmnopqrstuvwxyz_"
 LEAST = 0.95  # of the misspellings get the right suggestion
-DEFAULTS = {"bodies", "drives", "sensors"}  # sections that need no `type`
 
 
 def specs_in(annotation):
@@ -35,7 +34,7 @@ def all_places():
     yield from places(Scenario, (), [])
     for word, section in elements.ELEMENTS.items():
         if section:
-            lines = [] if section in DEFAULTS else [f"type: {word}"]
+            lines = [] if DEFAULT.get(section) == word else [f"type: {word}"]
             yield from places(elements.load(word).spec, (section, "thing"), lines)
 
 

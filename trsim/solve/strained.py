@@ -18,7 +18,7 @@ from trsim.solve.bars import places
 Array = NDArray[np.float64]
 
 PLACES = 9  # of an element that are looked at
-NOTHING, TWICE = 0.01, 2.0  # of |r'|: ends a run
+NOTHING, TWICE = 0.05, 2.0  # of |r'|: ends a run
 NEARLY, ALMOST = 0.2, 1.8  # of |r'|: explains one that could not go on
 MUCH = 0.1  # strain beyond which metals flow and the law of the bar ends; told after a run
 
