@@ -386,3 +386,10 @@ def test_user_events_at_a_bar(do):
     r = run(text + f"events: {{e: {{when: t, value: 0.02, do: {{{do}}}}}}}\n")
     assert r.outcome.fired == {"e": 1}
     assert r.outcome.statistics["energy_residual_relative"] < 1e-9
+
+
+def test_the_example_of_the_documentation_runs(pytestconfig):
+    text = (pytestconfig.rootpath / "docs" / "scenarios.md").read_text()
+    example = next(block for block in text.split("```") if "type: ancf_cable" in block)
+    r = run(example.removeprefix("yaml"))
+    assert r.outcome.status == "done" and not lint(r.scenario)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from trsim.elements.cable import MOST_ELEMENTS
 from trsim.spec import plausible
 
+SOFTEST = 1e4  # Pa: foam, gel
 STUBBY = 8.0  # length over thickness
 SHEAR = 3.12  # 12 E I/(5/6 G A L^2) is this times (h/L)^2 at E/G = 2.6
 MANY = 100  # elements
@@ -74,9 +75,9 @@ def slender(scenario: Any) -> Iterator[str]:
 
 def _material(bar: Bar) -> Iterator[str]:
     E, area = bar.spec.youngs_modulus, bar.spec.numbers[0]
-    if not plausible.SOFTEST <= E <= plausible.HARDEST:
+    if not SOFTEST <= E <= plausible.HARDEST:
         yield (
-            f"{bar.where}.youngs_modulus: {E:.3g} Pa; solids have 1 MPa (rubber) to 1 TPa "
+            f"{bar.where}.youngs_modulus: {E:.3g} Pa; solids have 10 kPa (foam) to 1 TPa "
             f"(diamond), steel 2.1e+11 Pa: {plausible.prefix(E)}"
         )
     density = bar.per_length / area
