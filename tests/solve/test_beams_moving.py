@@ -6,6 +6,7 @@ import pytest
 from trsim.assemble.assemble import assemble as assembled
 from trsim.assemble.equations import derivative
 from trsim.elements.scene import scene
+from trsim.solve.doubts import doubts
 from trsim.solve.start import start
 
 from ..runs import assemble, energy_error, run, scenario
@@ -144,3 +145,39 @@ def test_bars_made_stiff_are_rigid_bodies():
         derivative(scene(mechanism.model), 0.0, y, yd)
         rates.append(yd)
     assert rates[0] == pytest.approx(rates[1], rel=1e-9, abs=1e-9)
+
+
+STRETCHED = """
+bodies:
+  bar: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, section: {width: 10 mm},
+        youngs_modulus: 207e9, density: 7850}
+  block: {mass: 1, inertia: 0.01, at: [1, 0]}
+joints:
+  A: {type: revolute, bodies: [ground, bar], at: [0, 0]}
+  B: {type: revolute, bodies: [bar, block], at: [1, 0]}
+  track: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}
+drives:
+  stretch: {joint: track, velocity: "1e-3*min(t/1e-2, 1)"}
+solver: {end: 20 ms, tolerance: 1e-4}
+"""
+
+
+def test_what_moves_only_because_a_bar_gives_way():
+    """A rigid bar could not be stretched; the run does not start with rigid ones then."""
+    r = run(STRETCHED)
+    assert r["bar.node2.axial_force"][-1] == pytest.approx(207e9 * 1e-4 * 15e-6, rel=1e-3)
+    assert r["stretch.force"][-1] == pytest.approx(207e9 * 1e-4 * 15e-6, rel=1e-3)
+
+
+def test_waves_passed_over_are_told():
+    slow = STRETCHED.replace("1e-3*min(t/1e-2, 1)", "1e-3*sin(3*t)").replace("20 ms", "1 s")
+    told, followed = (
+        run(slow, "solver.method=radau"),
+        run(slow, "solver.max_step=2e-6", "solver.end=1e-3"),
+    )
+    said = [
+        [d for d in doubts(r.scenario, r.mechanism, r.outcome) if "passed over" in d]
+        for r in (told, followed)
+    ]
+    assert len(said[0]) == 1 and said[0][0].startswith("bodies.bar: steps of")
+    assert said[1] == []

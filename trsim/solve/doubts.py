@@ -4,10 +4,12 @@ start      a position or a velocity is not the one that was given
 contacts   pressed in by more than their law is made for: a half width of the contact of half the
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                          solve/strained.py
+waves      of bars that steps were too long to follow: no fault, but to be known
 energy     the book of the run does not close
 """
 
 from collections.abc import Iterator
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -15,9 +17,11 @@ from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import world_rates
+from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
 from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
+from trsim.solve.record import T
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
 from trsim.solve.strained import of_bars
@@ -31,6 +35,7 @@ OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 GIVEN = 1e-2  # of it: more done by projection says so too
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
+PASSED = 1.0  # periods of the fastest wave in a mean step
 OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 
 
@@ -41,6 +46,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_bars(scenario, mechanism, outcome.peaks),
+        *of_waves(mechanism, outcome),
         *of_books(mechanism, outcome),
     )
 
@@ -110,6 +116,22 @@ def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
                 f"{when:.4g} s, {depth / c:.2g} of the clearance ({1e3 * c:.3g} mm){radius}; its "
                 f"law holds to about {OF_CLEARANCE:g} and {OF_RADIUS:g} of them: check stiffness, "
                 "moduli and loads"
+            )
+
+
+def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """Motion of flexible bars that implicit steps went past: it is damped out, not followed."""
+    if outcome.record is None:
+        return
+    steps, end = outcome.statistics["steps"], float(outcome.record.clock[T])
+    for name, beam in mechanism.beams.items():
+        cells = (beam.length, beam.nodes - 1)
+        fastest = largest(beam.stiffness, beam.bending, beam.per_length, *cells)
+        if steps and end / steps > PASSED * 2.0 * pi / fastest:
+            yield (
+                f"bodies.{name}: steps of {end / steps:.2g} s on average passed over its fastest "
+                f"waves ({fastest / (2.0 * pi):.2g} Hz) where the tolerance let them; a smaller "
+                f"tolerance, or `max_step: {1.0 / fastest:.1g} s`, follows them"
             )
 
 

@@ -28,18 +28,33 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
     their rates are zero.
     """
+    if not mechanism.beams:
+        ideal = at_the_start(scenario, named)
+        y_ideal = np.zeros(ideal.model.n_q + ideal.model.n_v + ideal.model.n_z)
+        n = ideal.model.n_q + ideal.model.n_v
+        y_ideal[:n] = y[:n]
+        return with_velocities(mechanism.model, y, nearest(ideal, y_ideal, named))
+    try:
+        stiff = at_the_start(scenario, named)
+        v = nearest(stiff, as_rigid(mechanism, stiff, y), named)
+        moving = with_velocities(mechanism.model, y, moving_as_rigid(mechanism, stiff, y, v))
+    except ModelError:  # it moves only because its bars give way
+        moving = y
+    return allowed(mechanism.model, moving)
+
+
+def at_the_start(scenario: Any, named: tuple[str, ...]) -> Mechanism:
+    """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
     given = any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
     joints = scenario.joints.items() if not given else ()
     playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
-    ideal = assemble(scenario, playing, coordinates=named, stiff=True)
+    return assemble(scenario, playing, coordinates=named, stiff=True)
+
+
+def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
+    """World-axes rates nearest to those of y that joints, drives and closed stops allow."""
     model = workspace(ideal.model)
-    if mechanism.beams:
-        y_ideal = as_rigid(mechanism, ideal, y)
-    else:
-        y_ideal = np.zeros(model.n_q + model.n_v + model.n_z)
-        n = model.n_q + model.n_v
-        y_ideal[:n] = y[:n]
-    y_ideal = follow(ideal, y_ideal)
+    y_ideal = follow(ideal, y)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
     wishes = compliant_drives(ideal, y_ideal)
@@ -61,10 +76,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
             f"no velocities at t = 0 satisfy the joints and drives (off by {left:.3g})",
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
-    if mechanism.beams:
-        v = moving_as_rigid(mechanism, ideal, y, v)
-        return allowed(mechanism.model, with_velocities(mechanism.model, y, v))
-    return with_velocities(mechanism.model, y, v)
+    return np.asarray(v)
 
 
 def allowed(model: Model, y: Array) -> Array:

@@ -165,7 +165,9 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
         end = begin + len(values)
     n = max(end - begin, 0)
     time = piece["time"][:n]
-    n = _first(~(np.diff(time, prepend=last) > 0.0), n)
+    later = np.diff(time, prepend=last)
+    # several events may happen at once
+    n = _first(~(later >= 0.0) if source.name == "/events" else ~(later > 0.0), n)
     for name, values in piece.items():
         if name in MAY_BE_NAN:
             continue
