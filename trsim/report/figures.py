@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.report import style
+from trsim.report import bars, style
 from trsim.report.display import Shown, short
 from trsim.report.marks import happened, spaced
 from trsim.report.orbits import orbit, section
@@ -35,6 +35,10 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
     if not parts(runs, "sensors"):
         for body in parts(runs, "bodies"):
             yield from body_motion(runs, body)
+    for bar in parts(runs, "bodies"):
+        if some(runs, f"{bar}.deflection", f"{bar}.node0.position"):
+            yield f"bar_{bar}", bars.forces(runs, bar)
+            yield f"shapes_{bar}", bars.shapes(runs, bar)
     for drive in parts(runs, "drives"):
         if some(runs, f"{drive}.force"):
             yield f"drive_{drive}", drive_force(runs, drive)
