@@ -3,12 +3,13 @@
 import json
 from math import pi, sqrt
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from trsim.assemble.assemble import assemble
 from trsim.cli import program
-from trsim.errors import TrsimError
+from trsim.errors import ModelError, TrsimError
 from trsim.solve.bar_scales import bar_scales
 from trsim.solve.doubts import doubts
 from trsim.solve.scales import scales
@@ -16,7 +17,7 @@ from trsim.solve.start import start
 from trsim.spec.lint import lint
 from trsim.spec.load import loads, locate
 
-from ..runs import run
+from ..runs import built, run
 
 BAR = """\
 bodies:
@@ -393,3 +394,73 @@ def test_the_example_of_the_documentation_runs(pytestconfig):
     example = next(block for block in text.split("```") if "type: ancf_cable" in block)
     r = run(example.removeprefix("yaml"))
     assert r.outcome.status == "done" and not lint(r.scenario)
+
+
+# --- the cross-section of a bar in space ------------------------------------------------------
+
+ANGLED = """
+planar: false
+bodies:
+  a: {type: ancf_cable, start: [0, 0, 0], end: [0, 1, 0], section: {width: 20 mm},
+      youngs_modulus: 210e9, density: 7850}
+  b: {type: ancf_cable, start: [0, 1, 0], end: [1, 1, 0], section: {width: 20 mm},
+      youngs_modulus: 210e9, density: 7850}
+  m: {mass: 1, inertia: [0.01, 0.01, 0.01], at: [0.3, 0.5, 0]}
+joints:
+  clamp: {type: fixed, bodies: [ground, a], at: [0, 0, 0]}
+  %s
+forces:
+  %s
+solver: {end: 1 ms}
+"""
+BALL = "ball: {type: spherical, bodies: [a, b], at: [0, 1, 0]}"
+NONE = "pull: {type: applied_load, body: m, direction: [1, 0, 0], force: 1}"
+
+
+@pytest.mark.parametrize(
+    ("joint", "force", "what"),
+    [
+        ("weld: {type: fixed, bodies: [a, b], at: [0, 1, 0]}", NONE, "at an angle"),
+        (BALL, "stop: {type: limit_stop, point: {body: m, at: [0.1, 0.5, 0]}, stiffness: 1e4, "
+         "wall: {body: a, at: [0, 0.5, 0], normal: [1, 0, 0]}}", "turns with 'a'"),
+        (BALL, "push: {type: applied_load, body: m, at: [0.3, 0.5, 0], frame: a, "
+         "direction: [1, 0, 0], force: 1}", "turns with 'a'"),
+        (BALL, "wind: {type: distributed_load, body: b, frame: a, direction: [1, 0, 0], "
+         "force_per_length: 1}", "turns with 'a'"),
+    ],
+)  # fmt: skip
+def test_nothing_turns_with_a_cross_section_in_space(joint, force, what):
+    with pytest.raises(ModelError, match=what):
+        built(ANGLED % (joint, force))
+
+
+def test_along_a_bar_is_known():
+    built(ANGLED % (BALL, "push: {type: applied_load, body: m, at: [0.3, 0.5, 0], frame: a, "
+                    "direction: [0, 1, 0], force: 1}"))  # fmt: skip
+
+
+CLAMPED = """
+planar: false
+bodies:
+  a: {type: ancf_cable, start: [0, 0, 0], end: %(end)s, section: {width: 20 mm}, elements: 2,
+      youngs_modulus: 210e9, density: 7850}
+joints: {r: {type: fixed, bodies: [%(bodies)s], at: [0, 0, 0]}}
+forces:
+  t1: {type: applied_load, body: a, at: %(end)s, direction: %(across)s, force: 100*sin(13*t)}
+  t2: {type: applied_load, body: a, at: %(end)s, direction: [0, 1, 0], force: 100*sin(17*t)}
+solver: {end: 20 ms, tolerance: 1e-6, method: radau}
+"""
+
+
+def test_a_clamp_holds_whatever_way_a_bar_is_drawn():
+    """Every cantilever gives way alike across, in both orders of the weld."""
+    found = []
+    for end in ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.6, 0.0, 0.8]):
+        across = np.cross(end, [0.0, 1.0, 0.0])
+        for bodies in ("ground, a", "a, ground"):
+            r = run(CLAMPED % {"end": end, "bodies": bodies, "across": across.tolist()})
+            tip = r["a.tip"][-1] - end
+            found.append([tip @ across, tip[1], tip @ end])
+            assert r.outcome.statistics["energy_residual_relative"] < 1e-6
+    assert found[0][0] > 1e-4 and found[0][1] > 1e-4
+    assert np.abs(np.array(found) - found[0]).max() < 1e-8

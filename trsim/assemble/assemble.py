@@ -225,6 +225,7 @@ def build(
         inertia=inertia,
         mass_inverse=mass_inverse,
         inertia_inverse=inertia_inverse,
+        axes=at.rotation.reshape(n, 9).copy(),
         depth=at.at_start[:, 2].copy(),
         con=con,
         par=par,

@@ -16,8 +16,6 @@ from math import sqrt
 
 from trsim.elements.vectors import internal as equation
 
-BACK = 1e-12  # of 1 + t_x: the tangent points against the x axis, where the cross-section may turn
-
 
 @equation
 def components(s):
@@ -44,14 +42,40 @@ def node_poses(s, y):
         V[f, 3] = (g1 * w2 - g2 * w1) * inverse
         V[f, 4] = (g2 * w0 - g0 * w2) * inverse
         V[f, 5] = (g0 * w1 - g1 * w0) * inverse
-        X[f, 3], X[f, 6], X[f, 9] = t0, t1, t2
-        X[f, 4], X[f, 5] = -t1, -t2
         if width == 2:
-            X[f, 7] = t0
-        else:  # the cross-section turned from that of the x axis along the shortest way
-            k = 1.0 / max(1.0 + t0, BACK)
-            X[f, 7], X[f, 8] = 1.0 - k * t1 * t1, -k * t1 * t2
-            X[f, 10], X[f, 11] = -k * t1 * t2, 1.0 - k * t2 * t2
+            X[f, 3], X[f, 4], X[f, 6], X[f, 7] = t0, -t1, t1, t0
+        else:
+            cross_section(X, s.axes, f, t0, t1, t2)
+
+
+@equation
+def cross_section(X, axes, f, t0, t1, t2):
+    """Axes of a node in space: those as drawn, turned along the shortest way to the tangent.
+
+    With a the tangent in these axes and k = 1 / (1 + a_x)
+
+        R = R_0 [a, e_y - k a_y (e_x + a), e_z - k a_z (e_x + a)]
+
+    What spins about the tangent is of no consequence (rows.check_space).
+    """
+    R = axes[f]
+    a = R[0] * t0 + R[3] * t1 + R[6] * t2
+    b = R[1] * t0 + R[4] * t1 + R[7] * t2
+    c = R[2] * t0 + R[5] * t1 + R[8] * t2
+    square = b * b + c * c
+    if a > 0.0:
+        k = 1.0 / (1.0 + a)
+        bb, bc, cc = k * b * b, k * b * c, k * c * c
+    elif square > 0.0:  # the same, without the difference of nearly equal numbers
+        k = (1.0 - a) / square
+        bb, bc, cc = k * b * b, k * b * c, k * c * c
+    else:  # straight back
+        bb, bc, cc = 2.0, 0.0, 0.0
+    for r in range(3):
+        u, v, w = R[3 * r], R[3 * r + 1], R[3 * r + 2]
+        X[f, 3 + 3 * r] = u * a + v * b + w * c
+        X[f, 4 + 3 * r] = -u * b + v * (1.0 - bb) - w * bc
+        X[f, 5 + 3 * r] = -u * c - v * bc + w * (1.0 - cc)
 
 
 @equation

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError
 from trsim.spec.slender import ends
 
@@ -134,15 +135,11 @@ def beams(bodies: dict[str, Any], first: int) -> dict[str, Beam]:
 
 
 def axes(t: Array) -> Array:
-    """Axes of a node with the tangent t, columns: the same rule as in assemble/beams.py."""
-    k = 1.0 / max(1.0 + t[0], 1e-12)
-    if t[2] == 0.0:  # in the plane: turned about z
+    """Axes of a node with the tangent t, columns; in the plane turned about z."""
+    if t[2] == 0.0:
         return np.array([[t[0], -t[1], 0.0], [t[1], t[0], 0.0], [0.0, 0.0, 1.0]])
-    return np.array([
-        [t[0], -t[1], -t[2]],
-        [t[1], 1.0 - k * t[1] * t[1], -k * t[1] * t[2]],
-        [t[2], -k * t[1] * t[2], 1.0 - k * t[2] * t[2]],
-    ])  # fmt: skip
+    across = np.array(perpendicular(tuple(t))[0])
+    return np.stack([t, across, np.cross(t, across)], axis=1)
 
 
 def tangent(bar: Any) -> Array:

@@ -41,7 +41,7 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
             continue
         for index, axis in enumerate(instance.element.rows):
             turns = axis.startswith(("tilt", "turn"))
-            if axis == "turn" and on_a_beam(instances, (i, j)):
+            if instance.element.key == "fixed" and axis == unheld(instances, i, j):
                 continue  # a weld to a beam turns with its tangent; about it there is no torsion
             rows.append(RowName(instance.name, axis, n, index, (i, j), turns))
     return rows
@@ -51,6 +51,13 @@ def on_a_beam(instances: list[Instance], frames: tuple[int, int]) -> bool:
     """Whether one of the frames is a node of a flexible bar."""
     first = [i.row.con[0] for i in instances if i.element.key == "ancf_cable"]
     return bool(first) and max(frames) >= min(first)
+
+
+def unheld(instances: list[Instance], i: int, j: int) -> str:
+    """The row of a weld that a flexible bar has nothing to hold by, see elements/fixed.py."""
+    if on_a_beam(instances, (j, j)):
+        return "turn"
+    return "tilt 2" if on_a_beam(instances, (i, i)) else ""
 
 
 def in_solve(full: Model, J: Array, planar: bool) -> NDArray[np.bool_]:
@@ -141,6 +148,7 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
                 ("bodies", name),
             )
     loads(at, instances)
+    cross_sections(at, instances)
     for instance in instances:
         i, j = (*instance.row.con[:2], 0)[:2] if instance.section == "joints" else (0, 0)
         free = instance.element.key in ("spherical", "fixed")
@@ -174,4 +182,31 @@ def loads(at: Addresses, instances: list[Instance]) -> None:
                 f"forces.{instance.name}: {abs(along):.0%} of this torque points along "
                 f"'{at.owners[node]}' as drawn; a flexible bar in space has no torsion, so that "
                 "part turns nothing"
+            )
+
+
+def cross_sections(at: Addresses, instances: list[Instance]) -> None:
+    """What would be carried along by the cross-section of a bar in space, whose turn about the bar
+    nobody knows: welds of bars at an angle, walls and directions across a bar."""
+    for instance in instances:
+        key, con, par = instance.element.key, instance.row.con, instance.row.par
+        # frame and direction, in its axes, of what turns with a body
+        turning = {
+            "limit_stop": (con[0], par[6:9]) if key == "limit_stop" and con[3] == 0 else None,
+            "applied_load": (con[1], par[3:6]) if key == "applied_load" and not con[3] else None,
+            "distributed_load": (con[2], par[1:4]) if key == "distributed_load" else None,
+        }.get(key)
+        if turning and at.is_node(turning[0]) and abs(turning[1][0]) < ALONG:
+            raise ModelError(
+                f"turns with '{at.owners[turning[0]]}', a flexible bar, of which in space nobody "
+                "knows how it turns about itself",
+                "let it turn with a rigid body, or draw the mechanism in the x-y plane",
+                ("forces", instance.name),
+            )
+        bars = key == "fixed" and at.is_node(con[0]) and at.is_node(con[1])
+        if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:
+            raise ModelError(
+                "welds two flexible bars at an angle, and in space these have no torsion",
+                "weld both to a rigid body between them, or draw the mechanism in the x-y plane",
+                ("joints", instance.name),
             )

@@ -154,12 +154,13 @@ def turns(at: Addresses, d: int) -> NDArray[np.int64]:
 
 def extent(at: Addresses) -> float:
     """Size of the mechanism: the diagonal of the box around its points as drawn, m."""
-    corners = [at.at_start[0], *at.at_start[1:]]
+    # the origin is none of its points, unless something is joined to the ground there
+    corners = [*at.at_start[1:]] if len(at.at_start) > 1 else [at.at_start[0]]
     corners += [at.at_start[i] + at.rotation[i] @ np.array(s) for i, s in at.points]
     far = np.max(np.abs(corners), axis=1)
     worst = int(np.argmax(far))
     if far[worst] > LARGEST:
-        frames = [*range(len(at.frames)), *(i for i, _ in at.points)]
+        frames = [*range(1, len(at.frames)), *(i for i, _ in at.points)]
         name = at.owners[frames[worst]]
         raise ModelError(
             f"a point of '{name}' lies {far[worst]:.3g} m from the origin",

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from trsim.elements.contract import Element, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
-from trsim.elements.joint import Joint, triads
+from trsim.elements.joint import Joint, perpendicular, triads
 
 
 class Fixed(Joint):
@@ -21,9 +21,15 @@ class Fixed(Joint):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    # about the tangent of a flexible bar the weld holds nothing: that is the row `turn`
-    axes = triads(i, j, at.tangent(j) or at.tangent(i) or (0.0, 0.0, 1.0), at)
-    return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *axes))
+    places = (*at.local(i, spec.at), *at.local(j, spec.at))
+    if at.tangent(i) and not at.tangent(j):
+        # t . u = t . w = 0 with the tangent t of bar i and u, w fixed in body j: rows tilt 1, turn
+        t = at.axes(i, at.tangent(i))
+        u, w, _ = perpendicular(at.tangent(i))
+        return Row((i, j, -1), (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0))
+    # about the tangent of a flexible bar j the weld holds nothing: that is the row `turn`
+    axes = triads(i, j, at.tangent(j) or (0.0, 0.0, 1.0), at)
+    return Row((i, j, -1), (*places, *axes))
 
 
 @kernel

@@ -7,7 +7,7 @@ from trsim.assemble.equations import evaluate
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
-from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
+from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_step
@@ -31,6 +31,8 @@ from trsim.solve.record import (
     NEXT_JACOBIAN,
     NEXT_ROW,
     PAST_H,
+    PEAK_MAX,
+    PEAK_MIN,
     RECORD,
     ROWS,
     SAME_TIME,
@@ -49,6 +51,7 @@ SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
 # of K holds the last derivative, the power of h its error estimate falls with, whether implicit
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
 METHOD_WIDTH = 7
+ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
@@ -243,7 +246,10 @@ def accept(s, r, b, t1, projected, last):
                 r.count[STEP_ROWS] += 1
     if s.column_energy >= 0:
         for c in range(s.column_energy, s.n_out - 1):
-            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], abs(b.out[c]))
+            size = abs(b.out[c])
+            if c == s.column_energy + 1 + GRAVITY:  # counted from the origin, wherever that is
+                size = max(ORIGIN * size, r.peak[c, PEAK_MAX] - r.peak[c, PEAK_MIN])
+            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], size)
         residual = abs(b.out[s.n_out - 1])
         r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
     refine(s, r, b.out, t1)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import world_rates
+from trsim.elements.contract import STORED
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
 from trsim.solve.outcome import Outcome
@@ -35,7 +36,8 @@ OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 GIVEN = 1e-2  # of it: more done by projection says so too
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
-PASSED = 1.0  # periods of the fastest wave in a mean step
+AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
+PASSED = 2.0  # periods of the fastest wave in a mean step
 OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 
 
@@ -122,6 +124,9 @@ def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
 def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """Motion of flexible bars that implicit steps went past: it is damped out, not followed."""
     if outcome.record is None:
+        return
+    energy = outcome.peaks[mechanism.model.column_energy :, 0]
+    if energy[0] <= AT_REST * np.max(np.abs(energy[1 : 1 + len(STORED)])):
         return
     steps, end = outcome.statistics["steps"], float(outcome.record.clock[T])
     for name, beam in mechanism.beams.items():

@@ -54,7 +54,8 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
                 raise ModelError(
                     "no static equilibrium found: beyond "
                     f"{100 * done:.3g} % of the loads the flexible bars have none near by",
-                    "do they buckle? a small load to one side shows them where to; or drop "
+                    "do they buckle? a small load to one side shows them where to; are they very "
+                    "slender (EA L^2/EI above 1e9)? more elements; or drop "
                     "`equilibrium` to start as drawn",
                     ("initial", "equilibrium"),
                 )

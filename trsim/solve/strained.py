@@ -61,7 +61,7 @@ def collapsed(
         return (
             f"bodies.{name}{where}: element {element} is {does} to {100.0 * value:.3g} % of its "
             f"length at t = {t:.6g} s, where the law of a flexible bar has no meaning: is it too "
-            "soft for its loads, or driven too far?"
+            "soft for its loads, or driven too far? `strain: engineering` resists more of it"
         )
     return ""
 
