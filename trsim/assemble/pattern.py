@@ -10,6 +10,9 @@ from heapq import heapify, heappop, heappush
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+Indices = NDArray[np.int64]
 
 
 def slots(row_frames: list[tuple[int, int]], n: int) -> list[list[tuple[int, int]]]:
@@ -62,6 +65,19 @@ def eliminate(neighbours: list[set[int]], order: list[int]) -> list[list[int]]:
     return below
 
 
+def triangle(members: Indices, ranks: list[Indices], column_start: Indices) -> Indices:
+    """Places of the entries of S between rows, told by their ranks; (n, n), symmetric.
+
+    An entry stands in the column of that one of its rows which is eliminated first.
+    """
+    found = np.zeros((len(members), len(members)), np.int64)
+    for k, b in enumerate(members.tolist()):
+        after = members >= b
+        places = column_start[b] + np.searchsorted(ranks[b], members[after])
+        found[after, k] = found[k, after] = places
+    return found
+
+
 def pattern(
     row_frames: list[tuple[int, int]], n: int, beams: list[tuple[int, int]] | None = None
 ) -> dict[str, Any]:
@@ -84,32 +100,24 @@ def pattern(
     row = [k for column in columns for k in column]
     column_start = np.cumsum([0, *map(len, columns)])
 
-    # an entry of S stands in the column of that one of its rows which is eliminated first
-    place = {
-        (column[0], k): start + p
-        for start, column in zip(column_start.tolist(), columns, strict=False)
-        for p, k in enumerate(column)
-    }
-    place |= {(b, a): p for (a, b), p in place.items()}
-    target = [
-        place[under[last], b]
-        for under in below
-        for last in reversed(range(len(under)))
-        for b in under[: last + 1]
-    ]
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    ranks = [rank[column] for column in columns]  # rising
+    target = [triangle(under[1:], ranks, column_start)[::-1] for under in ranks]
+    lower = [np.tril(np.ones((len(t), len(t)), bool))[::-1] for t in target]
     entry = [
-        place[a, b]
+        triangle(rank[[k for k, _ in members]], ranks, column_start)[np.tril_indices(len(members))]
         for members in of_body
-        for last, (a, _) in enumerate(members)
-        for b, _ in members[: last + 1]
     ]
     return {
         "row_frame": np.array(row_frames, np.int64).reshape(-1, 2),
         "frame_start": np.cumsum([0, *map(len, of_frame)]),
         "slot_row": np.array([k for members in of_frame for k, _ in members], np.int64),
         "slot_column": np.array([c for members in of_frame for _, c in members], np.int64),
-        "entry": np.array(entry, np.int64),
+        "entry": np.concatenate([*entry, np.zeros(0, np.int64)]),
         "column_start": column_start,
         "row": np.array(row, np.int64),
-        "target": np.array(target, np.int64),
+        "target": np.concatenate(
+            [*(t[own] for t, own in zip(target, lower, strict=True)), np.zeros(0, np.int64)]
+        ),
     }

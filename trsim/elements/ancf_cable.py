@@ -283,7 +283,7 @@ ELEMENT = Element(
     section="bodies",
     spec=AncfCable,
     pack=pack,
-    channels=channels(5),
+    channels=channels(2),
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:
