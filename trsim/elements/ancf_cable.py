@@ -283,7 +283,7 @@ ELEMENT = Element(
     section="bodies",
     spec=AncfCable,
     pack=pack,
-    channels=channels(2),
+    channels=channels(5),
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:
