@@ -2,6 +2,7 @@
 
 import json
 from math import pi, sqrt
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from trsim.solve.doubts import doubts
 from trsim.solve.scales import scales
 from trsim.solve.start import start
 from trsim.spec.lint import lint
-from trsim.spec.load import loads, locate
+from trsim.spec.load import load, loads, locate
 
 from ..runs import built, run
 
@@ -464,3 +465,11 @@ def test_a_clamp_holds_whatever_way_a_bar_is_drawn():
             assert r.outcome.statistics["energy_residual_relative"] < 1e-6
     assert found[0][0] > 1e-4 and found[0][1] > 1e-4
     assert np.abs(np.array(found) - found[0]).max() < 1e-8
+
+
+def test_the_end_of_a_short_run_is_looked_at():
+    """Fewer steps than there are between two looks, and the bar is four times as long."""
+    file = Path(__file__).parents[2] / "scenarios" / "validation" / "flexible_pendulum.yaml"
+    r = run(load(file, ["bodies.rod.youngs_modulus=10"]), fails=True)
+    assert r.outcome.statistics["steps"] < 100
+    assert "stretched to" in r.outcome.reason

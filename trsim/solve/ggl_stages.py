@@ -9,7 +9,8 @@ from trsim.assemble.schur import velocity_residual
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve.displacements import twisted, w_index
 from trsim.solve.ggl_equations import across, add_product, mass_times, moving, pull
-from trsim.solve.radau import ALPHA, BETA, GAMMA, T_INVERSE, C, F, T, W, Z
+from trsim.solve.radau import F, W, Z
+from trsim.solve.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, C, T
 
 # rows of K after those of radau.py, three each: lam of the stages, mu, right-hand sides and
 # increments of Phi and Phi'; three rows that stay zero

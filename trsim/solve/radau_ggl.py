@@ -38,15 +38,9 @@ from trsim.solve.ggl_stages import (
 from trsim.solve.ggl_tables import SparseBuffers, SparseRecord
 from trsim.solve.jacobian import missing
 from trsim.solve.radau import (
-    ALPHA,
-    BETA,
-    GAMMA,
     HALVE,
     KAPPA,
     MOST_ITERATIONS,
-    A,
-    C,
-    E,
     F,
     W,
     Z,
@@ -54,6 +48,7 @@ from trsim.solve.radau import (
     guess,
     norm,
 )
+from trsim.solve.radau_tableau import ALPHA, BETA, GAMMA, A, C, E
 from trsim.solve.record import (
     AFTER_REJECTION,
     HISTORY,

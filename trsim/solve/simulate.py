@@ -185,7 +185,8 @@ def ending(
 ) -> tuple[Ended, str]:  # fmt: skip
     """Status and reason of a run that no event ended."""
     if reason == rec.DONE:
-        return "done", ""
+        text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
+        return ("failed", text) if text else ("done", "")
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:
