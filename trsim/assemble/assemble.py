@@ -14,6 +14,7 @@ from trsim.assemble.equations import derivative
 from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName
 from trsim.assemble.members import members
+from trsim.assemble.on_beams import addresses
 from trsim.assemble.pattern import pattern
 from trsim.assemble.rows import (
     all_rows,
@@ -236,6 +237,7 @@ def build(
         **pattern(frames, n, [(beam.first, beam.nodes) for beam in at.beams.values()]),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
+        on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],
         alpha=baumgarte.alpha if baumgarte else 0.0,
         beta=baumgarte.beta if baumgarte else 0.0,

@@ -13,15 +13,8 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 
 from math import cos, nan, sin
 
-from trsim.assemble.beams import (
-    node_accelerations,
-    node_kinetic,
-    node_poses,
-    node_rates,
-    node_right_hand_side,
-    pull_nodes,
-)
 from trsim.assemble.linear import contradictory, factorise, independent, solve
+from trsim.assemble.on_beams import FREE, KINETIC, POSES, PULL, RATES, RIGHT, call_beams
 from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
 from trsim.elements.calls import call_kernel, caller
 from trsim.elements.contract import DRIVES, SCENE, compiled
@@ -44,7 +37,7 @@ def derivative(s, t, y, yd):
     forces(s, t)
     free_accelerations(s)
     if s.n_r < s.n:
-        node_accelerations(s)
+        call_beams(s.on_beams[FREE], s, y, yd, 0)
     if s.m > 0:
         constraints(s, t)
         rows(s)
@@ -92,7 +85,7 @@ def poses(s, y):
         for f in range(1, s.n_r):
             spatial_pose(X, V, f, y, 7 * (f - 1), s.n_q + 6 * (f - 1))
     if s.n_r < s.n:
-        node_poses(s, y)
+        call_beams(s.on_beams[POSES], s, y, y, 0)
     for k in range(s.n_s):
         S[k, 0] = branch[k]
     call_all(s, s.coordinate, 0.0)
@@ -204,7 +197,7 @@ def right_hand_side(s):
         if s.stabilisation == BAUMGARTE:
             x[k] += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
     if s.n_r < s.n:
-        node_right_hand_side(s, x)
+        call_beams(s.on_beams[RIGHT], s, x, x, 0)
     for f in range(1, s.n_r):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             total = B[p, 0] * free[f, 0] + B[p, 1] * free[f, 1] + B[p, 2] * free[f, 2]
@@ -220,8 +213,8 @@ def accelerations(s, y, yd):
     for k in range(s.n_z):
         yd[s.n_q + s.n_v + k] = s.zd[k]
     if s.n_r < s.n:
-        pull_nodes(s, s.lam)
-        node_rates(s, y, yd)
+        call_beams(s.on_beams[PULL], s, s.lam, yd, 0)
+        call_beams(s.on_beams[RATES], s, y, yd, 0)
     if s.d == 3:
         for f in range(1, s.n_r):
             pull(s, f, s.lam)
@@ -272,7 +265,10 @@ def corners(s, t):
 @compiled(float64(SCENE, A1))
 def kinetic(s, y):
     """Kinetic energy, J."""
-    T = node_kinetic(s, y) if s.n_r < s.n else 0.0
+    T = 0.0
+    if s.n_r < s.n:
+        call_beams(s.on_beams[KINETIC], s, y, y, 0)
+        T = s.moved[0, 0]
     for f in range(1, s.n_r):
         v = s.n_q + s.d * (f - 1)
         if s.d == 3:

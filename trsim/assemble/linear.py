@@ -15,7 +15,7 @@ with them the accelerations are right to eps/delta.
 
 from math import sqrt
 
-from trsim.assemble.beams import divide_by_mass, gathered
+from trsim.assemble.on_beams import RESIDUAL, call_beams
 from trsim.elements.vectors import clear_table, copy_to, internal
 
 SOUND, POOR, SINGULAR = 0, 1, 2  # how a factorisation went, in s.status[0]
@@ -127,12 +127,7 @@ def residual(s, x, r):
             for a in range(s.d):
                 r[slot_row[p]] -= B[p, a] * u[f, a]
     if s.n_r < s.n:
-        gathered(s, u, x)
-        divide_by_mass(s, u)
-        for f in range(s.n_r, s.n):
-            for p in range(frame_start[f], frame_start[f + 1]):
-                for a in range(s.d_node):
-                    r[slot_row[p]] -= B[p, a] * u[f, a]
+        call_beams(s.on_beams[RESIDUAL], s, x, r, 0)
 
 
 @internal

@@ -5,9 +5,9 @@ dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1
 
 import numpy as np
 
-from trsim.assemble.beams import pull_nodes
 from trsim.assemble.equations import constraints, equation, poses
 from trsim.assemble.linear import factorise, solve
+from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, rows, velocity_residual
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.signatures import A1, f8, float64, void
@@ -78,7 +78,7 @@ def project_positions(s, t, y):
         pull(s, f, s.x)
         move(s, y, f, dx[f])
     if s.n_r < s.n:
-        pull_nodes(s, s.x)
+        call_beams(s.on_beams[PULL], s, s.x, s.x, 0)
         for k in range(s.n_v - s.v_node):
             y[s.q_node + k] += dx[s.n_r + k // s.d_node, k % s.d_node]
     return worst
@@ -103,7 +103,7 @@ def project_velocities(s, y):
         for a in range(s.d):
             y[v + a] += s.free[f, a]
     if s.n_r < s.n:
-        pull_nodes(s, s.x)
+        call_beams(s.on_beams[PULL], s, s.x, s.x, 0)
         for k in range(s.n_v - s.v_node):
             y[s.n_q + s.v_node + k] += s.free[s.n_r + k // s.d_node, k % s.d_node]
     return worst

@@ -9,7 +9,7 @@ angular velocity),
 so every loop here goes through the bodies once, and through lists from beginning to end.
 """
 
-from trsim.assemble.beams import node_plain_rows, node_products, node_rows
+from trsim.assemble.on_beams import PLAIN, ROWS, call_beams
 from trsim.elements.vectors import clear
 from trsim.elements.vectors import internal as equation
 
@@ -20,8 +20,7 @@ def rows(s):
     clear(s.value)
     pair = planar_rows(s) if s.d == 3 else spatial_rows(s)
     if s.n_r < s.n:
-        node_rows(s)
-        node_products(s, s.B, pair)
+        call_beams(s.on_beams[ROWS], s, s.x, s.x, pair)
 
 
 @equation
@@ -86,7 +85,7 @@ def plain_rows(s):
                     value[s.entry[pair]] += B[p, a] * B[o, a] * (turn if angular else 1.0)
                 pair += 1
     if s.n_r < s.n:
-        node_plain_rows(s, pair, turn)
+        call_beams(s.on_beams[PLAIN], s, s.x, s.x, pair)
 
 
 @equation

@@ -47,6 +47,7 @@ class Model(Packed):
     inertia_inverse: A2  # (n, 9) body axes; planar: [8] is 1 / Izz
     axes: A2  # (n, 9) rotation of a node of a beam as drawn, row by row
     depth: A1  # (n) z of the centre of mass in a planar scene, m
+    on_beams: I1  # addresses of what the equations ask of beams; 0 without  on_beams.py
     beam: I2  # (n_beams, 4) first frame, nodes, first row of band, first element  beams.py
     band: A2  # (2 nodes, 4) its mass matrix as L D L^T: 1 / D, three entries of L below
     consistent: A2  # (2 nodes, 4) the same as it is: diagonal and three entries below

@@ -2,8 +2,8 @@
 
 from math import nan
 
-from trsim.assemble.beams import slope_force
 from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
+from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import PROJECTION
@@ -85,15 +85,9 @@ def flush(y):
 def position_work(s, before, after):
     """- F . dx of the displacement from one q to another, with the forces of the second, J."""
     work, F, X = 0.0, s.F, s.X
-    for k in range(s.v_node, s.n_v):
-        q, f, c = (
-            s.q_node + k - s.v_node,
-            s.n_r + (k - s.v_node) // s.d_node,
-            (k - s.v_node) % s.d_node,
-        )
-        width = s.d_node // 2
-        along = F[f, c] if c < width else slope_force(s, f, c - width)
-        work -= along * (after[q] - before[q])
+    if s.n_r < s.n:
+        call_beams(s.on_beams[WORK], s, before, after, 0)
+        work -= s.moved[0, 0]
     for f in range(1, s.n_r):
         if s.d == 3:
             q = 3 * (f - 1)
