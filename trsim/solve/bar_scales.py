@@ -20,12 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
+from trsim.laws.cable_section import mass
 from trsim.solve.scales import IMAGINARY, ContactScale
 
 Array = NDArray[np.float64]
 
 # a cubic element of length 1: mass, stretching (of N' N'), bending (of N'' N'')
-MASS = np.array([[156, 22, 54, -13], [22, 4, 13, -3], [54, 13, 156, -22], [-13, -3, -22, 4]]) / 420
+MASS = np.array(mass.python(1.0, 1.0))
 ALONG = np.array([[36, 3, -36, 3], [3, 4, -3, -1], [-36, -3, 36, -3], [3, -1, -3, 4]]) / 30
 ACROSS = np.array([[12, 6, -12, 6], [6, 4, -6, 2], [-12, -6, 12, -6], [6, 2, -6, 4]])
 ENOUGH = 16  # elements: more do not change the largest eigenvalue of their row by 0.1 %
