@@ -88,6 +88,12 @@ class SolverError(TrsimError):
     exit_code = 5
 
 
+class CasesFailed(TrsimError):
+    """Some cases of a sweep failed; the others, and what these left, are kept."""
+
+    exit_code = 6
+
+
 class FileError(TrsimError):
     """A file could not be read or written."""
 

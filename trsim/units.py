@@ -199,3 +199,13 @@ def inside(units: tuple[str, ...]) -> str:
 def told(units: tuple[str, ...]) -> str:
     """The same as a hint."""
     return f"T{inside(units)[1:]}." if units != ("-",) else ""
+
+
+@cache
+def si(text: str) -> str:
+    """The SI unit of the same kind: m for mm, rad/s for rpm."""
+    dimension = unit(text)[1]
+    if kind(dimension):
+        return next(text for text in KINDS if unit(text)[1] == dimension)
+    powers = [(base, p) for base, p in zip(BASE, dimension, strict=True) if p]
+    return "*".join(base if p == 1 else f"{base}^{p:g}" for base, p in powers)

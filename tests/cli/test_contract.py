@@ -23,9 +23,14 @@ from trsim.solve.simulate import simulate
 from trsim.spec.load import loads
 from trsim.statuses import STATUSES, Status
 from trsim.store.hdf5 import write
+from trsim.sweep.folder import write_plan
+from trsim.sweep.plan import plan
 
+VARIED = ("--set", "solver.tolerance=[1e-6]", "-o", "sweep", "-j", "1", "--retries", "0")
 GOOD = {
     "run": ("crank.yaml", "--certify"),
+    "sweep": ("crank.yaml", *VARIED),
+    "status": ("sweep",),
     "check": ("crank.yaml",),
     "report": ("x.h5",),
     "show": ("x.h5",),
@@ -40,6 +45,8 @@ GOOD = {
 }
 SEAMS = {  # what a command calls to do its work
     "run": "trsim.cli.run.one",
+    "sweep": "trsim.sweep.go.go",
+    "status": "trsim.sweep.study.study",
     "check": "trsim.cli.check.one",
     "report": "trsim.report.report",
     "show": "trsim.store.read.read",
@@ -52,6 +59,7 @@ SEAMS = {  # what a command calls to do its work
 USAGE = {  # beside wrong options
     "run": ("crank.yaml", "-o", "crank.yaml"),
     "check": ("crank.yaml", "--set", "nonsense"),
+    "sweep": ("crank.yaml",),
     "export": ("x.h5", "--csv", "--channels", "strke"),
     "recover": ("x.h5", "-o", "x.h5"),
     "explain": ("drvie",),
@@ -63,6 +71,8 @@ NO_FILE = {
     "check": ("none.yaml",),
     "report": ("x.h5", "-o", "crank.yaml/x"),
     "show": ("none.h5",),
+    "sweep": (*("crank.yaml", *VARIED), "-o", "crank.yaml/x"),
+    "status": ("none",),
     "export": ("x.h5", "--csv", "-o", "crank.yaml/x.csv"),
     "recover": ("none.h5.part",),
     "schema": ("-o", "crank.yaml/x.json"),
@@ -72,13 +82,17 @@ WRONG = {  # exit code -> text of the scenario, and what it is replaced by
     3: ("clearance: 0.5 mm", "clearance: 0.5 kg"),
     4: ("drives:", "drives:\n  twin: {joint: O, velocity: 1 rpm}"),
     5: ("method: dop853", "method: rk4, force: true, step: 0.05 ms"),
+    6: ("method: dop853", "method: rk4, force: true, step: 0.05 ms"),
 }
 
 
 @pytest.fixture
 def folder(scenario):
-    """A scenario and its result file, in the current folder."""
+    """A scenario, its result file, and a sweep that did not begin, in the current folder."""
     small.run(scenario.parent / "x.h5")
+    see = plan("crank.yaml", VARIED[1:2])
+    (scenario.parent / "sweep").mkdir()
+    write_plan(scenario.parent / "sweep", see, "")
     return scenario.parent
 
 
@@ -129,6 +143,7 @@ def test_document(command, code, folder, document, monkeypatch):
     elif (command, code) == ("bench", 5):  # the method of the scenario counts for nothing there
         arguments = (*arguments, "--set", "solver.max_steps=3")
     elif code in WRONG:
+        arguments += ("--dry-run",) if (command, code) == ("sweep", 4) else ()
         (folder / "crank.yaml").write_text(small.SLIDER_CRANK.replace(*WRONG[code]))
     elif code == 7 and command in NO_FILE:
         arguments = NO_FILE[command]

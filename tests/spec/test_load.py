@@ -271,7 +271,7 @@ def test_message(old, new, message):
         ("initial: {equilibrium: B}", "1:24: initial.equilibrium: must be a list of joints"),
         ("initial: {wrost: 1}", "1:11: initial: unknown key 'wrost'"),
         ("initial: 5", "1:10: initial: must be a mapping of keys, got 5"),
-        ("sweep: {solver.end: 1}", "1:9: sweep.solver.end: nothing to vary at 'solver.end'"),
+        ("sweep: {solver.end: [1]}", "1:9: sweep.solver.end: nothing to vary at 'solver.end'"),
         ("phase_portraits: {p: {x: a}}", "1:19: phase_portraits.p: field required: y"),
         ("contact_laws: {p: {normal: hertz, restitution: 1}}", "1:28: contact_laws.p.normal: must"),
         (

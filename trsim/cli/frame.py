@@ -15,13 +15,14 @@ import click
 
 from trsim.errors import FileError, Place, TrsimError, UsageError
 
-EXIT_CODES = {  # 6 is kept for sweeps of which some cases failed
+EXIT_CODES = {
     0: "done",
     1: "bug in trsim",
     2: "usage",
     3: "scenario invalid",
     4: "model ill-posed",
     5: "solver failed",
+    6: "some cases of a sweep failed",
     7: "file system",
     130: "interrupted by SIGINT",
     143: "interrupted by SIGTERM",

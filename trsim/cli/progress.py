@@ -158,6 +158,19 @@ class Lines:
         pass
 
 
+def bar(told: str) -> Any:
+    """A bar of rich, started; told: a column of it."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn
+
+    columns = [TextColumn("{task.description}"), BarColumn(bar_width=24)]
+    columns += [TextColumn("{task.percentage:>3.0f}%"), TextColumn(told)]
+    columns += [TextColumn("{task.fields[left]} left")]
+    started = Progress(*columns, console=Console(stderr=True), transient=True)
+    started.start()
+    return started
+
+
 class Bar:
     """A bar of rich, once the run has taken more than a second."""
 
@@ -175,21 +188,41 @@ class Bar:
             return
         self.last = now
         if self.bar is None:
-            self.bar = self._started()
+            self.bar = bar("{task.fields[told]}")
             self.task = self.bar.add_task(Path(self.name).stem, total=self.end, told="", left="")
         to_go = left(now - self.began, share, self.first)
         self.bar.update(self.task, completed=block.time, told=told(block), left=to_go)
 
-    def _started(self) -> Any:
-        from rich.console import Console
-        from rich.progress import BarColumn, Progress, TextColumn
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.stop()
 
-        columns = [TextColumn("{task.description}"), BarColumn(bar_width=24)]
-        columns += [TextColumn("{task.percentage:>3.0f}%"), TextColumn("{task.fields[told]}")]
-        columns += [TextColumn("{task.fields[left]} left")]
-        bar = Progress(*columns, console=Console(stderr=True), transient=True)
-        bar.start()
-        return bar
+
+class Cases:
+    """How far a sweep is: a bar on a terminal, otherwise a line every ten seconds."""
+
+    def __init__(self, answer: Answer, name: str, total: int) -> None:
+        self.answer, self.name, self.total = answer, name, total
+        self.done = self.failed = 0
+        self.began = self.last = time.monotonic()
+        self.bar: Any = None
+        if sys.stderr.isatty() and not answer.quiet and total:
+            self.bar = bar("{task.fields[told]}")
+            self.task = self.bar.add_task(Path(name).name, total=total, told="", left="?")
+
+    def update(self, ended: Any) -> None:
+        """One more case ended."""
+        self.done += 1
+        self.failed += ended.failed
+        now = time.monotonic()
+        to_go = left(now - self.began, self.done / self.total, 0.0)
+        bad = f", {self.failed} failed" if self.failed else ""
+        told = f"{self.done} of {self.total} cases{bad}"
+        if self.bar is not None:
+            self.bar.update(self.task, completed=self.done, told=told, left=to_go)
+        elif now - self.last > LINE and self.done < self.total:
+            self.last = now
+            self.answer.say(f"{self.name}: {told}, {to_go} left")
 
     def close(self) -> None:
         if self.bar is not None:

@@ -16,6 +16,7 @@ from trsim.spec.meanings import description, meanings
 ALWAYS = {0, 1, 2, 7, 130, 143}
 ENDS = {command: ALWAYS for command in COMMANDS} | {
     "run": ALWAYS | {3, 4, 5},
+    "sweep": ALWAYS | {3, 4, 6},
     "check": ALWAYS | {3, 4},
     "bench": ALWAYS | {3, 4, 5},
     "trsim": {2, 130},  # a command line that names no command

@@ -8,7 +8,7 @@ may lie anywhere in the nearest such folder.  Links are followed before this is 
 
 Mappings are merged key by key.  Lists and scalars replace; so does a mapping whose `type` is
 another; `null` removes the key.  A CSV table is read where its file name stands, so that the
-tree is complete in itself.
+tree is complete in itself.  A case of `cases:` may extend files as well; it holds them then.
 """
 
 import hashlib
@@ -33,6 +33,8 @@ from trsim.spec.text import LARGEST, Tree, decoded, read
 
 DEEPEST = 8  # levels of extends
 MOST = 40  # files
+MOST_OF_CASES, BYTES = 1000, 4_000_000  # files that cases extend, again and again; all together
+SWEPT = ("cases", "sweep")  # sections that make several scenarios of one
 NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws", "events")  # by name
 
 
@@ -80,17 +82,20 @@ class _Files:
         self.root = root
         self.digests: dict[str, str] = {}
         self.folders: dict[str, Path] = {}  # name of a YAML file -> where it lies
-        self.count = 0
+        self.count, self.bytes, self.most = 0, 0, MOST
 
     def content(self, real: Path, name: str) -> bytes:
         self.count += 1
-        if self.count > MOST:
-            raise ScenarioError(f"more than {MOST} files")
+        if self.count > self.most:
+            raise ScenarioError(f"more than {self.most} files")
         try:
             with real.open("rb") as file:
                 data = file.read(LARGEST + 1)
         except OSError as error:
             raise FileError(f"{name}: {error.strerror}", file=name) from None
+        self.bytes += len(data)
+        if self.count > MOST and self.bytes > BYTES:
+            raise ScenarioError(f"the files of all cases have more than {BYTES // 1000000} MB")
         self.digests[name] = hashlib.sha256(data).hexdigest()
         return data
 
@@ -100,7 +105,8 @@ class _Files:
         return self.extended(tree, real.parent, (*above, real))
 
     def extended(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> Tree:
-        """The tree merged over the files its key `extends` names."""
+        """The tree merged over the files its key `extends` names, and so each of its cases."""
+        self.cases(tree, folder, above)
         names = tree.data.pop("extends", None)
         if names is None:
             return tree
@@ -122,6 +128,19 @@ class _Files:
             merge(base, self.tree(real, shown, content, above))
         merge(base, tree)
         return base
+
+    def cases(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> None:
+        """Put what a case extends into the case, but for the cases and the sweep of that file."""
+        cases = tree.data.get("cases")
+        for name, case in cases.items() if isinstance(cases, dict) else ():
+            if isinstance(case, dict) and "extends" in case:
+                self.most = MOST_OF_CASES
+                inner = part(tree, ("cases", name))
+                own = {key: inner.data.pop(key) for key in SWEPT if key in inner.data}
+                graft(tree, ("cases", name), self.extended(inner, folder, above))
+                for key in SWEPT:
+                    cases[name].pop(key, None)
+                cases[name] |= own
 
     def inside(self, name: Any, folder: Path | None, suffixes: tuple[str, ...]) -> Path:
         """The regular file `name` says, refused outside the root."""
@@ -155,7 +174,7 @@ class _Files:
         """Replace each `table: file.csv` by its rows."""
         for key, value in list(data.items() if isinstance(data, dict) else enumerate(data)):
             here = (*path, key)
-            if here == ("report",):
+            if here == ("report",) or (here[0], here[2:]) == ("cases", ("report",)):
                 continue
             if isinstance(value, dict | list):
                 self.inline_tables(tree, value, folder, here)
@@ -211,6 +230,28 @@ def _same_kind(before: Any, value: Any) -> bool:
     return before.get("type") in (None, value.get("type", before.get("type")))
 
 
+def part(tree: Tree, path: tuple) -> Tree:
+    """What stands at a path, as a tree of its own."""
+    data, n = tree.data, len(path)
+    for key in path:
+        data = data[key]
+    marks, keys = (
+        {place[n:]: mark for place, mark in marks.items() if place[:n] == path}
+        for marks in (tree.marks, tree.keys)
+    )
+    return Tree(data, marks, keys, tree.files)
+
+
+def graft(tree: Tree, path: tuple, inner: Tree) -> None:
+    """Put a tree in the place of what stands at a path."""
+    data = tree.data
+    for key in path[:-1]:
+        data = data[key]
+    data[path[-1]] = inner.data
+    tree.marks.update({(*path, *place): mark for place, mark in inner.marks.items()})
+    tree.keys.update({(*path, *place): mark for place, mark in inner.keys.items()})
+
+
 def _paths(data: Any, path: tuple) -> Iterable[tuple]:
     """The path of everything in a tree."""
     yield path
@@ -221,6 +262,12 @@ def _paths(data: Any, path: tuple) -> Iterable[tuple]:
 
 def override(tree: Tree, text: str) -> None:
     """Change one value of a tree: `joints.B.clearance=0.3mm`."""
+    keys, new, at, key_place = setting(text)
+    put(tree, keys, new, at, key_place)
+
+
+def setting(text: str) -> tuple[list[str], Any, Place, Place]:
+    """The keys and the value of a --set, and their places."""
     dotted, equals, value = text.partition("=")
     keys = dotted.strip().split(".")
     if not equals or not all(keys):
@@ -234,6 +281,11 @@ def override(tree: Tree, text: str) -> None:
         new = read(value, "--set", mapping=False).data
     except ScenarioError as error:
         raise ScenarioError(error.what, error.hint, tuple(keys), at) from None
+    return keys, new, at, key_place
+
+
+def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> None:
+    """Change one value of a tree, which remembers where it came from."""
     section = tree.data.get(keys[0])
     named = section if isinstance(section, dict) else {}
     if len(keys) > 1 and keys[0] in ("parameters", *NAMED) and keys[1] not in named:

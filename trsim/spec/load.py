@@ -13,7 +13,7 @@ from trsim.errors import Problems, ScenarioError, TrsimError, closest, described
 from trsim.fields import Spec, SpecError, Unit
 from trsim.spec import expand
 from trsim.spec.names import name_faults, sweep_faults
-from trsim.spec.scenario import Scenario, suggestion
+from trsim.spec.scenario import Memory, Scenario, suggestion
 from trsim.spec.text import Tree
 from trsim.units import told
 
@@ -32,6 +32,27 @@ def loads(
 ) -> Scenario:
     """The scenario in a text; `folder` is where files it names are looked for."""
     return _validated(expand.expand_text(text, sets, name, folder), text)
+
+
+def of_tree(tree: Tree, text: str) -> Scenario:
+    """The scenario of a tree that is complete."""
+    return _validated(tree, text)
+
+
+def valid(data: dict, memory: Memory) -> bool:
+    """Whether the data of a tree, with good names, make a scenario; what of it was seen is known.
+
+    To say what is wrong takes a tree.
+    """
+    values, faults = expand.parameters(Tree(data))
+    if faults:
+        return False
+    context = {"parameters": values, "memory": memory}
+    try:
+        Scenario.model_validate({**data, "parameters": values}, context=context)
+    except (ValidationError, SpecError):
+        return False
+    return True
 
 
 def locate(error: TrsimError, scenario: Scenario) -> TrsimError:

@@ -8,12 +8,14 @@ from typing import Any
 from trsim.errors import ScenarioError, described, known
 from trsim.expressions import FUNCTIONS
 from trsim.spec.expand import NAMED
+from trsim.spec.vary import sweep
 
 RESERVED = {
     *("ground", "world", "t", "pi", "time", "energy"),
     *("steps", "events", "peaks", "summary", "solver", "phase", "poincare", "scenario"),
     *("provenance", *FUNCTIONS, *keyword.kwlist),
 }
+NEW = {"parameters"}  # sections in which a name that is not there means nothing
 
 
 def name_faults(data: dict) -> Iterator[ScenarioError]:
@@ -35,16 +37,30 @@ def name_faults(data: dict) -> Iterator[ScenarioError]:
 
 
 def sweep_faults(data: dict) -> Iterator[ScenarioError]:
-    """A sweep varies what is there: its keys are dotted paths of the scenario."""
-    sweep = data.get("sweep")
-    for dotted in sweep if isinstance(sweep, dict) else ():
+    """What is wrong with a sweep: its words, or a key that says nothing in this scenario.
+
+    The last word of a key may be one that the file leaves out; whether it can be set there is
+    found when a case is made.  Keys are those of the cases, where there are any.
+    """
+    given = data.get("sweep")
+    if not isinstance(given, dict):
+        return
+    try:
+        axes = sweep(given).axes
+    except ScenarioError as error:
+        yield error.at("sweep")  # type: ignore[misc]
+        return
+    for axis in axes if not data.get("cases") else ():
         inner: Any = data
-        for key in dotted.split("."):
+        words = axis.key.split(".")
+        for k, key in enumerate(words):
             entries = inner if isinstance(inner, dict) else {}
             if isinstance(inner, list):
                 entries = {str(k): item for k, item in enumerate(inner)}
             if key not in entries:
-                what = f"nothing to vary at {described(dotted)}: no {described(key)}"
-                yield ScenarioError(what, known(key, entries), ("sweep", dotted))
+                if isinstance(inner, dict) and k == len(words) - 1 and k and words[0] not in NEW:
+                    break
+                what = f"nothing to vary at {described(axis.key)}: no {described(key)}"
+                yield ScenarioError(what, known(key, entries), ("sweep", axis.key))
                 break
-            inner = entries[key]
+            inner = entries[key] if isinstance(entries, dict) else None

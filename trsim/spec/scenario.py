@@ -4,6 +4,9 @@ The elements bring their own specs: the word after `type:` says which, and only 
 scenario uses are imported.
 """
 
+import json
+import re
+from collections.abc import Iterable
 from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
@@ -30,6 +33,23 @@ EMPTY: Any = Field(default_factory=dict)
 # --- elements --------------------------------------------------------------------------------
 
 
+class Memory:
+    """Specs that were made already, for scenarios that are much alike; see spec/load.py."""
+
+    def __init__(self, parameters: Iterable[str]) -> None:
+        self.made: dict[tuple, Any] = {}
+        self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
+        self.word = re.compile("|".join(rf"\b{name}\b" for name in parameters) or r"(?!)")
+
+    def key(self, section: str, data: Any, parameters: dict[str, float]) -> tuple:
+        """Of a piece of data: its text, and the values of the parameters that the text names."""
+        if id(data) not in self.pieces:
+            text = json.dumps(data)
+            self.pieces[id(data)] = data, text, sorted(set(self.word.findall(text)))
+        _, text, names = self.pieces[id(data)]
+        return section, text, *(parameters[name] for name in names)
+
+
 def _Element(section: str) -> BeforeValidator:
     """Makes an entry of a section a spec, of the class that its `type` names."""
     return BeforeValidator(partial(_element, section))
@@ -38,9 +58,18 @@ def _Element(section: str) -> BeforeValidator:
 def _element(section: str, data: Any, info: Any) -> Any:
     if not isinstance(data, dict):
         raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
+    context = info.context or {}
+    memory, key = context.get("memory"), ()
+    if memory is not None:
+        key = memory.key(section, data, context["parameters"])
+        if key in memory.made:
+            return memory.made[key]
     spec: Any = elements.load(word(section, data)).spec
     rest = {key: value for key, value in data.items() if key != "type"}
-    return spec.model_validate(rest, context=info.context)
+    made = spec.model_validate(rest, context=info.context)
+    if memory is not None:
+        memory.made[key] = made
+    return made
 
 
 def word(section: str, data: dict) -> str:
@@ -243,7 +272,7 @@ class Scenario(Spec):
     poincare         two channels at the times a third one crosses zero
     events           what happens where a sensor, or the time, crosses a value
     phases           kept for load steps; not used yet
-    cases            kept for named overrides; not used yet
+    cases            named overrides, each a scenario of a sweep; not used by `run`
     sweep            values of keys to vary, by dotted path; not used by `run`
     report           units of figures and tables: `units: {angle: deg, length: mm}`
     """

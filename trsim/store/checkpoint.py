@@ -34,7 +34,7 @@ MAGIC = "trsim checkpoint 1"
 ENDING = ".checkpoint"
 ANEW = "Without --resume the run starts anew."
 SHOWN = 5  # differences in a message
-OUTSIDE = {"cli", "report", "analyse"}  # packages that have no part in a run
+OUTSIDE = {"cli", "report", "analyse", "sweep"}  # packages that have no part in a run
 Arrays = dict[str, NDArray[Any]]
 
 

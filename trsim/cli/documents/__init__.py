@@ -37,6 +37,7 @@ from trsim.cli.documents.runs import (
     RunStatistics,
     Statistics,
 )
+from trsim.cli.documents.sweeps import Failed, Needed, Status, Sweep
 from trsim.cli.documents.words import Channel, ElementPage, Explain, Key, Schema, SectionPage
 
 __all__ = [
@@ -55,11 +56,13 @@ __all__ = [
     "Error",
     "Explain",
     "Export",
+    "Failed",
     "Key",
     "Level",
     "Measured",
     "Mode",
     "Moved",
+    "Needed",
     "Onset",
     "Onsets",
     "Parted",
@@ -81,5 +84,7 @@ __all__ = [
     "Solver",
     "Start",
     "Statistics",
+    "Status",
     "Summary",
+    "Sweep",
 ]

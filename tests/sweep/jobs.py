@@ -1,0 +1,27 @@
+"""Jobs for workers that need no mechanism: a task says what is to become of it."""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+
+def run(task, begun):
+    """Do what `task["do"]` says: end, die (always, or once), take long, or take memory."""
+    begun()
+    do, marks = task["do"], Path(task["marks"])
+    (marks / f"{task['name']}.{os.getpid()}.{time.monotonic_ns()}").touch()
+    first = sum(1 for _ in marks.glob(f"{task['name']}.*")) == 1
+    if do == "die" or (do == "die once" and first):
+        os.kill(os.getpid(), signal.SIGKILL)
+    if do == "raise":
+        raise ZeroDivisionError("division by zero")
+    if do == "sleep":
+        time.sleep(60.0)
+    if do == "eat":
+        return {"status": "done", "reason": str(len(bytearray(1 << 30)))}
+    if do == "threads":
+        return {"status": "done", "reason": os.environ["OPENBLAS_NUM_THREADS"]}
+    if do == "print":
+        print("this is no reply")
+    return {"status": "done", "reason": ""}

@@ -1,0 +1,67 @@
+"""Documents about sweeps."""
+
+from typing import NotRequired
+
+from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
+
+from trsim.cli.documents.common import Document, Number
+
+
+class Needed(TypedDict):
+    """A case that is to be run.
+
+    case  its name
+    why   it is missing, changed, or tried again
+    """
+
+    case: str
+    why: str
+
+
+class Failed(TypedDict):
+    """A case without a good result.
+
+    case    its name
+    status  how its run ended, or why there is none
+    reason  in words
+    """
+
+    case: str
+    status: str
+    reason: str
+
+
+class Sweep(Document):
+    """trsim sweep.
+
+    folder  of the sweep
+    cases   of the plan
+    ran     how many were run now
+    counts  status -> how many cases have it; of this share
+    needed  what is to be run, with --dry-run and --explain
+    """
+
+    folder: str
+    cases: int
+    ran: int
+    counts: dict[str, int]
+    needed: NotRequired[list[Needed]]
+
+
+class Status(Document):
+    """trsim status.
+
+    folder          of the sweep
+    source          its scenario
+    cases           of the plan
+    counts          status -> how many cases have it
+    failed          the cases that failed
+    wall_of_a_case  mean wall time of those that were run, s
+    """
+
+    folder: str
+    source: str
+    cases: int
+    counts: dict[str, int]
+    failed: list[Failed]
+    wall_of_a_case: Number

@@ -1,0 +1,249 @@
+"""trsim sweep: many runs of one scenario, side by side."""
+
+import re
+import time
+from pathlib import Path
+from typing import Any
+
+import click
+
+from trsim.cli.frame import NAMED, Answer, framed
+from trsim.cli.progress import Cases, Doing
+from trsim.cli.resume import Seconds
+from trsim.errors import CasesFailed, Problems, TrsimError
+
+SHOWN = 10  # cases that are told one by one
+BYTES = {
+    "": 1,
+    "b": 1,
+    "kb": 10**3,
+    "mb": 10**6,
+    "gb": 10**9,
+    "kib": 2**10,
+    "mib": 2**20,
+    "gib": 2**30,
+}
+
+
+class Bytes(click.ParamType):
+    """An amount of memory: 2 GB, 500MB, 1.5 GiB."""
+
+    name = "size"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> int:
+        if isinstance(value, int):
+            return value
+        match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([kmg]?i?b?)\s*", value.lower())
+        if not match or match[2] not in BYTES or not float(match[1]) > 0.0:
+            self.fail(f"{value} is no amount of memory: write 2 GB, or 500 MB.", param, ctx)
+        return int(float(match[1]) * BYTES[match[2]])
+
+
+class Share(click.ParamType):
+    """One of n parts: 2/5."""
+
+    name = "i/n"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        match = (
+            re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", value) if isinstance(value, str) else None
+        )
+        if not match:
+            if isinstance(value, tuple):
+                return value
+            self.fail(f"{value} is no share: write 1/3 for the first of three.", param, ctx)
+        i, n = int(match[1]), int(match[2])
+        if not 1 <= i <= n:
+            self.fail(f"{value}: the first of {n} shares is 1/{n}, the last {n}/{n}.", param, ctx)
+        return i, n
+
+
+@click.command("sweep")
+@click.argument("scenario", type=click.Path())
+@click.option("-o", "--output", type=NAMED, help="Folder of the sweep.  [default: runs/NAME]")
+@click.option(
+    "--set", "sets", multiple=True, metavar="KEY=VALUE",
+    help="Override a number; [a, b] or lin(a, b, n) varies it.",
+)  # fmt: skip
+@click.option("--dry-run", is_flag=True, help="Check every case, run none.")
+@click.option("--explain", is_flag=True, help="Say of every case whether it is run, and why.")
+@click.option(
+    "-j", "--jobs", type=click.IntRange(min=1), help="Runs side by side.  [default: processors]"
+)
+@click.option(
+    "--shard", type=Share(), default=None, metavar="I/N", help="Run this share of the cases."
+)
+@click.option(
+    "--dask", "address", metavar="ADDRESS", help="Run on the workers of a Dask scheduler."
+)
+@click.option(
+    "--time-limit", type=Seconds(min=0.0), default=0.0, metavar="SECONDS",
+    help="Wall time a case may take.  [default: any]",
+)  # fmt: skip
+@click.option(
+    "--memory", type=Bytes(), default=0, metavar="SIZE", help="Memory a case may take: 2 GB."
+)
+@click.option(
+    "--retries", type=click.IntRange(min=0, max=100), default=2, show_default=True,
+    help="Further attempts after the process of a case died.",
+)  # fmt: skip
+@framed
+def command(
+    answer: Answer, scenario: str, output: str | None, sets: tuple[str, ...], dry_run: bool,
+    explain: bool, jobs: int | None, shard: tuple[int, int] | None, address: str | None,
+    time_limit: float, memory: int, retries: int,
+) -> None:  # fmt: skip
+    """Run all cases of a SCENARIO with a `sweep:` or `cases:` block, or with --set KEY=[...].
+
+    Writes FOLDER/cases/NAME.h5, a result file for each case, and FOLDER/index.csv, one row for
+    each.  The same command again runs what is missing or changed, and nothing else.
+    """
+    from trsim.sweep.go import Shard, engine, needs
+    from trsim.sweep.plan import plan
+    from trsim.sweep.slot import Limits
+
+    identity = engine()
+    with Doing(answer, scenario) as doing:
+        doing("making the cases")
+        planned = plan(scenario, sets, identity)
+        doing(f"checking {len(planned.cases)} cases")
+        checked(planned)
+    folder = Path(output or f"runs/{Path(scenario).stem}")
+    part = Shard(*shard) if shard else Shard()
+    answer.data |= {"folder": str(folder), "cases": len(planned.cases), "ran": 0, "counts": {}}
+    if explain or dry_run:
+        told = needs(planned, folder, identity, part)
+        reasons(answer, planned, folder, told, explain)
+    if dry_run:
+        assembled(answer, planned, part)
+        return
+    limits = Limits(time_limit, memory, retries)
+    ran(answer, planned, folder, identity, part, limits, jobs, address)
+
+
+def checked(planned: Any) -> None:
+    """Refuse a sweep of which a case is no scenario, with all that is wrong, each told once."""
+    from trsim.sweep.plan import faults
+
+    found: dict[str, TrsimError] = {}
+    for case, error in faults(planned):
+        for problem in error.problems:
+            if problem.show() not in found and len(found) < SHOWN:
+                problem.hint = f"{problem.hint}\n  Case: {case.name}".strip()
+                found.setdefault(problem.show(), problem)
+        if len(found) >= SHOWN:
+            break
+    unique = {(p.what, p.path, p.place): p for p in found.values()}
+    if len(unique) == 1:
+        raise next(iter(unique.values()))
+    if unique:
+        raise Problems(list(unique.values()))
+
+
+def reasons(answer: Answer, planned: Any, folder: Path, told: Any, each: bool) -> None:
+    """Say what would be run, and why."""
+    from trsim.sweep.needed import explained
+
+    wanted = [(case, need) for case, need in told if need.why]
+    answer.data["needed"] = [
+        {"case": case.name, "why": explained(planned, case, need, folder)} for case, need in wanted
+    ]
+    if each:
+        for one in answer.data["needed"]:
+            answer.put(f"{one['case']}: {one['why']}")
+    answer.say(f"{len(wanted)} of {len(told)} cases are to be run")
+
+
+def assembled(answer: Answer, planned: Any, part: Any) -> None:
+    """Assemble every case.  Raises what is wrong with the first that cannot be."""
+    from trsim.assemble.assemble import assemble
+    from trsim.cli.run import placed
+
+    mine = planned.cases[part.i - 1 :: part.n]
+    with Doing(answer, "assembling") as doing:
+        for k, case in enumerate(mine):
+            scenario = planned.scenario(case)
+            try:
+                assemble(scenario)
+            except TrsimError as error:
+                told = placed(error, scenario)
+                for problem in told.problems:
+                    problem.hint = f"{problem.hint}\n  Case: {case.name}".strip()
+                raise told from None
+            if k % 500 == 499:
+                doing(f"{k + 1} of {len(mine)} cases")
+    answer.say(f"{len(mine)} cases are well formed and assemble")
+
+
+def ran(
+    answer: Answer, planned: Any, folder: Path, identity: str, part: Any, limits: Any,
+    jobs: int | None, address: str | None,
+) -> None:  # fmt: skip
+    """Run what is needed, and tell how it went."""
+    from trsim.sweep import local
+    from trsim.sweep.folder import strays
+    from trsim.sweep.go import go
+    from trsim.sweep.ledger import counts
+
+    count = jobs or local.processors()
+
+    def run(tasks: list[dict[str, Any]]) -> Any:
+        if address:
+            from trsim.sweep.dask import run as by_dask
+
+            return by_dask(tasks, address, limits)
+        cold = bool(tasks) and warming(answer, planned)
+        return local.run(tasks, count, limits, cold)
+
+    going = go(planned, folder, identity, run, part)
+    show, began = None, time.monotonic()
+    try:
+        for one in going:
+            if isinstance(one, int):
+                show = Cases(answer, str(folder), one)
+                continue
+            answer.data["ran"] += 1
+            if one.failed:
+                answer.say(f"{one.case}: {one.status}: {' '.join(one.reason.split())[:300]}")
+            assert show is not None  # noqa: S101
+            show.update(one)
+    except KeyboardInterrupt:
+        again = "the same command goes on with the sweep"
+        raise KeyboardInterrupt(f"{folder / 'index.csv'} has what was done; {again}") from None
+    finally:
+        going.close()
+        if show is not None:
+            show.close()
+    from trsim.sweep.study import study
+
+    found = study(folder)
+    mine = found.cases[part.i - 1 :: part.n]
+    answer.data["counts"] = counts(case.status for case in mine)
+    answer.put(str(folder / "index.csv"))
+    said = ", ".join(f"{n} {status}" for status, n in answer.data["counts"].items())
+    wall = time.monotonic() - began
+    answer.say(f"{folder}: {len(mine)} cases, {answer.data['ran']} run in {wall:.1f} s: {said}")
+    if left := strays(folder, set(found.named)):
+        more = f" and {len(left) - 3} more" if len(left) > 3 else ""
+        answer.say(f"note: of an earlier plan: {', '.join(left[:3])}{more} in {folder / 'cases'}")
+    bad = [case for case in mine if case.failed]
+    if bad:
+        listed = "\n  ".join(
+            f"{c.name}: {c.status}: {' '.join(c.reason.split())[:200]}" for c in bad[:SHOWN]
+        )
+        more = f"\n  ... and {len(bad) - SHOWN} more" if len(bad) > SHOWN else ""
+        what = f"{len(bad)} of {len(mine)} cases failed"
+        answer.fail(
+            CasesFailed(what, f"{listed}{more}\n  All are in {folder / 'index.csv'}."), str(folder)
+        )
+
+
+def warming(answer: Answer, planned: Any) -> bool:
+    """Whether nothing was compiled on this machine yet; says so, and begins with it."""
+    from trsim.assemble.equations import derivative
+    from trsim.cli.progress import compiling
+
+    if derivative.file.exists():
+        return False
+    compiling(answer, planned.scenario(planned.cases[0]).solver.method)
+    return True

@@ -1,0 +1,111 @@
+"""The folder of a sweep: plan.json, ledger.jsonl, index.csv and cases/NAME.h5."""
+
+import csv
+import io
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from trsim.errors import FileError, UsageError
+from trsim.store.target import Kind, fresh, headed
+from trsim.sweep.ledger import Entry
+from trsim.sweep.plan import CASE, Plan, value
+
+FORMAT, VERSION = "trsim sweep", 1
+INDEX = headed("name", "status", "reason")
+PLAN = Kind("plan of a sweep", lambda start: start.startswith(b'{"format": "trsim sweep"'))
+LAST = ("attempts", "wall_time", "content_sha256")
+
+
+def see_usable(folder: Path) -> None:
+    """See that a folder is that of a sweep, empty, or not there."""
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"{folder} is not a folder", "Name another one with -o.")
+    if folder.is_dir() and not (folder / "plan.json").exists() and any(folder.iterdir()):
+        what = f"{folder} is a folder of other files, not of a sweep"
+        raise UsageError(what, "Name another one with -o.")
+
+
+def write_plan(folder: Path, plan: Plan, engine: str) -> None:
+    """plan.json; what reads a sweep later needs nothing else to know its cases."""
+    cases = [
+        {"name": c.name, "digest": c.digest, "values": _values(c.case, c.values)}
+        for c in plan.cases
+    ]
+    told = {
+        "format": FORMAT, "version": VERSION, "source": plan.source, "engine": engine,
+        "keys": plan.keys, "units": plan.units, "method": plan.method, "samples": plan.samples,
+        "seed": plan.seed, "cases": cases,
+    }  # fmt: skip
+    with fresh(folder / "plan.json", PLAN) as unfinished:
+        unfinished.write_text(json.dumps(told, ensure_ascii=False), encoding="utf-8")
+
+
+def _values(case: str, values: dict[str, Any]) -> dict[str, Any]:
+    return ({CASE: case} if case else {}) | {key: value(one) for key, one in values.items()}
+
+
+def read_plan(folder: Path) -> dict[str, Any]:
+    """What plan.json says.  Raises FileError or UsageError where there is none to read."""
+    path = folder / "plan.json"
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        what = "no such folder" if not folder.exists() else "not the folder of a sweep"
+        hint = "`trsim sweep SCENARIO -o FOLDER` makes one."
+        raise FileError(f"{folder}: {what}", hint, file=str(folder)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "is damaged"
+        hint = "The same `trsim sweep` writes it again."
+        raise FileError(f"{path}: {reason}", hint, file=str(path)) from None
+    if not isinstance(told, dict) or told.get("format") != FORMAT:
+        raise FileError(f"{path} is not the plan of a sweep", file=str(path))
+    if told["version"] > VERSION:
+        what = f"{path} has version {told['version']}; this trsim reads up to {VERSION}"
+        raise FileError(what, "Use a newer trsim.", file=str(path))
+    return told
+
+
+def write_index(folder: Path, told: Mapping[str, Any], entries: Mapping[str, Entry]) -> Path:
+    """index.csv: one row for each case, in the order of the plan.
+
+    Numbers are SI.  Columns of the summary are those that any case has.
+    """
+    keys, cases = list(told["keys"]), told["cases"]
+    columns: dict[str, None] = {}
+    for case in cases:
+        if case["name"] in entries:
+            columns.update(dict.fromkeys(entries[case["name"]].summary))
+    out = io.StringIO()
+    table = csv.writer(out)
+    titles = [f"{key} [{told['units'].get(key, '-')}]" for key in keys]
+    table.writerow(["name", "status", "reason", *titles, *columns, *LAST])
+    for case in cases:
+        entry = entries.get(case["name"])
+        values = [_cell(case["values"].get(key)) for key in keys]
+        if entry is None or entry.digest != case["digest"]:
+            table.writerow([case["name"], "missing", "", *values])
+            continue
+        numbers = [_cell(entry.summary.get(column)) for column in columns]
+        last = [entry.attempts, _cell(round(entry.wall, 3)), entry.content]
+        reason = " ".join(entry.reason.split())
+        table.writerow([case["name"], entry.status, reason, *values, *numbers, *last])
+    path = folder / "index.csv"
+    with fresh(path, INDEX) as unfinished:
+        unfinished.write_bytes(out.getvalue().encode())
+    return path
+
+
+def _cell(value: Any) -> Any:
+    return "" if value is None else repr(value) if isinstance(value, float) else value
+
+
+def strays(folder: Path, names: set[str]) -> list[str]:
+    """Result files in the folder that are of no case of the plan."""
+    try:
+        found = os.listdir(folder / "cases")
+    except OSError:
+        return []
+    return sorted(f for f in found if f.endswith(".h5") and f.removesuffix(".h5") not in names)

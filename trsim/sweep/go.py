@@ -1,0 +1,98 @@
+"""A sweep made, or gone on with: what is needed is run, and what becomes of it is kept."""
+
+import time
+from collections.abc import Callable, Generator, Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from trsim.store.checkpoint import sources
+from trsim.store.lock import writing
+from trsim.store.target import make, told
+from trsim.sweep.folder import read_plan, see_usable, write_index, write_plan
+from trsim.sweep.job import task
+from trsim.sweep.ledger import Entry, Ledger, entries, stamp
+from trsim.sweep.needed import Need, need
+from trsim.sweep.plan import Case, Plan, named_file
+from trsim.version import __version__
+
+WRITTEN = 1.0  # s between two writings of the index
+Runner = Callable[[list[dict[str, Any]]], Iterable[tuple[dict[str, Any], dict[str, Any]]]]
+
+
+class Shard(NamedTuple):
+    """The part of the cases that one of several processes runs: i of n, from 1."""
+
+    i: int = 1
+    n: int = 1
+
+    @property
+    def name(self) -> str:
+        return "" if self.n == 1 else f"{self.i}of{self.n}"
+
+
+WHOLE = Shard()
+
+
+def engine() -> str:
+    """What makes results: the version, and a hash of the sources that have a part in them."""
+    return f"{__version__} {sources(Path(__file__).parents[1])[:16]}"
+
+
+def needs(plan: Plan, folder: Path, engine: str, shard: Shard = WHOLE) -> list[tuple[Case, Need]]:
+    """What is to be done about every case of a shard."""
+    known = entries(folder)
+    mine = plan.cases[shard.i - 1 :: shard.n]
+    return [(case, need(case, known.get(case.name), folder, engine)) for case in mine]
+
+
+def go(
+    plan: Plan, folder: Path, engine: str, run: Runner, shard: Shard = WHOLE
+) -> Generator[Entry | int, None, None]:
+    """Run what is needed: first how many cases that are, then each as it ends.
+
+    Raises FileError where the folder cannot be written, or is being written by another process;
+    UsageError where it is not the folder of a sweep.
+    """
+    see_usable(folder)
+    with told(folder):
+        make(folder / "cases")
+    with writing(folder / f"ledger{shard.name and '-'}{shard.name}.jsonl"):
+        write_plan(folder, plan, engine)
+        with told(folder):
+            ledger = Ledger(folder, shard.name)
+        try:
+            yield from _gone_on(plan, folder, engine, run, shard, ledger)
+        finally:
+            ledger.close()
+            write_index(folder, read_plan(folder), entries(folder))
+
+
+def _gone_on(
+    plan: Plan, folder: Path, engine: str, run: Runner, shard: Shard, ledger: Ledger
+) -> Generator[Entry | int, None, None]:
+    wanted, known = [], entries(folder)
+    for case in plan.cases[shard.i - 1 :: shard.n]:
+        found = need(case, known.get(case.name), folder, engine)
+        if found.why:
+            wanted.append(case)
+        elif found.entry and found.entry != known.get(case.name):  # its line was lost, or is old
+            ledger.add(found.entry)
+    yield len(wanted)
+    if not wanted:
+        return
+    cases = {case.name: case for case in wanted}
+    tasks = [task(case, plan, named_file(folder, case.name)) for case in wanted]
+    table, known, written = read_plan(folder), entries(folder), time.monotonic()
+    for one, ended in run(tasks):
+        case = cases[one["name"]]
+        size, changed = stamp(named_file(folder, case.name)) if ended.get("content") else (0, 0)
+        entry = Entry(case.name, case.digest, engine, ended["status"], ended["reason"],
+                      ended.get("attempts", 1), ended.get("content", ""), size, changed,
+                      time.time(), ended.get("wall", 0.0), ended.get("summary", {}))  # fmt: skip
+        with told(ledger.path):
+            ledger.add(entry)
+        known[case.name] = entry
+        if time.monotonic() - written > WRITTEN:
+            write_index(folder, table, known)
+            written = time.monotonic()
+        yield entry

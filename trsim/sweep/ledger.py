@@ -1,0 +1,93 @@
+"""What became of every case: one line of JSON for each end, in ledger.jsonl of the sweep's folder.
+
+A line is written when its case has ended, and none is ever changed: of several the last counts.
+With shards each writes lines of its own, ledger-1of3.jsonl.  A line cut short by a dead process
+is left out; the result file it was about is found by what the file says of itself.
+"""
+
+import json
+import os
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+DIGEST = "case_sha256"  # attribute of /provenance in a result file
+AGAIN = ("crashed", "over time", "over memory", "no file")  # chance or limits: tried again
+REFUSED = "refused"  # no scenario, or no mechanism: there is no result file
+FAILED = (*AGAIN, REFUSED, "failed")
+
+
+class Entry(NamedTuple):
+    """How a case ended."""
+
+    case: str
+    digest: str
+    engine: str
+    status: str  # of the result file, or one of FAILED
+    reason: str
+    attempts: int
+    content: str  # sha256 of the results; "" without a file
+    size: int  # bytes of the file
+    changed: int  # ns, when it was written
+    at: float  # s since 1970
+    wall: float  # s
+    summary: dict[str, Any]
+
+    @property
+    def failed(self) -> bool:
+        return self.status in FAILED
+
+
+class Ledger:
+    """The ledger of one process, open for adding lines."""
+
+    def __init__(self, folder: Path, shard: str = "") -> None:
+        self.path = folder / f"ledger{f'-{shard}' if shard else ''}.jsonl"
+        self.file = self.path.open("ab")
+        if self.file.tell() and not _ends_a_line(self.path):
+            self.file.write(b"\n")
+
+    def add(self, entry: Entry) -> None:
+        self.file.write(json.dumps(entry._asdict()).encode() + b"\n")
+        self.file.flush()
+
+    def close(self) -> None:
+        with suppress(OSError):
+            os.fsync(self.file.fileno())
+        self.file.close()
+
+
+def _ends_a_line(path: Path) -> bool:
+    with path.open("rb") as file:
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) == b"\n"
+
+
+def entries(folder: Path) -> dict[str, Entry]:
+    """The last entry of every case, of all shards."""
+    found: dict[str, Entry] = {}
+    for path in sorted(folder.glob("ledger*.jsonl")):
+        for line in path.read_bytes().splitlines():
+            with suppress(ValueError, TypeError):
+                entry = Entry(**json.loads(line))
+                if entry.case not in found or entry.at >= found[entry.case].at:
+                    found[entry.case] = entry
+    return found
+
+
+def stamp(file: Path) -> tuple[int, int]:
+    """Size and time of change of a file; zeros where there is none."""
+    try:
+        told = file.stat()
+    except OSError:
+        return 0, 0
+    return told.st_size, told.st_mtime_ns
+
+
+def counts(statuses: Iterable[str]) -> dict[str, int]:
+    """How many cases there are of each status."""
+    found: dict[str, int] = {}
+    for status in statuses:
+        found[status] = found.get(status, 0) + 1
+    return dict(sorted(found.items(), key=lambda item: -item[1]))

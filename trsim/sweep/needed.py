@@ -1,0 +1,118 @@
+"""Which cases of a plan are to be run, and why."""
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+
+from trsim.sweep.job import CONTACT, STATISTICS
+from trsim.sweep.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
+from trsim.sweep.plan import Case, Plan, named_file
+
+SHOWN = 4  # differences that are told
+
+
+class Need(NamedTuple):
+    """What is to be done about a case."""
+
+    why: str  # it is run; "" where it is not
+    entry: Entry | None  # that stands
+
+
+def need(case: Case, entry: Entry | None, folder: Path, engine: str) -> Need:
+    """Whether a case is run, given its last entry."""
+    file = named_file(folder, case.name)
+    if entry is None:
+        if not file.exists():
+            return Need("not run yet", None)
+        entry = adopted(case, file, engine)
+        return Need("", entry) if entry else Need("its file is of another case", None)
+    if entry.digest != case.digest:
+        if entry.engine != engine:
+            return Need("trsim itself changed", entry)
+        return Need("the scenario changed", entry)
+    if entry.status in AGAIN:
+        return Need(f"tried again: {entry.status}", entry)
+    if entry.status == REFUSED:
+        return Need("", entry)
+    size, changed = stamp(file)
+    if not size:
+        return Need("its file is gone", entry)
+    if (size, changed) == (entry.size, entry.changed):
+        return Need("", entry)
+    # copied, perhaps: what it says of itself decides
+    found = adopted(case, file, engine)
+    if found and found.content == entry.content:
+        return Need("", entry._replace(size=size, changed=changed))
+    return Need("its file was changed", entry)
+
+
+def adopted(case: Case, file: Path, engine: str) -> Entry | None:
+    """The entry of a complete file that is of this case, whose line was lost; None of any other."""
+    try:
+        with h5py.File(file, "r") as inner:
+            provenance = inner["provenance"].attrs
+            if provenance.get(DIGEST) != case.digest or "content_sha256" not in inner.attrs:
+                return None
+            told = {name: inner.attrs[name] for name in ("status", "reason", "content_sha256")}
+            summary = _summary(inner)
+            wall = float(provenance.get("wall_time", 0.0))
+    except (OSError, KeyError, RuntimeError, ValueError):
+        return None
+    size, changed = stamp(file)
+    return Entry(
+        case.name,
+        case.digest,
+        engine,
+        status=str(told["status"]),
+        reason=str(told["reason"]),
+        attempts=1,
+        content=str(told["content_sha256"]),
+        size=size,
+        changed=changed,
+        at=changed * 1e-9,
+        wall=wall,
+        summary=summary,
+    )
+
+
+def _summary(file: Any) -> dict[str, Any]:
+    """What `job.brief` tells of a run, from its file."""
+    told, solver = file["summary"], file["solver"]
+    found: dict[str, Any] = {name: told.attrs[name].item() for name in ("time", "rows", "events")}
+    found["warnings"] = len(solver["warnings"]) if "warnings" in solver else 0
+    place = {"integration_cpu": file["provenance"].attrs}
+    for name in STATISTICS:
+        attributes = place.get(name, solver.attrs)
+        if name in attributes:
+            found[name] = attributes[name].item()
+    for joint, contact in told.items():
+        found |= {f"{joint}.{name}": contact.attrs[name].item() for name in CONTACT}
+    return found
+
+
+def explained(plan: Plan, case: Case, told: Need, folder: Path) -> str:
+    """Why a case is run, with what is different where its file is there."""
+    if told.why != "the scenario changed":
+        return told.why
+    try:
+        with h5py.File(named_file(folder, case.name), "r") as file:
+            was = dict(_leaves(json.loads(file["scenario/resolved"].asstr()[()])))
+    except (OSError, KeyError, RuntimeError, ValueError):
+        return told.why
+    now = dict(_leaves(case.data))
+    names = [name for name in dict.fromkeys([*was, *now]) if was.get(name) != now.get(name)]
+    parts = [
+        f"{name} is {now.get(name, 'absent')}, was {was.get(name, 'absent')}" for name in names
+    ]
+    more = f"; {len(parts) - SHOWN} more" if len(parts) > SHOWN else ""
+    return f"{told.why}: {'; '.join(parts[:SHOWN])}{more}"
+
+
+def _leaves(tree: Any, path: str = "") -> Any:
+    if isinstance(tree, dict):
+        for name, inner in tree.items():
+            yield from _leaves(inner, f"{path}.{name}" if path else name)
+    else:
+        yield path, json.dumps(tree)

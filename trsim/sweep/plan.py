@@ -1,0 +1,319 @@
+"""The plan of a sweep: its cases, each with a name, its data and a digest of all it depends on.
+
+    digest = sha256(sources of trsim that make results; the data of the case, keys in order)
+
+Comments, spaces and the order of keys do not count.  Cases share the pieces of data that they do
+not change, so a piece is read, checked and hashed once.
+"""
+
+import hashlib
+import json
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from trsim.errors import Place, ScenarioError, TrsimError, UsageError
+from trsim.spec import vary
+from trsim.spec.cases import cases as named_cases
+from trsim.spec.expand import SWEPT, expand, put, setting
+from trsim.spec.load import of_tree, unit_of, valid
+from trsim.spec.scenario import Memory, Scenario
+from trsim.spec.text import Tree
+from trsim.sweep.points import Point, points
+from trsim.units import quantity, si
+
+CASE = "case"  # the key of the named cases
+LONGEST = 80  # letters of a name
+
+
+class Case(NamedTuple):
+    """One run of a sweep."""
+
+    name: str  # of its file, too
+    case: str  # of `cases:`; "" without any
+    values: dict[str, Any]  # independent key -> value as written
+    data: dict[str, Any]
+    digest: str
+
+
+class Plan(NamedTuple):
+    """All runs of a sweep."""
+
+    source: str
+    text: str  # of the scenario, as given
+    files: dict[str, str]  # it was read from -> sha256
+    keys: tuple[str, ...]  # that vary by themselves; CASE first where there are named cases
+    units: dict[str, str]
+    method: str
+    samples: int
+    seed: int
+    cases: tuple[Case, ...]
+    trees: dict[str, "_Named"]  # of the named cases
+
+    def scenario(self, case: Case) -> Scenario:
+        """The scenario of a case.  Raises what is wrong with it, with its place."""
+        return self.trees[case.case].scenario(case)
+
+
+class _Setting(NamedTuple):
+    """An axis of the command line, or of the file."""
+
+    axis: vary.Axis
+    at: Place
+    key_place: Place
+
+
+class _Named(NamedTuple):
+    """A named case, before anything varies."""
+
+    tree: Tree
+    text: str
+    sweep: vary.Sweep
+    settings: dict[str, _Setting]
+
+    def scenario(self, case: Case) -> Scenario:
+        tree = Tree(self.tree.data, dict(self.tree.marks), dict(self.tree.keys), self.tree.files)
+        tree.data = json.loads(json.dumps(tree.data))
+        for key, setting_ in self.settings.items():
+            source = setting_.axis.same_as or key
+            put(tree, key.split("."), case.values[source], setting_.at, setting_.key_place)
+        for key in SWEPT:
+            tree.data.pop(key, None)
+        return of_tree(tree, self.text)
+
+
+def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
+    """The plan of a scenario file; sets: numbers, or axes where the value is one.
+
+    engine: what identifies the program that makes the runs.
+    """
+    fixed, axes = _sorted(sets)
+    tree, text = expand(path)
+    named: dict[str, _Named] = {}
+    for name, inner in named_cases(tree).items():
+        for keys, new, at, key_place in fixed:
+            put(inner, keys, new, at, key_place)
+        named[name] = _with_axes(inner, text, axes)
+    first = next(iter(named.values()))
+    if "" in named and not first.sweep.axes:
+        hint = (
+            "Write `sweep: {joints.A.clearance: [0.1 mm, 0.3 mm]}` in it, or give --set KEY=[...]."
+        )
+        raise UsageError(f"{path} says nothing to vary", hint)
+    digests = _Digests(engine)
+    found = [case for name, one in named.items() for case in _cases(name, one, digests)]
+    keys = tuple(dict.fromkeys(key for case in found for key in case.values))
+    units = _units(named, found, keys)
+    if "" not in named:
+        keys, units = (CASE, *keys), {CASE: "-", **units}
+    sweep = first.sweep
+    return Plan(path, text, tree.files, keys, units, sweep.method, sweep.samples, sweep.seed,
+                tuple(_distinct(found)), named)  # fmt: skip
+
+
+def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
+    """The cases that are no scenarios, with what is wrong."""
+    memories: dict[str, Memory] = {}
+    for case in found.cases:
+        if case.case not in memories:
+            memories[case.case] = Memory(case.data.get("parameters") or {})
+        if not valid(case.data, memories[case.case]) or case is found.cases[0]:
+            try:
+                found.scenario(case)
+            except TrsimError as error:
+                yield case, error
+
+
+# --- axes ------------------------------------------------------------------------------------
+
+
+def _sorted(sets: Iterable[str]) -> tuple[list[Any], list[tuple[str, Any, Place, Place]]]:
+    """Settings of one value each, and those of an axis."""
+    fixed, axes = [], []
+    for text in sets:
+        keys, new, at, key_place = setting(text)
+        if vary.varies(new):
+            axes.append((".".join(keys), new, at, key_place))
+        else:
+            fixed.append((keys, new, at, key_place))
+    return fixed, axes
+
+
+def _with_axes(tree: Tree, text: str, axes: list[tuple[str, Any, Place, Place]]) -> _Named:
+    """A named case with the axes of its file and of the command line, which come last."""
+    given = tree.data.get("sweep")
+    block = dict(given) if isinstance(given, dict) else {}
+    places = {key: value for key, value, *_ in axes}
+    where: dict[str, tuple[Place, Place]] = {key: rest for key, _, *rest in axes}  # type: ignore[misc]
+    block.update(places)
+    try:
+        sweep = vary.sweep(block if given is None or isinstance(given, dict) else given)
+        settings = {}
+        for axis in sweep.axes:
+            path = ("sweep", axis.key)
+            unknown = Place("--set", 0, 1, "")
+            mine = where.get(axis.key) or (
+                tree.place(path) or unknown,
+                tree.key_place(path) or unknown,
+            )
+            settings[axis.key] = _Setting(axis, *mine)
+    except ScenarioError as error:
+        key = error.path[0] if error.path else ""
+        path = ("sweep", *error.path)
+        place = where[key][0] if key in where else tree.place(path)
+        raise ScenarioError(error.what, error.hint, path, place) from None
+    return _Named(tree, text, sweep, settings)
+
+
+# --- cases -----------------------------------------------------------------------------------
+
+
+def _cases(name: str, one: _Named, digests: "_Digests") -> Iterator[Case]:
+    base = {key: value for key, value in one.tree.data.items() if key not in SWEPT}
+    own = [axis.key for axis in one.sweep.axes if not axis.same_as]
+    short = _short(own)
+    try:
+        found = points(one.sweep) if one.sweep.axes else [Point("", {})]
+    except ScenarioError as error:
+        path = ("sweep", *error.path)
+        raise ScenarioError(error.what, error.hint, path, one.tree.place(path)) from None
+    if found and one.sweep.axes:  # the rules of --set, which know what is wrong with a key
+        values = {
+            key: found[0].values[one.settings[key].axis.same_as or key] for key in one.settings
+        }
+        tree = Tree(json.loads(json.dumps(base)))
+        for key, setting_ in one.settings.items():
+            put(tree, key.split("."), values[key], setting_.at, setting_.key_place)
+    for point in found:
+        data = base
+        for key, value in point.values.items():
+            data = changed(data, key.split("."), value)
+        label = point.name or _label(short, point.values, own)
+        whole = ",".join(part for part in (name, label) if part)
+        yield Case(whole, name, {key: point.values[key] for key in own}, data, digests.of(data))
+
+
+def changed(data: Any, keys: list[str], value: Any) -> Any:
+    """Data with one value replaced; what it shares with the old is not copied."""
+    if not keys:
+        return value
+    if isinstance(data, list):
+        copy: Any = list(data)
+        copy[int(keys[0])] = changed(copy[int(keys[0])], keys[1:], value)
+        return copy
+    copy = dict(data) if isinstance(data, dict) else {}
+    copy[keys[0]] = changed(copy.get(keys[0]), keys[1:], value)
+    return copy
+
+
+def _short(keys: list[str]) -> dict[str, str]:
+    """The fewest last words that tell keys apart."""
+    found = {}
+    for key in keys:
+        words = key.split(".")
+        for n in range(1, len(words) + 1):
+            tail = words[-n:]
+            if sum(other.split(".")[-n:] == tail for other in keys) == 1:
+                break
+        found[key] = ".".join(tail)
+    return found
+
+
+def _label(short: dict[str, str], values: dict[str, Any], own: list[str]) -> str:
+    parts = [f"{short[key]}={_slug(values[key])}" for key in own]
+    whole = ",".join(parts)
+    if len(whole) <= LONGEST:
+        return whole
+    digest = hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()[:8]
+    return f"{whole[: LONGEST - 9]}-{digest}"
+
+
+def _slug(value: Any) -> str:
+    text = value if isinstance(value, str) else json.dumps(value)
+    text = re.sub(r"[0-9]+\.[0-9]{6,}", lambda match: f"{float(match[0]):.6g}", text)
+    return re.sub(r"[^A-Za-z0-9_.+-]+", "_", re.sub(r"\s+", "", text)).strip("_") or "_"
+
+
+def _distinct(found: list[Case]) -> Iterator[Case]:
+    """The cases, with a number after a name that came before."""
+    seen: dict[str, int] = {}
+    for case in found:
+        n = seen[case.name.casefold()] = seen.get(case.name.casefold(), 0) + 1
+        yield case if n == 1 else case._replace(name=f"{case.name}~{n}")
+
+
+class _Digests:
+    """Of the data of cases; a piece that cases share is hashed once."""
+
+    def __init__(self, engine: str) -> None:
+        self.engine = engine
+        self.known: dict[int, tuple[Any, str]] = {}
+
+    def of(self, data: dict[str, Any]) -> str:
+        parts = [f"{key}:{self.section(data[key])}" for key in sorted(data)]
+        return hashlib.sha256("\n".join([self.engine, *parts]).encode()).hexdigest()
+
+    def section(self, piece: Any) -> str:
+        if not isinstance(piece, dict):
+            return json.dumps(piece, sort_keys=True)
+        if id(piece) not in self.known:
+            inner = {key: self.section(value) for key, value in piece.items()}
+            text = json.dumps(inner, sort_keys=True)
+            self.known[id(piece)] = piece, hashlib.sha256(text.encode()).hexdigest()
+        return self.known[id(piece)][1]
+
+
+# --- units -----------------------------------------------------------------------------------
+
+
+def value(written: Any) -> float | str:
+    """A value as a number in SI, where it is one."""
+    if isinstance(written, bool) or written is None:
+        return json.dumps(written)
+    if isinstance(written, int | float):
+        return float(written)
+    try:
+        found = quantity(written) if isinstance(written, str) else None
+    except TrsimError:
+        found = None
+    if found:
+        return found[0]
+    return written if isinstance(written, str) else json.dumps(written)
+
+
+def _units(named: dict[str, _Named], found: list[Case], keys: tuple[str, ...]) -> dict[str, str]:
+    """The SI unit of each key: of its values, or of the field it is."""
+    units = {}
+    for key in keys:
+        case = next(case for case in found if key in case.values)
+        written = case.values[key]
+        one = quantity(written) if isinstance(written, str) else None
+        if one and one[1]:
+            units[key] = si(one[1])
+            continue
+        try:
+            units[key] = _of_field(named[case.case].scenario(case), key)
+        except TrsimError:  # found, and told, when the cases are checked
+            units[key] = "-"
+    return units
+
+
+def _of_field(scenario: Any, key: str) -> str:
+    inner, words = scenario, key.split(".")
+    for k, word in enumerate(words):
+        if isinstance(inner, dict):
+            inner = inner.get(word)
+            continue
+        unit = unit_of(type(inner), word) if hasattr(type(inner), "model_fields") else None
+        if unit and not isinstance(getattr(inner, word, None), dict):
+            return unit.units[0]
+        if k == len(words) - 1:
+            break
+        inner = getattr(inner, word, None)
+    return "-"
+
+
+def named_file(folder: Path, name: str) -> Path:
+    """The result file of a case."""
+    return folder / "cases" / f"{name}.h5"

@@ -1,0 +1,61 @@
+"""A process that runs cases, one after the other: `python -m trsim.sweep.worker`.
+
+Tasks come as lines of JSON on standard input; for each it answers {"begun": true} once results
+arrive, and then how the case ended.  It ends with the process that began it, and takes no signal
+of a terminal: that process knows what to do.
+"""
+
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from trsim.store.disk import end_with_parent
+
+JOB = "trsim.sweep.job:run"
+
+
+def limited(more: int) -> None:
+    """Allow the process so many bytes of memory more than it has now."""
+    import resource
+
+    with open("/proc/self/statm", encoding="ascii") as file:
+        has = int(file.read().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (has + more, has + more))
+
+
+def main(memory: int, job: str) -> None:
+    """Work until there are no more tasks."""
+    end_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # whatever else is printed is no reply
+    module, _, name = job.partition(":")
+    loaded = import_module(module)
+    run: Callable[..., dict[str, Any]] = getattr(loaded, name)
+    getattr(loaded, "prepare", lambda: None)()
+    if memory:
+        limited(memory)
+
+    def reply(told: dict[str, Any]) -> None:
+        replies.write(json.dumps(told) + "\n")
+        replies.flush()
+
+    for line in sys.stdin:
+        task = json.loads(line)
+        try:
+            ended = run(task, lambda: reply({"begun": True}))
+        except MemoryError:
+            reply({"status": "over memory", "reason": "the memory allowed for a case was used up"})
+            os._exit(0)  # whatever was at work may be half done
+        except Exception as error:
+            told = f"error in trsim: {type(error).__name__}: {error}"
+            ended = {"status": "crashed", "reason": told.splitlines()[0][:500], "final": True}
+        reply(ended)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), sys.argv[2])
