@@ -4,7 +4,7 @@ import sys
 from importlib import import_module
 
 NAMES = (
-    *("startup", "memory", "reverser", "rods", "skipping"),
+    *("startup", "memory", "reverser", "rods", "skipping", "sweeps"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain"),
     "flexible_pendulum",
 )

@@ -1,0 +1,71 @@
+"""Sweeps: 200 cases of the thrust reverser, the same again, plans of 10 000, status of 1 000.
+
+Wall time in s of whole commands, on all processors; efficiency is the time of one worker over
+that of n, times n.
+"""
+
+import json
+import subprocess
+import time
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from benchmarks.measure import ROOT, SCENARIOS, trsim
+from trsim.sweep.local import processors
+
+SCENARIO = str(SCENARIOS / "thrust_reverser" / "clearance_ab_0.3mm.yaml")
+A, B = "joints.A.clearance", "joints.B.clearance"
+FAST = ("--set", "solver.end=0.31 s", "--set", "output.every=1 ms")
+
+
+def timed(*arguments: str) -> tuple[float, dict]:
+    """Wall time of a command, and what it says."""
+    began = time.perf_counter()
+    done = subprocess.run(  # noqa: S603
+        trsim(*arguments, "--json", "-q"), cwd=ROOT, check=True, capture_output=True
+    )
+    return time.perf_counter() - began, json.loads(done.stdout)
+
+
+def grid(n: int, m: int) -> tuple[str, ...]:
+    return ("--set", f"{A}=lin(0.1 mm, 0.5 mm, {n})", "--set", f"{B}=lin(0.1 mm, 0.5 mm, {m})")
+
+
+def main() -> None:
+    timed("run", SCENARIO, *FAST, "-o", "runs/warm.h5")
+    with TemporaryDirectory() as folder:
+        whole = ("sweep", SCENARIO, *grid(20, 10), "-o", str(Path(folder) / "whole"))
+        seconds, told = timed(*whole)
+        print(
+            f"  200 cases of 1 s, 10 001 rows each: {seconds:.0f} s, {told['counts']}", flush=True
+        )
+        seconds, told = timed(*whole)
+        print(f"  the same again: {seconds:.2f} s, {told['ran']} run", flush=True)
+        seconds, _ = timed("status", str(Path(folder) / "whole"))
+        print(f"  their status: {seconds:.2f} s", flush=True)
+        part = (*grid(10, 4), *FAST)
+        alone = 0.0
+        for jobs in sorted({1, processors(), 8}):
+            out = ("-o", f"{folder}/{jobs}", "-j", str(jobs))
+            seconds, _ = timed("sweep", SCENARIO, *part, *out)
+            alone = alone or seconds
+            count = min(jobs, processors())
+            told = f"efficiency {alone / seconds / count:.2f} on {count} processors"
+            print(f"  40 short cases, {jobs} workers: {seconds:.1f} s, {told}", flush=True)
+        out = ("-o", f"{folder}/plan")
+        seconds, told = timed("sweep", SCENARIO, *grid(100, 100), "--explain", "--shard",
+                              "1/10000", *FAST, *out)  # fmt: skip
+        print(f"  10 000 cases made and checked, one of them run: {seconds:.1f} s", flush=True)
+        many(Path(folder) / "many")
+
+
+def many(folder: Path) -> None:
+    """Status and repetition of 1 000 cases, which end at once."""
+    short = ("--set", "solver.end=1 ms", "--set", "output.every=1 ms")
+    command = ("sweep", SCENARIO, *grid(50, 20), *short, "-o", str(folder))
+    seconds, _ = timed(*command)
+    print(f"  1 000 cases of 1 ms: {seconds:.0f} s", flush=True)
+    seconds, told = timed(*command)
+    print(f"  the same again: {seconds:.2f} s, {told['ran']} run", flush=True)
+    seconds, _ = timed("status", str(folder))
+    print(f"  their status: {seconds:.2f} s", flush=True)
