@@ -1,0 +1,94 @@
+"""trsim sweep and trsim status, as a user types them."""
+
+import pytest
+
+from trsim.sweep.study import study
+
+B = "joints.B.clearance"
+FAST = ("--set", "solver.end=0.5 ms", "-j", "1", "-o", "sw")
+
+
+def test_made_explained_and_told(scenario, trsim):
+    vary = ("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm, 0.5 mm]", *FAST)
+    code, out, err = trsim(*vary, "--dry-run", "--explain")
+    assert code == 0
+    assert out.splitlines() == ["clearance=0.4mm: not run yet", "clearance=0.5mm: not run yet"]
+    assert "2 of 2 cases are to be run" in err and "2 cases are well formed and assemble" in err
+    assert not (scenario.parent / "sw").exists()
+    code, out, err = trsim(*vary)
+    assert (code, out) == (0, "sw/index.csv\n")
+    assert "2 cases, 2 run in" in err and "2 done" in err
+    code, out, err = trsim(*vary, "--explain")
+    assert code == 0 and "0 of 2 cases are to be run" in err and "0 run in" in err
+    code, out, _ = trsim("status", "sw")
+    assert code == 0 and out == "sw: 2 cases of crank.yaml: 2 done\n"
+    vary = ("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm, 0.6 mm]", *FAST)
+    code, out, err = trsim(*vary, "--explain")
+    assert out.splitlines()[0] == "clearance=0.6mm: not run yet"
+    assert "of an earlier plan: clearance=0.5mm.h5" in err
+    code, out, err = trsim(*vary[:-4], "-j", "1", "-o", "sw", "--set", "solver.end=0.6 ms",
+                           "--explain", "--dry-run")  # fmt: skip
+    assert 'the scenario changed: solver.end is "0.6 ms", was "0.5 ms"' in out
+
+
+def test_failed_cases(scenario, trsim, answer):
+    sets = ("--set", "solver.max_steps=[3, 100000]", *FAST)
+    code, _, err = trsim("sweep", "crank.yaml", *sets)
+    assert code == 6
+    assert "1 of 2 cases failed" in err and "more than 3 steps" in err
+    code, told = answer("status", "sw")
+    assert code == 0
+    assert told["counts"] == {"failed": 1, "done": 1}
+    assert [one["case"] for one in told["failed"]] == ["max_steps=3"]
+    assert "more than 3 steps" in trsim("status", "sw")[1]
+
+
+def test_limits(scenario, trsim):
+    long = ("sweep", "crank.yaml", "--set", "solver.end=[1000 s]", "-j", "1", "-o", "sw")
+    code, _, err = trsim(*long, "--time-limit", "0.3")
+    assert code == 6 and "over time: not done after 0.3 s" in err
+    code, out, err = trsim(*long, "--explain", "--dry-run")
+    assert out == "end=1000s: tried again: over time\n"
+
+
+def test_shards(scenario, trsim):
+    vary = ("sweep", "crank.yaml", "--set", f"{B}=lin(0.4 mm, 0.5 mm, 3)", *FAST)
+    assert trsim(*vary, "--shard", "1/2")[0] == 0
+    assert [case.status for case in study("sw").cases] == ["done", "missing", "done"]
+    _, out, _ = trsim("status", "sw")
+    assert "1 missing" in out and "missing: about" in out
+    assert trsim(*vary, "--shard", "2/2")[0] == 0
+    assert [case.status for case in study("sw").cases] == ["done"] * 3
+
+
+@pytest.mark.parametrize(
+    "more, code, what",
+    [
+        (("--shard", "3/2"), 2, "the first of 2 shares is 1/2"),
+        (("--shard", "x"), 2, "is no share"),
+        (("--memory", "much"), 2, "is no amount of memory"),
+        (("--memory", "0"), 2, "is no amount of memory"),
+        (("--jobs", "0"), 2, "0 is not in the range"),
+        (("--time-limit", "nan"), 2, "is not a number of seconds"),
+        (("--dask", "tcp://127.0.0.1:9"), 7, "no Dask scheduler at"),
+        (("--set", "joints.B.clearnce=[1]"), 3, "Did you mean 'clearance'?"),
+        (("--set", f"{B}=[1 kg, 2 s]"), 3, "wrong unit: 'kg' is a mass"),
+        (("--set", "bodies.rod.mass=[0]", "--dry-run"), 4, "Case: "),
+        (("-o", "crank.yaml"), 2, "is not a folder"),
+        (("-o", "."), 2, "a folder of other files"),
+    ],
+)  # fmt: skip
+def test_refused(scenario, trsim, more, code, what):
+    vary = ("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm]", *FAST)
+    found, _, err = trsim(*vary, *more)
+    assert (found, what in err) == (code, True), err
+
+
+def test_nothing_to_vary(scenario, trsim):
+    code, _, err = trsim("sweep", "crank.yaml")
+    assert code == 2 and "says nothing to vary" in err
+
+
+def test_no_sweep_there(scenario, trsim):
+    code, _, err = trsim("status", "nowhere")
+    assert code == 7 and "no such folder" in err
