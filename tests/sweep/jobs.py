@@ -25,3 +25,20 @@ def run(task, begun):
     if do == "print":
         print("this is no reply")
     return {"status": "done", "reason": ""}
+
+
+def compiling(task, begun):
+    """Need two compiled functions; whoever compiles one leaves a mark."""
+    from trsim.elements import gravity, machine, revolute
+
+    marks, original = Path(task["marks"]), machine.Compiled._compiled
+
+    def marked(self):
+        (marks / f"{self.python.__module__}.{self.__name__}.{os.getpid()}").touch()
+        return original(self)
+
+    machine.Compiled._compiled = marked
+    for module in (gravity, revolute):
+        functions = [f for f in vars(module).values() if isinstance(f, machine.Compiled)]
+        functions[0].address()
+    return {"status": "done", "reason": ""}

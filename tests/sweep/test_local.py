@@ -92,6 +92,19 @@ def test_the_first_alone(tmp_path):
     assert len(found) == 4
 
 
+def test_cold_workers_compile_once(tmp_path, monkeypatch):
+    """All need the same functions at the same time; each is compiled by one of them."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "marks").mkdir()
+    n = size(3, 8)
+    found = ended(
+        local.run(tasks(tmp_path / "marks", *["x"] * n), n, job="tests.sweep.jobs:compiling")
+    )
+    assert [result["status"] for result in found.values()] == ["done"] * n
+    made = sorted(path.name.rsplit(".", 1)[0] for path in (tmp_path / "marks").iterdir())
+    assert len(made) == 2 == len(set(made))
+
+
 def workers(marks):
     """Processes of a sweep that left a mark and are alive."""
     found = {int(path.name.split(".")[1]) for path in marks.iterdir()}
