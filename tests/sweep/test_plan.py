@@ -67,6 +67,8 @@ def test_spaced(planned):
     assert [case.name for case in found.cases][-1] == "clearance=0.5mm"
     found = planned("solver.tolerance=log(1e-8, 1e-4, 3)")
     assert [case.values["solver.tolerance"] for case in found.cases] == [1e-8, 1e-6, 1e-4]
+    found = planned(f"{B}=lin(0, 1 mm, 2)")
+    assert [case.values[B] for case in found.cases] == ["0 mm", "1 mm"]
     found = planned(f"{B}=lin(100 um, 0.5 mm, 2)")
     assert [case.values[B] for case in found.cases] == ["0.1 mm", "0.5 mm"]
 

@@ -187,13 +187,12 @@ def ran(
 
     count = jobs or local.processors()
 
-    def run(tasks: list[dict[str, Any]]) -> Any:
+    def run(tasks: Any) -> Any:
         if address:
             from trsim.sweep.dask import run as by_dask
 
             return by_dask(tasks, address, limits)
-        cold = bool(tasks) and warming(answer, planned)
-        return local.run(tasks, count, limits, cold)
+        return local.run(tasks, count, limits, warming(answer, planned))
 
     going = go(planned, folder, identity, run, part)
     show, began = None, time.monotonic()

@@ -163,8 +163,10 @@ def _ends(parts: list[str]) -> tuple[float, float, str]:
         plain = re.match(r"[-+0-9.]+(?:[eE][-+]?[0-9]+)?", part)
         found.append((one[0], one[1], float(plain[0]) if plain else one[0]))
     (a, unit_a, plain_a), (_, unit_b, plain_b) = found
-    if unit_a == unit_b:
+    if unit_a == unit_b or (not unit_b and plain_b == 0.0):
         return plain_a, plain_b, unit_a
+    if not unit_a and plain_a == 0.0:
+        return plain_a, plain_b, unit_b
     if not (unit_a and unit_b):
         raise ScenarioError("both numbers need the same unit", "Write it at both, or at none.")
     if dimension(unit_a)[1] != dimension(unit_b)[1]:

@@ -6,7 +6,7 @@ the others, as often as cases are tried again.
 """
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import islice
 from typing import Any
@@ -35,7 +35,7 @@ def attempt(task: Task, limits: tuple, job: str = JOB) -> dict[str, Any]:
 
 
 def run(
-    tasks: list[Task], address: str, limits: Limits, job: str = JOB
+    tasks: Iterable[Task], address: str, limits: Limits, job: str = JOB
 ) -> Iterator[tuple[Task, dict[str, Any]]]:
     """Each task with how it ended, as they end.
 

@@ -15,8 +15,8 @@ from trsim.sweep.needed import Need, need
 from trsim.sweep.plan import Case, Plan, named_file
 from trsim.version import __version__
 
-WRITTEN = 1.0  # s between two writings of the index
-Runner = Callable[[list[dict[str, Any]]], Iterable[tuple[dict[str, Any], dict[str, Any]]]]
+WRITTEN, RARELY = 1.0, 20.0  # s between two writings of the index; of the time one takes
+Runner = Callable[[Iterable[dict[str, Any]]], Iterable[tuple[dict[str, Any], dict[str, Any]]]]
 
 
 class Shard(NamedTuple):
@@ -81,8 +81,9 @@ def _gone_on(
     if not wanted:
         return
     cases = {case.name: case for case in wanted}
-    tasks = [task(case, plan, named_file(folder, case.name)) for case in wanted]
-    table, known, written = read_plan(folder), entries(folder), time.monotonic()
+    tasks = (task(case, plan, named_file(folder, case.name)) for case in wanted)
+    table, known = read_plan(folder), entries(folder)
+    took, written = 0.0, time.monotonic()
     for one, ended in run(tasks):
         case = cases[one["name"]]
         size, changed = stamp(named_file(folder, case.name)) if ended.get("content") else (0, 0)
@@ -92,7 +93,9 @@ def _gone_on(
         with told(ledger.path):
             ledger.add(entry)
         known[case.name] = entry
-        if time.monotonic() - written > WRITTEN:
+        if time.monotonic() - written > max(WRITTEN, RARELY * took):
+            began = time.monotonic()
             write_index(folder, table, known)
             written = time.monotonic()
+            took = written - began
         yield entry

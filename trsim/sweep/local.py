@@ -27,29 +27,28 @@ def run(
     first_alone: the others wait for the first one, which compiles what all need.  Ended early, by
     an exception or by closing the generator, it leaves no process behind.
     """
-    waiting: queue.SimpleQueue[Task] = queue.SimpleQueue()
+    waiting, turn = iter(tasks), threading.Lock()
     ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    expected = 0
-    for task in tasks:
-        waiting.put(task)
-        expected += 1
-    slots = [Slot(limits, job) for _ in range(min(jobs, max(expected, 1)))]
+    slots = [Slot(limits, job) for _ in range(jobs)]
     stop, warm = threading.Event(), threading.Event()
+
+    def following() -> Task | None:
+        with turn:
+            return next(waiting, None)
 
     def work(slot: Slot, leads: bool) -> None:
         try:
             if not leads:
                 warm.wait()
-            while not stop.is_set():
-                task = waiting.get_nowait()
+            while not stop.is_set() and (task := following()) is not None:
                 ended.put((task, slot.run(task)))
                 warm.set()
-        except queue.Empty:
-            pass
         except BaseException as error:  # told where the results are waited for
             ended.put(error)
         finally:
+            warm.set()
             slot.close()
+            ended.put(None)
 
     threads = [
         threading.Thread(target=work, args=(slot, k == 0 or not first_alone), daemon=True)
@@ -57,20 +56,23 @@ def run(
     ]
     for thread in threads:
         thread.start()
+    at_work = len(threads)
     try:
-        while expected:
+        while at_work:
             try:
                 found = ended.get(timeout=LOOK)
             except queue.Empty:
                 continue
             if isinstance(found, BaseException):
                 raise found
-            expected -= 1
-            yield found
+            if found is None:
+                at_work -= 1
+            else:
+                yield found
     finally:
         stop.set()
         warm.set()
-        if expected:
+        if at_work:
             for slot in slots:
                 slot.kill()
         for thread in threads:
