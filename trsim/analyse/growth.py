@@ -5,13 +5,17 @@
 The runs are of one scenario with a number changed by very little, or with another tolerance.  The
 line is fitted from where the difference has turned into the direction that grows (SETTLING of the
 way) to where d is PARTED.  It has to leave no more than STRAIGHT of its rise (rms).  The
-uncertainty is the 95 % interval of the mean slope of PIECES of that region.
+uncertainty is a 95 % interval that lets neighbouring values depend on each other: what the line
+leaves counts by sums over PIECES of the region,
+
+    half = t(PIECES - 2) sqrt(PIECES / (PIECES - 2) sum over pieces (sum of w r)^2)
+
+r being what it leaves and w what each value counts in the slope.
 
 Impacts make d jump, and a run has an end: this is a number of the stretch, for a motion that goes
 on in the same manner an estimate of its largest Lyapunov exponent [Benettin1976].
 """
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -31,7 +35,7 @@ PARTED = 0.05  # of the ranges: what is further apart grows no more
 RISE = 3.0  # e-folds of the fitted line: less is no growth
 STRAIGHT = 0.15
 PIECES = 8
-STUDENT = 2.3646  # two-sided 95 % quantile, 7 degrees of freedom
+STUDENT = 2.4469  # two-sided 95 % quantile, 6 degrees of freedom
 SETTLING = 0.1
 
 
@@ -55,9 +59,10 @@ def growth(t: Array, d: Array) -> Exponent:
     rise = fit.slope * float(t[end - 1] - t[begin])
     if rise < RISE or fit.left > STRAIGHT * rise:
         return undetermined("the distance does not grow along a straight line", **known)
-    ends = np.linspace(fit.begin, fit.end, PIECES + 1).astype(int)
-    slopes = [weights(t[a:b]) @ y[a:b] for a, b in pairwise(ends.tolist())]
-    half = STUDENT * float(np.std(slopes, ddof=1)) / np.sqrt(PIECES)
+    s = t[begin:end] - t[0]
+    share = weights(s) * (y[begin:end] - fit.offset - fit.slope * s)
+    sums = np.array([part.sum() for part in np.array_split(share, PIECES)])
+    half = STUDENT * float(np.sqrt(PIECES / (PIECES - 2) * np.sum(sums**2)))
     found = undetermined("", **known)._replace(value=fit.slope, half=half, fit=fit)
     if fit.slope <= half:
         return found._replace(value=np.nan, reason="the interval of the rate holds zero")
