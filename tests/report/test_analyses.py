@@ -194,7 +194,9 @@ def test_sobol(paths, tmp_path):
     found = sobol(plan, "peak:B.contact_force", tmp_path)
     assert named(found) == {f"sobol_peak_B_contact_force.{kind}" for kind in ("png", "csv")}
     table = rows(tmp_path / "sobol_peak_B_contact_force.csv")
-    assert float(table[0]["total"]) > 0.5
+    f_a, f_b, f_ab = ((block[:, 0] > 0.5).astype(float) for block in (a, b, b))
+    total = np.mean((f_a - f_ab) ** 2) / (2.0 * np.var(np.concatenate([f_a, f_b])))
+    assert float(table[0]["total"]) == pytest.approx(total)
     assert float(table[1]["total"]) == 0.0
     assert found.lines[1].endswith("(ought to have none: noise)")
 

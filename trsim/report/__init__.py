@@ -43,7 +43,7 @@ def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "As
             from trsim.report import studies
             from trsim.sweep.study import study
 
-            return studies.draw(study(paths[0]), asked, words(asked.table), folder)
+            return studies.draw(study(Path(paths[0])), asked, words(asked.table), folder)
         return of_runs(paths, folder, asked)
 
 
