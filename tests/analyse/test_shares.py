@@ -24,10 +24,10 @@ def test_intervals_reach_over_the_ends_of_a_window():
 
 
 def test_maxima_of_a_penetration():
-    s = np.linspace(0.0, np.pi, 50)
+    s = np.linspace(0.0, np.pi, 2000)
     assert maxima(np.sin(s)) == 1
     assert maxima(np.sin(s) + 0.3 * np.sin(7 * s)) > 1
-    assert maxima(np.sin(s) + 0.004 * (-1.0) ** np.arange(50)) == 1  # ripple
+    assert maxima(np.sin(s) + 0.004 * (-1.0) ** np.arange(2000)) == 1  # ripple
     assert maxima(np.zeros(0)) == 0
 
 
