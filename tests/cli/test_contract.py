@@ -185,6 +185,21 @@ joints: {pivot: {type: revolute, bodies: [ground, bob], at: [0, 0]}}
     assert "modes" not in document("check", "swing.yaml")["scenarios"][0]
 
 
+def test_analyses_of_report(folder, document, trsim):
+    words = ("--table", "points:journal,peak:B.contact_force", "--lyapunov", "stroke")
+    told = document("report", "x.h5", *words)
+    assert [value["what"] for value in told["values"][1:]] == [
+        "points:journal",
+        "peak:B.contact_force",
+    ]
+    assert told["values"][0]["value"] is None  # of one stroke there is none
+    assert "undetermined" in told["told"][0]
+    assert "values" not in document("report", "x.h5")
+    document("report", "x.h5", "--sobol", "peak:B.contact_force", code=2)
+    document("report", "x.h5", "--table", "peek:B.contact_force", code=2)
+    assert "= " in trsim("report", "x.h5", "--table", "points:journal")[1]
+
+
 def test_more_errors_than_are_listed(folder, document):
     keys = "\n".join(f"  b{k}: {{}}" for k in range(40))
     (folder / "bad.yaml").write_text(f"bodies:\n{keys}")

@@ -1,7 +1,8 @@
-"""trsim report: figures and tables of result files."""
+"""trsim report: figures and tables of result files and sweeps."""
 
 import os
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -11,17 +12,46 @@ from trsim.cli.frame import NAMED, Answer, framed
 @click.command("report")
 @click.argument("runs", nargs=-1, required=True, type=click.Path())
 @click.option("-o", "--output", type=NAMED, help="Folder of the figures.")
+@click.option("--spectrum", multiple=True, metavar="CHANNEL", help="Its spectral density.")
+@click.option("--lyapunov", multiple=True, metavar="CHANNEL",
+              help="Its largest Lyapunov exponent.")  # fmt: skip
+@click.option("--compare", is_flag=True, help="Differences of the runs to the first one.")
+@click.option("--channels", multiple=True, metavar="PATTERN", help="What --compare compares.")
+@click.option("--against", default="", metavar="CHANNEL",
+              help="In place of the time in --compare and --overlay.")  # fmt: skip
+@click.option("--overlay", multiple=True, metavar="FILE.csv:CHANNEL",
+              help="The runs over the curve of a table.")  # fmt: skip
+@click.option("--table", multiple=True, metavar="WORD,...",
+              help="Numbers, such as peak:B.contact_force@0.3..0.9.")  # fmt: skip
+@click.option("--bifurcation", multiple=True, metavar="SECTION[:AXIS]",
+              help="Points of a section over what was swept.")  # fmt: skip
+@click.option("--sobol", multiple=True, metavar="WORD", help="Sobol indices of a number.")
+@click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
 @framed
-def command(answer: Answer, runs: tuple[str, ...], output: str | None) -> None:
-    """Draw the figures and tables of result files RUN.
+def command(answer: Answer, runs: tuple[str, ...], output: str | None, **options: Any) -> None:
+    """Draw the figures and tables of result files RUN, or of the folder of a sweep.
 
-    Several runs are compared in the same figures.  Default output: the folder of the first result
-    file, named after it.
+    Several runs are compared in the same figures.  With options only what they ask for is made;
+    CHANNEL, SECTION and WORD may end in a window, @BEGIN..END in seconds or @stroke=BEGIN..END.
+    Default output: the folder of the first result file, named after it; SWEEP/figures of a sweep.
     """
-    from trsim.report import report
+    from trsim import report
 
-    folder = Path(output or os.path.splitext(runs[0])[0])
-    written = report(runs, folder)
-    answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
+    swept = os.path.isdir(runs[0])
+    own = os.path.join(runs[0], "figures") if swept else os.path.splitext(runs[0])[0]
+    folder = Path(output or own)
+    if not swept and not any(options.values()):
+        written = report.report(runs, folder)
+        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
+    else:
+        from trsim.report.asked import Asked
+
+        found = report.analysed(runs, folder, Asked(**options))
+        written = found.files
+        for text in found.lines:
+            answer.put(text)
+        values = [one._asdict() for one in found.values]
+        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
+        answer.data |= {"values": values, "told": found.lines}
     for path in written:
         answer.put(str(path))

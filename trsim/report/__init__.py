@@ -1,10 +1,18 @@
 """Figures and tables of result files; the only place that imports matplotlib."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from trsim.errors import FileError
+from trsim.errors import FileError, UsageError
+
+if TYPE_CHECKING:
+    from trsim.report.asked import Asked, Found
+
+SWEEP = ("bifurcation", "sobol")  # what only a study has
+RUNS = ("spectrum", "lyapunov", "compare", "overlay")  # what only runs have
 
 
 def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathLike) -> list[Path]:
@@ -18,9 +26,67 @@ def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathL
 
     given = [paths] if isinstance(paths, str | PathLike) else list(paths)
     runs = compared([read(path) for path in given])
+    with made(folder) as folder:
+        return [*figures.draw(runs, folder), *tables.draw(runs, folder)]
+
+
+def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "Asked") -> "Found":
+    """Write what was asked for of result files, or of the folder of one sweep.
+
+    Raises FileError; UsageError where something makes no sense for what was given.
+    """
+    from trsim.report.asked import words
+
+    see_sense(paths, asked)
+    with made(folder) as folder:
+        if Path(paths[0]).is_dir():
+            from trsim.report import studies
+            from trsim.sweep.study import study
+
+            return studies.draw(study(Path(paths[0])), asked, words(asked.table), folder)
+        return of_runs(paths, folder, asked)
+
+
+def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "Found":
+    """The analyses of result files."""
+    from trsim.report import compared as beside
+    from trsim.report import exponents, numbers, spectra
+    from trsim.report.asked import nothing, words
+    from trsim.report.display import compared
+    from trsim.store.read import read
+
+    runs, found = compared([read(path) for path in paths]), nothing()
+    for word in asked.spectrum:
+        found.add(spectra.draw(runs, word, folder))
+    for word in asked.lyapunov:
+        found.add(exponents.draw(runs, word, folder))
+    if asked.compare:
+        found.add(beside.draw(runs, asked, folder))
+    for word in asked.overlay:
+        found.add(beside.overlay(runs, word, asked.against, folder))
+    if asked.table:
+        found.add(numbers.draw(runs, words(asked.table), folder))
+    return found
+
+
+def see_sense(paths: Sequence[str | PathLike], asked: "Asked") -> None:
+    """See that what was asked for fits what was given; raises UsageError."""
+    studies = [path for path in paths if Path(path).is_dir()]
+    if studies and len(paths) > 1:
+        what = f"{studies[0]} is the folder of a sweep, and is not the only thing given"
+        raise UsageError(what, "Report one sweep, or result files.")
+    wrong = [name for name in (RUNS if studies else SWEEP) if getattr(asked, name)]
+    if wrong:
+        of, rather = ("a sweep", "result files") if studies else ("result files", "a sweep")
+        raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
+
+
+@contextmanager
+def made(folder: str | PathLike) -> Iterator[Path]:
+    """A folder to write to; errors of the file system are told of it."""
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return [*figures.draw(runs, folder), *tables.draw(runs, folder)]
+        yield folder
     except OSError as error:
         raise FileError(f"{folder}: {error.strerror or error}") from None

@@ -28,7 +28,16 @@ from trsim.cli.documents.checks import (
     Start,
 )
 from trsim.cli.documents.common import Document, Error
-from trsim.cli.documents.files import Export, Provenance, Recover, Report, Show, Solver, Summary
+from trsim.cli.documents.files import (
+    Export,
+    Provenance,
+    Recover,
+    Report,
+    Show,
+    Solver,
+    Summary,
+    Value,
+)
 from trsim.cli.documents.runs import (
     Contact,
     Ran,
@@ -87,4 +96,5 @@ __all__ = [
     "Status",
     "Summary",
     "Sweep",
+    "Value",
 ]

@@ -131,15 +131,36 @@ class Show(Document):
     certificate: NotRequired[Certificate]
 
 
+class Value(TypedDict):
+    """A number that an analysis found.
+
+    run    file, case, or what tells the run from the others
+    what   the word that asked for it, or what it is
+    value  in the unit; null where the run has nothing to make it of
+    half   of its 95 % interval; null without one
+    unit   SI
+    """
+
+    run: str
+    what: str
+    value: Number
+    half: Number
+    unit: str
+
+
 class Report(Document):
     """trsim report.
 
     folder  of the figures and tables
     files   written, in that folder
+    values  numbers of the analyses that were asked for
+    told    what they say in words: how a number was made, why there is none, what speaks against it
     """
 
     folder: str
     files: list[str]
+    values: NotRequired[list[Value]]
+    told: NotRequired[list[str]]
 
 
 class Export(Document):

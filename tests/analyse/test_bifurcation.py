@@ -1,0 +1,74 @@
+"""Periods of sections, and the diagram of a study."""
+
+import numpy as np
+import pytest
+
+from tests import small
+from tests.analyse.series import logistic
+from tests.analyse.studies import Case, Study
+from trsim.analyse.bifurcation import diagram, period, spread, swept, told
+from trsim.errors import UsageError
+
+
+@pytest.mark.parametrize(
+    "r, expected", [(2.8, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.83, 3), (4.0, 0)]
+)
+def test_periods_of_the_logistic_map(r, expected):
+    x = logistic(60, r)[1]
+    assert period(x, x**2, 1.0, 1.0) == expected
+
+
+def test_period_needs_both_axes_and_enough_points():
+    x, y = np.tile([0.0, 1.0], 12), np.tile([0.0, 1.0, 2.0], 8)
+    assert period(x, np.zeros(24), 1.0, 1.0) == 2
+    assert period(x, y, 1.0, 2.0) == 6
+    assert period(x[:5], y[:5], 1.0, 1.0) == -1
+    assert period(np.linspace(0, 1, 30), np.zeros(30), 1.0, 1.0) == 0
+    assert [told(n) for n in (-1, 0, 3)] == ["too few points", "scattered", "period 3"]
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("bifurcation")
+    cases = []
+    for name, clearance in (("wide", 0.5e-3), ("tight", 0.1e-3)):
+        small.run(folder / f"{name}.h5", f"joints.B.clearance={clearance}")
+        values = {"joints.B.clearance": clearance}
+        cases.append(Case(name, values, folder / f"{name}.h5"))
+    failed = Case("failed", {"joints.B.clearance": 0.2e-3}, folder / "none.h5", "failed")
+    return Study((*cases, failed))
+
+
+def test_diagram_of_a_study(study):
+    found = diagram(study, "journal:y")
+    assert (found.axis, found.channel, found.unit) == ("y", "B.eccentricity_y", "m")
+    assert (found.over, found.missing) == ("joints.B.clearance", ("failed",))
+    for case, one in zip(study.cases, found.cases, strict=False):
+        points = case.run().poincare["journal"]
+        np.testing.assert_array_equal(one.y, points.y)
+        assert one.over == case.values["joints.B.clearance"]
+    late = diagram(study, "journal@1ms..")
+    assert 0 < len(late.cases[0].x) < len(found.cases[0].x)
+    assert spread([np.array([1.0, 3.0]), np.array([-1.0])]) == 4.0
+
+
+def test_what_makes_no_sense_is_refused(study):
+    with pytest.raises(UsageError, match="no section 'jornal'"):
+        diagram(study, "jornal")
+    with pytest.raises(UsageError, match="no axis 'z'"):
+        diagram(study, "journal:z")
+    with pytest.raises(UsageError, match="does not sweep"):
+        swept(study, "a.b")
+    with pytest.raises(UsageError, match="sweeps nothing"):
+        swept(Study((), ()), None)
+    with pytest.raises(UsageError, match="no case"):
+        diagram(Study(study.cases[2:]), "journal")
+
+
+def test_the_first_key_that_is_a_number_is_drawn_over(study):
+    values = {"case": "rigid", "joints.B.clearance": 1e-4}
+    two = Study((Case("a", values, study.cases[0].file),), ("case", "joints.B.clearance"))
+    assert swept(two, None) == "joints.B.clearance"
+    assert swept(two, "case") == "case"
+    [one] = diagram(two, "journal").cases
+    assert one.series == (("case", "rigid"),)

@@ -1,0 +1,93 @@
+"""Spectral density: known powers, lines, intervals and signs of aliasing."""
+
+import numpy as np
+import pytest
+
+from tests import small
+from trsim.analyse.spectrum import beyond, of_channel, sampling, spectrum
+from trsim.analyse.window import Window, window
+from trsim.errors import UsageError
+from trsim.store.read import read
+
+RATE = 1000.0  # Hz
+t = np.arange(20_000) / RATE
+
+
+def noise(n=20_000, seed=0):
+    return np.random.default_rng(seed).standard_normal(n)
+
+
+def test_density_of_white_noise():
+    """Variance 9 over 500 Hz: 3 / sqrt(500) everywhere."""
+    found = spectrum(t, 3.0 * noise())
+    assert np.mean(found.density[5:-5] ** 2) == pytest.approx(9.0 / 500.0, rel=0.03)
+    assert found.rms == pytest.approx(3.0, rel=0.03)
+    assert found.nyquist == pytest.approx(500.0)
+    assert found.segments == 8
+
+
+def test_interval_covers_the_true_density():
+    true = 1.0 / np.sqrt(500.0)
+    inside = []
+    for seed in range(30):
+        found = spectrum(t[:4000], noise(4000, seed))
+        d = found.density[3:-3]
+        inside.append(np.mean((d * found.low <= true) & (true <= d * found.high)))
+    print(f"covers {np.mean(inside):.3f}, 0.95 expected")
+    assert 0.93 <= np.mean(inside) <= 0.97
+
+
+@pytest.mark.parametrize("frequency", [50.0, 123.4, 311.7])
+def test_a_line_has_its_frequency_and_amplitude(frequency):
+    x = 2.5 * np.cos(2 * np.pi * frequency * t) + 0.05 * noise()
+    found = spectrum(t, x)
+    peak = found.peaks[0]
+    assert peak.frequency == pytest.approx(frequency, abs=0.2 * found.resolution)
+    assert peak.amplitude == pytest.approx(2.5, rel=0.03)
+    assert found.resolution == pytest.approx(1.5 * RATE / 4444, rel=1e-3)
+
+
+def test_a_straight_line_is_no_oscillation():
+    found = spectrum(t, 5.0 + 3.0 * t)
+    assert found.rms < 1e-10
+
+
+def test_what_goes_on_beyond_nyquist_is_told():
+    assert "folded back" in spectrum(t, noise()).warnings[0]
+    slow = np.convolve(noise(), np.hanning(41) / np.hanning(41).sum(), "same")
+    assert spectrum(t, slow).warnings == ()
+
+
+def test_too_little_is_refused():
+    with pytest.raises(UsageError, match="too few"):
+        spectrum(t[:60], t[:60])
+    with pytest.raises(UsageError, match="evenly spaced"):
+        sampling(np.array([0.0, 1.0, 2.0, 3.5]))
+    with pytest.raises(UsageError, match="fewer than two"):
+        sampling(np.array([1.0]))
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    path = tmp_path_factory.mktemp("spectrum") / "run.h5"
+    small.run(path)
+    return read(path)
+
+
+def test_channel_of_a_run(run):
+    found = of_channel(run, "crank_angle.rate", window(run))
+    assert found.nyquist == pytest.approx(50e3)
+    with pytest.raises(UsageError, match=r"B\.contact_force: .* too few"):
+        of_channel(run, "B.contact_force", window(run, "0..1e-4"))
+
+
+def test_extremes_between_the_rows_are_told(run):
+    """A contact force rises and falls between rows that are far apart."""
+    x = run.channel("B.contact_force")
+    [peak] = [p for p in run.peaks if p[:2] == ("B.contact_force", "largest")]
+    whole = Window(0.0, 1.0)
+    sparse = x[x < 0.5 * peak.value]
+    share = (peak.value - sparse.max()) / np.ptp(sparse)
+    assert beyond(run, "B.contact_force", whole, sparse) == pytest.approx(share)
+    assert share > 0.1
+    assert beyond(run, "B.contact_force", Window(0.0, 0.5 * peak.time), sparse) == 0.0

@@ -1,0 +1,229 @@
+"""Analyses as figures and tables: what is written, what it says, what makes no sense."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from tests.analyse.studies import Case, Study
+from tests.report.test_figures import drawn
+from trsim.analyse.bifurcation import diagram
+from trsim.analyse.outputs import scalar
+from trsim.errors import FileError, UsageError
+from trsim.report import analysed, exponents, spectra, studies
+from trsim.report.asked import Asked, file_name, words
+from trsim.report.compared import chosen
+from trsim.report.diagrams import bifurcated
+from trsim.report.display import compared
+from trsim.report.keys import in_words, readable
+from trsim.report.sobol import sobol
+from trsim.report.style import look
+from trsim.store.read import read
+
+
+def rows(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def named(found):
+    return {path.name for path in found.files}
+
+
+@pytest.mark.parametrize("several", [False, True])
+def test_spectrum(several, paths, tmp_path):
+    given = paths if several else paths[:1]
+    found = analysed(given, tmp_path, Asked(spectrum=("crank_angle.rate@1ms..",)))
+    assert named(found) == {f"spectrum_crank_angle_rate_1ms.{kind}" for kind in ("png", "csv")}
+    picture, table = sorted(found.files, key=lambda path: path.suffix, reverse=True)
+    assert 0.005 < drawn(picture) < 0.5
+    assert len({row["run"] for row in rows(table)}) == len(given)
+    assert "Hann window" in found.lines[0]
+    with look():
+        runs = compared([read(path) for path in given])
+        one = [spectra.of_channel(s.run, "stroke", spectra.window(s.run)) for s in runs]
+        axes = spectra.figure(runs, one, "stroke").axes[0]
+    assert axes.get_ylabel() == "stroke\n(mm/\u221aHz)"
+    assert axes.get_xlabel() == "frequency (Hz)"
+
+
+def test_a_single_stroke_has_no_exponent(paths, tmp_path):
+    found = analysed(paths, tmp_path, Asked(lyapunov=("stroke",)))
+    assert named(found) == {"lyapunov_stroke.png", "parting.png"}
+    assert "undetermined: " in found.lines[0]
+    assert all(np.isnan(value.value) for value in found.values[:2])
+    assert "both runs" in found.lines[2]
+
+
+def test_told_exponents():
+    grows = exponents.Exponent(0.9, 0.1, "grows", "", np.arange(9.0), np.zeros(9), None, 3, 0.1,
+                               1.0, 50)  # fmt: skip
+    assert exponents.told(grows) == "0.9 +- 0.1 1/s, 3 dimensions, delay 0.1 s, 50 pairs"
+    assert exponents.told_short(grows) == "0.9 \u00b1 0.1 1/s"
+
+
+def test_compare(paths, tmp_path):
+    asked = Asked(compare=True, channels=("stroke*",), against="crank_angle")
+    found = analysed(paths, tmp_path, asked)
+    assert "compare_stroke_rate.png" in named(found)
+    [row] = [r for r in rows(tmp_path / "compare.csv") if r["channel"] == "stroke"]
+    a, b = (read(path).channel("stroke") for path in paths)
+    k = np.argmax(np.abs(b - a))
+    assert float(row["largest difference"]) == pytest.approx((b - a)[k], rel=1e-6)
+    assert float(row["at"]) == read(paths[0]).channel("crank_angle")[k]
+    assert row["apart from"] == "nan"  # they differ by design, not by chance
+    runs = compared([read(path) for path in paths])
+    assert "motor.force" in chosen(runs, ())
+    with pytest.raises(UsageError, match="no common channel fits"):
+        chosen(runs, ("strke",))
+    with pytest.raises(UsageError, match="nothing to compare"):
+        analysed(paths[:1], tmp_path, Asked(compare=True))
+
+
+def test_overlay(paths, tmp_path):
+    time = read(paths[0]).time
+    x = read(paths[0]).channel("stroke")
+    lines = [f"{1e3 * a!r},{1e3 * (b + 0.002)!r}" for a, b in zip(time, x, strict=True)]
+    lines = [line.replace("np.float64(", "").replace(")", "") for line in lines]
+    (tmp_path / "old.csv").write_text("\n".join(["time [ms],stroke [mm]", *lines]))
+    word = f"{tmp_path / 'old.csv'}:stroke"
+    found = analysed(paths[:1], tmp_path / "out", Asked(overlay=(word,)))
+    assert named(found) == {"overlay_old_stroke.png", "overlay_old_stroke.csv"}
+    assert found.values[0].value == pytest.approx(-0.002)
+    with pytest.raises(UsageError, match="which channel"):
+        analysed(paths[:1], tmp_path, Asked(overlay=("old.csv",)))
+
+
+def test_table_of_numbers(paths, tmp_path):
+    asked = Asked(table=("final:stroke,impacts:B", "peak:B.contact_force"))
+    found = analysed(paths, tmp_path, asked)
+    table = rows(tmp_path / "numbers.csv")
+    assert len(table) == len(found.values) == 6
+    expected = scalar(read(paths[1]), "peak:B.contact_force")[0]
+    assert float(table[-1]["value"]) == expected
+    with pytest.raises(UsageError, match="twice"):
+        words(["a:b", "a:b"])
+
+
+# --- studies ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def study(paths):
+    keys = ("case", "joints.B.clearance")
+    cases = [
+        Case(f"{name}{k}", {"case": name, keys[1]: c}, path)
+        for name in ("rigid", "flexible")
+        for k, (c, path) in enumerate(zip((0.5e-3, 0.1e-3), paths, strict=True))
+    ]
+    cases.append(Case("lost", {"case": "rigid", keys[1]: 0.3e-3}, paths[0], "failed"))
+    return Study(tuple(cases), keys, {"case": "-", keys[1]: "m"})
+
+
+def test_numbers_of_a_study(study, tmp_path):
+    found = studies.draw(study, Asked(), ["peak:B.contact_force"], tmp_path)
+    assert named(found) == {"sweep.csv", "sweep_peak_B_contact_force.png"}
+    table = rows(tmp_path / "sweep.csv")
+    assert [row["case"] for row in table] == ["rigid0", "rigid1", "flexible0", "flexible1", "lost"]
+    assert table[-1]["peak:B.contact_force [N]"] == "nan"
+    expected = scalar(study.cases[1].run(), "peak:B.contact_force")[0]
+    assert float(table[1]["peak:B.contact_force [N]"]) == expected
+    assert found.lines == ["1 of 5 cases have no result and are left out"]
+
+
+def test_a_curve_for_each_family_in_order_of_the_swept_key(study):
+    one = studies.shown(study)
+    y = np.array([1.0, 2.0, 3.0, 4.0, np.nan])
+    with look():
+        axes = studies.figure(study, one, "peak:B.contact_force", "N", y, None).axes[0]
+    assert axes.get_xlabel() == "B clearance (mm)"
+    curves = {line.get_label(): line.get_xydata() for line in axes.lines}
+    np.testing.assert_allclose(curves["rigid"][[0, 2]], [[0.1, 2.0], [0.5, 1.0]])
+    np.testing.assert_allclose(curves["flexible"], [[0.1, 4.0], [0.5, 3.0]])
+    with look():
+        words_axis = studies.figure(study, one, "impacts:B", "-", y, "case").axes[0]
+    assert [t.get_text() for t in words_axis.get_xticklabels()] == ["rigid", "flexible"]
+
+
+def test_usual_numbers(study):
+    found = studies.usual(studies.shown(study))
+    assert found[0] == "peak:B.contact_force"
+    assert "fluctuation:stroke.rate" in found
+
+
+def test_samples_have_a_panel_for_each_key(study):
+    keys = ("a.b", "joints.B.clearance")
+    cases = tuple(
+        Case(case.name, {"a.b": float(k), keys[1]: case.values[keys[1]]}, case.file)
+        for k, case in enumerate(study.cases)
+    )
+    sampled = Study(cases, keys, {"a.b": "-", keys[1]: "m"}, "monte_carlo", 5)
+    with look():
+        y = np.arange(5.0)
+        made = studies.figure(sampled, studies.shown(study), "impacts:B", "-", y, None)
+    assert [axes.get_xlabel() for axes in made.axes] == ["a b (-)", "B clearance (mm)"]
+
+
+def test_bifurcation(study, tmp_path):
+    found = studies.draw(study, Asked(bifurcation=("journal:y",)), [], tmp_path)
+    assert named(found) == {"bifurcation_journal_y.png", "bifurcation_journal_y.csv"}
+    assert 0.002 < drawn(tmp_path / "bifurcation_journal_y.png") < 0.5
+    table = rows(tmp_path / "bifurcation_journal_y.csv")
+    points = sum(len(c.run().poincare["journal"].x) for c in study.cases[:4])
+    assert len(table) == points
+    assert found.lines[-1] == "without a result: lost"
+    with look():
+        upper, lower = bifurcated(studies.shown(study), diagram(study, "journal:y")).axes
+    assert (upper.get_ylabel(), lower.get_xlabel()) == (
+        "B, eccentricity y\n(mm)", "B clearance (mm)",
+    )  # fmt: skip
+
+
+def test_sobol(paths, tmp_path):
+    """Of eight rows made of two runs: which one is where the first key is small."""
+    from tests.analyse.studies import of_blocks
+
+    rng = np.random.default_rng(3)
+    a, b = rng.random((8, 2)), rng.random((8, 2))
+    plan = of_blocks(a, b, ("joints.B.clearance", "solver.tolerance"), 8)
+    cases = tuple(
+        Case(c.name, c.values, paths[int(c.values["joints.B.clearance"] > 0.5)]) for c in plan.cases
+    )
+    plan = Study(cases, plan.keys, plan.units, "sobol", 8)
+    found = sobol(plan, "peak:B.contact_force", tmp_path)
+    assert named(found) == {f"sobol_peak_B_contact_force.{kind}" for kind in ("png", "csv")}
+    table = rows(tmp_path / "sobol_peak_B_contact_force.csv")
+    f_a, f_b, f_ab = ((block[:, 0] > 0.5).astype(float) for block in (a, b, b))
+    total = np.mean((f_a - f_ab) ** 2) / (2.0 * np.var(np.concatenate([f_a, f_b])))
+    assert float(table[0]["total"]) == pytest.approx(total)
+    assert float(table[1]["total"]) == 0.0
+    assert found.lines[1].endswith("(ought to have none: noise)")
+
+
+# --- what is asked for -----------------------------------------------------------------------
+
+
+def test_what_does_not_fit_is_refused(paths, tmp_path):
+    with pytest.raises(UsageError, match="--sobol is not for result files"):
+        analysed(paths, tmp_path / "o", Asked(sobol=("a:b",)))
+    with pytest.raises(UsageError, match="--spectrum is not for a sweep"):
+        analysed([tmp_path], tmp_path / "o", Asked(spectrum=("stroke",)))
+    with pytest.raises(UsageError, match="not the only thing given"):
+        analysed([tmp_path, *paths], tmp_path / "o", Asked())
+    with pytest.raises(FileError, match="file"):
+        (tmp_path / "file").write_text("")
+        analysed(paths, tmp_path / "file" / "o", Asked(table=("final:stroke",)))
+
+
+def test_names():
+    assert file_name("spectrum", "B.force.x@0.1..2") == "spectrum_B_force_x_0_1_2"
+    assert in_words("peak:B.contact_force@0.3..") == "peak of B, contact force (0.3..)"
+    assert readable("joints.B.clearance") == "B clearance"
+
+
+def test_the_same_every_time(paths, tmp_path):
+    asked = Asked(spectrum=("stroke",), compare=True, table=("final:stroke",))
+    first, second = (analysed(paths, tmp_path / name, asked) for name in "ab")
+    assert [p.read_bytes() for p in first.files] == [p.read_bytes() for p in second.files]
+    assert json.dumps(first.lines) == json.dumps(second.lines)

@@ -1,0 +1,123 @@
+"""Bifurcation diagram: the points of a Poincare section of every case over a swept value.
+
+The motion of a case has period n where its section comes back to itself after n points,
+
+    |p(k + n) - p(k)| <= TOLERANCE * range        for all k,
+
+the range being that of all points of the study, for x and y apart.  The least n is its number of
+distinct points; a case that has none up to a third of its points is scattered: chaotic,
+quasi-periodic, or still on its way.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.analyse.window import parted, window
+from trsim.errors import UsageError, known
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 0.01
+FEWEST = 6  # points: of fewer nothing is told
+
+
+class Section(NamedTuple):
+    """The section of one case."""
+
+    case: str
+    over: float | str  # value of the swept key
+    series: tuple[tuple[str, float | str], ...]  # the other keys and their values
+    x: Array
+    y: Array
+    period: int  # 0: scattered; -1: too few points
+
+
+class Diagram(NamedTuple):
+    """All cases, in the order of the study."""
+
+    section: str
+    axis: str  # x or y
+    channel: str  # drawn
+    unit: str
+    over: str  # swept key
+    units: Mapping[str, str]  # of the keys
+    cases: tuple[Section, ...]
+    missing: tuple[str, ...]  # cases without a result
+
+
+def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
+    """The diagram of SECTION[:AXIS][@WINDOW] over a key of a study, the first one unless named.
+
+    Raises UsageError where the study has no such key or its runs no such section.
+    """
+    key = swept(study, over)
+    named, text = parted(word)
+    name, _, axis = named.partition(":")
+    axis = axis or "x"
+    if axis not in ("x", "y"):
+        raise UsageError(f"a section has no axis '{axis}'", known(axis, ("x", "y")))
+    found, missing, about = [], [], None
+    for case in study.cases:
+        if case.status != "done":
+            missing.append(case.name)
+            continue
+        run = case.run()
+        sections = run.poincare
+        if name not in sections:
+            hint = known(name, sections) if sections else "Declare one under `poincare`."
+            raise UsageError(f"{run.path}: no section '{name}'", hint)
+        points = sections[name]
+        about = about or points
+        inside = window(run, text).of(points.time)
+        others = tuple((k, case.values[k]) for k in study.keys if k != key)
+        found.append(
+            Section(case.name, case.values[key], others, points.x[inside], points.y[inside], 0)
+        )
+    if about is None:
+        raise UsageError("no case of the study has a result", "Run the sweep first.")
+    sizes = [spread([getattr(one, a) for one in found]) for a in ("x", "y")]
+    cases = [one._replace(period=period(one.x, one.y, *sizes)) for one in found]
+    unit = about.x_unit if axis == "x" else about.y_unit
+    return Diagram(name, axis, str(about.definition[axis]), unit, key, study.units,
+                   tuple(cases), tuple(missing))  # fmt: skip
+
+
+def swept(study: Any, over: str | None) -> str:
+    """The key of a study to draw over: the one named, or the first that is a number."""
+    if over is None:
+        numbers = [k for k in study.keys if all(isinstance(c.values[k], float | int)
+                                                for c in study.cases)]  # fmt: skip
+        keys = numbers or list(study.keys)
+        if not keys:
+            raise UsageError("the study sweeps nothing", "Give the scenario a `sweep:`.")
+        return str(keys[0])
+    if over not in study.keys:
+        raise UsageError(f"the study does not sweep '{over}'", known(over, study.keys))
+    return over
+
+
+def spread(parts: list[Array]) -> float:
+    """The range of all values; 0 without any."""
+    every = np.concatenate(parts)
+    return float(np.ptp(every)) if every.size else 0.0
+
+
+def period(x: Array, y: Array, x_range: float, y_range: float) -> int:
+    """After how many points a section (n) comes back to itself; 0 scattered, -1 too few points."""
+    if len(x) < FEWEST:
+        return -1
+    for n in range(1, len(x) // 3 + 1):
+        if all(
+            np.max(np.abs(v[n:] - v[:-n])) <= TOLERANCE * size
+            for v, size in ((x, x_range), (y, y_range))
+        ):
+            return n
+    return 0
+
+
+def told(period: int) -> str:
+    """A period in words."""
+    return {-1: "too few points", 0: "scattered"}.get(period, f"period {period}")

@@ -1,0 +1,223 @@
+"""Runs beside each other: differences over time or over a channel such as the stroke.
+
+    d(s) = x(s) - x_0(s)         s: the rows of the first run, the others interpolated linearly
+
+over the stretch that both runs have.  Two runs of one scenario, or of two that differ in nothing
+but the solver or by less than ALIKE of a number, ought to be the same: where they come apart
+(apart.py, any position or velocity) it is chance that parts them, and from there single values mean
+nothing.  Largest difference and rms are then those before, and mean and rms of both runs stand for
+the rest.
+
+A reference is a table of numbers: its first column time or the channel compared against, another
+the values.
+"""
+
+import csv
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.analyse.apart import APART, windows
+from trsim.analyse.growth import motions
+from trsim.analyse.window import scalar_channel
+from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
+from trsim.store.read import Run
+from trsim.units import quantity, unit
+
+Array = NDArray[np.float64]
+
+ALIKE = 1e-5  # relative
+FREE = ("title", "solver", "output", "report", "phase_portraits", "poincare", "sweep", "cases")
+
+
+class Curve(NamedTuple):
+    """A channel of a run over the common abscissa."""
+
+    s: Array
+    x: Array
+
+
+class Difference(NamedTuple):
+    """One channel of one run less that of the first."""
+
+    channel: str
+    unit: str
+    largest: float  # signed, before they are apart
+    at: float  # abscissa of that
+    rms: float
+    of_range: float  # |largest| of the range of the first run
+    apart: float  # abscissa from where they are apart by chance; nan
+    means: tuple[float, float]  # of the first and of this one, after that or of all of it
+    levels: tuple[float, float]  # rms of both
+    rest: Curve  # the difference
+
+
+def curve(run: Run, channel: str, against: str = "") -> Curve:
+    """A channel over time, or over another one that only grows or only falls.
+
+    Raises UsageError where that one turns back by more than rounding.
+    """
+    x = scalar_channel(run, channel)
+    if not against:
+        return Curve(run.time, x)
+    s = scalar_channel(run, against)
+    if s.size and s[-1] < s[0]:
+        s, x = s[::-1], x[::-1]
+    back = np.diff(s) <= 0.0
+    if s.size > 1 and np.any(np.diff(s) < -1e-9 * np.ptp(s)):
+        what = f"{run.path}: '{against}' turns back, so nothing is a function of it"
+        raise UsageError(what, "Compare over time, or over a channel that only grows.")
+    kept = np.append(True, ~back)
+    return Curve(s[kept], x[kept])
+
+
+def channels(runs: list[Run]) -> list[str]:
+    """What is compared unless told: sensors and their rates, forces of drives and of contacts."""
+    first = runs[0]
+    found = [
+        f"{name}{suffix}"
+        for name, part in first.parts.items()
+        for suffix in {"sensors": ("", ".rate"), "drives": (".force",)}.get(part.section, ())
+    ]
+    found += [f"{name}.{k}" for name in first.contacts for k in ("contact_force", "normal_force")]
+    return [name for name in found if all(name in run.units for run in runs)]
+
+
+def difference(
+    channel: str, si: str, first: Curve, other: Curve, apart: float = np.nan
+) -> Difference:  # fmt: skip
+    """Another curve less the first, over what both have; apart: where chance parts them.
+
+    Raises UsageError where they have less than two rows in common.
+    """
+    low, high = max(first.s[0], other.s[0]), min(first.s[-1], other.s[-1])
+    inside = (first.s >= low) & (first.s <= high)
+    s, x = first.s[inside], first.x[inside]
+    if s.size < 2:
+        raise UsageError(f"{channel}: the curves have no stretch in common", "")
+    y = np.interp(s, other.s, other.x)
+    off, size = y - x, float(np.ptp(x))
+    last = int(np.searchsorted(s, apart)) if apart <= s[-1] else s.size
+    before = off[: max(last, 1)]
+    k = int(np.argmax(np.abs(before)))
+    rest = slice(last if last < s.size else 0, None)
+    return Difference(
+        channel,
+        si,
+        float(before[k]),
+        float(s[k]),
+        float(np.sqrt(np.mean(before**2))),
+        abs(float(before[k])) / size if size > 0.0 else np.nan,
+        float(s[last]) if last < s.size else np.nan,
+        (float(np.mean(x[rest])), float(np.mean(y[rest]))),
+        (float(np.sqrt(np.mean(x[rest] ** 2))), float(np.sqrt(np.mean(y[rest] ** 2)))),
+        Curve(s, off),
+    )
+
+
+# --- two runs that ought to be the same ------------------------------------------------------
+
+
+def parting(run: Run, other: Run, against: str = "") -> float:
+    """From where two runs of one scenario are apart (s, or the value of a channel); nan.
+
+    Of runs of different scenarios it is nan: there every difference means something.
+    """
+    if not alike(run.scenario, other.scenario):
+        return np.nan
+    time, off = motions(run, other)
+    found = windows(np.max(np.abs(off), axis=1) > APART)
+    if not found:
+        return np.nan
+    at = float(time[found[0].begin])
+    return float(np.interp(at, run.time, scalar_channel(run, against))) if against else at
+
+
+def alike(one: Any, two: Any, path: tuple[str, ...] = ()) -> bool:
+    """Whether two scenarios describe one motion: numbers are the same to ALIKE."""
+    if isinstance(one, dict) and isinstance(two, dict):
+        keys = {*one, *two} - (set(FREE) if not path else set())
+        return all(alike(one.get(k), two.get(k), (*path, k)) for k in keys)
+    if isinstance(one, list) and isinstance(two, list):
+        return len(one) == len(two) and all(map(alike, one, two, [(*path, "")] * len(one)))
+    a, b = (_plain(value) for value in (one, two))
+    if a is None or b is None:
+        return bool(one == two)
+    return abs(a - b) <= ALIKE * max(abs(a), abs(b))
+
+
+def _plain(value: Any) -> float | None:
+    """A number, or one with a unit, in SI; None of anything else."""
+    if isinstance(value, str):
+        try:
+            found = quantity(value)
+        except ScenarioError:
+            return None
+        return found[0] if found else None
+    return float(value) if isinstance(value, int | float) else None
+
+
+# --- reference tables ------------------------------------------------------------------------
+
+
+def reference(path: Path, column: str, against: str, si: tuple[str, str]) -> Curve:
+    """The curve of a CSV file with titles; si: units of abscissa and values.
+
+    Titles may carry a unit, `time [ms]`; numbers without one are SI.  The column is the one named
+    so, or the second of two.  Raises FileError, UsageError.
+    """
+    if (missing := unreadable(path)) is not None:
+        raise missing
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise FileError(f"{path} cannot be read as a table: {error}", file=str(path)) from None
+    if len(lines) < 3 or len(lines[0]) < 2:
+        what = f"{path} has no table of at least two columns and two rows"
+        raise FileError(what, "The first line names the columns.", file=str(path))
+    titles = [_title(text) for text in lines[0]]
+    names = [name for name, _ in titles]
+    places = [names.index(against) if against in names else 0]
+    places.append(names.index(column) if column in names else 1)
+    if column not in names and len(names) > 2:
+        raise UsageError(f"{path}: no column named '{column}'", known(column, names))
+    values = []
+    for place, text in zip(places, si, strict=True):
+        numbers = np.array([_number(path, line, place) for line in lines[1:]])
+        values.append(numbers * _factor(path, titles[place][1], text))
+    order = np.argsort(values[0], kind="stable")
+    return Curve(values[0][order], values[1][order])
+
+
+def _title(text: str) -> tuple[str, str]:
+    """The name and the unit of `name [unit]`."""
+    name, _, rest = text.strip().partition("[")
+    return name.strip(), rest.rstrip("] ")
+
+
+def _number(path: Path, line: list[str], place: int) -> float:
+    try:
+        found = float(line[place])
+    except (ValueError, IndexError):
+        found = np.nan
+    if not np.isfinite(found):
+        what = f"{path}: no number in column {place + 1} of the line {','.join(line)[:60]}"
+        raise FileError(what, "Every line has as many numbers as the first has names.",
+                        file=str(path))  # fmt: skip
+    return found
+
+
+def _factor(path: Path, text: str, si: str) -> float:
+    """What numbers in a unit are multiplied by."""
+    if not text:
+        return 1.0
+    try:
+        factor, dimension = unit(text)
+        if dimension == unit(si)[1]:
+            return float(factor)
+    except ScenarioError as error:
+        raise UsageError(f"{path}: {error.what}", error.hint) from None
+    raise UsageError(f"{path}: '{text}' is no unit of what is in {si}", "")

@@ -1,0 +1,189 @@
+"""A number of a run, as a word: peak:B.contact_force, std:door_angle.rate@0.3..0.98, impacts:B.
+
+This is the one place that turns words into numbers: tables, sweeps, bifurcations and Sobol indices
+all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of the run counts
+(window.py).
+
+    peak, least          largest and smallest value: at accepted steps for the whole run; of rows,
+                         and of the steps of a contact, in a window
+    range                peak - least
+    mean, rms, std       of the rows
+    fluctuation          rms of what is faster than 10 ms (fluctuation.py)
+    final                last row
+    dispersion:SECTION   sqrt(var x + var y) of the points of a section; SECTION.x, SECTION.y: one
+    points:SECTION       how many there are
+    flight, contact, following, impacts, onsets, between : of a clearance joint (shares.py)
+    summary:KEY          of the summary: time, rows, contacts.B.peak_force; solver:KEY: steps ...
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.analyse.fluctuation import fluctuation
+from trsim.analyse.shares import shares
+from trsim.analyse.window import Window, parted, scalar_channel, window
+from trsim.errors import UsageError, described, known
+from trsim.store.read import Run
+
+Array = NDArray[np.float64]
+Number = tuple[float, str]
+
+FORM = "A number of a run is KIND:OF, for example peak:B.contact_force or mean:stroke@0.3..0.9."
+
+
+def scalar(run: Run, word: str) -> Number:
+    """The number a word asks for, and its SI unit; nan where the run has nothing to make it of.
+
+    Raises UsageError for a word that makes no sense, or names what the run does not have.
+    """
+    name, text = parted(word)
+    kind, colon, of = name.partition(":")
+    if kind not in KINDS:
+        raise UsageError(f"no number of a run: {described(word)}", known(kind, KINDS))
+    if not colon or not of:
+        raise UsageError(f"{described(word)} does not say of what", FORM)
+    if kind in WHOLE and text:
+        raise UsageError(f"{described(word)}: {kind} is of the whole run", "Leave out the window.")
+    value, unit = KINDS[kind](run, of, window(run, text), bool(text))
+    return float(value), unit
+
+
+def scalars(run: Run, words: list[str]) -> list[Number]:
+    """The numbers of several words."""
+    return [scalar(run, word) for word in words]
+
+
+# --- of channels -----------------------------------------------------------------------------
+
+
+def _rows(run: Run, channel: str, within: Window) -> tuple[Array, Array]:
+    """Times and values of the rows in a window."""
+    time, x = run.time, scalar_channel(run, channel)
+    inside = within.of(time)
+    return time[inside], x[inside]
+
+
+def _of_rows(function: Callable[[Array], Any]) -> Any:
+    def number(run: Run, channel: str, within: Window, _: bool) -> Number:
+        return function(_rows(run, channel, within)[1]), run.unit(channel)
+
+    return number
+
+
+def _extreme(word: str) -> Any:
+    best = {"largest": max, "smallest": min}[word]
+
+    def number(run: Run, channel: str, within: Window, part: bool) -> Number:
+        values = [best(_rows(run, channel, within)[1].tolist())]
+        if not part:
+            values += [p.value for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
+        values += _in_touch(run, channel, within)
+        return best(values), run.unit(channel)
+
+    return number
+
+
+def _in_touch(run: Run, channel: str, within: Window) -> list[float]:
+    """The values of a channel of a contact at its accepted steps."""
+    joint, _, name = channel.rpartition(".")
+    if joint not in run.contacts:
+        return []
+    steps = run.steps(joint)
+    found = steps[name][within.of(steps["time"])] if name in steps else np.zeros(0)
+    return found.tolist() if found.ndim == 1 else []
+
+
+def _range(run: Run, channel: str, within: Window, part: bool) -> Number:
+    high, unit = KINDS["peak"](run, channel, within, part)
+    return high - KINDS["least"](run, channel, within, part)[0], unit
+
+
+def _fluctuation(run: Run, channel: str, within: Window, _: bool) -> Number:
+    time, x = run.time, scalar_channel(run, channel)
+    return fluctuation(time, x, *within), run.unit(channel)
+
+
+# --- of sections and contacts ----------------------------------------------------------------
+
+
+def _points(run: Run, name: str, within: Window) -> tuple[Any, NDArray[np.bool_]]:
+    """A section, and which of its points lie in a window."""
+    found = run.poincare
+    if name not in found:
+        hint = known(name, found) if found else "Declare one in the scenario under `poincare`."
+        raise UsageError(f"{run.path}: no section '{name}'", hint)
+    points = found[name]
+    return points, within.of(points.time)
+
+
+def _dispersion(run: Run, of: str, within: Window, _: bool) -> Number:
+    name, axis = [*of.split(".", 1), ""][:2]
+    points, inside = _points(run, name, within)
+    units = {"x": points.x_unit, "y": points.y_unit}
+    if axis and axis not in units:
+        raise UsageError(f"a section has no axis '{axis}'", known(axis, units))
+    if not axis and points.x_unit != points.y_unit:
+        what = f"section '{name}' has {points.x_unit} and {points.y_unit}: no common dispersion"
+        raise UsageError(what, f"Say dispersion:{name}.x or dispersion:{name}.y.")
+    axes = [axis] if axis else list(units)
+    if not inside.any():
+        return np.nan, units[axes[0]]
+    variances = [np.var(getattr(points, one)[inside]) for one in axes]
+    return float(np.sqrt(np.sum(variances))), units[axes[0]]
+
+
+def _count(run: Run, name: str, within: Window, _: bool) -> Number:
+    return float(np.count_nonzero(_points(run, name, within)[1])), "-"
+
+
+def _of_shares(field: str, unit: str) -> Any:
+    def number(run: Run, joint: str, within: Window, _: bool) -> Number:
+        return float(getattr(shares(run, joint, within), field)), unit
+
+    return number
+
+
+# --- of the file -----------------------------------------------------------------------------
+
+UNITS = {"time": "s", "peak_force": "N", "peak_time": "s", "integration_cpu": "s"}
+
+
+def _kept(group: str) -> Any:
+    def number(run: Run, path: str, _: Window, __: bool) -> Number:
+        inner: Any = run.summary if group == "summary" else run.group(group)
+        for key in path.split("."):
+            if not isinstance(inner, dict) or key not in inner:
+                words = inner if isinstance(inner, dict) else ()
+                raise UsageError(f"{run.path}: no '{path}' in its {group}", known(key, words))
+            inner = inner[key]
+        if not isinstance(inner, int | float):
+            raise UsageError(f"{run.path}: '{path}' in its {group} is no number", FORM)
+        return float(inner), UNITS.get(key, "-")
+
+    return number
+
+
+KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
+    "peak": _extreme("largest"),
+    "least": _extreme("smallest"),
+    "range": _range,
+    "mean": _of_rows(np.mean),
+    "rms": _of_rows(lambda x: np.sqrt(np.mean(x**2))),
+    "std": _of_rows(np.std),
+    "fluctuation": _fluctuation,
+    "final": _of_rows(lambda x: x[-1]),
+    "dispersion": _dispersion,
+    "points": _count,
+    "flight": _of_shares("flight", "-"),
+    "contact": _of_shares("contact", "-"),
+    "following": _of_shares("following", "-"),
+    "impacts": _of_shares("impacts", "-"),
+    "onsets": _of_shares("onsets", "-"),
+    "between": _of_shares("mean_between", "s"),
+    "summary": _kept("summary"),
+    "solver": _kept("solver"),
+}
+WHOLE = ("summary", "solver")

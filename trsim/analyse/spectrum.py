@@ -1,0 +1,153 @@
+"""Amplitude spectral density of a channel: how much of it oscillates at which frequency.
+
+    A(f) = sqrt(P(f)),     P = mean over segments of |FFT(w (x - trend))|^2 2 / (fs sum w^2)
+
+x in N gives A in N/sqrt(Hz).  Segments overlap by half, each without its own straight line and
+under a Hann window w [Welch1967].  The resolution is the width of that window, 1.5 fs / n, of
+segments of n values.  P has nu = 36 K^2 / (19 K - 1) degrees of freedom for K segments, and by
+their chi-square distribution an interval.
+
+A line of amplitude a (a cos 2 pi f t) stands out as P = a^2 / (2 * 1.5 fs / n).
+
+Rows are samples.  What moves faster than half of their rate appears at frequencies where it does
+not belong, and nothing in the rows tells; two signs of it are looked for.  Were P to fall like
+1/f^2 above the Nyquist frequency f_N, P_N f_N of the variance would be folded back, P_N being the
+level near f_N; and extremes the solver kept may lie beyond all rows.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.analyse.window import Window, scalar_channel
+from trsim.errors import UsageError
+from trsim.store.read import Run
+
+Array = NDArray[np.float64]
+
+WINDOW = "hann"
+WIDTH = 1.5  # bins: equivalent noise bandwidth of that window
+SEGMENTS = 8  # averaged, unless asked otherwise
+SHORTEST = 16  # values in a segment
+PROMINENT = 6.0  # dB a peak rises above its surroundings
+PEAKS = 6  # told
+TOP = 0.9  # of the Nyquist frequency: what lies above is near it
+FOLDED = 0.01  # of the variance: more is told
+MISSED = 0.1  # of the range: an extreme between the rows that is further out is told
+LEVEL = 0.95
+UNEVEN = 1e-6  # of the interval: rows that differ by more are not evenly spaced
+
+
+class Peak(NamedTuple):
+    """A frequency that stands out."""
+
+    frequency: float  # Hz
+    amplitude: float  # of a sine there, in the unit of the channel
+    prominence: float  # dB above its surroundings
+
+
+class Spectrum(NamedTuple):
+    """A spectral density and how it was made."""
+
+    frequency: Array  # (n) Hz
+    density: Array  # (n) unit / sqrt(Hz)
+    segments: int
+    resolution: float  # Hz
+    nyquist: float  # Hz
+    low: float  # factors of the density: its interval
+    high: float
+    rms: float  # of what the density holds, in the unit
+    peaks: tuple[Peak, ...]  # largest amplitude first
+    folded: float  # share of the variance that may have been folded back
+    warnings: tuple[str, ...]
+
+
+def spectrum(t: Array, x: Array, segments: int = SEGMENTS) -> Spectrum:
+    """The spectral density of x (n) at evenly spaced times t (n) s.
+
+    Raises UsageError for too few values or times that are not evenly spaced.
+    """
+    from scipy.signal import welch
+    from scipy.stats import chi2
+
+    rate = sampling(t)
+    each = 2 * (len(x) // (segments + 1))
+    if each < SHORTEST:
+        what = f"{len(x)} rows are too few for {segments} segments"
+        raise UsageError(what, "Take a longer window, or write rows more often.")
+    f, p = welch(x, rate, WINDOW, each, each // 2, detrend="linear")
+    count = (2 * len(x)) // each - 1
+    freedom = 36.0 * count**2 / (19.0 * count - 1.0)
+    low, high = np.sqrt(freedom / chi2.ppf([0.5 + LEVEL / 2, 0.5 - LEVEL / 2], freedom))
+    variance = float(np.sum(p) * f[1])
+    near = float(np.mean(p[f >= TOP * f[-1]]))
+    folded = near * float(f[-1]) / variance if variance > 0.0 else 0.0
+    warnings = []
+    if folded > FOLDED:
+        warnings.append(
+            f"the density has not fallen off at the Nyquist frequency of {f[-1]:.4g} Hz: about "
+            f"{min(folded, 1.0):.0%} of the variance may be folded back; write rows more often"
+        )
+    resolution = WIDTH * float(f[1])
+    return Spectrum(f, np.sqrt(p), count, resolution, float(f[-1]), float(low),
+                    float(high), float(np.sqrt(variance)), peaks(f, p, resolution), folded,
+                    tuple(warnings))  # fmt: skip
+
+
+def sampling(t: Array) -> float:
+    """The rate of evenly spaced times (Hz); raises UsageError where they are not."""
+    if len(t) < 2 or t[-1] <= t[0]:
+        raise UsageError("there are fewer than two rows", "Take a longer window.")
+    every = float(t[-1] - t[0]) / (len(t) - 1)
+    if np.max(np.abs(np.diff(t) - every)) > UNEVEN * every + 1e-12 * abs(float(t[-1])):
+        raise UsageError("the rows are not evenly spaced in time", "Take another window.")
+    return 1.0 / every
+
+
+def peaks(f: Array, p: Array, resolution: float) -> tuple[Peak, ...]:
+    """The largest maxima of a density p (n), their frequency and height by a parabola."""
+    from scipy.signal import find_peaks
+
+    if len(p) < 3 or p.max() <= 0.0:
+        return ()
+    level = 10.0 * np.log10(np.maximum(p, 1e-30 * p.max()))
+    at, about = find_peaks(level, prominence=PROMINENT)
+    found = []
+    for k, prominence in zip(at.tolist(), about["prominences"].tolist(), strict=True):
+        left, top, right = level[k - 1 : k + 2]
+        bend = left - 2.0 * top + right
+        shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+        height = 10.0 ** ((top - 0.25 * (left - right) * shift) / 10.0)
+        amplitude = float(np.sqrt(2.0 * height * resolution))
+        found.append(Peak(float(f[k] + shift * f[1]), amplitude, prominence))
+    return tuple(sorted(found, key=lambda peak: -peak.amplitude)[:PEAKS])
+
+
+def of_channel(run: Run, channel: str, within: Window, segments: int = SEGMENTS) -> Spectrum:
+    """The spectral density of a channel of a run in a window; raises UsageError."""
+    time, x = run.time, scalar_channel(run, channel)
+    inside = within.of(time)
+    time, x = time[inside], x[inside]
+    if len(time) > 2 and time[-1] - time[-2] < (1.0 - UNEVEN) * (time[1] - time[0]):
+        time, x = time[:-1], x[:-1]  # the last row of a run may stand at an event
+    try:
+        found = spectrum(time, x, segments)
+    except UsageError as error:
+        raise UsageError(f"{run.path}: {channel}: {error.what}", error.hint) from None
+    missed = beyond(run, channel, within, x)
+    if missed > MISSED:
+        text = (
+            f"between the rows it goes further than in them by {missed:.0%} of its range: rows are "
+            "too far apart for what happens there"
+        )
+        found = found._replace(warnings=(*found.warnings, text))
+    return found
+
+
+def beyond(run: Run, channel: str, within: Window, x: Array) -> float:
+    """How far extremes at accepted steps lie outside of the rows, of the range of the rows."""
+    size = float(np.ptp(x))
+    kept = [p for p in run.peaks if p.channel == channel and within.begin <= p.time <= within.end]
+    out = [max(p.value - x.max(), x.min() - p.value) for p in kept]
+    return max(0.0, *out) / size if out and size > 0.0 else 0.0

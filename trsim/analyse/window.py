@@ -1,0 +1,119 @@
+"""A stretch of a run, as it is written behind a word: @0.3..0.98 or @stroke=150mm..490mm.
+
+    begin <= t <= end
+
+Ends are times (s, or with a unit), or values of a channel that passes both of them once: a stroke
+is one, whatever the speed it is made at.  An end may be left out.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.errors import ScenarioError, UsageError, described
+from trsim.store.read import Run
+from trsim.units import quantity, unit
+
+Array = NDArray[np.float64]
+
+FORM = "A window is @BEGIN..END in seconds, or @CHANNEL=BEGIN..END."
+
+
+class Window(NamedTuple):
+    """A stretch of time."""
+
+    begin: float  # s
+    end: float  # s
+
+    def of(self, t: Array) -> NDArray[np.bool_]:
+        """Which of the times t (n) lie in it."""
+        return np.asarray((t >= self.begin) & (t <= self.end))
+
+
+def parted(word: str) -> tuple[str, str]:
+    """A word and the text of its window, which may be empty."""
+    name, _, text = word.partition("@")
+    return name, text
+
+
+def window(run: Run, text: str = "") -> Window:
+    """The window a text describes, in the time of a run; all of the run for an empty one.
+
+    Raises UsageError where the text makes no sense, or no row lies inside.
+    """
+    time = run.time
+    if not time.size:
+        raise UsageError(f"{run.path} has no output rows", "Run the scenario again.")
+    whole = Window(float(time[0]), float(time[-1]))
+    if not text:
+        return whole
+    channel, equals, limits = text.rpartition("=")
+    begin, dots, end = limits.partition("..")
+    if not dots or (equals and not channel):
+        raise UsageError(f"no window: {described('@' + text)}", FORM)
+    x = scalar_channel(run, channel) if equals else time
+    si = run.unit(channel) if equals else "s"
+    low, high = (_value(limit, si, text) for limit in (begin, end))
+    found = _passed(run, channel, x, low, high) if equals else _limited(whole, low, high)
+    if not found.of(time).any():
+        told = f"it has rows from {whole.begin:g} to {whole.end:g} s"
+        raise UsageError(f"{run.path}: no row lies in {described('@' + text)}; {told}", FORM)
+    return found
+
+
+def _limited(whole: Window, low: float | None, high: float | None) -> Window:
+    return Window(whole.begin if low is None else low, whole.end if high is None else high)
+
+
+def _value(text: str, si: str, whole: str) -> float | None:
+    """One end in SI units, None where it is left out."""
+    if not text.strip():
+        return None
+    try:
+        found = quantity(text)
+    except ScenarioError as error:
+        raise UsageError(f"window {described('@' + whole)}: {error.what}", error.hint) from None
+    if found is None:
+        what = f"window {described('@' + whole)}: {described(text)} is no number"
+        raise UsageError(what, FORM)
+    if found[1] and unit(found[1])[1] != unit(si)[1]:
+        what = f"window {described('@' + whole)}: {described(text)} is not in {si}"
+        raise UsageError(what, FORM)
+    return found[0]
+
+
+def scalar_channel(run: Run, name: str) -> Array:
+    """The rows (n) of a channel or of one of its components.
+
+    Raises UsageError where there is no such channel, or it has components.
+    """
+    found = run.channel(name)
+    if found.ndim > 1:
+        raise UsageError(f"'{name}' has {found.shape[1]} components", f"Say '{name}.x'.")
+    return np.asarray(found)
+
+
+def _passed(run: Run, channel: str, x: Array, low: float | None, high: float | None) -> Window:
+    """The stretch in which a channel goes from one value to another."""
+    time = run.time
+    inside = (x >= (-np.inf if low is None else low)) & (x <= (np.inf if high is None else high))
+    edges = np.flatnonzero(np.diff(inside, prepend=False, append=False))
+    if edges.size > 2:
+        what = f"{run.path}: '{channel}' is between these values {edges.size // 2} times"
+        raise UsageError(what, "A window is one stretch: give it in seconds.")
+    if not edges.size:
+        return Window(np.inf, -np.inf)
+    first, last = int(edges[0]), int(edges[1]) - 1
+    begin = _crossing(time, x, first - 1, low, high) if first else float(time[0])
+    end = _crossing(time, x, last, low, high) if last + 1 < len(x) else float(time[-1])
+    return Window(begin, end)
+
+
+def _crossing(time: Array, x: Array, k: int, low: float | None, high: float | None) -> float:
+    """Where between rows k and k + 1 the channel passes the limit that lies there."""
+    for limit in (low, high):
+        if limit is not None and min(x[k], x[k + 1]) <= limit <= max(x[k], x[k + 1]):
+            share = (limit - x[k]) / (x[k + 1] - x[k])
+            return float(time[k] + share * (time[k + 1] - time[k]))
+    return float(time[k])

@@ -1,0 +1,79 @@
+"""What `trsim report` was asked for beside its ordinary figures, and what came of it."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from trsim.errors import UsageError
+from trsim.store.target import fresh, headed, told
+
+
+class Asked(NamedTuple):
+    """Analyses, by the words of their options."""
+
+    spectrum: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
+    lyapunov: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
+    compare: bool = False
+    channels: tuple[str, ...] = ()  # patterns of what is compared
+    against: str = ""  # channel in place of the time
+    overlay: tuple[str, ...] = ()  # FILE.csv:CHANNEL
+    table: tuple[str, ...] = ()  # words of analyse/outputs.py
+    bifurcation: tuple[str, ...] = ()  # SECTION[:AXIS][@WINDOW]
+    sobol: tuple[str, ...] = ()  # words
+    over: str | None = None  # swept key
+
+
+class Value(NamedTuple):
+    """One number that was found."""
+
+    run: str  # file, case, or what tells it from the others
+    what: str
+    value: float
+    half: float  # of its interval; nan without one
+    unit: str
+
+
+class Found(NamedTuple):
+    """What an analysis leaves."""
+
+    files: list[Path]
+    values: list[Value]
+    lines: list[str]  # for a reader
+
+    def add(self, other: "Found") -> None:
+        self.files.extend(other.files)
+        self.values.extend(other.values)
+        self.lines.extend(other.lines)
+
+
+def nothing() -> Found:
+    return Found([], [], [])
+
+
+def file_name(kind: str, word: str) -> str:
+    """A name for the figure of a word: letters and digits, joined."""
+    return "_".join([kind, *"".join(c if c.isalnum() else " " for c in word).split()])
+
+
+def table(path: Path, titles: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
+    """Write rows as CSV, numbers in full."""
+    with (
+        told(path),
+        fresh(path, headed(*titles[:2])) as unfinished,
+        unfinished.open("x", newline="", encoding="utf-8") as file,
+    ):
+        out = csv.writer(file)
+        out.writerow(titles)
+        for row in rows:
+            out.writerow([repr(float(v)) if isinstance(v, float) else v for v in row])
+    return path
+
+
+def words(text: Iterable[str]) -> list[str]:
+    """Words of options that take several, separated by commas."""
+    found = [word.strip() for one in text for word in one.split(",") if word.strip()]
+    for word in found:
+        if found.count(word) > 1:
+            raise UsageError(f"'{word}' is asked for twice", "Once is enough.")
+    return found
