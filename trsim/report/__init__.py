@@ -7,10 +7,14 @@ from pathlib import Path
 from trsim.errors import FileError
 
 
-def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathLike) -> list[Path]:
+def report(
+    paths: str | PathLike | Sequence[str | PathLike], folder: str | PathLike,
+    sections: Sequence[str] = (),
+) -> list[Path]:  # fmt: skip
     """Write every figure and table of a run into a folder; several runs are overlaid.
 
-    Returns the files written.  Raises FileError.
+    sections: Poincare sections besides those declared, `when=CHANNEL,crosses=up,plot=X:Y`.
+    Returns the files written.  Raises FileError, UsageError.
     """
     from trsim.report import figures, tables
     from trsim.report.display import compared
@@ -21,6 +25,11 @@ def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathL
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        return [*figures.draw(runs, folder), *tables.draw(runs, folder)]
+        written = [*figures.draw(runs, folder), *tables.draw(runs, folder)]
+        if sections:
+            from trsim.report import sections as asked_for
+
+            written += asked_for.draw(runs, tuple(sections), folder)
+        return written
     except OSError as error:
         raise FileError(f"{folder}: {error.strerror or error}") from None

@@ -28,7 +28,16 @@ from trsim.cli.documents.checks import (
     Start,
 )
 from trsim.cli.documents.common import Document, Error
-from trsim.cli.documents.files import Export, Provenance, Recover, Report, Show, Solver, Summary
+from trsim.cli.documents.files import (
+    Dispersion,
+    Export,
+    Provenance,
+    Recover,
+    Report,
+    Show,
+    Solver,
+    Summary,
+)
 from trsim.cli.documents.runs import (
     Contact,
     Ran,
@@ -51,6 +60,7 @@ __all__ = [
     "Contact",
     "ContactScale",
     "Curve",
+    "Dispersion",
     "Document",
     "ElementPage",
     "Error",
