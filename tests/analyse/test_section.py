@@ -1,12 +1,20 @@
 """Sections asked for after a run: what they say of their errors, against located points."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from tests import small
 from trsim.analyse.section import asked, crossings, passed_over, section
+from trsim.assemble.assemble import assemble
 from trsim.errors import UsageError
+from trsim.solve.simulate import simulate
+from trsim.spec.load import load
+from trsim.store.hdf5 import write
 from trsim.store.read import read
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 
 NO_EVENTS = np.zeros(0)
 
@@ -59,6 +67,23 @@ def test_stated_errors_cover_the_true_ones(sets, tmp_path):
         assert np.all(true <= error + 1e-15), axis
     assert found.worst[0] == found.time_error.max()
     assert found.unresolved == 0
+
+
+def test_stated_errors_of_the_thrust_reverser(tmp_path):
+    """Rows ten times as coarse as its own, so that there is an error to state."""
+    file = SCENARIOS / "thrust_reverser/clearance_b_0.3mm.yaml"
+    scenario = load(file, ["solver.end=0.45", "output.every=0.5 ms"])
+    mechanism = assemble(scenario)
+    write(tmp_path / "run.h5", scenario, mechanism, simulate(scenario, mechanism))
+    run = read(tmp_path / "run.h5")
+    located = run.poincare["B_orbit"]
+    found = section(run, "B.eccentricity_x_rate", "B.eccentricity_x", "B.eccentricity_y")
+    assert 10 < len(found.time) <= len(located.time)
+    nearest = np.abs(located.time[:, None] - found.time).argmin(axis=0)
+    for axis in ("time", "x", "y"):
+        true = np.abs(getattr(found, axis) - getattr(located, axis)[nearest])
+        covered = true <= getattr(found, f"{axis}_error") + 1e-15
+        assert np.mean(covered) > 0.95, axis
 
 
 def test_touches_between_two_rows():

@@ -95,7 +95,7 @@ def impact_map(runs: list[Shown], name: str) -> Any:
         if name in shown.run.contacts:
             _, angle, speed = shown.run.impacts(name)
             label = f"{shown.label} ({len(angle)})".strip() if shown.label else ""
-            a.plot(factor * angle, speed, ".", ms=4, mew=0, color=colour(k), alpha=0.7, label=label)
+            a.plot(factor * angle, speed, ".", ms=7, mew=0, color=colour(k), alpha=0.7, label=label)
     a.set_xlim(-factor * np.pi, factor * np.pi)
     if unit in ("deg", "\u00b0"):
         a.set_xticks(np.arange(-180, 181, 45))
