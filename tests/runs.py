@@ -23,6 +23,7 @@ class Run:
     rows: np.ndarray  # (n, 1 + n_out) time, channels
     steps: np.ndarray
     events: np.ndarray  # (n, 5) time, kind, row, speed, angle
+    points: np.ndarray  # (n, 4) time, section, x, y
 
     @property
     def t(self) -> np.ndarray:
@@ -40,6 +41,11 @@ class Run:
     def largest(self, name: str) -> tuple[float, float]:
         """Largest value of a channel and its time, from the peaks."""
         return tuple(self.outcome.peaks[self.place[name][0], :2])
+
+    def section(self, name: str) -> np.ndarray:
+        """The points of a Poincare section: (n, 3) time, x, y."""
+        names = [section.name for section in self.mechanism.sections]
+        return self.points[self.points[:, 1] == names.index(name)][:, [0, 2, 3]]
 
     def at(self, name: str, t: float) -> np.ndarray:
         """A channel at one output time."""
@@ -71,7 +77,8 @@ def run(text: Any, *sets: str, fails: bool = False) -> Run:
         except StopIteration as stop:
             outcome = stop.value
             break
-        blocks.append((block.rows.copy(), block.steps.copy(), block.events.copy()))
+        tables = (block.rows, block.steps, block.events, block.points)
+        blocks.append(tuple(table.copy() for table in tables))
     assert (outcome.status == "failed") == fails, outcome.reason
     return Run(read, mechanism, outcome, *(np.vstack(part) for part in zip(*blocks, strict=True)))
 

@@ -53,6 +53,33 @@ def test_four_bar_in_space():
     assert np.linalg.norm(c - b, axis=1) == pytest.approx(0.3, abs=1e-5)
 
 
+def periodic(*sets):
+    """The points of the section `turn`, and how far those of every second turn lie apart, m."""
+    points = run(load(VALIDATION / "slider_crank_periodic.yaml", [*sets])).section("turn")[:, 1:]
+    assert len(points) == 31
+    return points, max(np.ptp(points[k::2], axis=0).max() for k in range(2))
+
+
+@pytest.mark.parametrize("tolerance", ["1e-6", "1e-7"])
+def test_slider_crank_of_period_two(tolerance):
+    points, apart = periodic(f"solver.tolerance={tolerance}")
+    assert apart < 1e-11
+    assert points[-2] == pytest.approx([311.15e-6, 18.92e-6], abs=1e-8)
+    assert points[-1] == pytest.approx([312.03e-6, -4.81e-6], abs=1e-8)
+
+
+def test_slider_crank_of_other_periods():
+    """0.05 mm: all points are one; 0.0875 mm: on their way to four; 0.35 mm: none comes again."""
+    points, apart = periodic("joints.pin.clearance=0.05 mm")
+    assert np.ptp(points, axis=0).max() < 1e-10
+    points, apart = periodic("joints.pin.clearance=0.0875 mm")
+    again = {k: np.abs(points[k:] - points[:-k])[-8:].max() for k in (1, 2, 4)}
+    assert again[4] < 2e-7 and again[2] > 1e-5 and again[1] > 1e-5
+    points, apart = periodic("joints.pin.clearance=0.35 mm")
+    assert apart > 1e-4
+    assert np.hypot(*points.std(axis=0)) == pytest.approx(1.4e-4, rel=0.3)
+
+
 def test_the_readme_scenario_runs(tmp_path):
     text = (FOLDER.parent / "README.md").read_text()
     block = text.split("```yaml")[1].split("```")[0]

@@ -18,7 +18,7 @@ from trsim.report.tables import peak_loads
 from trsim.store.read import read
 
 EXPECTED = {
-    *("motion_stroke", "motion_crank_angle", "drive_motor", "contact_B", "orbit_B"),
+    *("motion_stroke", "motion_crank_angle", "drive_motor", "contact_B", "orbit_B", "impact_B"),
     *("phase_B", "phase_stroke", "phase_crank_angle", "poincare_journal", "energy", "peaks"),
 }
 

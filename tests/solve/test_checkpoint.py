@@ -22,17 +22,24 @@ EVENTS = (
     "caught: {when: stroke, value: -5 mm, crosses: down, do: {release: [motor], lock: [O]}}, "
     "again: {when: t, value: 1.1 ms, do: {unlock: [O], record: true}}}",
 )
+SECTIONS = (
+    "poincare={crossing: {when: B.eccentricity_x_rate, crosses: both, after: 0.2 ms, "
+    "plot: [B.eccentricity_x, rod.velocity.y]}, touch: {at_onset: B, plot: [stroke, crank_angle]}, "
+    "beat: {every: 7 us, after: 3 us, plot: [stroke, stroke.rate]}}",
+)
 KINDS = [
     (),
+    SECTIONS,
     SPATIAL,
     RK4,
     (*RK4, *SPATIAL),
     (FRICTION,),
     EVENTS,
     (*RK4, *EVENTS, "solver.end=1.2ms"),
+    (*EVENTS, *SECTIONS),
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")
-TABLES = ("rows", "steps", "events", "recorded")
+TABLES = ("rows", "steps", "events", "recorded", "points")
 KEPT = {"mem", "branch", "status"}  # of a scene: the record's, and counters
 
 

@@ -48,6 +48,7 @@ def test_layout(result):
         groups = {name for name, item in file.items() if isinstance(item, h5py.Group)}
         assert groups == {
             *("steps", "events", "peaks", "summary", "solver", "phase", "poincare"),
+            *("impact", "orbit"),
             *("scenario", "mechanism", "provenance"),
         }
         assert file.attrs["format"] == "trsim run"

@@ -1,5 +1,6 @@
 from types import SimpleNamespace
 
+import h5py
 import numpy as np
 import pytest
 
@@ -30,8 +31,10 @@ def test_declared_phase_portrait_of_components(tmp_path):
 
 def test_poincare_section(result):
     section = result.poincare["journal"]
-    assert section.definition["method"] == "interpolated from output rows"
+    assert section.definition["method"] == points.LOCATED
     assert section.definition["when"] == "B.eccentricity_x_rate"
+    assert (section.x_unit, section.y_unit) == ("m", "m")
+    assert points.surface(section.definition) == "B.eccentricity_x_rate crosses zero upwards"
     rate = result.channel("B.eccentricity_x_rate")
     rising = np.flatnonzero((rate[:-1] < 0.0) & (rate[1:] >= 0.0))
     assert len(section.time) == len(rising) > 2
@@ -40,30 +43,61 @@ def test_poincare_section(result):
         assert x == pytest.approx(result.channel("B.eccentricity_x")[k], abs=2e-5)
 
 
-@pytest.mark.parametrize("crosses, phase", [("up", 0.0), ("down", 0.5), ("both", None)])
-def test_crossings_are_located_by_cubics(crosses, phase):
-    """sin crosses zero at known times; the error of a cubic falls with the fourth power."""
-    errors = []
-    for n in (400, 800):
-        time = np.linspace(0.02, 10.02, n)
-        w = np.sin(2 * np.pi * time)
-        part = {"time": time, "when": w, "x": np.cos(2 * np.pi * time), "y": w}
-        found = points.crossings({**part, "first": True, "last": True}, crosses)
-        exact = np.arange(1, 11) if phase == 0.0 else np.arange(0, 10) + 0.5
-        if phase is None:
-            exact = np.arange(1, 21) / 2
-        errors.append(np.abs(found["time"] - exact).max())
-        np.testing.assert_allclose(found["x"], np.cos(2 * np.pi * exact), atol=3e-5)
-        np.testing.assert_allclose(found["y"], 0.0, atol=1e-12)
-    assert errors[1] < errors[0] / 12.0
+def test_dispersion(result):
+    section = result.poincare["journal"]
+    x, y = section.x - section.x.mean(), section.y - section.y.mean()
+    told = section.dispersion
+    assert told.points == len(x)
+    assert (told.x, told.y) == pytest.approx((np.sqrt(np.mean(x**2)), np.sqrt(np.mean(y**2))))
+    assert told.radius == pytest.approx(np.sqrt(np.mean(x**2 + y**2)), rel=1e-12)
+    stored = {name: section.definition[f"dispersion_{name}"] for name in told._fields}
+    assert stored == told._asdict()
+    assert points.dispersion(np.zeros(0), np.zeros(0), True).points == 0
+    assert np.isnan(points.dispersion(x, y, False).radius)
 
 
-@pytest.mark.parametrize("rows", [1, 2, 7])
-def test_crossings_do_not_depend_on_stretches(rows, tmp_path, monkeypatch):
-    small.run(tmp_path / "one.h5")
-    monkeypatch.setattr(points, "ROWS", rows)
-    small.run(tmp_path / "many.h5")
-    assert read(tmp_path / "one.h5").attributes == read(tmp_path / "many.h5").attributes
+def test_kinds_of_sections(tmp_path):
+    """Each says what it is; none of them needs the rows of what it shows."""
+    text = (
+        small.SLIDER_CRANK.split("poincare:")[0]
+        + """poincare:
+  beat: {every: 0.5 ms, after: 1 ms, plot: [stroke, rod.velocity.y]}
+  touch: {at_onset: B, plot: [B.eccentricity_x, B.eccentricity_y]}
+  never: {when: slider.position.y, after: 2 s, plot: [stroke, stroke]}
+"""
+    )
+    small.run(tmp_path / "run.h5", "output.channels=[crank_angle]", text=text)
+    result = read(tmp_path / "run.h5")
+    assert {name.split(".")[0] for name in result.names} == {"crank_angle"}
+    beat, touch, never = (result.poincare[name] for name in ("beat", "touch", "never"))
+    np.testing.assert_array_equal(beat.time, 1e-3 + 0.5e-3 * np.arange(5))
+    assert (beat.x_unit, beat.y_unit) == ("m", "m/s") and np.isnan(beat.dispersion.radius)
+    assert "dispersion_radius" not in beat.definition
+    told = [points.surface(section.definition) for section in (beat, touch, never)]
+    assert told == [
+        "every 0.0005 s",
+        "at each touch of B",
+        "slider.position.y crosses zero upwards",
+    ]
+    assert len(never.time) == never.definition["dispersion_points"] == 0
+    np.testing.assert_array_equal(touch.time, result.impacts("B").time)
+    names = {peak.channel.split(".")[0] for peak in result.peaks}
+    assert "stroke" not in names and "B" in names
+
+
+def test_impact_map_and_orbit(result):
+    """Touches as they stand among the events; the orbit is where its numbers are stored."""
+    events = result.events
+    onset = events.kind == "onset"
+    with h5py.File(result.path) as file:
+        for axis in ("time", "angle", "speed"):
+            np.testing.assert_array_equal(file["impact/B"][axis], getattr(events, axis)[onset])
+            np.testing.assert_array_equal(
+                getattr(result.impacts("B"), axis), file["impact/B"][axis]
+            )
+        assert file["impact/B/speed"].attrs["units"] == "m/s"
+        assert file["orbit/B/rows/x"] == file["B.eccentricity_x"]
+        assert file["orbit/B/steps/y"] == file["steps/B/eccentricity_y"]
 
 
 def test_unknown_channels_are_refused_before_any_file(scenario, mechanism, tmp_path):

@@ -12,7 +12,7 @@ from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
 from trsim.assemble.layout import layout
-from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName
+from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
 from trsim.assemble.pattern import pattern
@@ -24,6 +24,7 @@ from trsim.assemble.rows import (
     planarity,
     reactions,
 )
+from trsim.assemble.sections import sections
 from trsim.assemble.stages import Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
@@ -75,8 +76,10 @@ def assemble(
     model = build(scenario, at, instances, kept, d)
     y0 = drawn(at, d)
     columns: list[Column] = []
+    shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
         model, columns = layout(scenario, model, instances, at, planar)
+        model, shown = sections(scenario, model, instances, columns)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     return Mechanism(
@@ -100,6 +103,7 @@ def assemble(
         beams=at.beams,
         notes=(*notes(scenario, assumed), *at.notes),
         stages=stages(scenario, at, instances, model, planar),
+        sections=shown,
     )
 
 
@@ -255,6 +259,8 @@ def build(
         column_energy=-1,
         n_out=0,
         **watched(at.switches, size),
+        section=np.zeros((0, 5), np.int64),
+        section_at=np.zeros((0, 2)),
         size=size,
         reach=min(size, max(levers(at, size)[1:], default=size)),
     )

@@ -9,7 +9,7 @@ import numpy as np
 from trsim.assemble.mechanism import Column, Instance
 from trsim.assemble.outputs import energy_columns
 from trsim.elements.contract import FIRST_ROW, Channel
-from trsim.elements.scene import Model
+from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 
 if TYPE_CHECKING:
@@ -46,11 +46,19 @@ def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
     return names + [f"energy.{name}" for name in energy_columns(jumps)]
 
 
+def points_of(scenario: Any) -> set[str]:
+    """The channels that sections and portraits of a scenario name, with and without a component."""
+    portraits = [(spec.x, spec.y) for spec in scenario.phase_portraits.values()]
+    sections = [(spec.when or "", *spec.plot) for spec in scenario.poincare.values()]
+    named = {channel for group in (*portraits, *sections) for channel in group}
+    return named | {channel[:-2] for channel in named if channel[-2:] in COMPONENTS}
+
+
 def layout(
     scenario: Any, model: Model, instances: list[Instance], at: "Addresses", planar: bool
 ) -> tuple[Model, list[Column]]:
     """The model with its output tables filled, and the columns."""
-    patterns = tuple(scenario.output.channels)
+    patterns, shown = tuple(scenario.output.channels), points_of(scenario)
     columns: list[Column] = []
     wanted = model.wanted.copy()
     joints: list[tuple[int, ...]] = []
@@ -61,25 +69,31 @@ def layout(
             return not matches(name, NOT_BY_DEFAULT)
         return matches(name, patterns)
 
-    def add(name: str, unit: str, meaning: str, size: int) -> None:
+    def needed(name: str) -> bool:
+        return asked(name) or name in shown
+
+    def add(name: str, unit: str, meaning: str, size: int, extra: bool = False) -> None:
         nonlocal width
-        columns.append(Column(name, unit, meaning, width, size, asked(name)))
+        columns.append(Column(name, unit, meaning, width, size, asked(name), extra))
         width += size
 
     for e, instance in enumerate(instances):
         channels = instance.channels
         names = [f"{instance.name}.{c.name}" if c.name else instance.name for c in channels]
         # contacts are always measured: their peaks and steps are part of every result
-        if names and (any(map(asked, names)) or instance.row.contact):
+        anyway = any(map(asked, names)) or instance.row.contact
+        if names and (anyway or any(map(needed, names))):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
-                add(name, unit(instance, channel, at), channel.meaning, channel.size)
+                unit_of = unit(instance, channel, at)
+                add(name, unit_of, channel.meaning, channel.size, extra=not anyway)
     for e, instance in enumerate(instances):
         names = [f"{instance.name}.{c.name}" for c in instance.element.reactions]
-        if any(map(asked, names)):
+        if any(map(needed, names)):
+            extra = not any(map(asked, names))
             joints.append((e, FIRST_ROW, len(instance.element.rows), width))
             for name, channel in zip(names, instance.element.reactions, strict=True):
-                add(name, channel.unit, channel.meaning, channel.size)
+                add(name, channel.unit, channel.meaning, channel.size, extra)
     energy = width
     for name in energy_columns(model.jumps):
         add(f"energy.{name}", "J", "energy book", 1)

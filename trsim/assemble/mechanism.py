@@ -26,6 +26,22 @@ class Column(NamedTuple):
     start: int
     size: int
     wanted: bool
+    for_points: bool = False  # measured only because a section or a portrait shows it
+
+
+class Section(NamedTuple):
+    """A Poincare section; of `when`, `every` and `at_onset` one is given."""
+
+    name: str
+    when: str
+    crosses: str
+    every: float  # s, or 0
+    at_onset: str
+    after: float  # s
+    x: str
+    y: str
+    x_unit: str
+    y_unit: str
 
 
 @dataclass(frozen=True)
@@ -79,3 +95,4 @@ class Mechanism:
     beams: Mapping[str, Beam]
     notes: tuple[str, ...]
     stages: "Stages"  # what user events make of it
+    sections: tuple[Section, ...] = ()  # in the order of model.section

@@ -18,7 +18,8 @@ from trsim.elements.contract import Row
 from trsim.elements.scene import Model
 
 Rows = list[RowName]
-OUTPUTS = ("wanted", "joint_out", "column_energy", "n_out")  # the same in every stage
+# the same in every stage
+OUTPUTS = ("wanted", "joint_out", "column_energy", "n_out", "section", "section_at")
 STATE, MOTION = 3, 5  # of a drive's Row.con
 K, C = 9, 10  # of its par
 

@@ -12,6 +12,8 @@ from trsim.cli.frame import NAMED, Answer, framed
 @click.command("report")
 @click.argument("runs", nargs=-1, required=True, type=click.Path())
 @click.option("-o", "--output", type=NAMED, help="Folder of the figures.")
+@click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
+              help="A Poincare section that was not declared, with its errors.")  # fmt: skip
 @click.option("--spectrum", multiple=True, metavar="CHANNEL", help="Its spectral density.")
 @click.option("--lyapunov", multiple=True, metavar="CHANNEL",
               help="Its largest Lyapunov exponent.")  # fmt: skip

@@ -38,6 +38,7 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         "provenance": found.group("provenance"),
         "phase": list(found.phase),
         "poincare": {name: len(points.x) for name, points in found.poincare.items()},
+        "dispersion": dispersions(found),
         "fired": found.fired,
     }
     certified = found.certificate
@@ -102,13 +103,35 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
     if data["redundant"]:
         out.append(f"  redundant {redundancy(data)}")
     out += [f"  warning   {text}" for text in data["warnings"]]
-    sections = [f"{name} ({count} points)" for name, count in data["poincare"].items()]
     out.append(f"  phase     {', '.join(data['phase']) or '-'}")
-    out.append(f"  poincare  {', '.join(sections) or '-'}")
+    sections = [section(run, name, told) for name, told in data["dispersion"].items()]
+    out += [f"  poincare  {text}" for text in sections or ["-"]]
     out.append("  channels")
     width = max((len(name) for name in run.names), default=0)
     out += [f"    {name:<{width}}  {run.units[name]}{mark(name, data)}" for name in run.names]
     return out
+
+
+def dispersions(run: Any) -> dict[str, dict[str, Any]]:
+    """How far the points of each section lie apart; None for what no number tells."""
+    found = {}
+    for name, points in run.poincare.items():
+        told = points.dispersion._asdict()
+        found[name] = {key: value if value == value else None for key, value in told.items()}
+    return found
+
+
+def section(run: Any, name: str, told: dict[str, Any]) -> str:
+    """A Poincare section in one line."""
+    from trsim.store.points import surface
+
+    points = run.poincare[name]
+    text = f"{name}: {surface(points.definition)}, {told['points']} points"
+    if told["radius"] is not None:
+        return f"{text}, dispersion {told['radius']:.3g} {points.x_unit}"
+    if told["x"] is None:
+        return text
+    return f"{text}, dispersion {told['x']:.3g} {points.x_unit}, {told['y']:.3g} {points.y_unit}"
 
 
 SHOWN = 20  # lines of user events

@@ -19,6 +19,7 @@ from trsim.elements.packed import A1, A2, I1, I2, Packed, f8, i8
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
 N_STORED = 3
+COMPONENTS = {".x": 0, ".y": 1, ".z": 2}  # of a channel of three, in its name
 
 
 class Model(Packed):
@@ -89,6 +90,8 @@ class Model(Packed):
     watch_at: (
         A2  # (n_w, 2) the value that is crossed; how far it must be left before it counts again
     )
+    section: I2  # (n_sections, 5) Poincare sections              assemble/sections.py
+    section_at: A2  # (n_sections, 2) s: before it no points; period, or 0
     jumps: i8  # entry of z with the work done at user events, or -1
     column_energy: i8  # first output column of the energy book
 

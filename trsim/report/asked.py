@@ -12,6 +12,7 @@ from trsim.store.target import fresh, headed, told
 class Asked(NamedTuple):
     """Analyses, by the words of their options."""
 
+    section: tuple[str, ...] = ()  # when=CHANNEL,crosses=up,plot=X:Y
     spectrum: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
     lyapunov: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
     compare: bool = False

@@ -9,7 +9,7 @@ import numpy as np
 from trsim.report import bars, style
 from trsim.report.display import Shown, short
 from trsim.report.marks import happened, spaced
-from trsim.report.orbits import orbit, section
+from trsim.report.orbits import impact_map, orbit, section
 from trsim.report.style import colour, legend, look, panels, save, thinned, titled
 from trsim.store.grow import Array
 from trsim.store.peaks import Peak
@@ -46,6 +46,11 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
         yield f"contact_{name}", contact_force(runs, name)
         if some(runs, f"{name}.eccentricity_x", f"{name}.eccentricity_y"):
             yield f"orbit_{name}", orbit(runs, name)
+            if any(name in s.run.contacts and len(s.run.impacts(name).time) for s in runs):
+                yield (
+                    f"impact_{name}",
+                    impact_map([s for s in runs if name in s.run.contacts], name),
+                )
     for name in dict.fromkeys(n for shown in runs for n in shown.run.phase):
         yield f"phase_{name}", portrait(runs, name)
     for name in dict.fromkeys(n for shown in runs for n in shown.run.poincare):

@@ -1,13 +1,15 @@
-"""Journals in their bearings: orbits with the clearance circle, Poincare sections."""
+"""Journals in their bearings: orbits with the clearance circle, sections, impact maps."""
 
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from trsim.report.display import Shown
-from trsim.report.style import WIDTH, colour, panels, titled
+from trsim.report.display import Shown, short
+from trsim.report.style import WIDTH, colour, legend, panels, titled
 from trsim.store.grow import Array
+from trsim.store.points import surface
+from trsim.store.read import Points
 
 SPARE = 1.12  # half width of the panel over the radius of the circle
 PARTS = 200  # stretches of the orbit, each of one colour
@@ -41,12 +43,17 @@ def orbit(runs: list[Shown], name: str) -> Any:
 
 
 def section(runs: list[Shown], name: str) -> Any:
-    """The points of a Poincare section; with the clearance circle where they are in a bearing."""
-    there = [shown for shown in runs if name in shown.run.poincare]
+    """The points of a Poincare section of every run that has it."""
+    there = [(shown, shown.run.poincare[name]) for shown in runs if name in shown.run.poincare]
+    text = f"Poincar\u00e9 section {name}: {surface(there[0][1].definition)}"
+    return scattered(runs, there, text)
+
+
+def scattered(runs: list[Shown], there: list[tuple[Shown, Points]], text: str) -> Any:
+    """Points side by side; with the clearance circle where they are in a bearing."""
     figure, axes = side_by_side(len(there))
     radii = []
-    for a, shown in zip(axes, there, strict=True):
-        points = shown.run.poincare[name]
+    for a, (shown, points) in zip(axes, there, strict=True):
         x = shown.scaled(points.x, points.x_unit)
         y = shown.scaled(points.y, points.y_unit)
         a.plot(x, y, ".", ms=5, mew=0, color=colour(runs.index(shown)), alpha=0.8)
@@ -54,7 +61,7 @@ def section(runs: list[Shown], name: str) -> Any:
         a.set_xlabel(words(definition["x"], shown, points.x_unit))
         if a is axes[0]:
             a.set_ylabel(words(definition["y"], shown, points.y_unit))
-        a.set_title(f"{shown.label}\n{len(x)} points".strip(), fontsize=8)
+        a.set_title(f"{shown.label}\n{spread(shown, points)}".strip(), fontsize=8)
         joint = bearing(shown, definition)
         if joint:
             c = shown.scaled(shown.run.parts[joint].clearance, "m")
@@ -62,10 +69,42 @@ def section(runs: list[Shown], name: str) -> Any:
             radii.append(c)
     if len(radii) == len(there):
         square(axes, SPARE * max(radii))
-    definition = there[0].run.poincare[name].definition
-    direction = {"up": " upwards", "down": " downwards"}.get(definition["crosses"], "")
-    text = f"Poincar\u00e9 section {name}: {definition['when']} crosses zero{direction}"
-    titled(figure, there, text)
+    titled(figure, [shown for shown, _ in there], text)
+    return figure
+
+
+def spread(shown: Shown, points: Points) -> str:
+    """How many points there are, and how far they lie apart."""
+    found = points.dispersion
+    if not found.points:
+        return "no points"
+    number = "1 point" if found.points == 1 else f"{found.points} points"
+    if found.radius == found.radius:
+        radius = short(shown.scaled(found.radius, points.x_unit), 3)
+        return f"{number}, dispersion {radius} {shown.display(points.x_unit)[1]}"
+    each = [(found.x, points.x_unit), (found.y, points.y_unit)]
+    told = [f"{short(shown.scaled(v, unit), 3)} {shown.display(unit)[1]}" for v, unit in each]
+    return f"{number}, dispersion {told[0]}, {told[1]}"
+
+
+def impact_map(runs: list[Shown], name: str) -> Any:
+    """Where around its bearing a journal touches, and how fast it comes."""
+    figure, axes = panels(1, height=3.2)
+    a, (factor, unit) = axes[0, 0], runs[0].display("rad")
+    for k, shown in enumerate(runs):
+        if name in shown.run.contacts:
+            _, angle, speed = shown.run.impacts(name)
+            label = f"{shown.label} ({len(angle)})".strip() if shown.label else ""
+            a.plot(factor * angle, speed, ".", ms=7, mew=0, color=colour(k), alpha=0.7, label=label)
+    a.set_xlim(-factor * np.pi, factor * np.pi)
+    if unit in ("deg", "\u00b0"):
+        a.set_xticks(np.arange(-180, 181, 45))
+    a.set_ylim(bottom=0.0)
+    a.set_xlabel(f"angle of the touch around the bearing ({unit})")
+    a.set_ylabel(f"speed of approach ({runs[0].display('m/s')[1]})")
+    count = len(runs[0].run.impacts(name).time) if len(runs) == 1 else 0
+    titled(figure, runs, f"Impacts at {name}" + (f": {count}" if count else ""))
+    legend(figure, a, runs)
     return figure
 
 

@@ -12,7 +12,7 @@ INTERPOLATE y <- solution at t + theta h
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE
-from trsim.elements.packed import A1, A2, f8
+from trsim.elements.packed import A1, A2, I1, f8, i8
 from trsim.solve.record import BUFFERS, RECORD
 
 NO_STEP = 10.0
@@ -23,7 +23,11 @@ STEP = types.float64(SCENE, RECORD, BUFFERS, A1, f8, f8)
 DENSE = types.void(SCENE, A2, f8, A1, f8, A1, A2)
 #                        P   y   theta out
 INTERPOLATE = types.void(A2, A1, f8, A1)
+# what locates points of sections, for runs that have some               scene  record  buffers
+#                                 method t h t1 work of projection, built, event
+SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, f8, f8, f8, f8, i8, i8)
 
 call_step = caller(STEP)
 call_dense = caller(DENSE)
 call_interpolate = caller(INTERPOLATE)
+call_sections = caller(SECTIONS)

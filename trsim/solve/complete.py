@@ -10,7 +10,7 @@ from trsim.elements.calls import caller
 from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
-from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_step
+from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_sections, call_step
 from trsim.solve.events import any_suspicious, first_event
 from trsim.solve.land import land
 from trsim.solve.norm import grow
@@ -48,9 +48,10 @@ from trsim.solve.watch import crossing, may_cross, take_sides
 # what `complete` made of a trial step
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
 # a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
-# of K holds the last derivative, the power of h its error estimate falls with, whether implicit
+# of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
+# and the address of what locates points of sections, or 0
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-METHOD_WIDTH = 7
+SECTIONS_AT, METHOD_WIDTH = 7, 8
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
@@ -100,11 +101,16 @@ def complete(s, r, b, setting, method, h, built):
     inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
     if built == 0 and (near or inside or method[IMPLICIT_AT] > 0):
         build(s, r, b, method, t, h)
+        built = 1
     if near or due(r, setting, t1):
         if not rows_until(s, r, b, setting, method[INTERPOLATE_AT], t, h, t1, projected):
             return WORTHLESS
         if near:
             peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
+    if method[SECTIONS_AT] > 0:
+        call_sections(
+            method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event)
+        )  # fmt: skip
     accept(s, r, b, t1, projected, last)
     take_sides(s, r)
     if method[IMPLICIT_AT] > 0:

@@ -58,6 +58,7 @@ from trsim.solve.record import (
     PEAK_MAX,
     PEAK_MIN,
     PEAK_V2,
+    POINT_ROWS,
     RECORD,
     REJECTED,
     ROWS,
@@ -75,13 +76,15 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
-def method_table(method):
+def method_table(method, sections=0):
     """What the march must know of a method, a file of this folder.
 
-    `complete` stands there too: called by its address it is compiled once, not into the march.
+    `complete` stands there too: called by its address it is compiled once, not into the march;
+    so does `sections`, the address of what locates points, 0 where nobody asks for any.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
-    return (*called, complete.address(), method.LAST, method.ESTIMATE, int(method.IMPLICIT))
+    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT))
+    return (*called, complete.address(), *about, sections)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
@@ -169,6 +172,7 @@ def full(s, r, b):
         r.count[ROWS] > b.rows.shape[0] // 2
         or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
         or r.count[EVENT_ROWS] + contacts + watched >= b.events.shape[0]
+        or r.count[POINT_ROWS] > b.points.shape[0] // 2
     )
 
 

@@ -30,6 +30,7 @@ class Block(NamedTuple):
     step: float
     n_events: int
     recorded: Array  # (n, 2 + n_out) time, user event, channels
+    points: Array  # (n, N_POINT) of Poincare sections, see record.py
     state: dict[str, NDArray[Any]] | None = None  # after it, see checkpoint.py; None: cannot go on
 
 
@@ -54,6 +55,8 @@ SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 SHORTEST = 1e-6  # of a run: a pulse shorter than that may be passed over
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
+FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
+MOST_POINTS = 1e6
 MOST_ROWS = 10_000  # output rows one fixed step may span
 
 
@@ -104,6 +107,35 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     return s
 
 
+def locator(mechanism: Mechanism) -> int:
+    """The address of what locates points of Poincare sections; 0 where there are none."""
+    if not mechanism.sections:
+        return 0
+    from trsim.solve.sections import sections  # compiled where it is needed
+
+    return int(sections.address())
+
+
+def most_points(mechanism: Mechanism, setting: Array) -> int:
+    """How many points of sections one step may add; a step spans a buffer of rows at most.
+
+    Raises ScenarioError where that is no buffer any more.
+    """
+    spanned = FEWEST_ROWS + setting[rec.FIXED_STEP] / setting[rec.EVERY]
+    longest = min(setting[rec.T_END], spanned * setting[rec.EVERY])
+    most = 0
+    for section in mechanism.sections:
+        own = longest / section.every + 2.0 if section.every else 16.0
+        if own > MOST_POINTS:
+            raise ScenarioError(
+                f"{own:.0e} points may fall into one step",
+                "make the period longer, or the time between two output rows shorter",
+                ("poincare", section.name, "every"),
+            )
+        most += int(own)
+    return most
+
+
 def timed(scenario: Any) -> Iterator[FunctionSpec]:
     """What drives and loads are told as functions."""
     for spec in (*scenario.drives.values(), *scenario.forces.values()):
@@ -148,6 +180,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         past=np.zeros((past_rows, begun.y.size)),
         watch=np.zeros((len(model.watch), rec.N_WATCH)),
         stage=np.zeros(switches, np.int64),
+        section=np.zeros((len(model.section), rec.N_SECTION)),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
     return record
@@ -163,8 +196,9 @@ def emptied(r: Record, b: rec.Buffers, recorded: Array | None = None) -> Block:
         float(r.clock[rec.H]),
         int(r.count[rec.EVENTS]),
         np.zeros((0, 1 + b.rows.shape[1])) if recorded is None else recorded,
+        b.points[: r.count[rec.POINT_ROWS]],
     )
-    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS):
+    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS, rec.POINT_ROWS):
         r.count[counter] = 0
     return block
 

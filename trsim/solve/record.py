@@ -52,8 +52,9 @@ from trsim.elements.scene import Model
     ITERATIONS,  # of Newton, so far
     CRAWLED,  # trial steps in a row that were vanishingly short
     FIRED,  # user events at the end of the last step, not yet acted on
+    POINT_ROWS,
     N_COUNT,
-) = range(23)
+) = range(24)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -114,12 +115,18 @@ class Record(Packed):
     past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
+    section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
 
 
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)
 
 
 SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
+# side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
+# end of the step; number of the next instant
+ON, LAST, RATE, KNOWN, END_RATE, NEXT, N_SECTION = range(7)
+# columns of the buffer of points
+POINT_TIME, POINT_SECTION, POINT_X, POINT_Y, N_POINT = range(5)
 
 
 class Buffers(Packed):
@@ -128,6 +135,7 @@ class Buffers(Packed):
     rows: A2  # (n, 1 + n_out) time, channels
     steps: A2  # (n, 2 + n_contact_columns) time, row e, contact channels
     events: A2  # (n, N_EVENT)
+    points: A2  # (n, N_POINT) of Poincare sections; empty without any
     K: A2  # stages of the integrator
     P: A2  # dense output
     y1: A1
@@ -146,14 +154,19 @@ RECORD, BUFFERS = Record.kind, Buffers.kind
 
 
 def fresh_buffers(
-    model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0
-) -> Buffers:
-    """Buffers for a model and a method; step_rows: output rows a fixed step may span."""
+    model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0,
+    points: int = 0,
+) -> Buffers:  # fmt: skip
+    """Buffers for a model and a method.
+
+    step_rows: output rows a fixed step may span; points: of sections, the most in one step.
+    """
     contacts, watched = len(model.contact), len(model.watch)
     return Buffers(
         rows=np.zeros((max(1024, 2 * step_rows + 16), 1 + model.n_out)),
         steps=np.zeros((max(1024, 8 * contacts), n_steps)),
         events=np.zeros((max(256, 8 * (contacts + watched)), N_EVENT)),
+        points=np.zeros((max(1024, 2 * points + 16) if points else 0, N_POINT)),
         K=np.zeros((stages, n_y)),
         P=np.zeros((dense_rows, n_y)),
         y1=np.zeros(n_y),
@@ -171,7 +184,9 @@ def fresh_buffers(
 
 def crowded(r: Record, b: Buffers) -> bool:
     """Whether a buffer is half full: time to empty them."""
-    filled = ((ROWS, b.rows), (STEP_ROWS, b.steps), (EVENT_ROWS, b.events))
+    filled = (
+        (ROWS, b.rows), (STEP_ROWS, b.steps), (EVENT_ROWS, b.events), (POINT_ROWS, b.points)
+    )  # fmt: skip
     return any(2 * r.count[counter] > len(buffer) for counter, buffer in filled)
 
 

@@ -29,6 +29,8 @@ from trsim.solve.outcome import (
     Outcome,
     emptied,
     first_step,
+    locator,
+    most_points,
     new_record,
     runaway,
     settings,
@@ -73,9 +75,11 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     r = new_record(s, begun)
     b = fresh_buffers(
-        s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0))
-    )
-    method = np.array((0, 0, interpolate.address(), complete.address(), LAST, 1, 0), np.int64)
+        s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0)),
+        points=most_points(mechanism, setting),
+    )  # fmt: skip
+    called = (0, 0, interpolate.address(), complete.address())
+    method = np.array((*called, LAST, 1, 0, locator(mechanism)), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)

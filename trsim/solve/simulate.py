@@ -23,6 +23,8 @@ from trsim.solve.outcome import (
     Outcome,
     emptied,
     first_step,
+    locator,
+    most_points,
     new_record,
     runaway,
     settings,
@@ -131,12 +133,14 @@ def compiled(
     sparse = next((m.SPARSE for m in used if hasattr(m, "SPARSE")), None)
     past_rows = dense_rows if implicit and not sparse else 0
     r = new_record(work, begun, past_rows, len(switches.names))
-    b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned)
+    room = most_points(mechanism, setting)
+    b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned, room)
     if sparse:
         r = sparse.record(r, scenario, mechanism, dense_rows)
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
-    methods[0] = method_table(used[0])
+    points = locator(mechanism)
+    methods[0] = method_table(used[0], points)
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
@@ -164,7 +168,7 @@ def compiled(
             ended = ("failed", text) if text else None
         cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
-            methods[:] = [method_table(method) for method in used]
+            methods[:] = [method_table(method, points) for method in used]
             clock0 = time.process_time() - cpu
         block = emptied(r, b, recorded)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block

@@ -15,10 +15,11 @@ from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_
 
 from trsim import elements
 from trsim.elements.contact_law import ContactLaw
-from trsim.elements.event import Crosses, Event
+from trsim.elements.event import Event
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, number, vector
 from trsim.spec import shown
+from trsim.spec.sections import PhasePortrait, PoincareSection
 from trsim.spec.text import Tree
 
 METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
@@ -168,32 +169,6 @@ class OutputSpec(Spec):
     channels: tuple[str, ...] = ("*",)
 
 
-class PhasePortrait(Spec):
-    """One channel against another.
-
-    x  channel to the right
-    y  channel upwards
-    """
-
-    type: ClassVar[str] = "phase_portrait"
-    x: str
-    y: str
-
-
-class PoincareSection(Spec):
-    """Two channels at the times a third one crosses zero.
-
-    when     channel that crosses zero
-    crosses  the direction that counts
-    plot     channels to the right and upwards
-    """
-
-    type: ClassVar[str] = "poincare_section"
-    when: str
-    crosses: Crosses = "up"
-    plot: tuple[str, str]
-
-
 ALL = "all"  # the joints
 
 
@@ -269,7 +244,7 @@ class Scenario(Spec):
     solver           how, how far and how exactly the motion is integrated
     output           what is recorded, and how often
     phase_portraits  one channel against another
-    poincare         two channels at the times a third one crosses zero
+    poincare         two channels where the motion passes a surface: crossings, a period, touches
     events           what happens where a sensor, or the time, crosses a value
     phases           kept for load steps; not used yet
     cases            named overrides, each a scenario of a sweep; not used by `run`

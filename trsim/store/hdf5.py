@@ -203,8 +203,8 @@ class Running:
         self.events = tables.events(file, self.mechanism, time_field)
         self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
         self.tables = [self.rows, self.events, *self.contacts.values()]
-        self.tables += [self.recorded] if self.recorded else []
-        points.declare(file, self.planned)
+        self.sections = points.declare(file, self.planned)
+        self.tables += [*filter(None, [self.recorded]), *self.sections]
 
     def take(self, block: Any) -> None:
         """Store one block of results."""
@@ -219,6 +219,8 @@ class Running:
                 table.append(lines)
                 self.impacts.press(e, lines, self.force[e])
         self.events.append(block.events)
+        for k, of_section in enumerate(self.sections):
+            of_section.append(block.points[block.points[:, points.SECTION] == k])
         self.impacts.update(block.events)
         if self.recorded:
             self.recorded.append(block.recorded)

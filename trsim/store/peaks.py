@@ -59,7 +59,7 @@ def table(
     names = {i.name for i in mechanism.instances if i.section in SECTIONS}
     peaks = []
     for column in mechanism.columns:
-        if column.name.split(".")[0] not in names:
+        if column.name.split(".")[0] not in names or column.for_points:
             continue
         if column.name in magnitudes.row:
             value, time = magnitudes.of(column.name)

@@ -1,24 +1,31 @@
-"""Points of a run: phase portraits and Poincare sections, as the scenario declares them.
+"""Points of a run: phase portraits, Poincare sections, impact maps, journal orbits.
 
-A phase portrait is one channel over another; a section is two channels at the times a third one
-crosses zero.  Until the solver locates the crossings they come from the cubic through the four
-output rows around each sign change.
+phase/NAME     x, y        one channel over another, at the output rows
+poincare/NAME  time, x, y  two channels where the motion passes a surface, as the solver
+                           located it; and at the end how far the points are apart
+impact/NAME    time, angle, speed    of every touch of a joint with clearance, from the events
+orbit/NAME     rows, steps           time, x, y of its journal, at the output rows and at the
+                                     steps in touch: links to where they are stored
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
+from trsim.store.grow import Field, Growing
 
 Array = NDArray[np.float64]
 
-INTERPOLATED = "interpolated from output rows"
-COMPONENTS = {".x": 0, ".y": 1, ".z": 2}
+LOCATED = "located on the dense output of the step"
 ROWS = 1 << 16  # rows looked at together
+EXPECTED = 256  # points
+TIME, SECTION, X, Y = range(4)  # columns of a block of points, see solve/record.py
+JOURNAL = ("eccentricity_x", "eccentricity_y")
 
 
 class Portrait(NamedTuple):
@@ -29,40 +36,76 @@ class Portrait(NamedTuple):
     y: str
 
 
-class Section(NamedTuple):
-    """Two channels where a third one crosses zero."""
-
-    name: str
-    when: str
-    crosses: str
-    x: str
-    y: str
-
-
 class Plan(NamedTuple):
-    """What a run stores besides its rows, and the columns that needs."""
+    """What a run stores besides its rows, and the columns of rows that needs."""
 
     portraits: tuple[Portrait, ...]
-    sections: tuple[Section, ...]
+    sections: tuple[Any, ...]  # of assemble/mechanism.py
     columns: frozenset[str]
 
 
+class Dispersion(NamedTuple):
+    """How far the points of a section lie apart: root mean squares about their mean."""
+
+    points: int
+    x: float
+    y: float
+    radius: float  # root of the sum of the squares; nan where x and y have different units
+
+
+class Points(NamedTuple):
+    """A phase portrait or a Poincare section."""
+
+    definition: Mapping[str, Any]
+    time: Array
+    x: Array
+    y: Array
+    x_unit: str
+    y_unit: str
+
+    @property
+    def dispersion(self) -> Dispersion:
+        """How far the points lie apart."""
+        return dispersion(self.x, self.y, self.x_unit == self.y_unit)
+
+
+class Impacts(NamedTuple):
+    """The touches of a joint with clearance."""
+
+    time: Array  # s
+    angle: Array  # rad, of the contact point around the bearing
+    speed: Array  # m/s, of approach
+
+
 def plan(scenario: Any, mechanism: Any) -> Plan:
-    """The portraits and sections of a scenario.  Raises ScenarioError for unknown channels."""
+    """The portraits and sections of a run.  Raises ScenarioError for unknown channels."""
     sizes = {column.name: column.size for column in mechanism.columns}
     portraits = [
         Portrait(name, _found(spec.x, sizes, ("phase_portraits", name, "x")),
                  _found(spec.y, sizes, ("phase_portraits", name, "y")))
         for name, spec in (getattr(scenario, "phase_portraits", None) or {}).items()
     ]  # fmt: skip
-    sections = []
-    for name, spec in (getattr(scenario, "poincare", None) or {}).items():
-        when = _found(spec.when, sizes, ("poincare", name, "when"))
-        x, y = (_found(c, sizes, ("poincare", name, "plot", k)) for k, c in enumerate(spec.plot))
-        sections.append(Section(name, when, spec.crosses, x, y))
-    needed = [c for p in portraits for c in p[1:]] + [c for s in sections for c in (s.when, *s[3:])]
+    needed = frozenset(split(channel, sizes)[0] for p in portraits for channel in p[1:])
     portraits = portraits or _default(scenario, mechanism)
-    return Plan(tuple(portraits), tuple(sections), frozenset(split(c, sizes)[0] for c in needed))
+    return Plan(tuple(portraits), mechanism.sections, needed)
+
+
+def surface(definition: Any) -> str:
+    """The surface of a section in words, from its attributes."""
+    if definition.get("every"):
+        return f"every {definition['every']:.6g} s"
+    if definition.get("at_onset"):
+        return f"at each touch of {definition['at_onset']}"
+    direction = {"up": " upwards", "down": " downwards"}.get(definition["crosses"], "")
+    return f"{definition['when']} crosses zero{direction}"
+
+
+def dispersion(x: Array, y: Array, alike: bool) -> Dispersion:
+    """Of some points; `alike` says whether x and y have one unit."""
+    if not len(x):
+        return Dispersion(0, np.nan, np.nan, np.nan)
+    own = float(np.std(x)), float(np.std(y))
+    return Dispersion(len(x), *own, float(np.hypot(*own)) if alike else np.nan)
 
 
 def split(channel: str, sizes: Any) -> tuple[str, int | None]:
@@ -96,23 +139,35 @@ def _default(scenario: Any, mechanism: Any) -> list[Portrait]:
 # --- in the file -----------------------------------------------------------------------------
 
 
-def declare(file: h5py.File, planned: Plan) -> None:
-    """The groups with their definitions; portraits of scalar channels are links to them."""
-    phase, poincare = file.create_group("phase"), file.create_group("poincare")
+def declare(file: h5py.File, planned: Plan) -> list[Growing]:
+    """The groups with their definitions, portraits of scalar channels as links; the tables."""
+    phase, poincare = file.create_group("phase"), file.require_group("poincare")
+    file.create_group("impact")
+    file.create_group("orbit")
     for portrait in planned.portraits:
         group = phase.create_group(portrait.name)
         group.attrs.update({"x": portrait.x, "y": portrait.y})
         if portrait.x in file and portrait.y in file:
             group["time"] = file["time"]
             group["x"], group["y"] = file[portrait.x], file[portrait.y]
-    for section in planned.sections:
-        group = poincare.create_group(section.name)
-        group.attrs.update(section._asdict())
-        group.attrs["method"] = INTERPOLATED
+    return [_table(poincare.create_group(section.name), section) for section in planned.sections]
+
+
+def _table(group: h5py.Group, section: Any) -> Growing:
+    """The growing table of a section."""
+    told = {key: getattr(section, key) for key in ("when", "crosses", "every", "at_onset")}
+    group.attrs.update({key: value for key, value in told.items() if value})
+    group.attrs.update({"x": section.x, "y": section.y, "after": section.after, "method": LOCATED})
+    fields = [
+        Field("time", "s", "simulated time", TIME),
+        Field("x", section.x_unit, section.x, X),
+        Field("y", section.y_unit, section.y, Y),
+    ]
+    return Growing(group, fields, 4, EXPECTED)
 
 
 def complete(file: h5py.File, planned: Plan) -> None:
-    """Fill in the points, once all rows are there."""
+    """What is known only at the end, or follows from what is there."""
     for portrait in planned.portraits:
         group = file["phase"][portrait.name]
         if "x" not in group:
@@ -120,28 +175,51 @@ def complete(file: h5py.File, planned: Plan) -> None:
             for axis, channel in (("x", portrait.x), ("y", portrait.y)):
                 points = [part[axis] for part in _parts(file, {axis: channel})]
                 _store(file, group, axis, channel, points)
-    for section in planned.sections:
-        group = file["poincare"][section.name]
-        channels = {"when": section.when, "x": section.x, "y": section.y}
-        found = [crossings(part, section.crosses) for part in _parts(file, channels, overlap=3)]
-        _store(file, group, "time", "time", [part["time"] for part in found])
-        for axis, channel in (("x", section.x), ("y", section.y)):
-            _store(file, group, axis, channel, [part[axis] for part in found])
-            group[axis].dims[0].attach_scale(group["time"])
+    for group in file["poincare"].values():
+        x, y = group["x"], group["y"]
+        spread = dispersion(x[:], y[:], x.attrs["units"] == y.attrs["units"])
+        told = {f"dispersion_{name}": value for name, value in spread._asdict().items()}
+        group.attrs.update({n: value for n, value in told.items() if value == value})
+    for name in file["steps"]:
+        if all(channel in file["steps"][name] for channel in JOURNAL):
+            _journal(file, name)
 
 
-def _parts(
-    file: h5py.File, channels: dict[str, str], overlap: int = 0
-) -> Iterator[dict[str, Array]]:
-    """Stretches of the rows of some channels, each sharing a few rows with the one before."""
+def _journal(file: h5py.File, name: str) -> None:
+    """Touches and orbit of a joint with clearance."""
+    events, group = file["events"], file["impact"].create_group(name)
+    kind, element = events["kind"][:].astype(str), events["element"][:].astype(str)
+    onset = np.flatnonzero((kind == "onset") & (element == name))
+    for axis in ("time", "angle", "speed"):
+        values = events[axis][:][onset]
+        group.create_dataset(
+            axis, data=values, chunks=(EXPECTED,), maxshape=(None,), fletcher32=True
+        )
+        for key in ("units", "long_name"):
+            group[axis].attrs[key] = events[axis].attrs[key]
+    group["time"].make_scale("time")
+    for axis in ("angle", "speed"):
+        group[axis].dims[0].attach_scale(group["time"])
+    orbit = file["orbit"].create_group(name)
+    rows = [f"{name}.{channel}" for channel in JOURNAL]
+    sources = {"steps": [file["steps"][name][channel] for channel in ("time", *JOURNAL)]}
+    if all(channel in file for channel in rows):
+        sources["rows"] = [file["time"], *(file[channel] for channel in rows)]
+    for part, datasets in sources.items():
+        inner = orbit.create_group(part)
+        for axis, dataset in zip(("time", "x", "y"), datasets, strict=True):
+            inner[axis] = dataset
+
+
+def _parts(file: h5py.File, channels: dict[str, str]) -> Iterator[dict[str, Array]]:
+    """Stretches of the rows of some channels."""
     sizes = {name: item.shape[1] if item.ndim == 2 else 1 for name, item in _datasets(file)}
     n = len(file["time"])
     for k in range(0, max(n, 1), ROWS):
-        begin, end = max(k - overlap, 0), min(k + ROWS, n)
-        part = {"time": file["time"][begin:end], "first": begin == 0, "last": end == n}
+        begin, end, part = k, min(k + ROWS, n), {}
         for axis, channel in channels.items():
-            stored, component = split(channel, sizes)
-            rows = file[stored][begin:end]
+            name, component = split(channel, sizes)
+            rows = file[name][begin:end]
             part[axis] = rows if component is None else rows[:, component]
         yield part
 
@@ -161,49 +239,18 @@ def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str, parts: l
     dataset.attrs["long_name"] = channel
 
 
-# --- crossings -------------------------------------------------------------------------------
+# --- out of it --------------------------------------------------------------------------------
 
 
-def crossings(part: dict[str, Any], crosses: str) -> dict[str, Array]:
-    """Times, x and y of the zero crossings of `when` in rows of one stretch.
-
-    Between two stretches that share three rows, each crossing belongs to exactly one of them: to
-    the one in which its four rows lie, the first and the last interval of a run excepted.
-    """
-    time, w = part["time"], part["when"]
-    n = len(time)
-    if n < 2:
-        return {axis: np.zeros(0) for axis in ("time", "x", "y")}
-    up, down = (w[:-1] < 0.0) & (w[1:] >= 0.0), (w[:-1] > 0.0) & (w[1:] <= 0.0)
-    k = np.flatnonzero({"up": up, "down": down}.get(crosses, up | down))
-    k = k[((k >= 1) | part["first"]) & ((k <= n - 3) | part["last"])]
-    four = np.clip(k - 1, 0, max(n - 4, 0))[:, None] + np.arange(min(4, n))
-    lever = (time[four] - time[k][:, None]) / (time[k + 1] - time[k])[:, None]
-    root = _roots(lever, w[four])
-    weight = _lagrange(lever, root)
-    return {
-        "time": time[k] + root * (time[k + 1] - time[k]),
-        "x": np.sum(weight * part["x"][four], axis=1),
-        "y": np.sum(weight * part["y"][four], axis=1),
-    }
+def stored(group: h5py.Group) -> Points:
+    """The points of a group, also while it is written."""
+    n = min(len(group[axis]) for axis in ("time", "x", "y"))
+    table = np.array([group[axis][:n] for axis in ("time", "x", "y")])
+    table = table[:, ~np.isnan(table).any(axis=0)]  # room that a killed writer never filled
+    units = str(group["x"].attrs["units"]), str(group["y"].attrs["units"])
+    return Points(plain(group.attrs), table[0], table[1], table[2], *units)
 
 
-def _roots(u: Array, w: Array) -> Array:
-    """Where in 0..1 the polynomials through (u, w) are zero, by bisection."""
-    low, high = np.zeros(len(u)), np.ones(len(u))
-    sign = np.sign(np.sum(_lagrange(u, high) * w, axis=1))
-    for _ in range(52):
-        middle = 0.5 * (low + high)
-        right = np.sign(np.sum(_lagrange(u, middle) * w, axis=1)) == sign
-        low, high = np.where(right, low, middle), np.where(right, middle, high)
-    return 0.5 * (low + high)
-
-
-def _lagrange(u: Array, at: Array) -> Array:
-    """Weights of the values at u in the polynomial's value, one row per polynomial."""
-    weight = np.ones_like(u)
-    for i in range(u.shape[1]):
-        for j in range(u.shape[1]):
-            if i != j:
-                weight[:, i] *= (at - u[:, j]) / (u[:, i] - u[:, j])
-    return weight
+def plain(attributes: Any) -> dict[str, Any]:
+    """Attributes as Python's own numbers and texts."""
+    return {n: v.item() if isinstance(v, np.generic) else v for n, v in attributes.items()}

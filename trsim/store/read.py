@@ -18,7 +18,7 @@ from trsim.store.content import content_hash
 from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
-from trsim.store.points import split
+from trsim.store.points import Impacts, Points, plain, split, stored
 from trsim.store.tables import MAY_BE_NAN
 
 FORMAT, VERSION = "trsim run", 1
@@ -45,17 +45,6 @@ class Events(NamedTuple):
     angle: Array  # rad
     did: NDArray[Any]  # by a user event, in words; empty where the scenario has none
     work: Array  # J, done by it
-
-
-class Points(NamedTuple):
-    """A phase portrait or a Poincare section."""
-
-    definition: Mapping[str, Any]
-    time: Array
-    x: Array
-    y: Array
-    x_unit: str
-    y_unit: str
 
 
 @dataclass(frozen=True)
@@ -142,21 +131,29 @@ class Run:
     def poincare(self) -> dict[str, Points]:
         return self._points("poincare")
 
+    def impacts(self, joint: str) -> Impacts:
+        """The touches of a joint with clearance, or of a stop, whose angle is nan."""
+        if joint not in self.contacts:
+            raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
+        events = self.events
+        onset = (events.kind == "onset") & (events.element == joint)
+        return Impacts(events.time[onset], events.angle[onset], events.speed[onset])
+
     def _points(self, section: str) -> dict[str, Points]:
         with opened(self.path) as file:
-            return {n: _points(g) for n, g in file[section].items() if "x" in g and "y" in g}
+            return {n: stored(g) for n, g in file[section].items() if "x" in g and "y" in g}
 
     def group(self, name: str) -> dict[str, Any]:
         """The attributes of a group: summary, solver, provenance, mechanism."""
         with opened(self.path) as file:
-            return _plain(file[name].attrs)
+            return plain(file[name].attrs)
 
     @property
     def summary(self) -> dict[str, Any]:
         with opened(self.path) as file:
             group = file["summary"]
-            found = {name: _plain(inner.attrs) for name, inner in group.items()}
-            return {**_plain(group.attrs), "contacts": found}
+            found = {name: plain(inner.attrs) for name, inner in group.items()}
+            return {**plain(group.attrs), "contacts": found}
 
     @property
     def certificate(self) -> "certificate.Certificate | None":
@@ -193,7 +190,7 @@ def read(path: str | os.PathLike) -> Run:
         time = channels.pop("time")
         return Run(
             path=path,
-            attributes=_plain(file.attrs),
+            attributes=plain(file.attrs),
             units={name: str(d.attrs.get("units", "-")) for name, d in channels.items()},
             sizes={name: d.shape[1] if d.ndim == 2 else 1 for name, d in channels.items()},
             parts=_parts(file["mechanism"]),
@@ -297,15 +294,3 @@ def _written(datasets: list[h5py.Dataset]) -> int:
                 break
             n = begin
     return n
-
-
-def _points(group: h5py.Group) -> Points:
-    n = min(len(group[axis]) for axis in ("time", "x", "y"))
-    x, y = group["x"], group["y"]
-    units = str(x.attrs["units"]), str(y.attrs["units"])
-    return Points(_plain(group.attrs), group["time"][:n], x[:n], y[:n], *units)
-
-
-def _plain(attributes: Any) -> dict[str, Any]:
-    """Attributes as Python's own numbers and texts."""
-    return {n: v.item() if isinstance(v, np.generic) else v for n, v in attributes.items()}

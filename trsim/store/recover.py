@@ -117,14 +117,12 @@ def _of_writing(error: Exception) -> bool:
 
 
 def _planned(source: h5py.File) -> points.Plan:
-    """The portraits and sections a file was to have."""
-    portraits, sections = [], []
-    for name, group in source["phase"].items():
-        portraits.append(points.Portrait(name, str(group.attrs["x"]), str(group.attrs["y"])))
-    for group in source["poincare"].values():
-        words = [str(group.attrs[name]) for name in points.Section._fields]
-        sections.append(points.Section(*words))
-    return points.Plan(tuple(portraits), tuple(sections), frozenset())
+    """The portraits a file was to have; the points of sections are copied."""
+    portraits = [
+        points.Portrait(name, str(group.attrs["x"]), str(group.attrs["y"]))
+        for name, group in source["phase"].items()
+    ]
+    return points.Plan(tuple(portraits), (), frozenset())
 
 
 if __name__ == "__main__":

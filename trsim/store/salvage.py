@@ -35,7 +35,7 @@ class Salvage:
         self.rows: dict[str, int] = {}  # group -> rows
 
     def copy(self) -> None:
-        """Everything but phase portraits and sections, which follow from the rows."""
+        """Everything but portraits, impact maps and orbits, which follow from the rest."""
         source, file = self.source, self.file
         for name, value in source.attrs.items():
             if name != "content_sha256":
@@ -52,6 +52,11 @@ class Salvage:
         for group in (*names, *(f"steps/{name}" for name in source["steps"])):
             self._table(source[group], file.create_group(group))
             file[group].attrs.update(source[group].attrs)
+        for name in source["poincare"]:
+            section, made = source["poincare"][name], file.require_group(f"poincare/{name}")
+            told = section.attrs.items()
+            made.attrs.update({k: v for k, v in told if not k.startswith("dispersion")})
+            self._table(section, made)
         file.require_group("steps")
         file.create_group("summary")
         self._peaks()
@@ -167,7 +172,8 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
     time = piece["time"][:n]
     later = np.diff(time, prepend=last)
     # several events may happen at once
-    n = _first(~(later >= 0.0) if source.name == "/events" else ~(later > 0.0), n)
+    together = source.name == "/events" or source.name.startswith("/poincare/")
+    n = _first(~(later >= 0.0) if together else ~(later > 0.0), n)
     for name, values in piece.items():
         if name in MAY_BE_NAN:
             continue

@@ -29,6 +29,7 @@ from trsim.cli.documents.checks import (
 )
 from trsim.cli.documents.common import Document, Error
 from trsim.cli.documents.files import (
+    Dispersion,
     Export,
     Provenance,
     Recover,
@@ -60,6 +61,7 @@ __all__ = [
     "Contact",
     "ContactScale",
     "Curve",
+    "Dispersion",
     "Document",
     "ElementPage",
     "Error",

@@ -82,6 +82,21 @@ class Provenance(TypedDict, total=False):
     recovered_by: str
 
 
+class Dispersion(TypedDict):
+    """How far the points of a section lie apart: root mean squares about their mean.
+
+    points  how many
+    x       in the unit of the channel; null without points
+    y       the same
+    radius  root of the sum of both squares; null where x and y have different units
+    """
+
+    points: int
+    x: Number
+    y: Number
+    radius: Number
+
+
 class Show(Document):
     """trsim show.
 
@@ -104,6 +119,7 @@ class Show(Document):
     provenance      where the file comes from
     phase           names of phase portraits
     poincare        section -> number of points
+    dispersion      section -> how far its points lie apart
     fired           user event -> how often it happened
     certificate     what a twin says of the run, where it had one
     """
@@ -127,6 +143,7 @@ class Show(Document):
     provenance: Provenance
     phase: list[str]
     poincare: dict[str, int]
+    dispersion: dict[str, Dispersion]
     fired: dict[str, int]
     certificate: NotRequired[Certificate]
 

@@ -1,0 +1,263 @@
+"""Points of Poincare sections: where, in which direction, and that nothing else is changed."""
+
+import numpy as np
+import pytest
+
+from trsim.errors import ScenarioError
+
+from .. import small
+from ..mechanisms import torsion_pendulum
+from ..runs import built, run
+
+HALF = np.pi / 20.0  # s: half a period of the torsion pendulum
+METHODS = {
+    "dop853": 1e-10,
+    "radau": 1e-10,
+    "rk4": 1e-10,
+    "scipy:RK45": 1e-10,
+    "scipy:Radau": 1e-8,
+    "generalized_alpha": 2e-3,
+}
+STEP = ("solver.step=1e-4",)
+
+
+def pendulum(sections, solver="end: 3, tolerance: 1e-11"):
+    text, exact = torsion_pendulum(solver=solver)
+    return f"{text}poincare: {{{sections}}}\n", exact
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_crossings_and_instants_of_an_oscillator(method):
+    """theta = theta0 cos 20 t crosses zero at odd quarters of its period, its rate at halves."""
+    text, exact = pendulum(
+        "zero: {when: angle, crosses: both, plot: [angle, angle.rate]},"
+        "turn: {when: angle.rate, plot: [angle, angle.rate]},"
+        "beat: {every: 2*pi/20, after: 0.1, plot: [angle, angle.rate]}"
+    )
+    loose = ("solver.tolerance=1e-5",) if method == "generalized_alpha" else ()
+    r, allowed = run(text, f"solver.method={method}", *STEP, *loose), METHODS[method]
+    zero, turn, beat = (r.section(name) for name in ("zero", "turn", "beat"))
+    assert (len(zero), len(turn), len(beat)) == (19, 10, 10)
+    assert zero[:, 0] == pytest.approx((np.arange(19) + 0.5) * HALF, abs=allowed)
+    assert zero[:, 1] == pytest.approx(0.0, abs=1e-13)
+    assert turn[:, 0] == pytest.approx((2.0 * np.arange(10) + 1.0) * HALF, abs=allowed)
+    assert turn[:, 1] == pytest.approx(-0.3, abs=allowed)
+    assert turn[:, 2] == pytest.approx(0.0, abs=1e-12)
+    np.testing.assert_array_equal(beat[:, 0], 0.1 + 2.0 * np.pi / 20.0 * np.arange(10))
+    assert beat[:, 1] == pytest.approx(exact(beat[:, 0]), abs=20.0 * allowed)
+
+
+@pytest.mark.parametrize("crosses, first", [("up", 1.5), ("down", 0.5)])
+def test_direction(crosses, first):
+    text, _ = pendulum(f"zero: {{when: angle, crosses: {crosses}, plot: [angle, angle.rate]}}")
+    points = run(text).section("zero")
+    assert points[:, 0] == pytest.approx((first + 2.0 * np.arange(len(points))) * HALF, abs=1e-10)
+    assert np.all(np.sign(points[:, 2]) == (1.0 if crosses == "up" else -1.0))
+
+
+def test_nothing_before_its_time():
+    text, _ = pendulum("zero: {when: angle, crosses: both, after: 1 s, plot: [angle, angle.rate]}")
+    points = run(text).section("zero")
+    expected = (np.arange(19) + 0.5) * HALF
+    assert points[:, 0] == pytest.approx(expected[expected >= 1.0], abs=1e-10)
+
+
+THROWN = """
+planar: true
+bodies: {{ball: {{mass: 1, inertia: 1, at: [0, {y0}], velocity: [0, {v0}]}}}}
+forces: {{push: {{type: applied_load, body: ball, direction: [0, 1], force: "{force}"}}}}
+solver: {{method: dop853, end: 1, first_step: 1, max_step: 1, tolerance: 1e-6}}
+output: {{every: 1}}
+poincare:
+  zero: {{when: ball.position.y, crosses: {crosses}, plot: [ball.velocity.y, ball.position.y]}}
+"""
+
+
+def thrown(y0, v0, force, crosses="both", first=1.0):
+    """The points of a body whose height is a polynomial, which long steps integrate exactly."""
+    text = THROWN.format(y0=y0, v0=v0, force=force, crosses=crosses)
+    r = run(text, f"solver.first_step={first}")
+    assert r.outcome.statistics["steps"] == (1 if first == 1.0 else 2)
+    return r.section("zero")
+
+
+@pytest.mark.parametrize("crosses, at", [("both", [0.2, 0.7]), ("up", [0.2]), ("down", [0.7])])
+def test_there_and_back_in_one_step(crosses, at):
+    """y = -(t - 0.2)(t - 0.7)"""
+    points = thrown(-0.14, 0.9, -2.0, crosses)
+    assert points[:, 0] == pytest.approx(at, abs=1e-12)
+    assert points[:, 1] == pytest.approx(0.9 - 2.0 * np.array(at), abs=1e-12)
+
+
+def test_there_and_back_in_a_later_step():
+    """y = -(t - 0.3)(t - 0.8), of which the step from 0.2 to 1 shows no change of sign."""
+    points = thrown(-0.24, 1.1, -2.0, first=0.2)
+    assert points[:, 0] == pytest.approx([0.3, 0.8], abs=1e-12)
+
+
+@pytest.mark.parametrize("first", [0.15, 1.0])
+def test_there_back_and_there_again_in_one_step(first):
+    """y = (t - 0.2)(t - 0.5)(t - 0.8)"""
+    points = thrown(-0.08, 0.66, "6*t - 3", first=first)
+    assert points[:, 0] == pytest.approx([0.2, 0.5, 0.8], abs=1e-12)
+
+
+def test_a_turn_short_of_zero_is_no_crossing():
+    """y = -(t - 0.5)^2 - 1e-6"""
+    assert len(thrown(-0.250001, 1.0, -2.0)) == 0
+
+
+def test_a_start_at_zero_is_no_crossing():
+    """y = t (t - 0.5)"""
+    assert thrown(0.0, -0.5, 2.0)[:, 0] == pytest.approx([0.5], abs=1e-12)
+
+
+@pytest.mark.parametrize("force, at", [("(t > 0.5)*2 - 1", []), ("sin(8*t - 4)", [0.5])])
+def test_a_jump_over_zero_is_no_crossing(force, at):
+    text = THROWN.format(y0=0, v0=0, force=force, crosses="up").replace(
+        "when: ball.position.y", "when: ball.acceleration.y"
+    )
+    found = run(text, "solver.first_step=0.01", "solver.max_step=0.03").section("zero")
+    assert found[:, 0] == pytest.approx(at, abs=1e-9)
+
+
+@pytest.mark.parametrize("before, after, at", [
+    (-1, "1", []), (-1, "4*t - 1", [0.75]), (1, "-1", []), (1, "50*t - 1", [0.52]),
+])  # fmt: skip
+def test_what_an_event_turns_round_does_not_cross(before, after, at):
+    """A drive is put to another speed at 0.5 s, past zero; what crosses it later counts."""
+    text = """
+bodies: {disc: {mass: 2, inertia: 1}}
+joints: {pin: {type: revolute, bodies: [ground, disc], at: [0, 0]}}
+drives: {motor: {joint: pin, velocity: BEFORE}}
+sensors: {angle: {joint: pin}}
+events: {turn: {when: t, value: 0.5, do: {set: {motor: {velocity: "AFTER"}}}}}
+solver: {method: dop853, end: 1, first_step: 0.5, max_step: 0.5, tolerance: 1e-10}
+poincare: {turn: {when: angle.rate, plot: [angle, angle.rate]}}
+"""
+    found = run(text.replace("BEFORE", str(before)).replace("AFTER", after)).section("turn")
+    assert found[:, 0] == pytest.approx(at, abs=1e-9)
+
+
+# --- in a mechanism with clearance -----------------------------------------------------------
+
+SECTIONS = """
+  crossing: {when: B.eccentricity_x_rate, crosses: both, plot: [B.eccentricity_x, B.eccentricity_y]}
+  push: {when: rod.acceleration.y, plot: [rod.velocity.y, stroke]}
+  touch: {at_onset: B, plot: [B.eccentricity_x, B.penetration_rate]}
+  beat: {every: 0.0213 ms, plot: [stroke, crank_angle]}
+"""
+CRANK = small.SLIDER_CRANK.split("poincare:")[0]
+WITH_FRICTION = (
+    "contact_laws.pin.friction={law: modified_coulomb, coefficient: 0.1, v0: 1e-4, v1: 1e-3}"
+)
+SPATIAL = (
+    "planar=false",
+    *(f"bodies.{b}.inertia=[1e-4, 2e-4, 2e-4]" for b in ("crank", "rod", "slider")),
+)
+KINDS = {
+    "dop853": (),
+    "friction": (WITH_FRICTION,),
+    "auto": (WITH_FRICTION, "solver.method=auto"),
+    "radau": ("solver.method=radau", "solver.tolerance=1e-4"),
+    "generalized_alpha": ("solver.method=generalized_alpha", "solver.tolerance=1e-3"),
+    "rk4": ("solver.method=rk4", "solver.step=1us", "solver.locate_events=true"),
+    "scipy:RK45": ("solver.method=scipy:RK45",),
+    "spatial": SPATIAL,
+    "ggl": ("solver.method=radau", "solver.formulation=ggl", "solver.tolerance=1e-4"),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_run_is_the_same_with_sections_and_without(kind):
+    """Rows, steps, events, extremes and statistics, to the last bit."""
+    bare = run(CRANK, *KINDS[kind])
+    full = run(CRANK + "poincare:" + SECTIONS, *KINDS[kind])
+    assert len(bare.points) == 0 and len(full.section("crossing")) > 2
+    for name in ("rows", "steps", "events"):
+        np.testing.assert_array_equal(getattr(bare, name), getattr(full, name))
+    np.testing.assert_array_equal(bare.outcome.peaks, full.outcome.peaks)
+    told = [{**r.outcome.statistics, "integration_cpu": 0.0} for r in (bare, full)]
+    assert told[0] == told[1]
+
+
+def test_touches_are_those_of_the_events():
+    """One point each, at the instant of the event, with the speed it met."""
+    r = run(CRANK + "poincare:" + SECTIONS)
+    touch, onset = r.section("touch"), r.events[r.events[:, 1] == 1.0]
+    np.testing.assert_array_equal(touch[:, 0], onset[:, 0])
+    assert len(touch) > 5
+    assert touch[:, 2] == pytest.approx(onset[:, 3], rel=1e-9)
+    assert touch[:, 1] == pytest.approx(0.5e-3 * np.cos(onset[:, 4]), abs=1e-12)
+
+
+def test_instants_are_rows():
+    """A stroboscopic section with the period of the rows shows what stands in them."""
+    r = run(CRANK + "poincare: {beat: {every: 0.01 ms, plot: [stroke, stroke.rate]}}\n")
+    beat = r.section("beat")
+    assert len(beat) == len(r.t)
+    np.testing.assert_array_equal(beat[:, 1], r["stroke"])
+    np.testing.assert_array_equal(beat[:, 2], r["stroke.rate"])
+
+
+def test_methods_find_the_same_points():
+    """Until motions part: the first half millisecond, some impacts."""
+    text, sets = CRANK + "poincare:" + SECTIONS, ("solver.end=1ms", "solver.tolerance=1e-10")
+    expected = run(text, *sets)
+    for method in ("radau", "scipy:RK45"):
+        other = run(text, *sets, f"solver.method={method}")
+        for name in ("crossing", "push", "touch"):
+            a, b = expected.section(name), other.section(name)
+            assert len(a) == len(b) > 0
+            np.testing.assert_allclose(b[:, 0], a[:, 0], rtol=0.0, atol=1e-9)
+
+
+def test_many_points_in_one_step():
+    """More than the usual buffer holds."""
+    text = THROWN.split("poincare")[0].format(y0=0, v0=1, force="0*t")
+    r = run(text + "poincare: {beat: {every: 2e-5, plot: [ball.position.y, ball.velocity.y]}}\n")
+    assert r.outcome.statistics["steps"] == 1
+    beat = r.section("beat")
+    assert len(beat) == 50_001
+    assert beat[:, 1] == pytest.approx(beat[:, 0], abs=1e-12)
+    with pytest.raises(ScenarioError, match="points may fall into one step"):
+        run(text + "poincare: {beat: {every: 1e-7, plot: [ball.position.y, ball.velocity.y]}}\n")
+
+
+def test_channels_that_are_not_recorded():
+    """They are measured, and stay out of rows and peaks."""
+    sets = ("output.channels=[stroke]",)
+    r = run(CRANK + "poincare:" + SECTIONS, *sets)
+    every = run(CRANK + "poincare:" + SECTIONS)
+    np.testing.assert_array_equal(r.points, every.points)
+    (column,) = (c for c in r.mechanism.columns if c.name == "rod.acceleration")
+    assert not column.wanted and column.for_points
+
+
+@pytest.mark.parametrize(
+    "section, path, what",
+    [
+        ("{plot: [stroke, stroke.rate]}", (), "no surface"),
+        ("{when: stroke, every: 1, plot: [stroke, stroke]}", (), "both `when` and `every`"),
+        ("{every: 1, crosses: up, plot: [stroke, stroke]}", ("crosses",), "crosses belongs to"),
+        ("{every: 0, plot: [stroke, stroke]}", ("every",), "must be > 0"),
+        ("{every: 3 mm, plot: [stroke, stroke]}", ("every",), "wrong unit"),
+        ("{when: strok, plot: [stroke, stroke]}", ("when",), "no channel named 'strok'"),
+        ("{when: stroke.x, plot: [stroke, stroke]}", ("when",), "no channel named 'stroke.x'"),
+        ("{when: B.force, plot: [stroke, stroke]}", ("when",), "'B.force' has 3 components"),
+        ("{at_onset: A, plot: [stroke, stroke]}", ("at_onset",), "no contact named 'A'"),
+        ("{at_onset: B, plot: [stroke, x]}", ("plot", 1), "no channel named 'x'"),
+    ],
+)
+def test_refused(section, path, what):
+    with pytest.raises(ScenarioError) as caught:
+        built(CRANK + f"poincare: {{p: {section}}}\n")
+    (problem,) = caught.value.problems
+    assert what in problem.what
+    assert problem.path == ("poincare", "p", *path)
+
+
+def test_touches_need_located_events():
+    text = CRANK + "poincare: {p: {at_onset: B, plot: [stroke, stroke]}}\n"
+    with pytest.raises(ScenarioError, match="not located"):
+        built(text, "solver.method=rk4", "solver.step=1us")

@@ -1,0 +1,79 @@
+"""Poincare sections packed: the surface of each, and the output columns it shows."""
+
+from typing import Any
+
+import numpy as np
+
+from trsim.assemble.mechanism import Column, Instance, Section
+from trsim.elements.event import DIRECTIONS
+from trsim.elements.scene import COMPONENTS, Model
+from trsim.errors import ScenarioError, known
+
+# kinds of surface, and columns of model.section and of model.section_at
+CROSSING, STROBE, TOUCH = 0, 1, 2
+KIND, WHEN, DIRECTION, X, Y = range(5)  # WHEN: an output column, or the row of a contact
+AFTER, EVERY = range(2)
+SECTION = "poincare"  # of a scenario
+
+
+def sections(
+    scenario: Any, model: Model, instances: list[Instance], columns: list[Column]
+) -> tuple[Model, tuple[Section, ...]]:
+    """The model with its sections filled in, and their names.
+
+    Raises ScenarioError for channels and contacts that do not exist.
+    """
+    there = {column.name: column for column in columns}
+    rows, at, found = [], [], []
+    for name, spec in scenario.poincare.items():
+        x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
+        kind, when = surface(scenario, name, spec, instances, there)
+        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y))
+        at.append((spec.after, spec.every or 0.0))
+        units = [there[stored(c, there)[0]].unit for c in spec.plot]
+        crosses = spec.crosses if spec.when else ""
+        found.append(Section(name, spec.when or "", crosses, spec.every or 0.0, spec.at_onset or "",
+                             spec.after, *spec.plot, *units))  # fmt: skip
+    filled = model.replaced(
+        section=np.array(rows, np.int64).reshape(-1, 5),
+        section_at=np.array(at, float).reshape(-1, 2),
+    )
+    return filled, tuple(found)
+
+
+def surface(
+    scenario: Any, name: str, spec: Any, instances: list[Instance], there: dict[str, Column]
+) -> tuple[int, int]:
+    """Which kind of surface it is, and the column or the contact that goes with it."""
+    if spec.every:
+        return STROBE, -1
+    if spec.when:
+        return CROSSING, column_of(spec.when, there, (SECTION, name, "when"))
+    path = (SECTION, name, "at_onset")
+    contacts = {i.name: e for e, i in enumerate(instances) if i.row.contact}
+    if spec.at_onset not in contacts:
+        hint = known(spec.at_onset, contacts) if contacts else "no joint here has clearance"
+        raise ScenarioError(f"no contact named '{spec.at_onset}'", hint, path)
+    solver = scenario.solver
+    if solver.locate_events is False or (solver.method == "rk4" and not solver.locate_events):
+        what = "touches are not located in this run"
+        raise ScenarioError(what, "Write `solver: {locate_events: true}`.", path)
+    return TOUCH, contacts[spec.at_onset]
+
+
+def stored(channel: str, there: Any) -> tuple[str, int | None]:
+    """The column and the component that `channel` names."""
+    if channel not in there and channel[-2:] in COMPONENTS:
+        return channel[:-2], COMPONENTS[channel[-2:]]
+    return channel, None
+
+
+def column_of(channel: str, there: dict[str, Column], path: tuple) -> int:
+    """The place of a number in an output row."""
+    name, component = stored(channel, there)
+    if name not in there or (component is not None and there[name].size != 3):
+        raise ScenarioError(f"no channel named '{channel}'", known(channel, there), path)
+    if there[name].size > 1 and component is None:
+        hint = f"Did you mean '{channel}.x'?"
+        raise ScenarioError(f"'{channel}' has {there[name].size} components", hint, path)
+    return there[name].start + (component or 0)

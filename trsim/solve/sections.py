@@ -1,0 +1,278 @@
+"""Points of Poincare sections: where inside a step the motion passes a surface.
+
+    crossing  when(t) = 0: the root of a channel on the dense output of the step
+    strobe    t = after + k every
+    touch     the end of a step that a contact ends by touching
+
+A crossing lies between two neighbours of different sign among the ends of the step and PARTS - 1
+points inside it.  These are looked at where the sign changed, or where the cubic through values and
+rates of the channel at both ends comes near zero: so two crossings in one step are two points.
+The root is found to the resolution of the time.
+
+Like the phase of a contact the side `when` is on is a discrete state: zero is on the side it came
+from, so a start at zero is no crossing, and neither is a touch of zero that turns back.  What a
+channel jumps over at an event, or between two neighbouring doubles of the time, it does not cross.
+
+Nothing here has a part in the motion: a run makes the same steps with its sections and without.
+"""
+
+from math import isfinite
+
+from trsim.assemble.equations import evaluate
+from trsim.assemble.outputs import measure
+from trsim.assemble.sections import (
+    AFTER,
+    CROSSING,
+    DIRECTION,
+    EVERY,
+    KIND,
+    STROBE,
+    TOUCH,
+    WHEN,
+    X,
+    Y,
+)
+from trsim.elements.contract import FLIGHT, PHASE, compiled
+from trsim.elements.vectors import internal
+from trsim.solve.calls import SECTIONS, call_dense, call_interpolate
+from trsim.solve.complete import DENSE_AT, INTERPOLATE_AT, LAST_AT
+from trsim.solve.events import NONE, SAME
+from trsim.solve.illinois import between, narrowed
+from trsim.solve.record import (
+    END_RATE,
+    ENERGY_0,
+    KNOWN,
+    LAST,
+    NEXT,
+    ON,
+    POINT_ROWS,
+    POINT_SECTION,
+    POINT_TIME,
+    POINT_X,
+    POINT_Y,
+    RATE,
+    WORK_PROJECTION,
+)
+
+PARTS = 8  # of a step that is looked at
+NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
+AHEAD = 1e-4  # of a step: how far the rate of a channel looks
+JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
+TRIALS = 100
+RESOLUTION = 2.3e-16
+
+
+@compiled(SECTIONS)
+def sections(s, r, b, method, t, h, t1, projected, built, event):
+    """Write the points of (t, t1] into b.points; the step of length h is about to be accepted.
+
+    Its end, measured, is in b.out.  built: whether b.P holds its dense output.  event: whether an
+    event ends it.  Counters are left as they were.
+    """
+    went, evaluations = s.status[0], s.status[1]
+    factorisations, contradictory = s.status[2], s.status[3]
+    interpolate = method[INTERPOLATE_AT]
+    ends_known(s, r, b, t, t1, method[LAST_AT], built, event)
+    for k in range(s.section.shape[0]):
+        kind = s.section[k, KIND]
+        if kind == TOUCH:
+            if event > 0 and touches(s, r, b, s.section[k, WHEN]):
+                point(s, r, b, k, t1, b.out)
+        elif (kind == STROBE and instant(s, r, k) <= latest(t1)) or (
+            crosses_after(s, k, t1) and may_cross(s, r, b, k, t1 - t, event)
+        ):
+            if built == 0:
+                call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
+                built = 1
+            if kind == STROBE:
+                strobes(s, r, b, k, interpolate, t, h, t1, projected)
+            else:
+                crossings(s, r, b, k, interpolate, t, h, t1, projected)
+        keep_end(s, r, b, k, t1, event)
+    s.status[0], s.status[1] = went, evaluations
+    s.status[2], s.status[3] = factorisations, contradictory
+
+
+@internal
+def point(s, r, b, k, t, values):
+    """A line of b.points, unless a value is not finite or it is too early."""
+    x, y = values[s.section[k, X]], values[s.section[k, Y]]
+    if t < s.section_at[k, AFTER] or not (isfinite(x) and isfinite(y)):
+        return
+    line = b.points[r.count[POINT_ROWS]]
+    line[POINT_TIME], line[POINT_SECTION], line[POINT_X], line[POINT_Y] = t, k, x, y
+    r.count[POINT_ROWS] += 1
+
+
+@internal
+def measure_inside(s, r, b, interpolate, t, h, theta, projected):
+    """All channels at t + theta h into s.out."""
+    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+    evaluate(s, t + theta * h, b.y2, b.K[1])
+    done = r.clock[WORK_PROJECTION] + theta * projected
+    measure(s, t + theta * h, b.y2, done, r.clock[ENERGY_0])
+
+
+# --- touches and instants --------------------------------------------------------------------
+
+
+@internal
+def touches(s, r, b, e):
+    """Whether the event at the end of the step is the touch of contact e; see change_phases."""
+    first, root = NONE, NONE
+    for c in range(b.root.size):
+        first = min(first, b.root[c])
+    for c in range(s.contact.size):
+        first = min(first, b.corner_root[c])
+        if s.contact[c] == e:
+            root = b.root[c]
+    return r.mem[e, PHASE] == FLIGHT and root <= first + SAME
+
+
+@internal
+def instant(s, r, k):
+    """The next instant of a stroboscopic section."""
+    return s.section_at[k, AFTER] + s.section_at[k, EVERY] * r.section[k, NEXT]
+
+
+@internal
+def latest(t1):
+    """t1, and what rounding makes of it."""
+    return t1 * (1.0 + 1e-15)
+
+
+@internal
+def strobes(s, r, b, k, interpolate, t, h, t1, projected):
+    """The points of a stroboscopic section; a step longer than the buffer is none, see room."""
+    while r.count[POINT_ROWS] < b.points.shape[0]:
+        at = instant(s, r, k)
+        if at > latest(t1):
+            break
+        if at >= t1:
+            point(s, r, b, k, at, b.out)
+        else:
+            measure_inside(s, r, b, interpolate, t, h, max((at - t) / h, 0.0), projected)
+            point(s, r, b, k, at, s.out)
+        r.section[k, NEXT] += 1.0
+
+
+# --- crossings -------------------------------------------------------------------------------
+
+
+@internal
+def crosses_after(s, k, t1):
+    """Whether section k is of crossings, and there may be points at t1."""
+    return s.section[k, KIND] == CROSSING and t1 >= s.section_at[k, AFTER]
+
+
+@internal
+def ends_known(s, r, b, t, t1, last, built, event):
+    """Values of `when` at the start of the step, where an event changed them, and its end's rates.
+
+    b.P is free for scratch where it holds no dense output yet.
+    """
+    lost = asked = False
+    for k in range(s.section.shape[0]):
+        if crosses_after(s, k, t1):
+            asked = event == 0
+            lost = lost or r.section[k, KNOWN] == 0.0
+    scratch, done, energy_0 = b.P[0], r.clock[WORK_PROJECTION], r.clock[ENERGY_0]
+    if built > 0:
+        scratch = b.K[1]
+    if lost:
+        evaluate(s, t, r.y, scratch)
+        measure(s, t, r.y, done, energy_0)
+        for k in range(s.section.shape[0]):
+            if crosses_after(s, k, t1) and r.section[k, KNOWN] == 0.0:
+                r.section[k, LAST] = s.out[s.section[k, WHEN]]
+                r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
+    if asked:
+        ahead = AHEAD * (t1 - t)
+        for c in range(b.y2.size):
+            b.y2[c] = b.y1[c] + ahead * b.K[last, c]
+        evaluate(s, t1 + ahead, b.y2, scratch)
+        measure(s, t1 + ahead, b.y2, done, energy_0)
+        for k in range(s.section.shape[0]):
+            if s.section[k, KIND] == CROSSING:
+                o = s.section[k, WHEN]
+                r.section[k, END_RATE] = (s.out[o] - b.out[o]) / ahead
+
+
+@internal
+def side_of(value, before):
+    """The side of zero a value is on: 1, -1, or for zero the side it was on before."""
+    return 1.0 if value > 0.0 else (-1.0 if value < 0.0 else before)
+
+
+@internal
+def keep_end(s, r, b, k, t1, event):
+    """The end of the step is the start of the next."""
+    if s.section[k, KIND] != CROSSING:
+        return
+    r.section[k, LAST] = b.out[s.section[k, WHEN]]
+    r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
+    r.section[k, RATE] = r.section[k, END_RATE]
+    r.section[k, KNOWN] = 1.0 if event == 0 and t1 >= s.section_at[k, AFTER] else 0.0
+
+
+@internal
+def may_cross(s, r, b, k, length, event):
+    """Whether the step must be looked into: the sign changes, or the cubic comes near zero."""
+    side = r.section[k, ON]
+    if event > 0 or r.section[k, KNOWN] == 0.0 or side == 0.0:
+        return True
+    f0, f1 = side * r.section[k, LAST], side * b.out[s.section[k, WHEN]]
+    rise = f1 - f0
+    bend0 = side * r.section[k, RATE] * length - rise
+    bend1 = rise - side * r.section[k, END_RATE] * length
+    nearest, farthest = min(f0, f1), max(f0, f1)
+    for j in range(1, PARTS):
+        theta = j / PARTS
+        inner = (1.0 - theta) * bend0 + theta * bend1
+        f = f0 + theta * rise + theta * (1.0 - theta) * inner
+        nearest, farthest = min(nearest, f), max(farthest, f)
+    return not nearest > NEAR * (farthest - nearest)
+
+
+@internal
+def crossings(s, r, b, k, interpolate, t, h, t1, projected):
+    """The points of all crossings in the step."""
+    when, want, reach = s.section[k, WHEN], s.section[k, DIRECTION], (t1 - t) / h
+    low, f_low, side = 0.0, r.section[k, LAST], r.section[k, ON]
+    for j in range(1, PARTS + 1):
+        high = reach * j / PARTS
+        f_high = b.out[when]
+        if j < PARTS:
+            measure_inside(s, r, b, interpolate, t, h, high, projected)
+            f_high = s.out[when]
+        new = side_of(f_high, side)
+        if side * new < 0.0 and (want == 0 or want == new):
+            theta = root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected)
+            if theta >= 0.0:
+                measure_inside(s, r, b, interpolate, t, h, theta, projected)
+                point(s, r, b, k, min(t + theta * h, t1), s.out)
+        low, f_low, side = high, f_high, new
+
+
+@internal
+def root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected):
+    """Where column `when` is zero between low and high, as theta; -1 where it jumps over zero."""
+    if f_low == 0.0:
+        return low
+    rising, change = f_high > 0.0, abs(f_high - f_low)
+    finest = RESOLUTION * max(1.0, abs(t) / h)
+    bracket, f0, f1 = (low, f_low, high, f_high, 0.0), f_low, f_high
+    for n in range(TRIALS):
+        if bracket[2] - bracket[0] <= finest:
+            break
+        middle = between(bracket, n)
+        measure_inside(s, r, b, interpolate, t, h, middle, projected)
+        f = s.out[when]
+        if f == 0.0:
+            return middle
+        bracket = narrowed(bracket, middle, f, rising)
+        if (f > 0.0) == rising:
+            f1 = f
+        else:
+            f0 = f
+    return bracket[2] if abs(f1 - f0) <= JUMP * change else -1.0
