@@ -28,6 +28,9 @@ CASE = "case"  # the key of named cases
 FIRST = 8  # rows of the smallest estimate
 
 
+NOISE = ("dummy", "noise")  # last words of keys that are varied only to show it
+
+
 class Index(NamedTuple):
     """The indices of one key, and their intervals."""
 
@@ -150,4 +153,4 @@ def _indices(values: Blocks) -> tuple[Array, Array]:
 
 def noisy(key: str) -> bool:
     """Whether a key ought to have no influence on a motion."""
-    return key.startswith("solver.") or key.rsplit(".", 1)[-1] == "dummy"
+    return key.startswith("solver.") or key.rsplit(".", 1)[-1] in NOISE

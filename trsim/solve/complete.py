@@ -11,7 +11,7 @@ from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_sections, call_step
-from trsim.solve.events import any_suspicious, first_event
+from trsim.solve.events import any_suspicious, first_event, settled
 from trsim.solve.land import land
 from trsim.solve.norm import grow
 from trsim.solve.peaks import near_peak, peaks_inside, refine
@@ -149,7 +149,7 @@ def earliest(s, r, b, t, h, interpolate):
         root = crossing(s, r, b, t, h, k, interpolate)
         b.root[s.contact.size + k] = root
         first = min(first, root)
-    return first
+    return settled(s, r, b, t, h, first, interpolate)
 
 
 @internal

@@ -71,16 +71,19 @@ def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, column, ri
 
 
 @internal
-def root(s, P, y, t, h, c, phase, d0, r0, d1, r1, scratch, interpolate):
-    """The first event of contact c in the step, as theta in (0, 1]; NONE if there is none."""
+def root(s, P, y, t, h, end, c, phase, d0, r0, d1, r1, scratch, interpolate):
+    """The first event of contact c up to `end`, as theta in (0, end]; NONE if there is none.
+
+    d1, r1: penetration and rate at `end`.
+    """
     toward = phase == FLIGHT  # the gap rises through zero at a touch
     sign = 1.0 if toward else -1.0
-    low, high = 0.0, 1.0
+    low, high = 0.0, end
     if sign * d1 <= 0.0 and not (d1 == 0.0 and not toward):
         # no wrong sign at the end: look at the extremum inside
         if not (sign * r0 > 0.0 > sign * r1):
             return NONE
-        high = bracketed_root(s, P, y, t, h, c, scratch, interpolate, 0.0, 1.0, 1, r1 > 0.0)
+        high = bracketed_root(s, P, y, t, h, c, scratch, interpolate, 0.0, end, 1, r1 > 0.0)
         top = inside(s, P, y, t, h, high, c, scratch, interpolate)[0]
         if sign * top <= 0.0:
             return NONE
@@ -113,9 +116,37 @@ def first_event(s, r, b, t, h, interpolate):
         d0, r0, d1, r1 = r.gap[c, 0], r.gap[c, 1], b.gap1[c, 0], b.gap1[c, 1]
         if suspicious(phase, d0, r0, d1, r1, h):
             b.root[c] = root(
-                s, b.P, r.y, t, h, c, phase, d0, r0, d1, r1, b.y2, interpolate
+                s, b.P, r.y, t, h, 1.0, c, phase, d0, r0, d1, r1, b.y2, interpolate
             )  # fmt: skip
         first = min(first, b.root[c], b.corner_root[c])
+    return first
+
+
+@internal
+def settled(s, r, b, t, h, first, interpolate):
+    """The earliest event, at which no contact is on the wrong side of zero.
+
+    A trial step goes on as if nothing happened at `first`; what it makes of the motion behind may
+    bring a contact to touch before and leave again after, which its ends do not show.  So all are
+    looked at where the step will be cut, and searched up to there.
+    """
+    for _ in range(s.contact.size):
+        if first > 1.0:
+            break
+        before = first
+        for c in range(s.contact.size):
+            phase = r.mem[s.contact[c], PHASE]
+            if phase == UNLOCATED or b.root[c] <= before:
+                continue
+            d, rate = inside(s, b.P, r.y, t, h, before, c, b.y2, interpolate)
+            if (d > 0.0) == (phase == FLIGHT) and d != 0.0:
+                b.root[c] = root(
+                    s, b.P, r.y, t, h, before, c, phase, r.gap[c, 0], r.gap[c, 1], d, rate,
+                    b.y2, interpolate,
+                )  # fmt: skip
+                first = min(first, b.root[c])
+        if first == before:
+            break
     return first
 
 
