@@ -1,0 +1,102 @@
+"""The runs of the study: of every case its ensemble, the member as stated first."""
+
+import os
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trsim.store.grow import Array
+from trsim.store.read import Points, Run
+
+
+class Member:
+    """One run of an ensemble; what was read of it is kept."""
+
+    def __init__(self, case: str, index: int, file: Path, run: Run) -> None:
+        self.case, self.index, self.file, self.run = case, index, file, run
+        self._channels: dict[str, Array] = {}
+        self._steps: dict[str, dict[str, Array]] = {}
+
+    def channel(self, name: str) -> Array:
+        """The rows of a channel."""
+        if name not in self._channels:
+            self._channels[name] = self.run.channel(name)
+        return self._channels[name]
+
+    def steps(self, contact: str) -> dict[str, Array]:
+        """A contact at every accepted step in touch."""
+        if contact not in self._steps:
+            self._steps[contact] = self.run.steps(contact)
+        return self._steps[contact]
+
+    @property
+    def time(self) -> Array:
+        return self.channel("time")
+
+    @property
+    def stroke(self) -> Array:
+        """Of the fairing, m: runs that start elsewhere are compared at equal strokes."""
+        return self.channel("stroke")
+
+    def strokes(self, times: Array) -> Array:
+        """The strokes (m) at some times (s)."""
+        return np.interp(times, self.time, self.stroke)
+
+    @cached_property
+    def sections(self) -> Mapping[str, Points]:
+        return self.run.poincare
+
+    @cached_property
+    def events(self) -> Any:
+        return self.run.events
+
+    @cached_property
+    def peaks(self) -> dict[tuple[str, str], Any]:
+        """The peaks at accepted steps, by channel and extreme."""
+        return {(peak.channel, peak.extreme): peak for peak in self.run.peaks}
+
+    def forget(self) -> None:
+        """Let go of what was read."""
+        self._channels.clear()
+        self._steps.clear()
+
+
+class Runs:
+    """All members of a study, and which of its runs are missing."""
+
+    def __init__(self, folder: str | Path) -> None:
+        from trsim.store.read import read
+        from trsim.sweep.study import study
+
+        self.members: dict[str, list[Member]] = {}
+        self.missing: dict[str, list[str]] = {}
+        self.planned: dict[str, int] = {}
+        self.folder = Path(folder)
+        for case in study(folder).cases:
+            name = str(case.values["case"])
+            index = self.planned.get(name, 0)
+            self.planned[name] = index + 1
+            if case.status == "done":
+                member = Member(name, index, Path(case.file), read(case.file))
+                self.members.setdefault(name, []).append(member)
+            else:
+                self.missing.setdefault(name, []).append(f"{case.name} ({case.status})")
+
+    def has(self, *cases: str) -> bool:
+        """Whether the first member of every one of these cases is there."""
+        return all(self.members.get(case, ()) and self.members[case][0].index == 0
+                   for case in cases)  # fmt: skip
+
+    def stated(self, case: str) -> Member:
+        """The member with the values as stated."""
+        return self.members[case][0]
+
+    def of(self, case: str, index: int) -> Member | None:
+        return next((m for m in self.members.get(case, ()) if m.index == index), None)
+
+    def named(self, member: Member) -> str:
+        """The file of a member as seen from the folder of the study."""
+        return os.path.relpath(member.file, self.folder).replace(os.sep, "/")
