@@ -2,6 +2,7 @@
 
 import base64
 import html
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -9,6 +10,7 @@ from typing import NamedTuple
 from trsim.store.target import HEADER, Kind, fresh, told
 
 GENERATOR = '<meta name="generator" content="trsim">'
+STRIP = 150  # pixels, the width of a strip of dots
 PAGE = Kind("page of trsim", lambda start: GENERATOR.encode() in start[:HEADER])
 
 CSS = """
@@ -33,6 +35,9 @@ tr:target, figure:target { background: #fff6d6; }
 .contradicted { color: #a83800; font-weight: bold; }
 .undetermined { color: #555; font-weight: bold; }
 .aside { color: #666; }
+svg { display: block; margin: 0 0 .25rem; }
+svg circle { fill: #0072b2; fill-opacity: .45; }
+svg line { stroke: #ccc; } svg line.mean { stroke: #000; }
 @media print { body { font-size: 9.5pt; margin: 0; max-width: none; }
   table { font-size: 7pt; } figure, tr { break-inside: avoid; } nav { display: none; } }
 """
@@ -68,10 +73,17 @@ class Cell(NamedTuple):
     aside: str = ""
 
 
+class Ensembles(NamedTuple):
+    """A cell of ensembles below one another, each told and drawn, all on one scale."""
+
+    texts: Sequence[str]
+    values: Sequence[Sequence[float]]
+
+
 class Line(NamedTuple):
     """A line of a table."""
 
-    cells: Sequence[Cell]
+    cells: Sequence[Cell | Ensembles]
     anchor: str = ""
     first: bool = False  # of a group
 
@@ -150,12 +162,39 @@ def line(one: Line) -> str:
     return f"<tr{anchor}{first}>{''.join(cell(c) for c in one.cells)}</tr>\n"
 
 
-def cell(one: Cell) -> str:
+def cell(one: Cell | Ensembles) -> str:
+    if isinstance(one, Ensembles):
+        return f"<td>{ensembles(one)}</td>"
     text = escaped(one.text)
     text = f'<a href="#{one.anchor}">{text}</a>' if one.anchor else text
     kind = f' class="{one.kind}"' if one.kind else ""
     aside = f'<br><span class="aside">{escaped(one.aside)}</span>' if one.aside else ""
     return f"<td{kind}>{text}{aside}</td>"
+
+
+def ensembles(one: Ensembles) -> str:
+    """Texts with strips of dots: a dot for each value, a tick at the mean."""
+    finite = [v for values in one.values for v in values if math.isfinite(v)]
+    low, high = min(finite, default=0.0), max(finite, default=0.0)
+    drawn = high - low > 1e-12 * abs(high)
+    parts = []
+    for text, values in zip(one.texts, one.values, strict=True):
+        at = [STRIP * (0.04 + 0.92 * (v - low) / (high - low)) for v in values] if drawn else []
+        parts.append(f"<div>{escaped(text)}{strip(at)}</div>")
+    return "".join(parts)
+
+
+def strip(at: Sequence[float]) -> str:
+    """Dots at some places, as a picture of its own line."""
+    if not at or not all(map(math.isfinite, at)):
+        return ""
+    dots = "".join(f'<circle cx="{x:.1f}" cy="5" r="1.8"/>' for x in at)
+    mean = sum(at) / len(at)
+    return (
+        f'<svg viewBox="0 0 {STRIP} 10" width="{STRIP}" height="10" role="presentation">'
+        f'<line x1="0" y1="5" x2="{STRIP}" y2="5"/>{dots}'
+        f'<line class="mean" x1="{mean:.1f}" y1="0" x2="{mean:.1f}" y2="10"/></svg>'
+    )
 
 
 def escaped(text: str) -> str:

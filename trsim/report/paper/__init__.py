@@ -10,7 +10,6 @@ from trsim.report.page import Block, Picture, Points, Section, Text
 from trsim.report.page import write as write_page
 from trsim.report.paper import content, tables
 from trsim.report.paper.claims import CLAIMS
-from trsim.report.paper.claims.claim import Claim
 from trsim.report.paper.figures import FIGURES
 from trsim.report.paper.figures.drawing import UNITS, Drawn
 from trsim.report.paper.judge import Row, judged
@@ -31,14 +30,13 @@ SECTIONS = {
 def paper(
     study: str | os.PathLike,
     folder: str | os.PathLike,
-    claims: Sequence[Claim] = CLAIMS,
-    figures: Sequence[Drawn] = FIGURES,
+    figures: Sequence[Drawn] | None = None,
 ) -> list[Path]:
     """Write the figures, claims.csv, numbers.csv and index.html of a study into a folder.
 
     study: what `trsim sweep scenarios/thrust_reverser/paper.yaml` made.  What is missing there is
-    missing in the figures, and undetermined among the claims.  Returns the files written.  Raises
-    FileError, UsageError.
+    missing in the figures, and undetermined among the claims.  figures: all unless given.  Returns
+    the files written.  Raises FileError, UsageError.
     """
     from trsim.report.display import written
     from trsim.report.style import look, save
@@ -48,7 +46,8 @@ def paper(
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(f"{folder}: {error.strerror or error}") from None
-    rows = list(judged(runs, claims, lambda si: UNITS.get(si, (1.0, written(si)))))
+    figures = FIGURES if figures is None else figures
+    rows = list(judged(runs, CLAIMS, lambda si: UNITS.get(si, (1.0, written(si)))))
     drawn: list[tuple[Drawn, Path]] = []
     with look():
         for one in figures:

@@ -54,6 +54,8 @@ def number(member: Member, text: str, reference: Member | None = None) -> Number
     or contact.
     """
     asked = word(text)
+    if not math.isinf(asked.end) and not inside(member, asked).any():
+        return Number(math.nan, "-")  # a run that ended before
     if asked.kind == "apart":
         return apart(member, asked, reference)
     return KINDS[asked.kind](member, asked)
@@ -88,7 +90,11 @@ def mean(member: Member, asked: Word) -> Number:
 
 
 def peak(member: Member, asked: Word) -> Number:
-    """The largest magnitude: at accepted steps of the whole run, or of a contact in a window."""
+    """The largest magnitude.
+
+    Of the whole run what the solver found, also inside steps; in a window that at accepted steps of
+    a contact, of other channels that at output rows.
+    """
     unit = member.run.unit(asked.of)
     if math.isinf(asked.end):
         both = [member.peaks[asked.of, extreme].value for extreme in ("largest", "smallest")]

@@ -4,7 +4,7 @@ import csv
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from trsim.report.page import Cell, Line, Table
+from trsim.report.page import Cell, Ensembles, Line, Table
 from trsim.report.paper.claims.claim import INDEPENDENT, WORTH
 from trsim.report.paper.figures.drawing import Drawn
 from trsim.report.paper.judge import Row, Source
@@ -65,17 +65,25 @@ def shown(rows: Sequence[Row], figures: Sequence[Drawn]) -> Table:
             note = f"{claim.note}. " if claim.note else ""
             head = Cell(claim.statement, anchor, aside=f"{note}Figure {claim.figure}")
         judged = row.judged
-        cells = [
+        cells: list[Cell | Ensembles] = [
             head,
             Cell(row.reading.name, aside=row.reading.note),
             Cell(judged.verdict, kind=judged.verdict, aside=worth),
-            Cell("; ".join(row.numbers)),
+            Ensembles(row.numbers, members(row)),
             Cell(judged.told, aside=claim.rule.words if claim.rule.words != judged.told else ""),
             Cell(f"{judged.holds} of {judged.of}" if judged.of else ""),
             Cell(cases(row)),
         ]
         lines.append(Line(cells, anchor=f"claim-{claim.key}" if first else "", first=first))
     return Table(HEAD, lines)
+
+
+def members(row: Row) -> list[list[float]]:
+    """The numbers of each case of a row."""
+    found: dict[tuple[str, str, str], list[float]] = {}
+    for source in row.sources:
+        found.setdefault((source.label, source.case, source.word), []).append(source.value)
+    return list(found.values())
 
 
 def cases(row: Row) -> str:
