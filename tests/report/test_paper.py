@@ -4,6 +4,7 @@ import csv
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -200,6 +201,17 @@ def test_apart_is_measured_at_equal_strokes(folder):
         number(ideal, "apart:door_angle")
 
 
+def test_a_run_whose_energy_book_does_not_close_counts_in_nothing(folder, tmp_path, monkeypatch):
+    monkeypatch.setattr("trsim.report.paper.runs.Member.missed", 0.0)
+    assert not Runs(folder).aside
+    faulty = property(lambda member: 0.01 if (member.case, member.index) == ("a_03", 1) else 0.0)
+    monkeypatch.setattr("trsim.report.paper.runs.Member.missed", faulty)
+    paper(folder, tmp_path, figures=())
+    numbers = table(tmp_path / "numbers.csv")
+    assert {n["member"] for n in numbers if n["case"] in ("a_03", "b_03")} == {"0"}
+    assert "misses 10 mJ" in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+
 def table(path):
     with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
@@ -270,8 +282,12 @@ def test_the_command(folder, tmp_path, capsys, monkeypatch):
     assert (tmp_path / "made" / "index.html").is_file()
 
 
-def test_a_folder_that_is_no_study(tmp_path):
+def test_a_folder_that_is_no_study(tmp_path, monkeypatch):
     with pytest.raises(FileError):
+        paper(tmp_path, tmp_path / "page")
+    plain = SimpleNamespace(keys=("joints.A.clearance",), cases=())
+    monkeypatch.setattr("trsim.sweep.study.study", lambda folder: plain)
+    with pytest.raises(UsageError, match="not of a study"):
         paper(tmp_path, tmp_path / "page")
 
 

@@ -16,7 +16,7 @@ PAGE = Kind("page of trsim", lambda start: GENERATOR.encode() in start[:HEADER])
 CSS = """
 :root { color-scheme: light; }
 body { font: 15px/1.5 "DejaVu Sans", Verdana, Helvetica, Arial, sans-serif; color: #1a1a1a;
-  background: #fff; margin: 2rem auto; padding: 0 1rem; max-width: 62rem; }
+  background: #fff; margin: 2rem auto; padding: 0 1rem; max-width: 74rem; }
 h1 { font-size: 1.6rem; line-height: 1.25; margin: 0 0 .5rem; }
 h2 { font-size: 1.2rem; margin: 2.5rem 0 .6rem; border-bottom: 1px solid #bbb; }
 p, li { max-width: 46rem; }
@@ -35,6 +35,7 @@ tr:target, figure:target { background: #fff6d6; }
 .contradicted { color: #a83800; font-weight: bold; }
 .undetermined { color: #555; font-weight: bold; }
 .aside { color: #666; }
+td div { white-space: nowrap; }
 svg { display: block; margin: 0 0 .25rem; }
 svg circle { fill: #0072b2; fill-opacity: .45; }
 svg line { stroke: #ccc; } svg line.mean { stroke: #000; }

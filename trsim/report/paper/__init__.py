@@ -13,7 +13,7 @@ from trsim.report.paper.claims import CLAIMS
 from trsim.report.paper.figures import FIGURES
 from trsim.report.paper.figures.drawing import UNITS, Drawn
 from trsim.report.paper.judge import Row, judged
-from trsim.report.paper.runs import Runs
+from trsim.report.paper.runs import BOOK, Runs
 
 SECTIONS = {
     "3.1": "Section 3: contact and friction laws",
@@ -66,6 +66,8 @@ def sections(
     """The page, section by section of the study."""
     figures = [one for one, _ in drawn]
     summary: list[Block] = [Points(content.VERDICTS), tables.tally(rows), Text(extent(runs))]
+    if runs.aside:
+        summary.append(Text(aside(runs)))
     if absent:
         names = ", ".join(one.number for one in absent)
         summary.append(Text(f"Not drawn, as runs are missing: figures {names}."))
@@ -100,9 +102,18 @@ def links(one: Drawn, rows: Sequence[Row]) -> list[tuple[str, str]]:
 def extent(runs: Runs) -> str:
     """How much was run, and what of it is missing."""
     done = sum(map(len, runs.members.values()))
-    missing = [name for names in runs.missing.values() for name in names]
+    missing = [f"{case} ({n} of {runs.planned[case]})" for case, n in runs.missing.items()]
     text = (
         f"{done} runs of {len(runs.planned)} cases. Every number, with its run file, channel and "
         "window, is in numbers.csv; the tables below are in claims.csv."
     )
     return text + (f" Missing: {', '.join(missing)}." if missing else "")
+
+
+def aside(runs: Runs) -> str:
+    """The runs that count in no verdict."""
+    found = [f"{runs.named(m)} (misses {1e3 * m.missed:.3g} mJ)" for m in runs.aside]
+    return (
+        f"Set aside, in no verdict: {', '.join(found)}. Their energy books miss more than "
+        f"{1e3 * BOOK:g} mJ, a fault of the run and no property of the mechanism."
+    )

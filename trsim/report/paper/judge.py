@@ -68,7 +68,7 @@ def evaluated(runs: Runs, claims: Sequence[Claim]) -> Known:
     for word in words.pop(LAW, ()):
         known[LAW, 0, word] = laws.number(word)
     for case, asked in words.items():
-        for member in runs.members.get(case, ()):
+        for member in runs.sound(case):
             for word in asked:
                 known[case, member.index, word] = number(
                     member, word, reference(runs, member, word)
@@ -80,19 +80,19 @@ def evaluated(runs: Runs, claims: Sequence[Claim]) -> Known:
 def row(runs: Runs, claim: Claim, reading: Reading, display: Display, known: Known) -> Row:
     """One reading; undetermined where runs are missing."""
     cases = list(dict.fromkeys(series.case for series in reading.series if series.case != LAW))
-    absent = [case for case in cases if not runs.has(case)]
+    absent = [case for case in cases if not runs.sound(case)]
     if absent:
         told = f"not run: {', '.join(absent)}"
         return Row(claim, reading, Judged(UNDETERMINED, told, 0, 0), (), ())
-    of = [{m.index for m in runs.members[case]} for case in cases]
+    of = [{m.index for m in runs.sound(case)} for case in cases]
     members = sorted(set.intersection(*of)) if of else [0]
     sources = [[source(runs, claim, reading, series, index, known) for index in members]
                for series in reading.series]  # fmt: skip
     values = np.array([[s.value for s in line] for line in sources])
     found = claim.rule.judge(values) if np.isfinite(values).all() else nothing(len(members))
-    missing = sorted({name for case in cases for name in runs.missing.get(case, ())})
-    if missing:
-        found = found._replace(told=f"{found.told}; missing: {', '.join(missing)}")
+    planned = max((runs.planned[case] for case in cases), default=1)
+    if len(members) < planned:
+        found = found._replace(told=f"{found.told}; {len(members)} of {planned} members")
     numbers = tuple(f"{line[0].label}: {shown(v, *display(line[0].unit))}"
                     for line, v in zip(sources, values, strict=True))  # fmt: skip
     return Row(claim, reading, found, numbers, tuple(s for line in sources for s in line))
