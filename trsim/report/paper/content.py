@@ -19,6 +19,7 @@ VERDICTS = (
     "stated case alike.",
     "confirmed: the interval lies on the side of the claim; a bound is kept by every member, too.",
     "contradicted: the interval lies on the other side; a bound is kept by no member, too.",
+    "A difference between cases of less than 1 % counts as none.",
     "undetermined: neither, or nothing that could be measured decides it.",
     "holds in: of how many members the claim is true, which is the chance of a single run to "
     "show it.",

@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 CONFIRMED, CONTRADICTED, UNDETERMINED = "confirmed", "contradicted", "undetermined"
 LEVEL = 0.95
+SEEN = 0.01  # a smaller difference is none that the curves of a study could show
 
 
 class Judged(NamedTuple):
@@ -74,12 +75,11 @@ def bounded(holds: Any, surely: bool, surely_not: bool) -> str:
 class Rising(NamedTuple):
     """Each case is above the one before it, by more than a margin."""
 
-    margin: float = 0.0  # of the smaller one
+    margin: float = SEEN  # of the smaller one
 
     @property
     def words(self) -> str:
-        more = f" by more than {100.0 * self.margin:g} %" if self.margin else ""
-        return f"each case above the one before it{more}"
+        return f"each case above the one before it by more than {100.0 * self.margin:g} %"
 
     def judge(self, values: Array) -> Judged:
         if not (values > 0.0).all():
@@ -92,12 +92,11 @@ class Rising(NamedTuple):
 class Falling(NamedTuple):
     """Each case is below the one before it, by more than a margin."""
 
-    margin: float = 0.0  # of the larger one
+    margin: float = SEEN  # of the larger one
 
     @property
     def words(self) -> str:
-        more = f" by more than {100.0 * self.margin:g} %" if self.margin else ""
-        return f"each case below the one before it{more}"
+        return f"each case below the one before it by more than {100.0 * self.margin:g} %"
 
     def judge(self, values: Array) -> Judged:
         if not (values > 0.0).all():
