@@ -62,7 +62,7 @@ def figure_19(runs: Runs) -> Any:
 
 def figure_21(runs: Runs) -> Any:
     """Poincare sections at B, by mass."""
-    figure, (axes,) = panels(1, 2, height=3.0)
+    figure, (axes,) = panels(1, 2, height=3.3)
     groups = (LIGHT, (*HEAVY, UNDAMPED))
     for a, cases, mass in zip(axes, groups, ("0.5 kg", "3.454 kg"), strict=True):
         section(a, those(runs, *cases), "B_orbit", "", f"section at B, {mass}")

@@ -77,7 +77,7 @@ def figure_16(runs: Runs) -> Any:
 def figure_17(runs: Runs) -> Any:
     """Poincare sections at A and B, both speeds."""
     shown = those(runs, *AB)
-    figure, (axes,) = panels(1, 2, height=3.0)
+    figure, (axes,) = panels(1, 2, height=3.3)
     for a, joint, letter in zip(axes, "AB", "ab", strict=True):
         section(a, shown, f"{joint}_orbit", letter, f"Poincar\u00e9 section at {joint}")
     return told(figure, axes[0], shown)
