@@ -59,7 +59,8 @@ CLAIMS = (
         "Motion and force change suddenly near 0.3 s, where the door begins to turn.",
         Within(0.145, 0.165, "largest accelerations between 145 and 165 mm (0.29 and 0.33 s)"),
         one(*over("jolt:door_angle.acceleration", ("ideal", "ideal"), *EACH)),
-        TUNED, "the lug was placed so that it touches at 0.30 s",
+        TUNED, "the lug was placed so that it touches at 0.30 s; the window was "
+        "145 to 160 mm until first runs had it at 160.5 mm",
     ),
     Claim(
         "place_orbit", "7.1.2", "12a, 12c",
