@@ -273,6 +273,7 @@ def test_the_command(folder, tmp_path, capsys, monkeypatch):
     for arguments, code in ((["--paper", "thrust-reverser", str(folder)], 0),
                             (["--paper", "thrust-reverser", str(folder), str(folder)], 2),
                             (["--paper", "crew-door", str(folder)], 2),
+                            (["--paper", "thrust-reverser", "--compare", str(folder)], 2),
                             (["--paper", "thrust-reverser", str(tmp_path)], 7)):  # fmt: skip
         with pytest.raises(SystemExit) as ended:
             main(["report", *arguments, "-o", str(tmp_path / "made")])

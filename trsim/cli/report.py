@@ -9,7 +9,6 @@ import click
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.errors import UsageError
 
-
 PAPERS = ("thrust-reverser",)
 
 
