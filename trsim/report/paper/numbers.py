@@ -1,7 +1,8 @@
-"""A number of a run, told in a word: peak:B.contact_force, fluctuation:door_angle.rate@0.15..0.48.
+"""A number of a run, told in a word: fluctuation:door_angle.rate@stroke=0.15..0.48.
 
-The window behind @ is one of stroke, m, since the runs of an ensemble start at different strokes;
-without one it is the whole run.
+Words are those of trsim.analyse.outputs, and a few that only a study of a stroke needs.  The window
+is one of stroke, m, since the runs of an ensemble start at different strokes; without one it is the
+whole run.
 """
 
 import math
@@ -11,11 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.analyse.fluctuation import high_pass
+from trsim.analyse.outputs import scalar
 from trsim.errors import UsageError, known
 from trsim.report.paper.runs import Member
 from trsim.store.grow import Array
 
+STROKE = "stroke="
 Inside = NDArray[np.bool_]
 
 
@@ -24,6 +26,7 @@ class Word(NamedTuple):
 
     kind: str
     of: str  # a channel, a section or a contact
+    text: str  # the whole of it
     begin: float = -math.inf  # m of stroke
     end: float = math.inf
 
@@ -42,9 +45,11 @@ def word(text: str) -> Word:
     if not colon or kind not in KINDS:
         raise UsageError(f"no such number: '{text}'", known(kind, tuple(KINDS)))
     if not window:
-        return Word(kind, of)
-    begin, _, end = window.partition("..")
-    return Word(kind, of, float(begin), float(end))
+        return Word(kind, of, text)
+    begin, _, end = window.removeprefix(STROKE).partition("..")
+    if not window.startswith(STROKE) or not end:
+        raise UsageError(f"not a window of stroke: '{text}'", f"Write @{STROKE}0.15..0.48.")
+    return Word(kind, of, text, float(begin), float(end))
 
 
 def number(member: Member, text: str, reference: Member | None = None) -> Number:
@@ -58,7 +63,8 @@ def number(member: Member, text: str, reference: Member | None = None) -> Number
         return Number(math.nan, "-")  # a run that ended before
     if asked.kind == "apart":
         return apart(member, asked, reference)
-    return KINDS[asked.kind](member, asked)
+    own = KINDS[asked.kind]
+    return own(member, asked) if own else Number(*scalar(member.run, text))
 
 
 def inside(member: Member, asked: Word) -> Inside:
@@ -74,46 +80,23 @@ def rows(member: Member, asked: Word) -> Array:
 # --- kinds of numbers ------------------------------------------------------------------------
 
 
-def fluctuation(member: Member, asked: Word) -> Number:
-    """Root mean square of what a double moving average of 10 ms leaves over."""
-    fast = high_pass(member.time, member.channel(asked.of))[inside(member, asked)]
-    return Number(float(np.sqrt(np.mean(fast**2))), member.run.unit(asked.of))
-
-
-def extent(member: Member, asked: Word) -> Number:
-    """Largest less smallest value at output rows."""
-    return Number(float(np.ptp(rows(member, asked))), member.run.unit(asked.of))
-
-
-def mean(member: Member, asked: Word) -> Number:
-    return Number(float(np.mean(rows(member, asked))), member.run.unit(asked.of))
-
-
 def peak(member: Member, asked: Word) -> Number:
-    """The largest magnitude.
-
-    Of the whole run what the solver found, also inside steps; in a window that at accepted steps of
-    a contact, of other channels that at output rows.
-    """
-    unit = member.run.unit(asked.of)
-    if math.isinf(asked.end):
-        both = [member.peaks[asked.of, extreme].value for extreme in ("largest", "smallest")]
-        return Number(float(np.max(np.abs(both))), unit)
-    contact, _, channel = asked.of.partition(".")
-    if contact in member.run.contacts:
-        steps = member.steps(contact)
-        at = member.strokes(steps["time"])
-        values = steps[channel][(at >= asked.begin) & (at <= asked.end)]
-    else:
-        values = rows(member, asked)
-    return Number(float(np.max(np.abs(values), initial=0.0)), unit)
+    """The largest magnitude."""
+    tail = asked.text.partition(":")[2]
+    (high, unit), (low, _) = (scalar(member.run, f"{kind}:{tail}") for kind in ("peak", "least"))
+    return Number(max(abs(high), abs(low)), unit)
 
 
 def largest(member: Member, asked: Word) -> Number:
     """The largest value, with its sign."""
-    if math.isinf(asked.end):
-        return Number(member.peaks[asked.of, "largest"].value, member.run.unit(asked.of))
-    return Number(float(np.max(rows(member, asked))), member.run.unit(asked.of))
+    return Number(*scalar(member.run, f"peak:{asked.text.partition(':')[2]}"))
+
+
+def scaled(member: Member, asked: Word) -> Number:
+    """The dispersion of a section over the clearance of its joint."""
+    found, _ = scalar(member.run, f"dispersion:{asked.text.partition(':')[2]}")
+    joint = member.sections[asked.of].definition["x"].partition(".")[0]
+    return Number(found / member.run.parts[joint].clearance, "-")
 
 
 def place(member: Member, asked: Word) -> Number:
@@ -130,43 +113,11 @@ def jolt(member: Member, asked: Word) -> Number:
     return Number(float(member.stroke[found]), "m")
 
 
-def dispersion(member: Member, asked: Word) -> Number:
-    """Root of the sum of the variances of the points of a section."""
-    points = member.sections[asked.of]
-    at = member.strokes(points.time)
-    kept = (at >= asked.begin) & (at <= asked.end)
-    if np.count_nonzero(kept) < 2:
-        return Number(math.nan, points.x_unit)
-    spread = np.var(points.x[kept], ddof=1) + np.var(points.y[kept], ddof=1)
-    return Number(float(np.sqrt(spread)), points.x_unit)
-
-
-def scaled(member: Member, asked: Word) -> Number:
-    """The dispersion of a section over the clearance of its joint."""
-    found = dispersion(member, asked)
-    joint = member.sections[asked.of].definition["x"].partition(".")[0]
-    return Number(found.value / member.run.parts[joint].clearance, "-")
-
-
 def orbit(member: Member, asked: Word) -> Number:
     """Root mean square distance of the journal from its mean place."""
     channels = [f"{asked.of}.eccentricity_{axis}" for axis in "xy"]
     x, y = (member.channel(channel)[inside(member, asked)] for channel in channels)
     return Number(float(np.sqrt(np.var(x) + np.var(y))), member.run.unit(channels[0]))
-
-
-def flight(member: Member, asked: Word) -> Number:
-    """The share of output rows without contact."""
-    force = member.channel(f"{asked.of}.normal_force")[inside(member, asked)]
-    return Number(float(np.mean(force == 0.0)), "-")
-
-
-def impacts(member: Member, asked: Word) -> Number:
-    """How often a contact closes."""
-    events = member.events
-    mine = (events.element == asked.of) & (events.kind == "onset")
-    at = member.strokes(events.time[mine])
-    return Number(float(np.count_nonzero((at >= asked.begin) & (at <= asked.end))), "-")
 
 
 def drift(member: Member, asked: Word) -> Number:
@@ -192,8 +143,15 @@ def apart(member: Member, asked: Word, reference: Member | None) -> Number:
     return Number(float(np.sqrt(np.max(np.sum(difference**2, axis=0)))), member.run.unit(asked.of))
 
 
-KINDS: dict[str, Callable[..., Number]] = {
-    "fluctuation": fluctuation, "range": extent, "mean": mean, "peak": peak, "largest": largest,
-    "place": place, "jolt": jolt, "dispersion": dispersion, "scaled": scaled, "orbit": orbit,
-    "flight": flight, "impacts": impacts, "drift": drift, "apart": apart,
-}  # fmt: skip
+SHARED = ("fluctuation", "range", "mean", "dispersion", "flight", "impacts")  # as in outputs.py
+KINDS: dict[str, Callable[..., Number] | None] = {
+    **dict.fromkeys(SHARED),
+    "peak": peak,
+    "largest": largest,
+    "place": place,
+    "jolt": jolt,
+    "scaled": scaled,
+    "orbit": orbit,
+    "drift": drift,
+    "apart": apart,
+}

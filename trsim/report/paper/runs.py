@@ -4,7 +4,6 @@ import os
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -21,19 +20,12 @@ class Member:
     def __init__(self, case: str, index: int, file: Path, run: Run) -> None:
         self.case, self.index, self.file, self.run = case, index, file, run
         self._channels: dict[str, Array] = {}
-        self._steps: dict[str, dict[str, Array]] = {}
 
     def channel(self, name: str) -> Array:
         """The rows of a channel."""
         if name not in self._channels:
             self._channels[name] = self.run.channel(name)
         return self._channels[name]
-
-    def steps(self, contact: str) -> dict[str, Array]:
-        """A contact at every accepted step in touch."""
-        if contact not in self._steps:
-            self._steps[contact] = self.run.steps(contact)
-        return self._steps[contact]
 
     @property
     def time(self) -> Array:
@@ -43,10 +35,6 @@ class Member:
     def stroke(self) -> Array:
         """Of the fairing, m: runs that start elsewhere are compared at equal strokes."""
         return self.channel("stroke")
-
-    def strokes(self, times: Array) -> Array:
-        """The strokes (m) at some times (s)."""
-        return np.interp(times, self.time, self.stroke)
 
     @cached_property
     def missed(self) -> float:
@@ -59,19 +47,9 @@ class Member:
     def sections(self) -> Mapping[str, Points]:
         return self.run.poincare
 
-    @cached_property
-    def events(self) -> Any:
-        return self.run.events
-
-    @cached_property
-    def peaks(self) -> dict[tuple[str, str], Any]:
-        """The peaks at accepted steps, by channel and extreme."""
-        return {(peak.channel, peak.extreme): peak for peak in self.run.peaks}
-
     def forget(self) -> None:
         """Let go of what was read."""
         self._channels.clear()
-        self._steps.clear()
 
 
 class Runs:

@@ -15,9 +15,9 @@ WORTH = {
 }
 
 LAW = "law"  # instead of a case: a number of trsim.laws, see laws.py
-OVERTURN = "@0.15..0.48"  # m of stroke: from the touch of the lug to before the end
-ONSET = "@0.149..0.2"  # the impacts after the touch
-EARLY, LATE = "@0.15..0.25", "@0.35..0.48"
+OVERTURN = "@stroke=0.15..0.48"  # m of stroke: from the touch of the lug to before the end
+ONSET = "@stroke=0.149..0.2"  # the impacts after the touch
+EARLY, LATE = "@stroke=0.15..0.25", "@stroke=0.35..0.48"
 
 
 class Series(NamedTuple):

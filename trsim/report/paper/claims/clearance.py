@@ -68,7 +68,7 @@ CLAIMS = (
         "drive_maximum", "7.1.1", "9d",
         "The maximum of the driving force is the same for all clearances.",
         Alike(0.01),
-        (Reading("late maximum", over("largest:actuator.force@0.3..0.5", *AB)),
+        (Reading("late maximum", over("largest:actuator.force@stroke=0.3..0.5", *AB)),
          Reading("largest magnitude of the run", over("peak:actuator.force", *AB)),
          Reading("largest magnitude, compliant drive", over("peak:actuator.force", *GIVES),
                  ACTUATOR)),
@@ -78,7 +78,7 @@ CLAIMS = (
         "drive_time", "7.1.1", "9d",
         "The driving force is largest at 0.95 s of the stroke of 1 s, where the load is full.",
         Within(0.470, 0.480, "between 470 and 480 mm of stroke (0.94 and 0.96 s)"),
-        one(*over("place:actuator.force@0.3..0.5", *AB)),
+        one(*over("place:actuator.force@stroke=0.3..0.5", *AB)),
         TUNED, "the place of the pins and the load curve were chosen to give this",
     ),
     Claim(
@@ -101,7 +101,7 @@ CLAIMS = (
         Falling(),
         (Reading("largest of the run", over("peak:A.contact_force", *AB)),
          Reading("impacts after the touch", over(f"peak:A.contact_force{ONSET}", *AB)),
-         Reading("load late in the stroke", over("mean:A.contact_force@0.47..0.48", *AB)),
+         Reading("load late in the stroke", over("mean:A.contact_force@stroke=0.47..0.48", *AB)),
          Reading("largest, R_i + R_j", over("peak:A.contact_force", *SOFT), STIFF)),
     ),
     Claim(

@@ -54,7 +54,7 @@ CLAIMS = (
     Claim(
         "rod_damping", "7.1.4", "18",
         "The flexible body acts as a damper of the mechanism.",
-        OBVIOUS, readings("fluctuation:door_angle.rate@0.2..0.48"),
+        OBVIOUS, readings("fluctuation:door_angle.rate@stroke=0.2..0.48"),
         note="taken as: less is left of the fluctuation once the impacts are over",
     ),
     Claim(
