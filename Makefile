@@ -5,11 +5,17 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo test release-check lint bench stress clean
+.PHONY: demo paper test release-check lint bench stress clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
 	$(BIN)/trsim report runs/demo.h5 -o runs/demo
+
+# every configuration of the published study as an ensemble, and a page with a verdict on each of its
+# claims; goes on where it was ended
+paper: .venv/installed
+	$(BIN)/trsim sweep scenarios/thrust_reverser/paper.yaml -o runs/paper
+	$(BIN)/trsim report --paper thrust-reverser runs/paper -o runs/paper/page
 
 test: .venv/developer lint
 	$(PYTEST)

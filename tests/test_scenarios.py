@@ -10,7 +10,8 @@ from trsim.spec.load import load
 from .runs import energy_error, run
 
 FOLDER = Path(__file__).parent.parent / "scenarios"
-FILES = sorted(p for p in FOLDER.rglob("*.yaml") if p.name != "mechanism.yaml")
+PARTS = ("mechanism.yaml", "paper.yaml")  # of scenarios, not one each
+FILES = sorted(p for p in FOLDER.rglob("*.yaml") if p.name not in PARTS)
 VALIDATION = FOLDER / "validation"
 
 

@@ -7,6 +7,9 @@ from typing import Any
 import click
 
 from trsim.cli.frame import NAMED, Answer, framed
+from trsim.errors import UsageError
+
+PAPERS = ("thrust-reverser",)
 
 
 @click.command("report")
@@ -29,20 +32,29 @@ from trsim.cli.frame import NAMED, Answer, framed
               help="Points of a section over what was swept.")  # fmt: skip
 @click.option("--sobol", multiple=True, metavar="WORD", help="Sobol indices of a number.")
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
+@click.option("--paper", type=click.Choice(PAPERS), help="Judge a published study by its sweep.")
 @framed
-def command(answer: Answer, runs: tuple[str, ...], output: str | None, **options: Any) -> None:
+def command(
+    answer: Answer, runs: tuple[str, ...], output: str | None, paper: str | None, **options: Any
+) -> None:
     """Draw the figures and tables of result files RUN, or of the folder of a sweep.
 
     Several runs are compared in the same figures.  With options only what they ask for is made;
     CHANNEL, SECTION and WORD may end in a window, @BEGIN..END in seconds or @stroke=BEGIN..END.
-    Default output: the folder of the first result file, named after it; SWEEP/figures of a sweep.
+    With --paper RUN is the folder of a sweep: one page with the figures of a study and a verdict on
+    each of its claims.  Default output: the folder of the first result file, named after it;
+    SWEEP/figures, or SWEEP/paper, of a sweep.
     """
     from trsim import report
 
     swept = os.path.isdir(runs[0])
     own = os.path.join(runs[0], "figures") if swept else os.path.splitext(runs[0])[0]
     folder = Path(output or own)
-    if not swept and not any(options.values()):
+    if paper:
+        folder = Path(output or os.path.join(runs[0], "paper"))
+        written = judged(runs, folder, options)
+        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
+    elif not swept and not any(options.values()):
         written = report.report(runs, folder)
         answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     else:
@@ -57,3 +69,14 @@ def command(answer: Answer, runs: tuple[str, ...], output: str | None, **options
         answer.data |= {"values": values, "told": found.lines}
     for path in written:
         answer.put(str(path))
+
+
+def judged(studies: tuple[str, ...], folder: Path, options: dict[str, Any]) -> list[Path]:
+    """The files of a published study, made from the folder of its sweep."""
+    from trsim.report.paper import paper
+
+    if len(studies) > 1:
+        raise UsageError("--paper takes the folder of one sweep")
+    if any(options.values()):
+        raise UsageError("--paper goes with no other option than -o")
+    return paper(studies[0], folder)

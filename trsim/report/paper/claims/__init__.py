@@ -1,0 +1,13 @@
+"""What the study of the thrust reverser claims, section by section."""
+
+from trsim.report.paper.claims import clearance, conclusions, model, place, rod, speed
+from trsim.report.paper.claims.claim import Claim
+
+CLAIMS: tuple[Claim, ...] = (
+    *model.CLAIMS,
+    *clearance.CLAIMS,
+    *place.CLAIMS,
+    *speed.CLAIMS,
+    *rod.CLAIMS,
+    *conclusions.CLAIMS,
+)

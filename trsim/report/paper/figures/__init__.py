@@ -1,0 +1,13 @@
+"""The figures of the study, by the numbers they have there."""
+
+from trsim.report.paper.figures import clearance, laws, pendulum, place, rod, speed
+from trsim.report.paper.figures.drawing import Drawn
+
+FIGURES: tuple[Drawn, ...] = (
+    *laws.FIGURES,
+    *pendulum.FIGURES,
+    *clearance.FIGURES,
+    *place.FIGURES,
+    *speed.FIGURES,
+    *rod.FIGURES,
+)

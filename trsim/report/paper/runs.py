@@ -1,0 +1,106 @@
+"""The runs of the study: of every case its ensemble, the member as stated first."""
+
+import os
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from trsim.errors import UsageError
+from trsim.store.grow import Array
+from trsim.store.read import Points, Run
+
+BOOK = 1e-3  # J an energy book may miss; the chain has 6 J, and misses 1e-8 or, with bars, 1e-4
+
+
+class Member:
+    """One run of an ensemble; what was read of it is kept."""
+
+    def __init__(self, case: str, index: int, file: Path, run: Run) -> None:
+        self.case, self.index, self.file, self.run = case, index, file, run
+        self._channels: dict[str, Array] = {}
+
+    def channel(self, name: str) -> Array:
+        """The rows of a channel."""
+        if name not in self._channels:
+            self._channels[name] = self.run.channel(name)
+        return self._channels[name]
+
+    @property
+    def time(self) -> Array:
+        return self.channel("time")
+
+    @property
+    def stroke(self) -> Array:
+        """Of the fairing, m: runs that start elsewhere are compared at equal strokes."""
+        return self.channel("stroke")
+
+    @cached_property
+    def missed(self) -> float:
+        """What the energy book misses at most, J."""
+        if "energy.residual" not in self.run.units:
+            return 0.0
+        return float(np.max(np.abs(self.run.channel("energy.residual")), initial=0.0))
+
+    @cached_property
+    def sections(self) -> Mapping[str, Points]:
+        return self.run.poincare
+
+    def forget(self) -> None:
+        """Let go of what was read."""
+        self._channels.clear()
+
+
+class Runs:
+    """All members of a study, and how many of each case are planned and missing.
+
+    Raises FileError where there is no sweep in the folder, UsageError for one without cases.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        from trsim.store.read import read
+        from trsim.sweep.study import study
+
+        self.members: dict[str, list[Member]] = {}
+        self.missing: dict[str, int] = {}
+        self.planned: dict[str, int] = {}
+        self.folder = Path(folder)
+        found = study(folder)
+        if "case" not in found.keys:
+            hint = "`make paper` says how it is made: trsim sweep thrust_reverser/paper.yaml."
+            raise UsageError(f"{folder} is the sweep of one scenario, not of a study", hint)
+        for case in found.cases:
+            name = str(case.values["case"])
+            index = self.planned.get(name, 0)
+            self.planned[name] = index + 1
+            if case.status == "done":
+                member = Member(name, index, Path(case.file), read(case.file))
+                self.members.setdefault(name, []).append(member)
+            else:
+                self.missing[name] = self.missing.get(name, 0) + 1
+
+    def has(self, *cases: str) -> bool:
+        """Whether the first member of every one of these cases is there."""
+        return all(self.members.get(case, ()) and self.members[case][0].index == 0
+                   for case in cases)  # fmt: skip
+
+    def stated(self, case: str) -> Member:
+        """The member with the values as stated."""
+        return self.members[case][0]
+
+    def sound(self, case: str) -> list[Member]:
+        """The members of an ensemble that count."""
+        return [member for member in self.members.get(case, ()) if member.missed <= BOOK]
+
+    @property
+    def aside(self) -> list[Member]:
+        """The members that do not: their energy book does not close."""
+        return [m for members in self.members.values() for m in members if m.missed > BOOK]
+
+    def of(self, case: str, index: int) -> Member | None:
+        return next((m for m in self.members.get(case, ()) if m.index == index), None)
+
+    def named(self, member: Member) -> str:
+        """The file of a member as seen from the folder of the study."""
+        return os.path.relpath(member.file, self.folder).replace(os.sep, "/")
