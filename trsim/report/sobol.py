@@ -48,7 +48,7 @@ def sobol(study: Any, word: str, folder: Path) -> Found:
 
 def indexed(of: Indices, name: str) -> Any:
     """Bars with intervals; beside them how they settle with the number of rows."""
-    made, axes = panels(1, 2, height=3.0, width_ratios=(3, 2))
+    made, axes = panels(1, 2, height=4.0, width_ratios=(3, 2))
     bars, settling = axes[0]
     at = np.arange(len(of.indices))
     for shift, kind, k in ((-0.2, "first", 0), (0.2, "total", 1)):
@@ -63,7 +63,7 @@ def indexed(of: Indices, name: str) -> Any:
                     else "center")  # fmt: skip
     bars.set_ylabel("share of the variance (-)")
     bars.axhline(0.0, color="0.3", lw=0.6)
-    bars.legend(loc="best")
+    bars.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
     rows = [step[0] for step in of.convergence]
     for i, each in enumerate(names):
         totals = [step[2][i] for step in of.convergence]
@@ -73,7 +73,8 @@ def indexed(of: Indices, name: str) -> Any:
     settling.minorticks_off()
     settling.set_xlabel("rows of each block")
     settling.set_ylabel("total index (-)")
-    settling.legend(loc="best", fontsize=7)
+    lines, told = settling.get_legend_handles_labels()
+    made.legend(lines, told, loc="outside lower center", ncols=3, title="total index of")
     mean = f"mean {short(of.mean)}, standard deviation {short(of.deviation, 3)} {of.unit}"
     left = f", {of.left_out} rows left out" if of.left_out else ""
     head = f"Sobol indices of {in_words(of.word)}{f' ({name})' if name else ''}"
