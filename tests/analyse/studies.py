@@ -26,6 +26,7 @@ class Study:
     method: str = "grid"
     samples: int = 0
     seed: int = 0
+    written: dict = field(default_factory=lambda: {"joints.B.clearance": "mm"})
 
 
 def of_blocks(a, b, keys, samples, file=Path("none.h5")):

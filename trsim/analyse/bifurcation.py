@@ -44,6 +44,7 @@ class Diagram(NamedTuple):
     unit: str
     over: str  # swept key
     units: Mapping[str, str]  # of the keys
+    written: Mapping[str, str]  # key -> unit as the scenario has it
     cases: tuple[Section, ...]
     missing: tuple[str, ...]  # cases without a result
 
@@ -82,7 +83,7 @@ def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
     cases = [one._replace(period=period(one.x, one.y, *sizes)) for one in found]
     unit = about.x_unit if axis == "x" else about.y_unit
     return Diagram(name, axis, str(about.definition[axis]), unit, key, study.units,
-                   tuple(cases), tuple(missing))  # fmt: skip
+                   study.written, tuple(cases), tuple(missing))  # fmt: skip
 
 
 def swept(study: Any, over: str | None) -> str:

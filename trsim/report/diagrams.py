@@ -8,7 +8,7 @@ import numpy as np
 from trsim.analyse.bifurcation import Diagram, told
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown
-from trsim.report.keys import axis, named_value
+from trsim.report.keys import Units, axis, named_value
 from trsim.report.style import colour, look, panels, save
 
 DRAWN = 60_000  # points
@@ -44,9 +44,10 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
     made, (upper, lower) = panels(2, height=2.3, sharex=True, height_ratios=(4, 1))
     a, b = upper[0], lower[0]
     factor, unit = one.display(of.unit)
+    units = Units(of.units, of.written)
     words = any(isinstance(each.over, str) for each in of.cases)
     names = list(dict.fromkeys(str(each.over) for each in of.cases))
-    scale = 1.0 if words else one.display(of.units.get(of.over, "-"))[0]
+    scale = 1.0 if words else units.display(one, of.over)[0]
     families = list(dict.fromkeys(each.series for each in of.cases))
     each_drawn = max(1, DRAWN // max(len(of.cases), 1))
     size = 3.5 if max(len(each.x) for each in of.cases) < FEW else 1.5
@@ -59,7 +60,7 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
             mark = "x" if each.period == 0 else "s"
             b.plot([at], [each.period], mark, ms=3.0, color=colour(k))
     for k, series in enumerate(families if len(families) > 1 else []):
-        text = ", ".join(named_value(one, of.units, key, value) for key, value in series)
+        text = ", ".join(named_value(one, units, key, value) for key, value in series)
         a.plot([], [], "o", ms=3.5, color=colour(k), label=text)
     a.set_ylabel(f"{of.channel.replace('.', ', ').replace('_', ' ')}\n({unit})")
     highest = max([1, *(each.period for each in of.cases)])
@@ -67,7 +68,7 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
     ticks = sorted({0, *(e.period for e in of.cases if e.period > 0)})[:TICKS]
     b.set_yticks(ticks, ["scattered" if tick == 0 else str(tick) for tick in ticks])
     b.set_ylabel("period")
-    b.set_xlabel(axis(one, of.over, of.units.get(of.over, "-")))
+    b.set_xlabel(axis(one, units, of.over))
     if words:
         b.set_xticks(range(len(names)), names)
         b.set_xlim(-0.5, len(names) - 0.5)

@@ -1,16 +1,30 @@
 """What swept keys and their values are called in figures."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
-from trsim.report.display import Shown, short
+from trsim.report.display import Shown, short, written
 from trsim.report.marks import spaced
+from trsim.units import unit
 
 
-def axis(one: Shown, key: str, si: str) -> str:
+class Units(NamedTuple):
+    """Of swept keys: SI, and as the scenario has them."""
+
+    si: Mapping[str, str]
+    written: Mapping[str, str]
+
+    def display(self, one: Shown, key: str) -> tuple[float, str]:
+        """Factor and text of the unit a key is shown in: as written, where it was."""
+        if key not in self.written:
+            return one.display(self.si.get(key, "-"))
+        return 1.0 / float(unit(self.written[key])[0]), written(self.written[key])
+
+
+def axis(one: Shown, units: Units, key: str) -> str:
     """A swept key and its unit; the last two words of its path say enough."""
-    unit = one.display(si)[1]
-    return f"{readable(key)} ({unit})" if key != "case" else "case"
+    shown = units.display(one, key)[1]
+    return f"{readable(key)} ({shown})" if key != "case" else "case"
 
 
 def readable(key: str) -> str:
@@ -18,12 +32,12 @@ def readable(key: str) -> str:
     return " ".join(key.split(".")[-2:]).replace("_", " ")
 
 
-def named_value(one: Shown, units: Mapping[str, str], key: str, value: Any) -> str:
+def named_value(one: Shown, units: Units, key: str, value: Any) -> str:
     """A key and its value, with unit; of a word the word alone."""
     if not isinstance(value, float | int):
         return str(value)
-    factor, unit = one.display(units.get(key, "-"))
-    return f"{readable(key)} {short(value * factor)}{'' if unit == '-' else f' {unit}'}"
+    factor, shown = units.display(one, key)
+    return f"{readable(key)} {short(value * factor)}{'' if shown == '-' else f' {shown}'}"
 
 
 def in_words(word: str) -> str:

@@ -12,7 +12,7 @@ from trsim.errors import UsageError
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.diagrams import bifurcation
 from trsim.report.display import Shown, compared
-from trsim.report.keys import axis, in_words, named_value
+from trsim.report.keys import Units, axis, in_words, named_value
 from trsim.report.sobol import sobol
 from trsim.report.style import colour, look, panels, save
 
@@ -25,6 +25,11 @@ def shown(study: Any) -> Shown:
         if case.status == "done":
             return compared([case.run()])[0]
     raise UsageError("no case of the study has a result", "Run the sweep first.")
+
+
+def units(study: Any) -> Units:
+    """Of what was swept."""
+    return Units(study.units, study.written)
 
 
 def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
@@ -93,7 +98,7 @@ def figure(study: Any, one: Shown, word: str, unit: str, y: Any, over: str | Non
     factor, text = one.display(unit)
     for a, key in zip(axes.flat, drawn, strict=False):
         lines(a, study, one, key, y * factor, joined=not sampled)
-        a.set_xlabel(axis(one, key, study.units.get(key, "-")))
+        a.set_xlabel(axis(one, units(study), key))
     for a in axes.flat[len(drawn) :]:
         a.axis("off")
     for a in axes[:, 0]:
@@ -111,11 +116,11 @@ def lines(axes: Any, study: Any, one: Shown, key: str, y: Any, joined: bool) -> 
     """The values of all cases over one key; of a grid joined where all others are the same."""
     words = not all(isinstance(case.values[key], float | int) for case in study.cases)
     places = {v: k for k, v in enumerate(dict.fromkeys(str(c.values[key]) for c in study.cases))}
-    factor = 1.0 if words else one.display(study.units.get(key, "-"))[0]
+    factor = 1.0 if words else units(study).display(one, key)[0]
 
     def series(pair: Any) -> str:
         others = [k for k in study.keys if k != key and (joined or k == "case")]
-        return ", ".join(named_value(one, study.units, k, pair[0].values[k]) for k in others)
+        return ", ".join(named_value(one, units(study), k, pair[0].values[k]) for k in others)
 
     pairs = sorted(zip(study.cases, y.tolist(), strict=True), key=series)
     families = [(name, list(group)) for name, group in groupby(pairs, series)]

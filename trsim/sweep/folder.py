@@ -36,8 +36,8 @@ def write_plan(folder: Path, plan: Plan, engine: str) -> None:
     ]
     told = {
         "format": FORMAT, "version": VERSION, "source": plan.source, "engine": engine,
-        "keys": plan.keys, "units": plan.units, "method": plan.method, "samples": plan.samples,
-        "seed": plan.seed, "cases": cases,
+        "keys": plan.keys, "units": plan.units, "written": plan.written, "method": plan.method,
+        "samples": plan.samples, "seed": plan.seed, "cases": cases,
     }  # fmt: skip
     with fresh(folder / "plan.json", PLAN) as unfinished:
         unfinished.write_text(json.dumps(told, ensure_ascii=False), encoding="utf-8")

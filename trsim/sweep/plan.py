@@ -44,7 +44,8 @@ class Plan(NamedTuple):
     text: str  # of the scenario, as given
     files: dict[str, str]  # it was read from -> sha256
     keys: tuple[str, ...]  # that vary by themselves; CASE first where there are named cases
-    units: dict[str, str]
+    units: dict[str, str]  # SI
+    written: dict[str, str]  # the units that values have in the scenario; of keys with one
     method: str
     samples: int
     seed: int
@@ -104,12 +105,13 @@ def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
     digests = _Digests(engine)
     found = [case for name, one in named.items() for case in _cases(name, one, digests)]
     keys = tuple(dict.fromkeys(key for case in found for key in case.values))
-    units = _units(named, found, keys)
+    written = _written(found, keys)
+    units = _units(named, found, keys, written)
     if "" not in named:
         keys, units = (CASE, *keys), {CASE: "-", **units}
     sweep = first.sweep
-    return Plan(path, text, tree.files, keys, units, sweep.method, sweep.samples, sweep.seed,
-                tuple(_distinct(found)), named)  # fmt: skip
+    return Plan(path, text, tree.files, keys, units, written, sweep.method, sweep.samples,
+                sweep.seed, tuple(_distinct(found)), named)  # fmt: skip
 
 
 def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
@@ -282,16 +284,27 @@ def value(written: Any) -> float | str:
     return written if isinstance(written, str) else json.dumps(written)
 
 
-def _units(named: dict[str, _Named], found: list[Case], keys: tuple[str, ...]) -> dict[str, str]:
+def _written(found: list[Case], keys: tuple[str, ...]) -> dict[str, str]:
+    """The unit of the first value of each key that has one."""
+    units = {}
+    for key in keys:
+        value = next(case.values[key] for case in found if key in case.values)
+        one = quantity(value) if isinstance(value, str) else None
+        if one and one[1]:
+            units[key] = one[1]
+    return units
+
+
+def _units(
+    named: dict[str, _Named], found: list[Case], keys: tuple[str, ...], written: dict[str, str]
+) -> dict[str, str]:
     """The SI unit of each key: of its values, or of the field it is."""
     units = {}
     for key in keys:
-        case = next(case for case in found if key in case.values)
-        written = case.values[key]
-        one = quantity(written) if isinstance(written, str) else None
-        if one and one[1]:
-            units[key] = si(one[1])
+        if key in written:
+            units[key] = si(written[key])
             continue
+        case = next(case for case in found if key in case.values)
         try:
             units[key] = _of_field(named[case.case].scenario(case), key)
         except TrsimError:  # found, and told, when the cases are checked

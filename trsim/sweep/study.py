@@ -51,6 +51,7 @@ class Study:
     source: str  # the scenario
     keys: tuple[str, ...]  # that vary by themselves; "case" first where there are named cases
     units: dict[str, str]  # key -> SI unit, or "-"
+    written: dict[str, str]  # key -> unit as written in the scenario, where there is one
     method: str
     samples: int
     seed: int
@@ -77,4 +78,14 @@ def study(folder: str | Path) -> Study:
         cases.append(Case(one["name"], file, status, reason, one["values"], entry))
     keys, method = tuple(told["keys"]), told["method"]
     samples, seed = told["samples"], told["seed"]
-    return Study(folder, told["source"], keys, told["units"], method, samples, seed, tuple(cases))
+    return Study(
+        folder,
+        told["source"],
+        keys,
+        told["units"],
+        told.get("written", {}),
+        method,
+        samples,
+        seed,
+        tuple(cases),
+    )
