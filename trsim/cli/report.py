@@ -45,23 +45,24 @@ def command(
     Several runs are compared in the same figures.  With options only what they ask for is made;
     CHANNEL, SECTION and WORD may end in a window, @BEGIN..END in seconds or @stroke=BEGIN..END.
     With --paper RUN is the folder of a sweep: one page with the figures of a study and a verdict on
-    each of its claims; with --animate a page that plays the motion of RUN.  Default output: the folder of the first result file, named after it;
-    SWEEP/figures, or SWEEP/paper, of a sweep.
+    each of its claims.  With --animate a page plays the motion of RUN.  Default output: the folder
+    of the first result file, named after it; SWEEP/figures, or SWEEP/paper, of a sweep.
     """
     from trsim import report
 
     swept = os.path.isdir(runs[0])
     own = os.path.join(runs[0], "figures") if swept else os.path.splitext(runs[0])[0]
     folder = Path(output or own)
+    animate, magnified = options.pop("animate"), options.pop("magnify_clearance")
+    if magnified is not None and not animate:
+        raise UsageError("--magnify-clearance goes with --animate")
     if paper:
         folder = Path(output or os.path.join(runs[0], "paper"))
-        written = judged(runs, folder, options)
+        written = judged(runs, folder, options | {"animate": animate})
         answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
-    elif options.pop("animate"):
-        written = animated(answer, runs, folder, options)
+    elif animate:
+        written = animated(answer, runs, folder, magnified, options)
         answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
-    elif options.pop("magnify_clearance") is not None:
-        raise UsageError("--magnify-clearance goes with --animate")
     elif not swept and not any(options.values()):
         written = report.report(runs, folder)
         answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
@@ -91,12 +92,15 @@ def judged(studies: tuple[str, ...], folder: Path, options: dict[str, Any]) -> l
 
 
 def animated(
-    answer: Answer, runs: tuple[str, ...], folder: Path, options: dict[str, Any]
+    answer: Answer,
+    runs: tuple[str, ...],
+    folder: Path,
+    magnified: float | None,
+    options: dict[str, Any],
 ) -> list[Path]:
     """The animation of a run."""
     from trsim.report.animation import write
 
-    magnified = options.pop("magnify_clearance")
     if len(runs) > 1 or os.path.isdir(runs[0]):
         raise UsageError("--animate takes one result file")
     if any(options.values()):

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trsim.report.animation import solids, turns
 from trsim.report.animation.drawing import Array, Joint
@@ -94,7 +95,7 @@ def contact(moved: Motion, joint: Joint, look: Look, magnified: float) -> Array:
     return moved.point(joint.i, joint.at) + magnified * play + radius * out + lift
 
 
-def largest(vectors: Array, rows: Array) -> Array:
+def largest(vectors: Array, rows: NDArray[np.int64]) -> Array:
     """Of the rows since the frame before, the vector that is longest; (frames, 3)."""
     sizes = np.sum(vectors**2, axis=1)
     first = np.concatenate([[0], rows[:-1] + 1])

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trsim.errors import UsageError
 from trsim.report.animation import turns
@@ -26,7 +27,7 @@ class Motion:
     """Poses at the frames; `turns` are those since the bodies were drawn, world axes."""
 
     drawn: Drawing
-    rows: Array  # (n) of the result file
+    rows: NDArray[np.int64]  # (n) of the result file
     time: Array  # (n) s
     places: Mapping[str, Array]  # rigid body -> centre of mass (n, 3)
     turns: Mapping[str, Array]  # rigid body -> (n, 4)
@@ -81,14 +82,14 @@ def motion(run: Run) -> Motion:
     return replace(moved, open=apart, warnings=warnings(moved, left, apart, unknown))
 
 
-def frames(time: Array) -> Array:
+def frames(time: Array) -> NDArray[np.int64]:
     """Rows of the frames: at most FRAMES of them, evenly in time, the first and the last."""
     if len(time) <= FRAMES:
         return np.arange(len(time))
     wanted = np.linspace(time[0], time[-1], FRAMES)
     after = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
     before = wanted - time[after - 1] < time[after] - wanted
-    return np.unique(np.where(before, after - 1, after))
+    return np.unique(np.where(before, after - 1, after)).astype(np.int64)
 
 
 def eccentricities(run: Run, drawn: Drawing) -> dict[str, Array]:

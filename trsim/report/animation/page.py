@@ -10,6 +10,7 @@ from pathlib import Path
 from trsim.report.animation import Film
 from trsim.report.animation.things import FORCE, JOURNAL
 
+SCRIPTS = "film.js", "viewer.js"
 POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "base-uri 'none'; form-action 'none'"
@@ -59,7 +60,8 @@ MISSING = (
 
 def part(film: Film) -> str:
     """A section that can stand in any page."""
-    viewer = (Path(__file__).parent / "viewer.js").read_text(encoding="utf-8")
+    here = Path(__file__).parent
+    viewer = "\n".join((here / name).read_text(encoding="utf-8") for name in SCRIPTS)
     data = base64.b64encode(film.glb).decode()
     return f"""<section class="animation" data-start="{film.start!r}">
 <style>{STYLE}</style>
@@ -72,7 +74,11 @@ def part(film: Film) -> str:
 <button type="button" class="reset">Reset view</button></div>
 {legend(film)}
 <script type="text/plain" class="glb">{data}</script>
-<script>{viewer}</script>
+<script>
+(() => {{
+"use strict";
+{viewer}}})();
+</script>
 </section>
 """
 
