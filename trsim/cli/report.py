@@ -59,13 +59,10 @@ def command(
     if paper:
         folder = Path(output or os.path.join(runs[0], "paper"))
         written = judged(runs, folder, options | {"animate": animate})
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     elif animate:
         written = animated(answer, runs, folder, magnified, options)
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     elif not swept and not any(options.values()):
         written = report.report(runs, folder)
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     else:
         from trsim.report.asked import Asked
 
@@ -74,8 +71,8 @@ def command(
         for text in found.lines:
             answer.put(text)
         values = [one._asdict() for one in found.values]
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
         answer.data |= {"values": values, "told": found.lines}
+    answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     for path in written:
         answer.put(str(path))
 
