@@ -33,6 +33,9 @@ PAPERS = ("thrust-reverser",)
 @click.option("--sobol", multiple=True, metavar="WORD", help="Sobol indices of a number.")
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
 @click.option("--paper", type=click.Choice(PAPERS), help="Judge a published study by its sweep.")
+@click.option("--animate", is_flag=True, help="The motion of one run: animation.glb, .html.")
+@click.option("--magnify-clearance", type=float, metavar="TIMES",
+              help="How large --animate draws the play in bearings.")  # fmt: skip
 @framed
 def command(
     answer: Answer, runs: tuple[str, ...], output: str | None, paper: str | None, **options: Any
@@ -42,21 +45,24 @@ def command(
     Several runs are compared in the same figures.  With options only what they ask for is made;
     CHANNEL, SECTION and WORD may end in a window, @BEGIN..END in seconds or @stroke=BEGIN..END.
     With --paper RUN is the folder of a sweep: one page with the figures of a study and a verdict on
-    each of its claims.  Default output: the folder of the first result file, named after it;
-    SWEEP/figures, or SWEEP/paper, of a sweep.
+    each of its claims.  With --animate a page plays the motion of RUN.  Default output: the folder
+    of the first result file, named after it; SWEEP/figures, or SWEEP/paper, of a sweep.
     """
     from trsim import report
 
     swept = os.path.isdir(runs[0])
     own = os.path.join(runs[0], "figures") if swept else os.path.splitext(runs[0])[0]
     folder = Path(output or own)
+    animate, magnified = options.pop("animate"), options.pop("magnify_clearance")
+    if magnified is not None and not animate:
+        raise UsageError("--magnify-clearance goes with --animate")
     if paper:
         folder = Path(output or os.path.join(runs[0], "paper"))
-        written = judged(runs, folder, options)
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
+        written = judged(runs, folder, options | {"animate": animate})
+    elif animate:
+        written = animated(answer, runs, folder, magnified, options)
     elif not swept and not any(options.values()):
         written = report.report(runs, folder)
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     else:
         from trsim.report.asked import Asked
 
@@ -65,8 +71,8 @@ def command(
         for text in found.lines:
             answer.put(text)
         values = [one._asdict() for one in found.values]
-        answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
         answer.data |= {"values": values, "told": found.lines}
+    answer.data |= {"folder": str(folder), "files": [str(path) for path in written]}
     for path in written:
         answer.put(str(path))
 
@@ -80,3 +86,23 @@ def judged(studies: tuple[str, ...], folder: Path, options: dict[str, Any]) -> l
     if any(options.values()):
         raise UsageError("--paper goes with no other option than -o")
     return paper(studies[0], folder)
+
+
+def animated(
+    answer: Answer,
+    runs: tuple[str, ...],
+    folder: Path,
+    magnified: float | None,
+    options: dict[str, Any],
+) -> list[Path]:
+    """The animation of a run."""
+    from trsim.report.animation import write
+
+    if len(runs) > 1 or os.path.isdir(runs[0]):
+        raise UsageError("--animate takes one result file")
+    if any(options.values()):
+        raise UsageError("--animate goes with no other option than -o and --magnify-clearance")
+    written, warnings = write(runs[0], folder, 1.0 if magnified is None else magnified)
+    for text in warnings:
+        answer.warn(runs[0], text)
+    return written

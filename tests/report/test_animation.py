@@ -1,0 +1,445 @@
+"""Animations: poses from the result file, solids, forces, the .glb, and the page in a browser."""
+
+import base64
+import re
+
+import numpy as np
+import pytest
+
+from tests import small
+from trsim.cli import main
+from trsim.errors import UsageError
+from trsim.report.animation import film, forces, section, solids, turns, write
+from trsim.report.animation.motion import FRAMES, frames, motion
+from trsim.report.animation.page import arrow_scale
+from trsim.report.animation.things import look
+from trsim.store.read import read
+
+from .browser import CHROMIUM, browser
+
+SPINNING = """
+planar: false
+bodies:
+  top: {mass: 1, inertia: [0.01, 0.02, 0.03], at: [0, 0, 0.1], angle: 20 deg,
+        angular_velocity: [6, 1, 9]}
+joints:
+  tip: {type: spherical, bodies: [ground, top], at: [0, 0, 0]}
+gravity: [0, 0, -9.81]
+solver: {end: 0.5 s, tolerance: 1e-9}
+output: {every: 2 ms, channels: ["*", "*.rotation"]}
+"""
+FOUR_BAR = """
+bodies:
+  crank:   {mass: 0.2 kg, inertia: 2e-4, at: [0, 0.05]}
+  coupler: {mass: 0.6 kg, inertia: 5e-3, at: [0.130753114, 0.173509341], angle: 30 deg}
+  rocker:  {mass: 0.5 kg, inertia: 3e-3, at: [0.280753114, 0.123509341]}
+joints:
+  a: {type: revolute, bodies: [ground, crank], at: [0, 0]}
+  b: {type: revolute, bodies: [crank, coupler], at: [0, 0.1]}
+  c: {type: revolute, bodies: [coupler, rocker], at: [0.261506227, 0.247018682]}
+  d: {type: revolute, bodies: [ground, rocker], at: [0.3, 0]}
+drives:
+  motor: {joint: a, velocity: 20 rad/s}
+initial: {a: 100 deg}
+solver: {end: 0.1 s, tolerance: 1e-9}
+output: {every: 0.1 ms, channels: ["*", "*.rotation"]}
+"""
+ROD = """
+gravity: [0, -9.81, 0]
+bodies:
+  rod: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, section: {width: 5 mm},
+        youngs_modulus: 1.6e6, density: 320}
+joints: {pin: {type: revolute, bodies: [ground, rod], at: [0, 0]}}
+solver: {end: 0.2 s, tolerance: 1e-4}
+"""
+
+
+def of(folder, *sets, text=small.SLIDER_CRANK):
+    small.run(folder / "run.h5", *sets, text=text)
+    return read(folder / "run.h5")
+
+
+@pytest.fixture(scope="module")
+def crank(tmp_path_factory):
+    """A slider-crank with clearance, and without rotations."""
+    return of(tmp_path_factory.mktemp("crank"))
+
+
+@pytest.fixture(scope="module")
+def bar(tmp_path_factory):
+    return of(tmp_path_factory.mktemp("bar"), text=ROD)
+
+
+def without_rotation(run):
+    """The run as it is by default."""
+    units = {name: unit for name, unit in run.units.items() if not name.endswith(".rotation")}
+    return type(run)(**{**vars(run), "units": units})
+
+
+def angle(p, q):
+    """Between two turns, rad."""
+    return 2.0 * np.linalg.norm(turns.product(p, turns.back(q))[..., :3], axis=-1)
+
+
+# --- poses -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("text", "exact"), [(SPINNING, 1e-6), (FOUR_BAR, 1e-7)])
+def test_attitudes_are_those_recorded(text, exact, tmp_path):
+    """The integral of the velocities, from a start that is not the drawing, is the rotation."""
+    run = of(tmp_path, text=text)
+    recorded, found = motion(run), motion(without_rotation(run))
+    for body, turn in recorded.turns.items():
+        assert angle(turn, turn[:1]).max() > 0.1  # the coupler turns least
+        assert angle(turn, found.turns[body]).max() < exact, body
+    assert found.warnings == ()
+
+
+def test_recorded_attitudes_close_the_joints(tmp_path):
+    assert motion(of(tmp_path, text=FOUR_BAR)).open < 1e-7
+
+
+def test_order_of_the_integral(tmp_path):
+    """Fourth order in space: half the step, a sixteenth of the error."""
+    run = of(tmp_path, "output.every=2 ms", text=SPINNING)
+    exact = motion(run).turns["top"][-1]
+    time, omega = run.time, run.channel("top.angular_velocity")
+    alpha, errors = run.channel("top.angular_acceleration"), []
+    for step in (10, 5):
+        steps = turns.steps(time[::step], omega[::step], alpha[::step])
+        start = motion(run).turns["top"][:1]
+        errors.append(angle(turns.composed(np.concatenate([start, steps]))[-1], exact))
+    assert 12.0 < errors[0] / errors[1] < 20.0
+
+
+def test_joints_closed(crank):
+    """By the integral alone, over two turns of the crank and its impacts."""
+    assert motion(crank).open < 1e-4 * motion(crank).drawn.size
+
+
+def test_journal_where_recorded(crank):
+    """The play is the recorded eccentricity, and that of the poses to the closing error."""
+    found = motion(crank)
+    joint = next(joint for joint in found.drawn.joints if joint.name == "B")
+    apart = found.point("slider", joint.at) - found.point("rod", joint.at)
+    assert np.linalg.norm(apart - found.plays["B"], axis=1).max() < 1e-6
+    recorded = np.hypot(crank.channel("B.eccentricity_x"), crank.channel("B.eccentricity_y"))
+    assert np.linalg.norm(found.plays["B"], axis=1) == pytest.approx(recorded[found.rows])
+
+
+def test_coarse_output_is_told(tmp_path):
+    """Velocities recorded a few times per turn do not tell attitudes."""
+    found = motion(of(tmp_path, "output.every=1 ms"))
+    assert found.open > 0.01 * found.drawn.size
+    assert any("joints come" in text for text in found.warnings)
+    told = motion(of(tmp_path, "output.every=0.25 s", text=SPINNING)).warnings
+    assert any("too fast for the frames to show: top" in text for text in told)
+
+
+def test_what_was_not_recorded_is_told(tmp_path):
+    run = of(tmp_path, 'output.channels=["crank.position", "rod.position", "rod.angular_velocity"]')
+    told = " ".join(motion(run).warnings)
+    assert "positions were not recorded: slider" in told
+    assert "not recorded: crank" in told
+    with pytest.raises(UsageError, match="position of no body"):
+        film(of(tmp_path, 'output.channels=["B"]'))
+
+
+def test_released_joints_may_open(tmp_path):
+    text = FOUR_BAR + "events:\n  go: {when: t, value: 20 ms, do: {release: [c]}}\n"
+    assert motion(of(tmp_path, text=text)).warnings == ()
+
+
+@pytest.mark.parametrize("rows", [1, 2, FRAMES, FRAMES + 1, 10001])
+def test_frames(rows):
+    """At most FRAMES, with the first and the last, evenly in time."""
+    time = np.linspace(0.0, 1.0, rows)
+    found = frames(time)
+    assert len(found) == min(rows, FRAMES)
+    assert (found[0], found[-1]) == (0, rows - 1)
+    if rows > FRAMES:
+        assert np.abs(time[found] - np.linspace(0.0, 1.0, FRAMES)).max() <= 0.5 / (rows - 1) + 1e-12
+
+
+def test_turns():
+    """Matrices to quaternions at all four largest entries, and vectors turned by both."""
+    d = np.array([[0.1, 0, 0], [3.1, 0, 0], [0, 3.1, 0], [0, 0, 3.1], [1.0, 2.0, -0.5]])
+    q = turns.of_vector(d)
+    R = np.stack([turns.turned(q, np.eye(3)[k]) for k in range(3)], axis=2)
+    assert np.abs(np.sum(turns.of_matrices(R) * q, axis=1)) == pytest.approx(np.ones(5))
+    a, b = (
+        np.array([[1.0, 2, 3], [1, 0, 0], [0, 0, 2]]),
+        np.array([[-3.0, 1, 1], [-2, 0, 0], [0, 0, -1]]),
+    )
+    found = turns.turned(turns.shortest(a, b), a / np.linalg.norm(a, axis=1, keepdims=True))
+    assert found == pytest.approx(b / np.linalg.norm(b, axis=1, keepdims=True))
+
+
+# --- solids and forces -----------------------------------------------------------------------
+
+Z, X = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
+SOLIDS = {
+    "cylinder": (solids.cylinder(1.0, 2.0, X), 2.0 * np.pi),
+    "box": (solids.box(np.array([1.0, 2.0, 3.0]), solids.frame(np.array([1.0, 2.0, 3.0]))), 6.0),
+    "bar": (solids.bar(np.zeros(3), np.array([0.0, 3.0, 0.0]), 1.0, 0.5, Z), 3.0 + 0.5 * np.pi),
+    "ring": (solids.ring(1.0, 2.0, 1.0, Z), 3.0 * np.pi),
+    "rod": (solids.rod(np.zeros(3), 3.0 * X, 1.0), 3.0 * np.pi + 4.0 / 3.0 * np.pi),
+    "arrow": (solids.arrow(0.3, 0.4), np.pi * (0.16 * 0.7 + 0.1)),
+}
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_solids_are_closed_and_face_outwards(name):
+    mesh, volume = SOLIDS[name]
+    corners = mesh.points[mesh.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert np.sum(corners[:, 0] * normal) / 6.0 == pytest.approx(volume, rel=0.08)
+    assert np.abs(normal.sum(axis=0)).max() < 1e-12
+    outward = mesh.normals[mesh.triangles].mean(axis=1)
+    assert np.sum(normal * outward, axis=1).min() >= -1e-12
+    assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(np.ones(len(mesh.points)))
+
+
+def test_arrows_are_proportional(crank):
+    """As long as the largest force since the frame before, along it; none without contact."""
+    moved = motion(crank)
+    (arrow,), scale = forces.arrows(crank, moved, look(moved.drawn), 1.0)
+    force = crank.channel("B.force")
+    assert np.array_equal(moved.rows, np.arange(len(force)))
+    size = np.linalg.norm(force, axis=1)
+    assert arrow.scale[:, 0] == pytest.approx(scale * size)
+    assert (size == 0.0).any() and (size > 0.0).any()
+    assert (arrow.scale[size == 0.0] == 0.0).all()
+    along = turns.turned(arrow.turn[size > 0.0], X)
+    assert along == pytest.approx((force / np.maximum(size, 1e-9)[:, None])[size > 0.0], abs=1e-9)
+
+
+def test_no_impact_between_frames_is_lost():
+    vectors = np.zeros((10, 3))
+    vectors[4], vectors[5] = [0.0, -7.0, 0.0], [1.0, 0.0, 0.0]
+    found = forces.largest(vectors, np.array([0, 3, 6, 9]))
+    assert found.tolist() == [[0, 0, 0], [0, 0, 0], [0, -7, 0], [0, 0, 0]]
+
+
+def test_scale_in_words():
+    assert arrow_scale(1e-4) == "1 kN is 100 mm"
+    assert arrow_scale(0.5) == "1 N is 500 mm"
+
+
+# --- the file --------------------------------------------------------------------------------
+
+
+def arrays(glb):
+    """The file as pygltflib reads it, and its accessors as arrays."""
+    from pygltflib import GLTF2
+
+    gltf = GLTF2.load_from_bytes(glb)
+    blob, kinds = gltf.binary_blob(), {5123: np.uint16, 5125: np.uint32, 5126: np.float32}
+    found = []
+    for accessor in gltf.accessors:
+        view = gltf.bufferViews[accessor.bufferView]
+        assert view.byteOffset % 4 == 0
+        width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor.type]
+        data = blob[view.byteOffset : view.byteOffset + view.byteLength]
+        values = np.frombuffer(data, kinds[accessor.componentType]).reshape(-1, width)
+        assert len(values) == accessor.count
+        found.append(values)
+    return gltf, found
+
+
+@pytest.mark.parametrize("name", ["crank", "bar"])
+def test_glb(name, request):
+    """Valid where programs are strict: bounds, unit quaternions, indices, lengths, targets."""
+    run = request.getfixturevalue(name)
+    data = film(run).glb
+    gltf, found = arrays(data)
+    assert int.from_bytes(data[8:12], "little") == len(data)
+    assert gltf.buffers[0].byteLength == len(gltf.binary_blob())
+    for accessor, values in zip(gltf.accessors, found, strict=True):
+        if accessor.min:
+            assert accessor.min == values.min(axis=0).tolist()
+            assert accessor.max == values.max(axis=0).tolist()
+    for mesh in gltf.meshes:
+        for part in mesh.primitives:
+            assert gltf.accessors[part.attributes.POSITION].min
+            assert found[part.indices].max() < len(found[part.attributes.POSITION])
+            assert len(found[part.attributes.NORMAL]) == len(found[part.attributes.POSITION])
+    (animation,) = gltf.animations
+    assert len({(c.target.node, c.target.path) for c in animation.channels}) == len(
+        animation.channels
+    )
+    time = run.time
+    for channel in animation.channels:
+        sampler = animation.samplers[channel.sampler]
+        times, values = found[sampler.input][:, 0], found[sampler.output]
+        assert len(times) == len(values) == min(len(time), FRAMES)
+        assert gltf.accessors[sampler.input].max == [pytest.approx(time[-1] - time[0])]
+        assert (np.diff(times) > 0.0).all()
+        if channel.target.path == "rotation":
+            assert np.linalg.norm(values, axis=1) == pytest.approx(np.ones(len(values)), abs=1e-6)
+
+
+def test_bodies_move_in_the_glb(crank):
+    """The node of a body has the recorded places."""
+    gltf, found = arrays(film(crank).glb)
+    names = [node.name for node in gltf.nodes]
+    (animation,) = gltf.animations
+    paths = {(names[c.target.node], c.target.path): animation.samplers[c.sampler].output
+             for c in animation.channels}  # fmt: skip
+    place = found[paths["rod", "translation"]]
+    assert place == pytest.approx(crank.channel("rod.position"), abs=1e-7)
+
+
+def test_bars_follow_their_nodes(bar):
+    """A tube begins at its node and ends at the next one."""
+    gltf, found = arrays(film(bar).glb)
+    names = [node.name for node in gltf.nodes]
+    (animation,) = gltf.animations
+    tracks = {c.target.path: found[animation.samplers[c.sampler].output]
+              for c in animation.channels if c.target.node == names.index("rod 2")}  # fmt: skip
+    size = tracks["scale"][:, :1].astype(float)
+    end = tracks["translation"] + size * turns.turned(tracks["rotation"].astype(float), X)
+    assert end == pytest.approx(bar.channel("rod.node3.position")[motion(bar).rows], abs=1e-6)
+
+
+def test_magnified(crank):
+    """The journal goes 50 times as far from the middle of its bearing, bodies go where they did."""
+    usual, large = (arrays(film(crank, times).glb) for times in (1.0, 50.0))
+    place = []
+    for gltf, found in (usual, large):
+        names = [node.name for node in gltf.nodes]
+        (animation,) = gltf.animations
+        tracks = {names[c.target.node]: found[animation.samplers[c.sampler].output].astype(float)
+                  for c in animation.channels if c.target.path == "translation"}  # fmt: skip
+        place.append(tracks["B journal"] - tracks["B bearing"])
+        assert tracks["slider"] == pytest.approx(crank.channel("slider.position"), abs=1e-7)
+    assert np.linalg.norm(place[0], axis=1).max() > 4e-4
+    assert place[1] == pytest.approx(50.0 * place[0], abs=1e-5)
+    assert "drawn 50 times" in section(crank, 50.0) and "journals" not in section(crank)
+    with pytest.raises(UsageError, match="cannot be drawn"):
+        film(crank, 0.0)
+
+
+# --- the command and the page ----------------------------------------------------------------
+
+
+def ended(*arguments):
+    """The exit code of a command line."""
+    with pytest.raises(SystemExit) as end:
+        main(list(arguments))
+    return end.value.code
+
+
+def test_command(crank, tmp_path):
+    """Both files, the second time over the first; files of others are left."""
+    arguments = ["report", str(crank.path), "-o", str(tmp_path / "out"), "--animate"]
+    assert ended(*arguments) == 0 == ended(*arguments)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "animation.glb", "animation.html",
+    ]  # fmt: skip
+    assert ended(*arguments, str(crank.path)) == 2
+    assert ended(*arguments, "--compare") == 2
+    assert ended("report", str(crank.path), "--magnify-clearance", "5") == 2
+    (tmp_path / "out" / "animation.html").write_text("mine")
+    assert ended(*arguments) == 2
+    assert (tmp_path / "out" / "animation.html").read_text() == "mine"
+
+
+def test_page_stands_alone(crank, tmp_path):
+    """It holds the .glb, asks nobody for anything, and forbids it."""
+    (glb, page), _ = write(crank.path, tmp_path)
+    text = page.read_text(encoding="utf-8")
+    (data,) = re.findall(r'class="glb">([^<]*)<', text)
+    assert base64.b64decode(data) == glb.read_bytes()
+    assert not re.search(r"https?:|//[a-z]+\.|@import|src=|href=|fetch\(|XMLHttp", text)
+    assert "default-src 'none'" in text
+
+
+def test_titles_are_text(crank, tmp_path):
+    run = of(tmp_path, "title=</script><b>&")
+    text = section(run)
+    assert "<b>" not in text and "&lt;b&gt;" in text
+
+
+in_browser = pytest.mark.skipif(CHROMIUM is None, reason="needs chromium, to play the page in it")
+SECTION = "document.querySelector('section.animation')"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    with browser(tmp_path_factory.mktemp("browser")) as found:
+        yield found
+
+
+@in_browser
+@pytest.mark.parametrize("name", ["crank", "bar"])
+def test_plays(name, page, request, tmp_path):
+    """By itself it draws frame after frame, the time goes on, and nobody is asked for anything."""
+    run = request.getfixturevalue(name)
+    (_, file), _ = write(run.path, tmp_path)
+    page.open(file)
+    told = page.until(f"{SECTION}?.dataset.drawn > 5", f"({{...{SECTION}.dataset}})")
+    assert told["state"] == "ready"
+    assert 0.0 < float(told["time"]) <= run.time[-1]
+    assert page.requests == [file.as_uri()]
+
+
+@in_browser
+def test_slider(page, crank, tmp_path):
+    """It stops the motion and goes to a time; the clock tells it."""
+    (_, file), _ = write(crank.path, tmp_path)
+    page.open(file)
+    page.until(f"{SECTION}?.dataset.drawn > 0", "0")
+    slider = "document.querySelector('.time')"
+    page.value(f"{slider}.value = 0.5, {slider}.dispatchEvent(new Event('input'))")
+    clock = page.until(
+        f"Math.abs({SECTION}.dataset.time - 0.0015) < 1e-9",
+        "document.querySelector('.clock').value",
+    )
+    assert clock == "t = 0.0015000 s"
+    assert page.until("true", "document.querySelector('.play').textContent") == "Play"
+
+
+@in_browser
+def test_drawn(page, crank, tmp_path):
+    """Bodies and arrow are seen in their colours, elsewhere at another time."""
+    from PIL import Image
+
+    (_, file), _ = write(crank.path, tmp_path)
+    force = np.linalg.norm(crank.channel("B.force"), axis=1)
+    pictures = []
+    for t in (crank.time[0], crank.time[int(force.argmax())]):
+        page.open(file, f"#t={t:.9g}")
+        box = page.until(
+            f"{SECTION}?.dataset.drawn > 0",
+            "(b => [b.left, b.top, b.right, b.bottom])(document.querySelector('canvas')"
+            ".getBoundingClientRect())",
+        )
+        page.picture(tmp_path / "page.png")
+        with Image.open(tmp_path / "page.png") as image:
+            pictures.append(np.asarray(image.convert("RGB").crop(box), dtype=float))
+    for picture in pictures:  # crank, rod, slider
+        assert all((hues(picture) == hue).sum() > 40 for hue in ("blue", "orange", "green"))
+    assert (hues(pictures[0]) != hues(pictures[1])).sum() > 500
+    assert (hues(pictures[1]) == "red").sum() > 40 > (hues(pictures[0]) == "red").sum()
+
+
+@in_browser
+def test_without_webgl(crank, tmp_path):
+    """A sentence stands where nothing can be drawn."""
+    (_, file), _ = write(crank.path, tmp_path)
+    with browser(tmp_path, "--disable-3d-apis") as page:
+        page.open(file)
+        seen = page.until(f"{SECTION}?.dataset.state == 'no WebGL'",
+                          "document.querySelector('.missing').checkVisibility()")  # fmt: skip
+    assert seen
+
+
+def hues(picture):
+    """The colour of every pixel in a word; none where it is grey."""
+    r, g, b = picture[..., 0], picture[..., 1], picture[..., 2]
+    spread = picture.max(axis=-1) - picture.min(axis=-1)
+    names = ["grey", "blue", "green", "red", "orange"]
+    conditions = [spread < 60, b > np.maximum(r, g) + 20, g > r + 20, (r > 1.6 * g) & (b > 0.7 * g),
+                  r > b + 60]  # fmt: skip
+    return np.select([*conditions], names, default="grey")

@@ -1,0 +1,61 @@
+"""A run as an animation: a .glb for other programs, and a page that plays it by itself."""
+
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+from trsim.store.read import Run
+
+
+class Film(NamedTuple):
+    """An animation, and what is to be said of it."""
+
+    glb: bytes
+    title: str
+    start: float  # s, of its first frame
+    scale: float  # m/N of the arrows; 0 without contact forces
+    magnified: float  # clearances
+    open: float  # m, by which ideal joints come apart in it
+    colours: dict[str, str]  # body -> colour
+    warnings: tuple[str, ...]
+
+
+def film(run: Run, magnified: float = 1.0) -> Film:
+    """The animation of a run.  Raises UsageError where there is nothing to show."""
+    from trsim.report.animation.shoot import shoot
+
+    return shoot(run, magnified)
+
+
+def section(run: Run, magnified: float = 1.0) -> str:
+    """The animation as a part of a page, HTML."""
+    from trsim.report.animation.page import part
+
+    return part(film(run, magnified))
+
+
+def write(
+    path: str | PathLike, folder: str | PathLike, magnified: float = 1.0
+) -> tuple[list[Path], tuple[str, ...]]:
+    """Write animation.glb and animation.html of a result file into a folder.
+
+    magnified: how many times its size the clearance is drawn.  Returns the files and the warnings.
+    Raises FileError, UsageError.
+    """
+    from trsim.report.animation.page import whole
+    from trsim.store.read import read
+    from trsim.store.target import Kind, fresh, told
+
+    made = film(read(path), magnified)
+    contents = {"animation.glb": made.glb, "animation.html": whole(made).encode()}
+    kinds = {
+        "animation.glb": Kind("animation of trsim", lambda start: b'"generator":"trsim"' in start),
+        "animation.html": Kind("page of trsim", lambda start: b'content="trsim"' in start),
+    }
+    written = []
+    for name, data in contents.items():
+        target = Path(folder) / name
+        with told(target), fresh(target, kinds[name], [path]) as unfinished:
+            unfinished.write_bytes(data)
+        written.append(target)
+    return written, made.warnings

@@ -1,0 +1,132 @@
+"""Links, slides, and flexible bars as solids."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from trsim.report.animation import solids, turns
+from trsim.report.animation.drawing import Array, Drawing, Joint
+from trsim.report.animation.motion import Motion
+from trsim.report.animation.solids import Mesh
+from trsim.report.animation.things import SUPPORT, Look, Thing, colours, ends, origin, pose
+
+LONG = 4.5  # half widths of a link: what a rail is longer than the stroke, at each end
+SEGMENTS = 48  # of a bar that is shown: more nodes than that are passed over
+
+
+def links(moved: Motion, look: Look) -> Iterator[Thing]:
+    """Every rigid body as a solid between its joints."""
+    drawn = moved.drawn
+    colour = colours(drawn)
+    for body in drawn.bodies:
+        mesh = solids.joined(*shapes(drawn, look, body))
+        yield Thing(body, ((mesh, colour[body]),), *pose(moved, body))
+
+
+def shapes(drawn: Drawing, look: Look, body: str) -> list[Mesh]:
+    """The solids of a body about its centre of mass; what slides has a block where it does."""
+    centre = drawn.bodies[body]
+    parts = [link(a - centre, b - centre, look.radius, look)
+             for a, b in skeleton(drawn, look, body)]  # fmt: skip
+    parts += [block(joint.at - centre, joint.axis, look) for joint in slides(drawn, body)]
+    parts = parts or [block(np.zeros(3), np.array([1.0, 0.0, 0.0]), look)]
+    return [lifted(part, look, body) for part in parts]
+
+
+def slides(drawn: Drawing, body: str) -> list[Joint]:
+    return [joint for joint in drawn.joints if joint.type == "prismatic" and joint.j == body]
+
+
+def skeleton(drawn: Drawing, look: Look, body: str) -> list[tuple[Array, Array]]:
+    """Where the links of a body begin and end, as drawn.
+
+    Two joints: one between them; more: from their middle to each; one: to the centre of mass.
+    """
+    points = ends(drawn, body)
+    if len(points) == 2:
+        return [(points[0], points[1])]
+    if len(points) == 1:
+        centre = drawn.bodies[body]
+        far = np.linalg.norm(points[0] - centre) > look.radius or not slides(drawn, body)
+        return [(points[0], centre)] if far else []
+    return [(np.mean(points, axis=0), point) for point in points]
+
+
+def arm(drawn: Drawing, look: Look, body: str, at: Array) -> list[Mesh]:
+    """A thin link from a body to a point outside it, about its centre of mass; none inside."""
+    centre, feet = drawn.bodies[body], [drawn.bodies[body]]
+    for a, b in skeleton(drawn, look, body):
+        along = b - a
+        share = float((at - a) @ along) / max(float(along @ along), 1e-300)
+        feet.append(a + min(max(share, 0.0), 1.0) * along)
+    foot = min(feet, key=lambda p: float(np.linalg.norm(p - at)))
+    if np.linalg.norm(at - foot) < look.radius:
+        return []
+    return [lifted(link(foot - centre, at - centre, 0.5 * look.radius, look), look, body)]
+
+
+def link(a: Array, b: Array, radius: float, look: Look) -> Mesh:
+    """A plate in a flat mechanism, a round rod in space."""
+    if look.normal is None:
+        return solids.rod(a, b, 0.6 * radius)
+    return solids.bar(a, b, radius, look.thick, look.normal)
+
+
+def block(at: Array, axis: Array, look: Look) -> Mesh:
+    """A block that is long along the axis it slides on."""
+    if look.normal is None:
+        axes = np.roll(solids.frame(axis), 1, axis=0)
+        return solids.box(look.radius * np.array([5.0, 2.4, 2.4]), axes).moved(at)
+    axes = np.stack([axis, np.cross(look.normal, axis), look.normal])
+    sides = np.array([6.0 * look.radius, 3.2 * look.radius, look.thick])
+    return solids.box(sides, axes).moved(at)
+
+
+def lifted(mesh: Mesh, look: Look, body: str) -> Mesh:
+    """The mesh in the layer of its body."""
+    return mesh if look.normal is None else mesh.moved(look.height(body) * look.normal)
+
+
+def rails(moved: Motion, look: Look) -> Iterator[Thing]:
+    """What slides run on: a bar on the first body, as long as the stroke."""
+    for joint in moved.drawn.joints:
+        if joint.type != "prismatic":
+            continue
+        d = moved.point(joint.j, joint.at) - moved.point(joint.i, joint.at)
+        stroke = np.sum(d * turns.turned(moved.turn(joint.i), joint.axis), axis=1)
+        low, high = stroke.min() - LONG * look.radius, stroke.max() + LONG * look.radius
+        at = joint.at - origin(moved.drawn, joint.i) + 0.5 * (low + high) * joint.axis
+        if look.normal is None:
+            axes, wide, deep = np.roll(solids.frame(joint.axis), 1, axis=0), 0.7, 0.7
+        else:
+            axes = np.stack([joint.axis, np.cross(look.normal, joint.axis), look.normal])
+            at, wide, deep = at - look.pitch * look.normal, 1.3, 0.9
+        sides = np.array([high - low, wide * look.radius, deep * look.radius])
+        mesh = solids.box(sides, axes).moved(at)
+        yield Thing(f"{joint.name} rail", ((mesh, SUPPORT),), *pose(moved, joint.i))
+
+
+def bars(moved: Motion, look: Look) -> Iterator[Thing]:
+    """Flexible bars: a tube from node to node, and a ball at each that hides the kink.
+
+    Tubes are as thick as the bar where that goes with the links: never thicker than these.
+    """
+    colour = colours(moved.drawn)
+    tube, ball = solids.tube(), solids.ball(1.0)
+    for name, nodes in moved.nodes.items():
+        radius = np.clip(0.5 * moved.drawn.thickness[name], 0.45 * look.radius, look.radius)
+        lift = 0.0 if look.normal is None else look.height(name) * look.normal
+        count = nodes.shape[1]
+        shown = np.unique(np.linspace(0, count - 1, min(count, SEGMENTS + 1)).astype(int))
+        size = np.full((1, 3), radius)
+        x = np.array([1.0, 0.0, 0.0])
+        for k, (a, b) in enumerate(pairwise(shown)):
+            place, along = nodes[:, a] + lift, nodes[:, b] - nodes[:, a]
+            length = np.linalg.norm(along, axis=1)
+            scale = np.stack([length, *[np.full(len(length), radius)] * 2], axis=1)
+            turn = turns.steady(turns.shortest(x, along))
+            yield Thing(f"{name} {k}", ((tube, colour[name]),), place, turn, scale)
+            yield Thing(f"{name} node {a}", ((ball, colour[name]),), place, turns.STILL[None], size)
+        last = nodes[:, -1] + lift
+        yield Thing(f"{name} end", ((ball, colour[name]),), last, turns.STILL[None], size)

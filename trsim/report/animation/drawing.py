@@ -1,0 +1,109 @@
+"""A mechanism as drawn: where its bodies, bars and joints are before anything moves."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.members import members
+from trsim.elements.joint import perpendicular
+from trsim.spec.load import loads
+from trsim.store.read import Run
+
+Array = NDArray[np.float64]
+
+GROUND = "ground"
+IDEAL_POINTS = ("revolute", "spherical", "fixed")  # joints that hold two points together
+STIFF = ("prismatic", "fixed")  # joints that let no body turn against the other
+
+
+class Joint(NamedTuple):
+    """A joint between bodies i and j."""
+
+    name: str
+    type: str
+    i: str
+    j: str
+    at: Array  # (3) m, as drawn
+    axes: Array  # (3, 3) rows u, w, a; a is the axis of the hinge or of the slide
+    clearance: float  # m
+    bearing: float  # m, radius of the bearing; 0 where there is none
+    comes_apart: bool  # an event may release it
+
+    @property
+    def axis(self) -> Array:
+        return self.axes[2]
+
+
+class Drawing(NamedTuple):
+    """Bodies, bars and joints of a run, SI units, world axes."""
+
+    scenario: Any
+    bodies: dict[str, Array]  # rigid ones -> centre of mass (3)
+    angles: dict[str, float]  # rad, of their axes about z
+    bars: dict[str, Array]  # flexible ones -> nodes (k, 3)
+    thickness: dict[str, float]  # m, of the bars
+    joints: tuple[Joint, ...]
+    planar: bool
+    lost: tuple[str, ...]  # bodies whose place was not recorded
+
+    def has(self, body: str) -> bool:
+        return body == GROUND or body in self.bodies or body in self.bars
+
+    @property
+    def size(self) -> float:
+        """Diagonal of the box around all joints and centres of mass, m; never zero."""
+        places = [*self.bodies.values(), *(joint.at for joint in self.joints)]
+        places += [node for nodes in self.bars.values() for node in nodes]
+        return float(np.linalg.norm(np.ptp(np.array(places), axis=0))) or 1.0
+
+
+def drawing(run: Run) -> Drawing:
+    """What a run was made of; bodies without a recorded place are left out and named."""
+    scenario = loads(run.text("scenario/resolved"))
+    bodies, angles, bars, thickness, lost = {}, {}, {}, {}, []
+    for name, spec in members(scenario).items():
+        flexible = spec.type == "ancf_cable"
+        nodes = spec.elements + 1 if flexible else 0
+        channels = [f"{name}.node{k}.position" for k in range(nodes)] or [f"{name}.position"]
+        if any(channel not in run.units for channel in channels):
+            lost.append(name)
+        elif flexible:
+            part = np.linspace(0.0, 1.0, nodes)[:, None]
+            bars[name] = (1.0 - part) * np.array(spec.start) + part * np.array(spec.end)
+            thickness[name] = spec.thickness
+        else:
+            bodies[name], angles[name] = np.array(spec.at), spec.angle
+    planar = bool(run.group("mechanism").get("planar", False))
+    found = Drawing(scenario, bodies, angles, bars, thickness, (), planar, tuple(lost))
+    return found._replace(joints=joints(found))
+
+
+def joints(drawn: Drawing) -> tuple[Joint, ...]:
+    """The joints between bodies that are drawn."""
+    scenario = drawn.scenario
+    released = {name for event in scenario.events.values() for name in event.do.release}
+    found = []
+    for name, spec in scenario.joints.items():
+        i, j = spec.bodies
+        if not (drawn.has(i) and drawn.has(j)):
+            continue
+        at = getattr(spec, "at", None)
+        if at is None:  # a slide: at the centre of the second body
+            at = drawn.bodies[j] if j in drawn.bodies else middle(drawn, j)
+        axes = np.array(perpendicular(getattr(spec, "axis", (0.0, 0.0, 1.0))))
+        clearance = getattr(spec, "clearance", 0.0)
+        # a clearance of 0 is an ideal joint, also where it was written down
+        kind = "revolute" if spec.type == "clearance_joint" and clearance == 0.0 else spec.type
+        radius = 0.0
+        if kind == "clearance_joint":
+            law = spec.contact or next(iter(scenario.contact_laws))
+            radius = scenario.contact_laws[law].bearing_radius or 0.0
+        found.append(Joint(name, kind, i, j, np.array(at), axes, clearance, radius,
+                           name in released))  # fmt: skip
+    return tuple(found)
+
+
+def middle(drawn: Drawing, body: str) -> Array:
+    """Halfway along a bar; the origin of the ground."""
+    return drawn.bars[body].mean(axis=0) if body in drawn.bars else np.zeros(3)

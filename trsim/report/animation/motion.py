@@ -1,0 +1,173 @@
+"""Where all bodies of a run are, frame by frame, from its result file alone.
+
+Attitudes are those recorded, or the integral of the recorded angular velocities from the start
+(start.py).  How far ideal joints come apart in what was found is measured: that is the error of
+the integral, for the centres of mass are recorded.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.errors import UsageError
+from trsim.report.animation import turns
+from trsim.report.animation.drawing import GROUND, IDEAL_POINTS, Array, Drawing, Joint, drawing
+from trsim.report.animation.start import attitudes
+from trsim.store.read import Run
+
+FRAMES = 600
+OPEN = 0.01  # of the size of the mechanism: joints that are seen to be apart
+FASTEST = 1.6  # rad between two frames: more looks slower than it is
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Poses at the frames; `turns` are those since the bodies were drawn, world axes."""
+
+    drawn: Drawing
+    rows: NDArray[np.int64]  # (n) of the result file
+    time: Array  # (n) s
+    places: Mapping[str, Array]  # rigid body -> centre of mass (n, 3)
+    turns: Mapping[str, Array]  # rigid body -> (n, 4)
+    nodes: Mapping[str, Array]  # bar -> (n, nodes, 3)
+    plays: Mapping[str, Array] = field(default_factory=dict)  # joint -> journal from bearing (n, 3)
+    open: float = 0.0  # m: what ideal joints come apart by
+    warnings: tuple[str, ...] = ()
+
+    def turn(self, body: str) -> Array:
+        """(n, 4), or (1, 4) of the ground and of bars."""
+        return self.turns.get(body, turns.STILL[None])
+
+    def point(self, body: str, at: Array) -> Array:
+        """Places of a point of a body as drawn, (n, 3), or (1, 3) of the ground."""
+        if body == GROUND:
+            return np.asarray(at)[None]
+        if body in self.nodes:
+            away = np.linalg.norm(self.drawn.bars[body] - at, axis=1)
+            return self.nodes[body][:, int(away.argmin())]
+        return self.places[body] + turns.turned(self.turns[body], at - self.drawn.bodies[body])
+
+
+def motion(run: Run) -> Motion:
+    """The frames of a run.  Raises UsageError where nothing can be drawn."""
+    drawn = drawing(run)
+    if run.rows == 0 or not (drawn.bodies or drawn.bars):
+        what = "it has no rows" if run.rows == 0 else "it holds the position of no body"
+        raise UsageError(f"{run.path}: nothing to animate: {what}", "Record positions of bodies.")
+    time = run.time
+    rows = frames(time)
+    places = {name: run.channel(f"{name}.position") for name in drawn.bodies}
+    nodes = {name: np.stack([run.channel(f"{name}.node{k}.position")[rows]
+                             for k in range(len(line))], axis=1)
+             for name, line in drawn.bars.items()}  # fmt: skip
+    recorded = eccentricities(run, drawn)
+    first = {name: place[0] for name, place in places.items()}
+    start, left = attitudes(drawn, first, {name: play[0] for name, play in recorded.items()},
+                            {name: line[0] for name, line in nodes.items()})  # fmt: skip
+    found, unknown = attitudes_over_time(run, drawn, time, start)
+    moved = Motion(
+        drawn,
+        rows,
+        time[rows],
+        {name: place[rows] for name, place in places.items()},
+        {name: q[rows] for name, q in found.items()},
+        nodes,
+    )
+    plays = {joint.name: play(moved, joint, recorded) for joint in drawn.joints
+             if joint.type == "clearance_joint"}  # fmt: skip
+    moved = replace(moved, plays=plays)
+    apart = opened(moved)
+    return replace(moved, open=apart, warnings=warnings(moved, left, apart, unknown))
+
+
+def frames(time: Array) -> NDArray[np.int64]:
+    """Rows of the frames: at most FRAMES of them, evenly in time, the first and the last."""
+    if len(time) <= FRAMES:
+        return np.arange(len(time))
+    wanted = np.linspace(time[0], time[-1], FRAMES)
+    after = np.clip(np.searchsorted(time, wanted), 1, len(time) - 1)
+    before = wanted - time[after - 1] < time[after] - wanted
+    return np.unique(np.where(before, after - 1, after)).astype(np.int64)
+
+
+def eccentricities(run: Run, drawn: Drawing) -> dict[str, Array]:
+    """Journal from bearing, (rows, 3), in world axes as the bearing was drawn."""
+    found = {}
+    for joint in drawn.joints:
+        names = [f"{joint.name}.eccentricity_{c}" for c in "xy"]
+        if joint.type == "clearance_joint" and all(name in run.units for name in names):
+            x, y = (run.channel(name)[:, None] for name in names)
+            found[joint.name] = x * joint.axes[0] + y * joint.axes[1]
+    return found
+
+
+def attitudes_over_time(
+    run: Run, drawn: Drawing, time: Array, start: Mapping[str, Array]
+) -> tuple[dict[str, Array], tuple[str, ...]]:
+    """Turns of the rigid bodies since they were drawn, (rows, 4); those that nothing tells."""
+    found, unknown = {}, []
+    for name in drawn.bodies:
+        if f"{name}.rotation" in run.units:
+            half = 0.5 * drawn.angles[name]
+            back = np.array([0.0, 0.0, -np.sin(half), np.cos(half)])
+            recorded = turns.of_matrices(run.channel(f"{name}.rotation").reshape(-1, 3, 3))
+            found[name] = turns.product(recorded, np.broadcast_to(back, recorded.shape))
+            continue
+        if f"{name}.angular_velocity" not in run.units:
+            found[name] = np.tile(start[name], (len(time), 1))
+            unknown.append(name)
+            continue
+        omega = run.channel(f"{name}.angular_velocity")
+        rate = f"{name}.angular_acceleration"
+        alpha = run.channel(rate) if rate in run.units else None
+        steps = turns.steps(time, omega, alpha)
+        found[name] = turns.composed(np.concatenate([start[name][None], steps]))
+    return found, tuple(unknown)
+
+
+def play(moved: Motion, joint: Joint, recorded: Mapping[str, Array]) -> Array:
+    """Journal from bearing, (n, 3): as recorded, which is exact, or from the poses."""
+    if joint.name in recorded:
+        return turns.turned(moved.turn(joint.i), recorded[joint.name][moved.rows])
+    return moved.point(joint.j, joint.at) - moved.point(joint.i, joint.at)
+
+
+def opened(moved: Motion) -> float:
+    """The largest distance between what ideal joints hold together, m."""
+    largest = 0.0
+    for joint in moved.drawn.joints:
+        if joint.comes_apart:
+            continue
+        d = moved.point(joint.j, joint.at) - moved.point(joint.i, joint.at)
+        if joint.type == "clearance_joint":
+            d = d - moved.plays[joint.name]
+        elif joint.type not in IDEAL_POINTS:
+            axis = turns.turned(moved.turn(joint.i), joint.axis)
+            d = d - np.sum(d * axis, axis=-1, keepdims=True) * axis
+        largest = max(largest, float(np.linalg.norm(d, axis=1).max()))
+    return largest
+
+
+def warnings(moved: Motion, left: float, apart: float, unknown: tuple[str, ...]) -> tuple[str, ...]:
+    """What a viewer has to know, in words."""
+    told, size = [], moved.drawn.size
+    if moved.drawn.lost:
+        names = ", ".join(moved.drawn.lost)
+        told.append(f"not drawn, for their positions were not recorded: {names}")
+    if unknown:
+        told.append(f"drawn without turning, for that was not recorded: {', '.join(unknown)}")
+    if left > OPEN * size:
+        told.append(f"the attitudes at the start were not found: joints are {left:.2g} m apart")
+    elif apart > OPEN * size:
+        told.append(
+            f"attitudes are integrals of recorded velocities, and joints come {apart:.2g} m "
+            "apart: record more often, or `*.rotation`"
+        )
+    fast = {name: float(2.0 * np.arccos(np.clip(np.abs(np.sum(q[1:] * q[:-1], axis=1)), 0, 1))
+                        .max(initial=0.0)) for name, q in moved.turns.items()}  # fmt: skip
+    quick = [name for name, angle in fast.items() if angle > FASTEST]
+    if quick:
+        told.append(f"turning too fast for the frames to show: {', '.join(quick)}")
+    return tuple(told)

@@ -1,0 +1,136 @@
+"""Attitudes at the start of a run, from the places of the bodies and what their joints demand.
+
+Places are recorded, attitudes may not be, and a run need not start as drawn.  First guess: from
+body to body, the smallest turn that brings its joint's point to where it must be.  Then
+Gauss-Newton on
+
+    x_i + Q_i (s_i + e) - x_j - Q_j s_j = 0         points, e the recorded eccentricity
+    Q_i a - Q_j a = 0                               axes of hinges; all axes of slides and welds
+
+with Q the turn of a body since it was drawn; what the joints leave free stays as drawn.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from trsim.report.animation.drawing import GROUND, STIFF, Array, Drawing, Joint
+from trsim.report.animation.turns import STILL, of_vector, product, shortest, turned
+
+CLOSED = 1e-9  # residual, of the size of the mechanism
+MOST = 30  # steps
+FREE = 1e-8  # singular values, of the largest: directions the joints leave free
+
+
+def attitudes(drawn: Drawing, places: Mapping[str, Array], plays: Mapping[str, Array],
+              nodes: Mapping[str, Array]) -> tuple[dict[str, Array], float]:  # fmt: skip
+    """The turn of every rigid body since it was drawn, (4), and the residual left, m.
+
+    places: centres of mass (3); plays: eccentricity of clearance joints, world axes as drawn (3);
+    nodes: those of bars (k, 3).
+    """
+    fixed = {GROUND: STILL}
+    for name, line in nodes.items():
+        chord = drawn.bars[name][-1] - drawn.bars[name][0]
+        fixed[name] = shortest(chord, line[-1] - line[0])
+    problem = Problem(drawn, places, plays, nodes)
+    still = {name: STILL for name in drawn.bodies}
+    if np.max(np.abs(problem.residual(fixed | still)), initial=0.0) < CLOSED:
+        return still, 0.0
+    found, left = problem.solved(fixed, problem.passed_on(fixed))
+    return found, left * drawn.size
+
+
+class Problem:
+    """The equations of one mechanism; lengths in units of its size."""
+
+    def __init__(self, drawn: Drawing, places: Mapping[str, Array], plays: Mapping[str, Array],
+                 nodes: Mapping[str, Array]) -> None:  # fmt: skip
+        self.drawn, self.places, self.plays, self.nodes = drawn, places, plays, nodes
+        self.names = list(drawn.bodies)
+
+    def arm(self, body: str, at: Array) -> Array:
+        """From the centre of mass to a point as drawn; none on bars and the ground."""
+        return at - self.drawn.bodies[body] if body in self.drawn.bodies else np.zeros(3)
+
+    def base(self, body: str, at: Array) -> Array:
+        """Where that arm begins at the start."""
+        if body in self.drawn.bodies:
+            return self.places[body]
+        if body in self.drawn.bars:
+            away = np.linalg.norm(self.drawn.bars[body] - at, axis=1)
+            return self.nodes[body][int(away.argmin())]
+        return at
+
+    def equations(self, joint: Joint) -> list[tuple[Array, Array, Array]]:
+        """Vectors c, a, b of c + Q_i a - Q_j b = 0."""
+        found = []
+        if joint.type != "prismatic":
+            play = self.plays.get(joint.name, np.zeros(3))
+            gap = self.base(joint.i, joint.at) - self.base(joint.j, joint.at)
+            one = gap, self.arm(joint.i, joint.at) + play, self.arm(joint.j, joint.at)
+            found.append(tuple(v / self.drawn.size for v in one))
+        if joint.type in STIFF:
+            found += [(np.zeros(3), axis, axis) for axis in joint.axes]
+        elif joint.type != "spherical":
+            found.append((np.zeros(3), joint.axis, joint.axis))
+        return found  # type: ignore[return-value]
+
+    def residual(self, turn: Mapping[str, Array]) -> Array:
+        parts = [c + turned(turn[joint.i], a) - turned(turn[joint.j], b)
+                 for joint in self.drawn.joints for c, a, b in self.equations(joint)]  # fmt: skip
+        return np.concatenate(parts) if parts else np.zeros(0)
+
+    def jacobian(self, turn: Mapping[str, Array]) -> Array:
+        """Derivatives against small turns of the bodies, (equations, 3 bodies)."""
+        rows = []
+        for joint in self.drawn.joints:
+            for _, a, b in self.equations(joint):
+                row = np.zeros((3, 3 * len(self.names)))
+                for body, v, sign in ((joint.i, a, -1.0), (joint.j, b, 1.0)):
+                    if body in self.drawn.bodies:
+                        k = 3 * self.names.index(body)
+                        row[:, k : k + 3] = sign * skew(turned(turn[body], v))
+                rows.append(row)
+        return np.concatenate(rows)
+
+    def passed_on(self, fixed: Mapping[str, Array]) -> dict[str, Array]:
+        """First guesses, from bodies that are known to those they are joined to."""
+        known = dict(fixed)
+        while True:
+            reached = [(joint, a, b) for joint in self.drawn.joints
+                       for a, b in ((joint.i, joint.j), (joint.j, joint.i))
+                       if a in known and b not in known]  # fmt: skip
+            if not reached:
+                return {name: known.get(name, STILL) for name in self.names}
+            # slides and welds tell the most, and of points the one farthest from the centre
+            joint, a, b = max(reached, key=lambda one: (one[0].type in STIFF, self.reach(*one)))
+            if joint.type in STIFF or self.reach(joint, a, b) < CLOSED:
+                known[b] = known[a]
+                continue
+            arm = self.arm(b, joint.at)
+            there = self.base(a, joint.at) + turned(known[a], self.arm(a, joint.at))
+            known[b] = shortest(arm, there - self.places[b])
+
+    def reach(self, joint: Joint, _: str, body: str) -> float:
+        return float(np.linalg.norm(self.arm(body, joint.at))) / self.drawn.size
+
+    def solved(self, fixed: Mapping[str, Array], turn: dict[str, Array]
+               ) -> tuple[dict[str, Array], float]:  # fmt: skip
+        """The turns after Gauss-Newton, and the largest residual."""
+        for _ in range(MOST):
+            phi = self.residual({**fixed, **turn})
+            if np.max(np.abs(phi)) < CLOSED:
+                break
+            J = self.jacobian({**fixed, **turn})
+            d = np.linalg.lstsq(J, -phi, rcond=FREE)[0].reshape(-1, 3)
+            turn = {name: product(of_vector(d[k]), turn[name])
+                    for k, name in enumerate(self.names)}  # fmt: skip
+            if np.abs(d).max() < 1e-14:
+                break
+        return turn, float(np.abs(self.residual({**fixed, **turn})).max())
+
+
+def skew(v: Array) -> Array:
+    """The matrix of v x."""
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])

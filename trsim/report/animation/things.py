@@ -1,0 +1,118 @@
+"""What is shown: solids with a colour that move as one, and the sizes and layers they are drawn in.
+
+A flat mechanism, whose hinges are all parallel, is drawn as one would build it: every link is a
+plate in a layer of its own, so that links pass each other, and the ground is behind them all.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from trsim.report.animation.drawing import GROUND, Array, Drawing
+from trsim.report.animation.motion import Motion
+from trsim.report.animation.solids import Mesh
+from trsim.report.animation.turns import STILL
+
+BODIES = ("#2f7fc1", "#e07b28", "#2a9d78", "#b9679b", "#d9a514", "#56b4e9", "#8c6bb1")
+PIN, SUPPORT, STOP, JOURNAL, FORCE = "#3a3f47", "#a3a9b2", "#6b7079", "#d9a441", "#d1102f"
+WIDE, SHORT, THIN = 0.022, 0.3, 0.006  # half widths of links: of the size, of the shortest link
+
+
+class Thing(NamedTuple):
+    """Meshes with their colours, and their pose over the frames: (n, .) or (1, .) where fixed."""
+
+    name: str
+    pieces: tuple[tuple[Mesh, str], ...]
+    place: Array  # (n, 3) m
+    turn: Array  # (n, 4)
+    scale: Array | None = None  # (n, 3)
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Look:
+    """Sizes of everything, m."""
+
+    radius: float  # half width of a link
+    thick: float  # of a plate
+    normal: Array | None  # of the plane of a flat mechanism
+    layers: dict[str, int]
+
+    @property
+    def pitch(self) -> float:
+        """From layer to layer."""
+        return 1.2 * self.thick
+
+    def height(self, body: str) -> float:
+        """Of the layer of a body above the plane."""
+        return self.layers.get(body, 0) * self.pitch
+
+    def front(self, one: str, other: str) -> float:
+        """Height of what stands in front of two bodies."""
+        return max(self.height(one), self.height(other)) + self.pitch
+
+
+def look(drawn: Drawing) -> Look:
+    """Sizes from the extent of the mechanism and from its links."""
+    size, lengths = drawn.size, []
+    for body in (*drawn.bodies, *drawn.bars):
+        points = ends(drawn, body)
+        lengths += [float(np.linalg.norm(p - q)) for p in points for q in points]
+    shortest = min((length for length in lengths if length > 1e-3 * size), default=size)
+    radius = max(min(WIDE * size, SHORT * shortest), THIN * size)
+    normal = plane(drawn)
+    return Look(radius, 0.9 * radius, normal, {} if normal is None else layers(drawn))
+
+
+def ends(drawn: Drawing, body: str) -> list[Array]:
+    """Different points of a body that joints hold, as drawn."""
+    found: list[Array] = []
+    for joint in drawn.joints:
+        near = [p for p in found if np.linalg.norm(p - joint.at) < 1e-6 * drawn.size]
+        if body in (joint.i, joint.j) and joint.type != "prismatic" and not near:
+            found.append(joint.at)
+    return found
+
+
+def plane(drawn: Drawing) -> Array | None:
+    """The normal of a flat mechanism; None of one in space."""
+    if any(joint.type == "spherical" for joint in drawn.joints):
+        return None
+    hinges = [joint.axis for joint in drawn.joints if joint.type in ("revolute", "clearance_joint")]
+    normal = hinges[0] if hinges else np.array([0.0, 0.0, 1.0])
+    normal = normal * np.sign(normal[np.abs(normal).argmax()])  # towards who looks
+    slides = [joint.axis for joint in drawn.joints if joint.type == "prismatic"]
+    heights = [joint.at @ normal for joint in drawn.joints]
+    level = np.ptp(heights) < 1e-6 * drawn.size if heights else True
+    flat = all(abs(abs(axis @ normal) - 1.0) < 1e-9 for axis in hinges) and level
+    flat = flat and all(abs(axis @ normal) < 1e-9 for axis in slides)
+    return normal if flat and (hinges or drawn.planar) else None
+
+
+def layers(drawn: Drawing) -> dict[str, int]:
+    """A layer for each body: the lowest that no body hinged to it has."""
+    found: dict[str, int] = {}
+    for body in (*drawn.bars, *drawn.bodies):
+        pairs = [(joint.i, joint.j) for joint in drawn.joints if body in (joint.i, joint.j)]
+        taken = {found.get(name) for pair in pairs for name in pair}
+        found[body] = next(k for k in range(len(found) + 1) if k not in taken)
+    return found
+
+
+def colours(drawn: Drawing) -> dict[str, str]:
+    """Body -> colour."""
+    names = [name for name in drawn.scenario.bodies if drawn.has(name)]
+    return {GROUND: SUPPORT} | {name: BODIES[k % len(BODIES)] for k, name in enumerate(names)}
+
+
+def pose(moved: Motion, body: str) -> tuple[Array, Array]:
+    """Place and turn of a body, for meshes about its centre of mass as drawn."""
+    if body in moved.places:
+        return moved.places[body], moved.turns[body]
+    return np.zeros((1, 3)), STILL[None]
+
+
+def origin(drawn: Drawing, body: str) -> Array:
+    """What meshes of a body are about, as drawn."""
+    return drawn.bodies.get(body, np.zeros(3))
