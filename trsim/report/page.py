@@ -96,7 +96,13 @@ class Table(NamedTuple):
     lines: Sequence[Line]
 
 
-Block = Text | Points | Picture | Table
+class Markup(NamedTuple):
+    """HTML of another part of the report, as it is: an animation."""
+
+    html: str
+
+
+Block = Text | Points | Picture | Table | Markup
 
 
 class Section(NamedTuple):
@@ -141,6 +147,8 @@ def markup(block: Block) -> str:
         return "<ul>\n" + "".join(f"<li>{escaped(t)}</li>\n" for t in block.texts) + "</ul>\n"
     if isinstance(block, Picture):
         return picture(block)
+    if isinstance(block, Markup):
+        return block.html
     head = "".join(f"<th>{escaped(text)}</th>" for text in block.head)
     lines = "".join(line(one) for one in block.lines)
     return f'<div class="wide"><table>\n<tr>{head}</tr>\n{lines}</table></div>\n'

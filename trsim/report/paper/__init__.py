@@ -6,7 +6,7 @@ from itertools import groupby
 from pathlib import Path
 
 from trsim.errors import FileError
-from trsim.report.page import Block, Picture, Points, Section, Text
+from trsim.report.page import Block, Markup, Picture, Points, Section, Text
 from trsim.report.page import write as write_page
 from trsim.report.paper import content, tables
 from trsim.report.paper.claims import CLAIMS
@@ -26,6 +26,8 @@ SECTIONS = {
     "7.1.4": "Section 7.1.4: flexible rod",
     "8": "Section 8: conclusions beyond section 7",
 }
+
+MOVING, MAGNIFIED = "ab_03", 30.0  # the case of the animation, and how large its play is drawn
 
 
 def paper(
@@ -87,10 +89,22 @@ def sections(
     return [
         *found,
         Section("figures", "Figures", pictures),
+        *moving(runs),
         Section("assumptions", "What is assumed", [Points(content.ASSUMPTIONS)]),
         Section("contradictions", "Where the study contradicts itself or mechanics",
                 [Points(content.CONTRADICTIONS)]),
     ]  # fmt: skip
+
+
+def moving(runs: Runs) -> list[Section]:
+    """The mechanism in motion, where its bodies were recorded."""
+    if not (runs.has(MOVING) and "door.position" in runs.stated(MOVING).run.units):
+        return []
+    from trsim.report.animation import section
+
+    member = runs.stated(MOVING)
+    told = Text(f"{runs.named(member)}, its play drawn {MAGNIFIED:g} times; drag to turn.")
+    return [Section("animation", "Animation", [told, Markup(section(member.run, MAGNIFIED))])]
 
 
 def anchor(title: str) -> str:
