@@ -8,6 +8,7 @@ from trsim.errors import ScenarioError
 from .. import small
 from ..mechanisms import torsion_pendulum
 from ..runs import built, run
+from ..small import SLIDER_CRANK
 
 HALF = np.pi / 20.0  # s: half a period of the torsion pendulum
 METHODS = {
@@ -261,3 +262,13 @@ def test_touches_need_located_events():
     text = CRANK + "poincare: {p: {at_onset: B, plot: [stroke, stroke]}}\n"
     with pytest.raises(ScenarioError, match="not located"):
         built(text, "solver.method=rk4", "solver.step=1us")
+
+
+def test_a_bearing_without_play_has_no_section():
+    """A sweep over the clearance may begin with an ideal joint."""
+    from trsim.solve.skipped import skipped
+
+    done = run(SLIDER_CRANK, "joints.B.clearance=0", "solver.end=0.1 ms")
+    assert done.mechanism.sections == ()
+    told = skipped(done.scenario, done.mechanism)
+    assert "section 'journal': the clearance of B is 0" in told

@@ -1,5 +1,6 @@
 """Poincare sections packed: the surface of each, and the output columns it shows."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -21,11 +22,14 @@ def sections(
 ) -> tuple[Model, tuple[Section, ...]]:
     """The model with its sections filled in, and their names.
 
-    Raises ScenarioError for channels and contacts that do not exist.
+    Sections in a bearing whose clearance is 0 are left out: a sweep may well begin with an ideal
+    joint.  Raises ScenarioError for channels and contacts that do not exist.
     """
     there = {column.name: column for column in columns}
     rows, at, found = [], [], []
     for name, spec in scenario.poincare.items():
+        if without_play(scenario, (spec.when, spec.at_onset, *spec.plot)):
+            continue
         x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
         kind, when = surface(scenario, name, spec, instances, there)
         rows.append((kind, when, DIRECTIONS[spec.crosses], x, y))
@@ -39,6 +43,15 @@ def sections(
         section_at=np.array(at, float).reshape(-1, 2),
     )
     return filled, tuple(found)
+
+
+def without_play(scenario: Any, channels: Iterable[str | None]) -> str:
+    """The joint with a clearance of 0 that one of some channels is about; "" if there is none."""
+    for channel in channels:
+        name = (channel or "").split(".")[0]
+        if getattr(scenario.joints.get(name), "clearance", None) == 0.0:
+            return name
+    return ""
 
 
 def surface(

@@ -5,6 +5,7 @@ from typing import Any
 
 from trsim.assemble.layout import all_names
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.sections import without_play
 
 UNREAD = ("phases", "cases", "sweep")  # keys a scenario may have that `run` does not act on
 SHOWN = 4  # names of a list
@@ -12,7 +13,7 @@ SHOWN = 4  # names of a list
 
 def skipped(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """Sentences "what: why"."""
-    parts = (_rows, _contacts, _stabilisation, _start, _channels, _keys)
+    parts = (_rows, _contacts, _stabilisation, _start, _channels, _points, _keys)
     return tuple(text for part in parts for text in part(scenario, mechanism))
 
 
@@ -75,6 +76,16 @@ def _channels(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     missing = [name for name in every if name not in wanted]
     if missing:
         yield f"{len(missing)} of {len(every)} channels: `output.channels` does not ask for them"
+
+
+def _points(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """Sections and portraits in a bearing that has no play here."""
+    for name, spec in scenario.poincare.items():
+        if joint := without_play(scenario, (spec.when, spec.at_onset, *spec.plot)):
+            yield f"section '{name}': the clearance of {joint} is 0"
+    for name, spec in scenario.phase_portraits.items():
+        if joint := without_play(scenario, (spec.x, spec.y)):
+            yield f"phase portrait '{name}': the clearance of {joint} is 0"
 
 
 def _keys(scenario: Any, mechanism: Mechanism) -> Iterator[str]:

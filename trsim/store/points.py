@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.sections import without_play
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.store.grow import Field, Growing
@@ -84,6 +85,7 @@ def plan(scenario: Any, mechanism: Any) -> Plan:
         Portrait(name, _found(spec.x, sizes, ("phase_portraits", name, "x")),
                  _found(spec.y, sizes, ("phase_portraits", name, "y")))
         for name, spec in (getattr(scenario, "phase_portraits", None) or {}).items()
+        if not without_play(scenario, (spec.x, spec.y))
     ]  # fmt: skip
     needed = frozenset(split(channel, sizes)[0] for p in portraits for channel in p[1:])
     portraits = portraits or _default(scenario, mechanism)
