@@ -18,7 +18,7 @@ from tests.sizes import size
 from trsim.errors import FileError, UsageError
 from trsim.store.read import verify
 from trsim.sweep import local
-from trsim.sweep.go import WHOLE, Shard, engine, go, needs
+from trsim.sweep.go import WHOLE, Shard, differing, engine, go, needs
 from trsim.sweep.ledger import entries
 from trsim.sweep.plan import plan
 from trsim.sweep.study import study
@@ -170,6 +170,44 @@ def test_one_parent(copy, scenario):
     from trsim.store.lock import writing
 
     with writing(copy / "ledger.jsonl"), pytest.raises(FileError, match="being written"):
+        made(scenario, copy)
+
+
+def test_shards_of_another_plan(scenario, tmp_path):
+    """While one shard works no other plan comes into its folder, nor a sweep of all."""
+    folder = tmp_path / "sweep"
+    planned, other = plan(str(scenario), SETS, "one"), plan(str(scenario), FINE, "one")
+    running = go(planned, folder, "one", lambda tasks: local.run(tasks, 1), Shard(1, 2))
+    next(running)
+    for wrong in (go(other, folder, "one", None, Shard(2, 2)), go(planned, folder, "one", None)):
+        with pytest.raises(FileError, match="being written"):
+            next(wrong)
+    beside = go(planned, folder, "one", lambda tasks: (), Shard(2, 2))
+    assert next(beside) == 2
+    beside.close()
+    running.close()
+    assert differing(other, folder) == 4
+    assert differing(planned, folder) == 0
+
+
+def test_a_study_whose_ledger_is_lost(copy):
+    before = contents(copy)
+    (copy / "ledger.jsonl").unlink()
+    assert contents(copy) == before
+
+
+def test_damaged_plans(copy):
+    for text in ('{"format": "trsim sweep", "version": 1}', '{"format": "trsim sweep"}', "[]"):
+        (copy / "plan.json").write_text(text)
+        with pytest.raises(FileError, match=r"damaged|not the plan"):
+            study(copy)
+    with pytest.raises(FileError, match="not the folder of a sweep"):
+        study(copy / "plan.json")
+
+
+def test_a_foreign_index(copy, scenario):
+    (copy / "index.csv").write_text("mine\n")
+    with pytest.raises(UsageError, match=r"index\.csv exists and is not"):
         made(scenario, copy)
 
 

@@ -222,3 +222,27 @@ def test_wrong_cases_are_named(planned):
 def test_a_wrong_key_of_a_named_case(planned):
     with pytest.raises(ScenarioError, match="nothing named 'C'"):
         planned("joints.C.clearance=[1 mm]", more="cases: {a: {}}\n")
+
+
+def test_a_fixed_number_does_not_vary(planned):
+    more = f"sweep: {{{B}: [1 mm, 2 mm], {MU}: [0.8, 0.9]}}\n"
+    found = planned(f"{B}=3 mm", more=more)
+    assert rows(found, MU) == [(0.8,), (0.9,)]
+    assert {case.data["joints"]["B"]["clearance"] for case in found.cases} == {"3 mm"}
+    whole = planned("joints.B={type: revolute, bodies: [rod, slider], at: [0.17, 0]}", more=more)
+    assert whole.keys == (MU,)
+    with pytest.raises(UsageError, match="says nothing to vary"):
+        planned(f"{B}=3 mm", f"{MU}=0.8", more=more)
+
+
+def test_a_list_for_a_key_that_is_one(planned):
+    with pytest.raises(ScenarioError, match="which is a list itself"):
+        planned("bodies.rod.at=[0.11, 0]")
+    found = planned("bodies.rod.at=[[0.11, 0], [0.12, 0]]")
+    assert [case.values["bodies.rod.at"] for case in found.cases] == [[0.11, 0], [0.12, 0]]
+
+
+def test_misspelt_settings(planned):
+    with pytest.raises(ScenarioError, match="unknown key 'methd'") as error:
+        planned(more="sweep: {methd: grid, solver.end: [1 ms]}\n")
+    assert "Did you mean 'method'?" in error.value.hint

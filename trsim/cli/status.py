@@ -14,7 +14,7 @@ SHOWN = 20  # failed cases that are told one by one
 @framed
 def command(answer: Answer, folder: str) -> None:
     """Say how far the sweep in FOLDER is: cases by status, those that failed, the time left."""
-    from trsim.sweep.ledger import counts
+    from trsim.sweep.ledger import counts, in_a_line
     from trsim.sweep.study import MISSING, study
 
     found = study(Path(folder))
@@ -35,6 +35,6 @@ def command(answer: Answer, folder: str) -> None:
     if told.get(MISSING) and mean:
         answer.put(f"missing: about {told[MISSING] * mean:.0f} s of one processor")
     for case in bad[:SHOWN]:
-        answer.put(f"{case.name}: {case.status}: {' '.join(case.reason.split())[:300]}")
+        answer.put(f"{case.name}: {case.status}: {in_a_line(case.reason)[:300]}")
     if len(bad) > SHOWN:
         answer.put(f"... and {len(bad) - SHOWN} more, in {Path(folder) / 'index.csv'}")

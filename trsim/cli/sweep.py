@@ -182,8 +182,8 @@ def ran(
     """Run what is needed, and tell how it went."""
     from trsim.sweep import local
     from trsim.sweep.folder import strays
-    from trsim.sweep.go import go
-    from trsim.sweep.ledger import counts
+    from trsim.sweep.go import differing, go
+    from trsim.sweep.ledger import counts, in_a_line
 
     count = jobs or local.processors()
 
@@ -194,6 +194,9 @@ def ran(
             return by_dask(tasks, address, limits)
         return local.run(tasks, count, limits, warming(answer, planned))
 
+    if part.n > 1 and (other := differing(planned, folder)):
+        text = f"{other} cases of the plan that is there are not in this one: give all shards"
+        answer.warn(str(folder), f"{text} the same scenario and the same --set")
     going = go(planned, folder, identity, run, part)
     show, began = None, time.monotonic()
     try:
@@ -203,7 +206,7 @@ def ran(
                 continue
             answer.data["ran"] += 1
             if one.failed:
-                answer.say(f"{one.case}: {one.status}: {' '.join(one.reason.split())[:300]}")
+                answer.say(f"{one.case}: {one.status}: {in_a_line(one.reason)[:300]}")
             assert show is not None  # noqa: S101
             show.update(one)
     except KeyboardInterrupt:
@@ -221,14 +224,16 @@ def ran(
     answer.put(str(folder / "index.csv"))
     said = ", ".join(f"{n} {status}" for status, n in answer.data["counts"].items())
     wall = time.monotonic() - began
-    answer.say(f"{folder}: {len(mine)} cases, {answer.data['ran']} run in {wall:.1f} s: {said}")
+    answer.say(
+        f"{folder}: {len(mine)} cases, {answer.data['ran']} run in {wall:.1f} s: {said or 'none'}"
+    )
     if left := strays(folder, set(found.named)):
         more = f" and {len(left) - 3} more" if len(left) > 3 else ""
         answer.say(f"note: of an earlier plan: {', '.join(left[:3])}{more} in {folder / 'cases'}")
     bad = [case for case in mine if case.failed]
     if bad:
         listed = "\n  ".join(
-            f"{c.name}: {c.status}: {' '.join(c.reason.split())[:200]}" for c in bad[:SHOWN]
+            f"{c.name}: {c.status}: {in_a_line(c.reason)[:200]}" for c in bad[:SHOWN]
         )
         more = f"\n  ... and {len(bad) - SHOWN} more" if len(bad) > SHOWN else ""
         what = f"{len(bad)} of {len(mine)} cases failed"

@@ -15,7 +15,7 @@ import math
 import re
 from typing import Any, NamedTuple
 
-from trsim.errors import ScenarioError, described, known
+from trsim.errors import ScenarioError, closest, described, known
 from trsim.units import quantity
 from trsim.units import unit as dimension
 
@@ -67,14 +67,10 @@ def sweep(data: Any) -> Sweep:
         raise ScenarioError(
             f"unknown method {described(method)}", known(method, METHODS), ("method",)
         )
-    axes = tuple(axis(key, value) for key, value in data.items() if key not in SETTINGS)
     for key in data:
-        if (
-            key not in SETTINGS
-            and "." not in key
-            and key in ("sample", "seeds", "methods", "cases")
-        ):
+        if key not in SETTINGS and "." not in key and closest(key, SETTINGS):
             raise ScenarioError(f"unknown key {described(key)}", known(key, SETTINGS), (key,))
+    axes = tuple(axis(key, value) for key, value in data.items() if key not in SETTINGS)
     drawn = [one.key for one in axes if one.drawn]
     if method not in SAMPLED:
         if drawn:

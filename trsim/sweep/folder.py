@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError, UsageError
-from trsim.store.target import Kind, fresh, headed
-from trsim.sweep.ledger import Entry
+from trsim.store.target import Kind, fresh, headed, replaceable
+from trsim.sweep.ledger import Entry, in_a_line
 from trsim.sweep.plan import CASE, Plan, value
 
 FORMAT, VERSION = "trsim sweep", 1
 INDEX = headed("name", "status", "reason")
 PLAN = Kind("plan of a sweep", lambda start: start.startswith(b'{"format": "trsim sweep"'))
+NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
 LAST = ("attempts", "wall_time", "content_sha256")
 
 
@@ -26,6 +27,8 @@ def see_usable(folder: Path) -> None:
     if folder.is_dir() and not (folder / "plan.json").exists() and any(folder.iterdir()):
         what = f"{folder} is a folder of other files, not of a sweep"
         raise UsageError(what, "Name another one with -o.")
+    for name, kind in (("index.csv", INDEX), ("plan.json", PLAN)):
+        replaceable(folder / name, kind)
 
 
 def write_plan(folder: Path, plan: Plan, engine: str) -> None:
@@ -52,7 +55,7 @@ def read_plan(folder: Path) -> dict[str, Any]:
     path = folder / "plan.json"
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         what = "no such folder" if not folder.exists() else "not the folder of a sweep"
         hint = "`trsim sweep SCENARIO -o FOLDER` makes one."
         raise FileError(f"{folder}: {what}", hint, file=str(folder)) from None
@@ -62,9 +65,12 @@ def read_plan(folder: Path) -> dict[str, Any]:
         raise FileError(f"{path}: {reason}", hint, file=str(path)) from None
     if not isinstance(told, dict) or told.get("format") != FORMAT:
         raise FileError(f"{path} is not the plan of a sweep", file=str(path))
-    if told["version"] > VERSION:
+    if told.get("version", 0) > VERSION:
         what = f"{path} has version {told['version']}; this trsim reads up to {VERSION}"
         raise FileError(what, "Use a newer trsim.", file=str(path))
+    if lost := NEEDED - set(told):
+        what = f"{path} is damaged: it has no {', '.join(sorted(lost))}"
+        raise FileError(what, "The same `trsim sweep` writes it again.", file=str(path))
     return told
 
 
@@ -90,7 +96,7 @@ def write_index(folder: Path, told: Mapping[str, Any], entries: Mapping[str, Ent
             continue
         numbers = [_cell(entry.summary.get(column)) for column in columns]
         last = [entry.attempts, _cell(round(entry.wall, 3)), entry.content]
-        reason = " ".join(entry.reason.split())
+        reason = in_a_line(entry.reason)
         table.writerow([case["name"], entry.status, reason, *values, *numbers, *last])
     path = folder / "index.csv"
     with fresh(path, INDEX) as unfinished:

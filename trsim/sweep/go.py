@@ -5,8 +5,9 @@ from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from trsim.errors import FileError
 from trsim.store.checkpoint import sources
-from trsim.store.lock import writing
+from trsim.store.lock import refuse_if_written, writing
 from trsim.store.target import make, told
 from trsim.sweep.folder import read_plan, see_usable, write_index, write_plan
 from trsim.sweep.job import task
@@ -56,7 +57,9 @@ def go(
     see_usable(folder)
     with told(folder):
         make(folder / "cases")
-    with writing(folder / f"ledger{shard.name and '-'}{shard.name}.jsonl"):
+    mine = folder / f"ledger{shard.name and '-'}{shard.name}.jsonl"
+    with writing(mine):
+        see_alone(plan, folder, shard, mine)
         write_plan(folder, plan, engine)
         with told(folder):
             ledger = Ledger(folder, shard.name)
@@ -65,6 +68,28 @@ def go(
         finally:
             ledger.close()
             write_index(folder, read_plan(folder), entries(folder))
+
+
+def see_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
+    """See that nobody works in the folder but shards of the same plan.
+
+    Raises FileError where a process does.
+    """
+    same = shard.n > 1 and differing(plan, folder) == 0
+    for lock in folder.glob("ledger*.jsonl.lock"):
+        other = lock.with_name(lock.name.removesuffix(".lock"))
+        if other != mine and (not same or other.name == "ledger.jsonl"):
+            refuse_if_written(other)
+
+
+def differing(plan: Plan, folder: Path) -> int:
+    """How many cases of the plan in a folder are not in this one; 0 without a plan."""
+    try:
+        there = read_plan(folder)["cases"]
+    except FileError:
+        return 0
+    known = {(case.name, case.digest) for case in plan.cases}
+    return sum((one["name"], one["digest"]) not in known for one in there)
 
 
 def _gone_on(

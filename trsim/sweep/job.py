@@ -22,6 +22,7 @@ def prepare() -> None:
     import_module("trsim.assemble.assemble")
     import_module("trsim.solve.simulate")
     import_module("trsim.store.hdf5")
+    import_module("llvmlite.binding")
 
 
 def run(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:

@@ -85,6 +85,12 @@ def stamp(file: Path) -> tuple[int, int]:
     return told.st_size, told.st_mtime_ns
 
 
+def in_a_line(reason: str) -> str:
+    """A message of several lines as one, without its excerpt."""
+    lines = [line for line in reason.splitlines() if not line.startswith("    ")]
+    return "  ".join(" ".join(line.split()) for line in lines if line.strip())
+
+
 def counts(statuses: Iterable[str]) -> dict[str, int]:
     """How many cases there are of each status."""
     found: dict[str, int] = {}

@@ -26,7 +26,7 @@ def need(case: Case, entry: Entry | None, folder: Path, engine: str) -> Need:
     if entry is None:
         if not file.exists():
             return Need("not run yet", None)
-        entry = adopted(case, file, engine)
+        entry = adopted(case.name, case.digest, file, engine)
         return Need("", entry) if entry else Need("its file is of another case", None)
     if entry.digest != case.digest:
         if entry.engine != engine:
@@ -42,18 +42,18 @@ def need(case: Case, entry: Entry | None, folder: Path, engine: str) -> Need:
     if (size, changed) == (entry.size, entry.changed):
         return Need("", entry)
     # copied, perhaps: what it says of itself decides
-    found = adopted(case, file, engine)
+    found = adopted(case.name, case.digest, file, engine)
     if found and found.content == entry.content:
         return Need("", entry._replace(size=size, changed=changed))
     return Need("its file was changed", entry)
 
 
-def adopted(case: Case, file: Path, engine: str) -> Entry | None:
+def adopted(name: str, digest: str, file: Path, engine: str) -> Entry | None:
     """The entry of a complete file that is of this case, whose line was lost; None of any other."""
     try:
         with h5py.File(file, "r") as inner:
             provenance = inner["provenance"].attrs
-            if provenance.get(DIGEST) != case.digest or "content_sha256" not in inner.attrs:
+            if provenance.get(DIGEST) != digest or "content_sha256" not in inner.attrs:
                 return None
             told = {name: inner.attrs[name] for name in ("status", "reason", "content_sha256")}
             summary = _summary(inner)
@@ -62,8 +62,8 @@ def adopted(case: Case, file: Path, engine: str) -> Entry | None:
         return None
     size, changed = stamp(file)
     return Entry(
-        case.name,
-        case.digest,
+        name,
+        digest,
         engine,
         status=str(told["status"]),
         reason=str(told["reason"]),

@@ -95,7 +95,7 @@ def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
     for name, inner in named_cases(tree).items():
         for keys, new, at, key_place in fixed:
             put(inner, keys, new, at, key_place)
-        named[name] = _with_axes(inner, text, axes)
+        named[name] = _with_axes(inner, text, axes, [".".join(keys) for keys, *_ in fixed])
     first = next(iter(named.values()))
     if "" in named and not first.sweep.axes:
         hint = (
@@ -142,10 +142,25 @@ def _sorted(sets: Iterable[str]) -> tuple[list[Any], list[tuple[str, Any, Place,
     return fixed, axes
 
 
-def _with_axes(tree: Tree, text: str, axes: list[tuple[str, Any, Place, Place]]) -> _Named:
-    """A named case with the axes of its file and of the command line, which come last."""
+def _with_axes(
+    tree: Tree, text: str, axes: list[tuple[str, Any, Place, Place]], fixed: list[str]
+) -> _Named:
+    """A named case with the axes of its file and of the command line, which come last.
+
+    fixed: keys with a value on the command line; they do not vary, nor does what lies below them.
+    """
     given = tree.data.get("sweep")
     block = dict(given) if isinstance(given, dict) else {}
+    for key in list(block):
+        if any(f"{key}.".startswith(f"{one}.") for one in fixed):
+            del block[key]
+    for key, value, at, _ in axes:
+        if isinstance(_at(tree.data, key), list) and not any(isinstance(v, list) for v in value):
+            hint = f"For one value write --set {key}=[[...]]."
+            raise ScenarioError("a list of values varies the key, which is a list itself", hint,
+                                tuple(key.split(".")), at)  # fmt: skip
+    if not set(block) - set(vary.SETTINGS) and not axes and isinstance(given, dict) and fixed:
+        return _Named(tree, text, vary.Sweep(), {})
     places = {key: value for key, value, *_ in axes}
     where: dict[str, tuple[Place, Place]] = {key: rest for key, _, *rest in axes}  # type: ignore[misc]
     block.update(places)
@@ -168,6 +183,16 @@ def _with_axes(tree: Tree, text: str, axes: list[tuple[str, Any, Place, Place]])
     return _Named(tree, text, sweep, settings)
 
 
+def _at(data: Any, key: str) -> Any:
+    """What stands at a dotted path; None where nothing does."""
+    for word in key.split("."):
+        if isinstance(data, list) and word.isdigit() and int(word) < len(data):
+            data = data[int(word)]
+        else:
+            data = data.get(word) if isinstance(data, dict) else None
+    return data
+
+
 # --- cases -----------------------------------------------------------------------------------
 
 
@@ -179,7 +204,9 @@ def _cases(name: str, one: _Named, digests: "_Digests") -> Iterator[Case]:
         found = points(one.sweep) if one.sweep.axes else [Point("", {})]
     except ScenarioError as error:
         path = ("sweep", *error.path)
-        raise ScenarioError(error.what, error.hint, path, one.tree.place(path)) from None
+        told = [each.at for each in one.settings.values() if each.at.file == "--set"]
+        place = told[0] if told else one.tree.place(path)
+        raise ScenarioError(error.what, error.hint, path, place) from None
     if found and one.sweep.axes:  # the rules of --set, which know what is wrong with a key
         values = {
             key: found[0].values[one.settings[key].axis.same_as or key] for key in one.settings

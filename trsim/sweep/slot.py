@@ -12,11 +12,10 @@ import tempfile
 import threading
 from typing import Any, NamedTuple
 
-from trsim.sweep.worker import JOB
+from trsim.sweep.worker import JOB, MEMORY
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 TAIL = 400  # characters of what a dead process said
-MEMORY = "the memory allowed for a case may have been used up"
 
 
 class Limits(NamedTuple):

@@ -8,6 +8,7 @@ from trsim.errors import FileError
 from trsim.store.read import Run, read
 from trsim.sweep.folder import read_plan
 from trsim.sweep.ledger import FAILED, Entry, entries, stamp
+from trsim.sweep.needed import adopted
 from trsim.sweep.plan import named_file
 
 MISSING = "missing"
@@ -71,6 +72,8 @@ def study(folder: str | Path) -> Study:
         entry, file = known.get(one["name"]), named_file(folder, one["name"])
         if entry is not None and entry.digest != one["digest"]:
             entry = None
+        if entry is None and file.is_file():  # its line was lost; the file says what it is
+            entry = adopted(one["name"], one["digest"], file, told["engine"])
         status = entry.status if entry else MISSING
         if entry and entry.content and not stamp(file)[0]:
             status = MISSING

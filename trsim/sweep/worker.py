@@ -16,6 +16,7 @@ from typing import Any
 from trsim.store.disk import end_with_parent
 
 JOB = "trsim.sweep.job:run"
+MEMORY = "the memory allowed for a case may have been used up"
 
 
 def limited(more: int) -> None:
@@ -52,8 +53,9 @@ def main(memory: int, job: str) -> None:
             reply({"status": "over memory", "reason": "the memory allowed for a case was used up"})
             os._exit(0)  # whatever was at work may be half done
         except Exception as error:
-            told = f"error in trsim: {type(error).__name__}: {error}"
-            ended = {"status": "crashed", "reason": told.splitlines()[0][:500], "final": True}
+            told = f"error in trsim: {type(error).__name__}: {error}".splitlines()[0][:500]
+            told += f"; {MEMORY}" if memory else ""
+            ended = {"status": "crashed", "reason": told, "final": True}
         reply(ended)
 
 
