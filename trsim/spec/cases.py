@@ -12,7 +12,7 @@ import re
 from copy import deepcopy
 
 from trsim.errors import ScenarioError, described
-from trsim.spec.expand import merge, part
+from trsim.spec.merge import merge, part
 from trsim.spec.text import Tree
 
 NAME = r"[A-Za-z0-9][A-Za-z0-9_.+-]{0,59}"  # it is part of a file name

@@ -7,7 +7,7 @@ from typing import Any
 
 from trsim.errors import ScenarioError, described, known
 from trsim.expressions import FUNCTIONS
-from trsim.spec.expand import NAMED
+from trsim.spec.merge import NAMED
 from trsim.spec.vary import sweep
 
 RESERVED = {

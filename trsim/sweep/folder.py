@@ -11,7 +11,8 @@ from typing import Any
 from trsim.errors import FileError, UsageError
 from trsim.store.target import Kind, fresh, headed, replaceable
 from trsim.sweep.ledger import Entry, in_a_line
-from trsim.sweep.plan import CASE, Plan, value
+from trsim.sweep.plan import CASE, Plan
+from trsim.sweep.values import value
 
 FORMAT, VERSION = "trsim sweep", 1
 INDEX = headed("name", "status", "reason")

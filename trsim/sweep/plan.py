@@ -1,9 +1,6 @@
 """The plan of a sweep: its cases, each with a name, its data and a digest of all it depends on.
 
-    digest = sha256(sources of trsim that make results; the data of the case, keys in order)
-
-Comments, spaces and the order of keys do not count.  Cases share the pieces of data that they do
-not change, so a piece is read, checked and hashed once.
+Cases share the pieces of data that they do not change, so a piece is read, checked and hashed once.
 """
 
 import hashlib
@@ -16,12 +13,14 @@ from typing import Any, NamedTuple
 from trsim.errors import Place, ScenarioError, TrsimError, UsageError
 from trsim.spec import vary
 from trsim.spec.cases import cases as named_cases
-from trsim.spec.expand import SWEPT, expand, put, setting
-from trsim.spec.load import of_tree, unit_of, valid
+from trsim.spec.expand import SWEPT, expand
+from trsim.spec.load import of_tree, valid
+from trsim.spec.merge import put, setting
 from trsim.spec.scenario import Memory, Scenario
 from trsim.spec.text import Tree
+from trsim.sweep.digest import Digests
 from trsim.sweep.points import Point, points
-from trsim.units import quantity, si
+from trsim.sweep.values import units, written
 
 CASE = "case"  # the key of the named cases
 LONGEST = 80  # letters of a name
@@ -102,15 +101,15 @@ def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
             "Write `sweep: {joints.A.clearance: [0.1 mm, 0.3 mm]}` in it, or give --set KEY=[...]."
         )
         raise UsageError(f"{path} says nothing to vary", hint)
-    digests = _Digests(engine)
+    digests = Digests(engine)
     found = [case for name, one in named.items() for case in _cases(name, one, digests)]
     keys = tuple(dict.fromkeys(key for case in found for key in case.values))
-    written = _written(found, keys)
-    units = _units(named, found, keys, written)
+    shown = written(found, keys)
+    si = units(named, found, keys, shown)
     if "" not in named:
-        keys, units = (CASE, *keys), {CASE: "-", **units}
+        keys, si = (CASE, *keys), {CASE: "-", **si}
     sweep = first.sweep
-    return Plan(path, text, tree.files, keys, units, written, sweep.method, sweep.samples,
+    return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples,
                 sweep.seed, tuple(_distinct(found)), named)  # fmt: skip
 
 
@@ -196,7 +195,7 @@ def _at(data: Any, key: str) -> Any:
 # --- cases -----------------------------------------------------------------------------------
 
 
-def _cases(name: str, one: _Named, digests: "_Digests") -> Iterator[Case]:
+def _cases(name: str, one: _Named, digests: "Digests") -> Iterator[Case]:
     base = {key: value for key, value in one.tree.data.items() if key not in SWEPT}
     own = [axis.key for axis in one.sweep.axes if not axis.same_as]
     short = _short(own)
@@ -270,88 +269,6 @@ def _distinct(found: list[Case]) -> Iterator[Case]:
     for case in found:
         n = seen[case.name.casefold()] = seen.get(case.name.casefold(), 0) + 1
         yield case if n == 1 else case._replace(name=f"{case.name}~{n}")
-
-
-class _Digests:
-    """Of the data of cases; a piece that cases share is hashed once."""
-
-    def __init__(self, engine: str) -> None:
-        self.engine = engine
-        self.known: dict[int, tuple[Any, str]] = {}
-
-    def of(self, data: dict[str, Any]) -> str:
-        parts = [f"{key}:{self.section(data[key])}" for key in sorted(data)]
-        return hashlib.sha256("\n".join([self.engine, *parts]).encode()).hexdigest()
-
-    def section(self, piece: Any) -> str:
-        if not isinstance(piece, dict):
-            return json.dumps(piece, sort_keys=True)
-        if id(piece) not in self.known:
-            inner = {key: self.section(value) for key, value in piece.items()}
-            text = json.dumps(inner, sort_keys=True)
-            self.known[id(piece)] = piece, hashlib.sha256(text.encode()).hexdigest()
-        return self.known[id(piece)][1]
-
-
-# --- units -----------------------------------------------------------------------------------
-
-
-def value(written: Any) -> float | str:
-    """A value as a number in SI, where it is one."""
-    if isinstance(written, bool) or written is None:
-        return json.dumps(written)
-    if isinstance(written, int | float):
-        return float(written)
-    try:
-        found = quantity(written) if isinstance(written, str) else None
-    except TrsimError:
-        found = None
-    if found:
-        return found[0]
-    return written if isinstance(written, str) else json.dumps(written)
-
-
-def _written(found: list[Case], keys: tuple[str, ...]) -> dict[str, str]:
-    """The unit of the first value of each key that has one."""
-    units = {}
-    for key in keys:
-        value = next(case.values[key] for case in found if key in case.values)
-        one = quantity(value) if isinstance(value, str) else None
-        if one and one[1]:
-            units[key] = one[1]
-    return units
-
-
-def _units(
-    named: dict[str, _Named], found: list[Case], keys: tuple[str, ...], written: dict[str, str]
-) -> dict[str, str]:
-    """The SI unit of each key: of its values, or of the field it is."""
-    units = {}
-    for key in keys:
-        if key in written:
-            units[key] = si(written[key])
-            continue
-        case = next(case for case in found if key in case.values)
-        try:
-            units[key] = _of_field(named[case.case].scenario(case), key)
-        except TrsimError:  # found, and told, when the cases are checked
-            units[key] = "-"
-    return units
-
-
-def _of_field(scenario: Any, key: str) -> str:
-    inner, words = scenario, key.split(".")
-    for k, word in enumerate(words):
-        if isinstance(inner, dict):
-            inner = inner.get(word)
-            continue
-        unit = unit_of(type(inner), word) if hasattr(type(inner), "model_fields") else None
-        if unit and not isinstance(getattr(inner, word, None), dict):
-            return unit.units[0]
-        if k == len(words) - 1:
-            break
-        inner = getattr(inner, word, None)
-    return "-"
 
 
 def named_file(folder: Path, name: str) -> Path:
