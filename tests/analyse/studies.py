@@ -14,6 +14,10 @@ class Case:
     status: str = "done"
     reason: str = ""
 
+    @property
+    def there(self):
+        return self.file.is_file()
+
     def run(self):
         return read(self.file)
 

@@ -42,7 +42,8 @@ def study(tmp_path_factory):
 def test_diagram_of_a_study(study):
     found = diagram(study, "journal:y")
     assert (found.axis, found.channel, found.unit) == ("y", "B.eccentricity_y", "m")
-    assert (found.over, found.missing) == ("joints.B.clearance", ("failed",))
+    assert (found.over, dict(found.why)) == ("joints.B.clearance", {})
+    assert found.places["failed"] == 0.2e-3
     for case, one in zip(study.cases, found.cases, strict=False):
         points = case.run().poincare["journal"]
         np.testing.assert_array_equal(one.y, points.y)
@@ -72,3 +73,26 @@ def test_the_first_key_that_is_a_number_is_drawn_over(study):
     assert swept(two, "case") == "case"
     [one] = diagram(two, "journal").cases
     assert one.series == (("case", "rigid"),)
+
+
+def test_a_case_without_the_key_the_section_or_its_file_is_left_out(study, tmp_path):
+    good, other = study.cases[:2]
+    text = small.SLIDER_CRANK.partition("poincare:")[0]
+    small.run(tmp_path / "plain.h5", text=text)
+    (tmp_path / "cut.h5").write_bytes(good.file.read_bytes()[:3000])
+    plain, cut = (
+        Case(n, {"joints.B.clearance": 1e-3}, tmp_path / f"{n}.h5") for n in ("plain", "cut")
+    )
+    rigid = Case("rigid", {}, other.file)
+    found = diagram(Study((rigid, plain, cut, good)), "journal")
+    assert [one.case for one in found.cases] == ["wide"]
+    assert list(found.places) == ["plain", "cut", "wide"]
+    assert found.why["plain"] == "no section 'journal'"
+    assert found.why["cut"].startswith("is truncated")
+    with pytest.raises(UsageError, match="no section 'journal'"):
+        diagram(Study((cut, plain)), "journal")
+    with pytest.raises(UsageError, match="no case that varies joints"):
+        diagram(Study((rigid, plain)), "journal:x")
+    over = Study((rigid, good), ("case", "joints.B.clearance"))
+    with pytest.raises(UsageError, match="no row lies in"):
+        diagram(over, "journal@1 s..")

@@ -90,12 +90,23 @@ def test_named_cases_are_designs_of_their_own():
         for c in one.cases
     )
     both = Study(cases, ("case", "a"), {}, "sobol", 8)
-    assert factors(both) == ("a",)
+    assert factors(both, both.cases) == ("a",)
     assert {name: len(found) for name, found in named(both).items()} == {
         "rigid": 24,
         "flexible": 24,
     }
     assert places(both, named(both)["flexible"]).shape == (3, 8)
+
+
+def test_named_cases_sample_keys_of_their_own():
+    rng = np.random.default_rng(1)
+    fast = of_blocks(rng.random((8, 2)), rng.random((8, 2)), ("a", "b"), 8).cases
+    slow = of_blocks(rng.random((8, 1)), rng.random((8, 1)), ("a",), 8).cases
+    study = Study((*fast, *slow), ("case", "a", "b"), {}, "sobol", 8)
+    assert (factors(study, fast), factors(study, slow)) == (("a", "b"), ("a",))
+    assert (places(study, fast).shape, places(study, slow).shape) == ((4, 8), (3, 8))
+    with pytest.raises(UsageError, match="nothing is sampled"):
+        places(study, [Case("rigid", {"case": "rigid"}, fast[0].file)])
 
 
 def test_what_is_no_design_is_refused(study):

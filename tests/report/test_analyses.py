@@ -2,14 +2,17 @@
 
 import csv
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from tests import small
 from tests.analyse.studies import Case, Study
 from tests.report.test_figures import drawn
 from trsim.analyse.bifurcation import diagram
 from trsim.analyse.outputs import scalar
+from trsim.analyse.sobol import Index, Indices
 from trsim.errors import FileError, UsageError
 from trsim.report import analysed, exponents, spectra, studies
 from trsim.report.asked import Asked, file_name, words
@@ -17,7 +20,7 @@ from trsim.report.compared import chosen
 from trsim.report.diagrams import bifurcated
 from trsim.report.display import compared
 from trsim.report.keys import in_words, readable
-from trsim.report.sobol import sobol
+from trsim.report.sobol import indexed
 from trsim.report.style import look
 from trsim.store.read import read
 
@@ -129,7 +132,7 @@ def test_numbers_of_a_study(study, tmp_path):
     assert table[-1]["peak:B.contact_force [N]"] == "nan"
     expected = scalar(study.cases[1].run(), "peak:B.contact_force")[0]
     assert float(table[1]["peak:B.contact_force [N]"]) == expected
-    assert found.lines == ["1 of 5 cases have no result and are left out"]
+    assert found.lines == ["1 of 5 cases did not end well and are left out: lost"]
 
 
 def test_a_curve_for_each_family_in_order_of_the_swept_key(study):
@@ -172,7 +175,7 @@ def test_bifurcation(study, tmp_path):
     table = rows(tmp_path / "bifurcation_journal_y.csv")
     points = sum(len(c.run().poincare["journal"].x) for c in study.cases[:4])
     assert len(table) == points
-    assert found.lines[-1] == "without a result: lost"
+    assert found.lines[-1] == "1 of 5 cases did not end well and are left out: lost"
     with look():
         upper, lower = bifurcated(studies.shown(study), diagram(study, "journal:y")).axes
     assert (upper.get_ylabel(), lower.get_xlabel()) == (
@@ -191,7 +194,7 @@ def test_sobol(paths, tmp_path):
         Case(c.name, c.values, paths[int(c.values["joints.B.clearance"] > 0.5)]) for c in plan.cases
     )
     plan = Study(cases, plan.keys, plan.units, "sobol", 8)
-    found = sobol(plan, "peak:B.contact_force", tmp_path)
+    found = studies.draw(plan, Asked(sobol=("peak:B.contact_force",)), [], tmp_path)
     assert named(found) == {f"sobol_peak_B_contact_force.{kind}" for kind in ("png", "csv")}
     table = rows(tmp_path / "sobol_peak_B_contact_force.csv")
     f_a, f_b, f_ab = ((block[:, 0] > 0.5).astype(float) for block in (a, b, b))
@@ -199,6 +202,120 @@ def test_sobol(paths, tmp_path):
     assert float(table[0]["total"]) == pytest.approx(total)
     assert float(table[1]["total"]) == 0.0
     assert found.lines[1].endswith("(ought to have none: noise)")
+
+
+def test_the_title_of_sobol_indices_is_in_display_units(study):
+    one = studies.shown(study)
+    index = Index("a.b", *np.full(6, 0.5), False)
+    of = Indices("range:stroke", "m", 8, 0, 0.0123, 1.745e-05, (index,), ((8, [0.5], [0.5]),))
+    with look():
+        title = indexed(of, "", one).get_suptitle()
+        plain = indexed(of._replace(unit="-"), "", one).get_suptitle()
+    assert title.endswith("\nmean 12.3, standard deviation 0.0175 mm")
+    assert plain.endswith("\nmean 0.0123, standard deviation 1.75e\u221205")
+
+
+# --- studies whose cases are not all alike ---------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def uneven(paths, tmp_path_factory):
+    """Cases: without the key; two with it; one of these ends early, has no section, no sensor."""
+    folder, key = tmp_path_factory.mktemp("uneven"), "joints.B.clearance"
+    text = small.SLIDER_CRANK.partition("poincare:")[0].replace("  stroke: {joint: guide}\n", "")
+    small.run(folder / "early.h5", "solver.end=1ms", text=text)
+    (folder / "cut.h5").write_bytes(paths[0].read_bytes()[:3000])
+    cases = (
+        Case("cut", {"case": "fast", key: 0.2e-3}, folder / "cut.h5"),
+        Case("rigid", {"case": "rigid"}, paths[0]),
+        Case("fast0", {"case": "fast", key: 0.5e-3}, paths[0]),
+        Case("fast1", {"case": "fast", key: 0.1e-3}, paths[1]),
+        Case("early", {"case": "fast", key: 0.9e-3}, folder / "early.h5"),
+        Case("gone", {"case": "fast", key: 0.7e-3}, folder / "none.h5", "missing"),
+    )
+    return Study(cases, ("case", key), {"case": "-", key: "m"})
+
+
+def test_cases_without_a_number_do_not_stop_the_others(uneven, tmp_path):
+    asked = ["range:stroke", "peak:B.contact_force@2ms..", "dispersion:journal@2.9ms.."]
+    found = studies.draw(uneven, Asked(), asked, tmp_path)
+    table = rows(tmp_path / "sweep.csv")
+    assert [row["joints.B.clearance [m]"] for row in table][:3] == ["0.0002", "", "0.0005"]
+    assert [row["range:stroke [m]"] == "nan" for row in table] == [True, *[False] * 3, True, True]
+    assert [line for line in found.lines if line.startswith("cut: is truncated: ")] == [
+        found.lines[0]
+    ]
+    told = "\n".join(found.lines)
+    assert "early: no channel named 'stroke'" in told
+    assert "early: no row lies in '@2ms..'; it has rows from 0 to 0.001 s" in told
+    assert "rigid: without joints.B.clearance, left out of figures over it" in found.lines
+    assert found.lines[-1] == "1 of 6 cases have no result and are left out: gone"
+    with pytest.raises(UsageError, match="no channel named 'strke'"):
+        studies.draw(uneven, Asked(), ["peak:strke"], tmp_path)
+    only = Study(uneven.cases[:1], uneven.keys, uneven.units)
+    with pytest.raises(FileError, match="truncated"):
+        studies.draw(only, Asked(), ["range:stroke"], tmp_path)
+
+
+def test_a_number_made_of_nothing_is_told(study, tmp_path):
+    word = "dispersion:journal@2.995ms.."
+    found = studies.draw(study, Asked(), [word], tmp_path)
+    assert found.lines[0] == f"rigid0, rigid1, flexible0, flexible1: nothing to make {word} of"
+
+
+def test_a_case_without_a_number_keeps_its_place_on_the_axis(uneven):
+    one, y = studies.shown(uneven), np.array([np.nan, 1.0, 2.0, 3.0, np.nan, np.nan])
+    with look():
+        made = studies.figure(uneven, one, "range:stroke", "m", y, None)
+        axes = made.axes[0]
+    crosses = axes.lines[-1]
+    np.testing.assert_allclose(np.sort(crosses.get_xdata()), [0.2, 0.7, 0.9])
+    assert axes.get_xlim()[0] < 0.1 < 0.9 < axes.get_xlim()[1]
+    assert axes.get_ylim()[0] > 1000.0  # rigid, without the key, is not there
+    assert "without a number" in [text.get_text() for text in made.legends[0].get_texts()]
+
+
+def test_bifurcation_of_cases_that_are_not_alike(uneven, tmp_path):
+    found = studies.draw(uneven, Asked(bifurcation=("journal",)), [], tmp_path)
+    told = "\n".join(found.lines)
+    assert "early: no section 'journal'" in told
+    assert "rigid: without joints.B.clearance" in told
+    assert {row["case"] for row in rows(tmp_path / "bifurcation_journal_x.csv")} == {
+        "fast0",
+        "fast1",
+    }
+    assert np.isnan(next(v.value for v in found.values if v.run == "early"))
+    with look():
+        upper, _ = bifurcated(studies.shown(uneven), diagram(uneven, "journal")).axes
+    assert upper.get_xlim()[0] < 0.1 < 0.9 < upper.get_xlim()[1]
+
+
+def test_sobol_indices_of_the_named_cases_that_have_some(paths, tmp_path):
+    from tests.analyse.studies import of_blocks
+
+    rng, keys = np.random.default_rng(3), ("joints.B.clearance", "solver.tolerance")
+    plan = of_blocks(rng.random((8, 2)), rng.random((8, 2)), keys, 8)
+    fast = [Case(c.name, {"case": "fast", **c.values}, paths[int(c.values[keys[0]] > 0.5)])
+            for c in plan.cases]  # fmt: skip
+    rigid = Case("rigid", {"case": "rigid"}, paths[0])
+    mixed = Study((rigid, *fast), ("case", *keys), {}, "sobol", 8)
+    found = studies.draw(mixed, Asked(sobol=("peak:B.contact_force",)), [], tmp_path)
+    assert named(found) == {f"sobol_peak_B_contact_force_fast.{kind}" for kind in ("png", "csv")}
+    told = "rigid: nothing is sampled: no Sobol indices of peak:B.contact_force"
+    assert told in found.lines
+    with pytest.raises(UsageError, match="nothing is sampled"):
+        studies.draw(
+            replace(mixed, cases=(rigid,)), Asked(sobol=("peak:B.contact_force",)), [], tmp_path
+        )
+
+
+def test_every_run_is_read_once(study, tmp_path, monkeypatch):
+    read_files = []
+    whole = Case.run
+    monkeypatch.setattr(Case, "run", lambda case: read_files.append(case.name) or whole(case))
+    words = ["peak:B.contact_force", "range:stroke", "impacts:B"]
+    studies.draw(study, Asked(), words, tmp_path)
+    assert sorted(read_files) == sorted([*[c.name for c in study.cases[:4]], study.cases[0].name])
 
 
 # --- what is asked for -----------------------------------------------------------------------

@@ -15,8 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.cases import answers, numeric, varied
 from trsim.analyse.window import parted, window
 from trsim.errors import UsageError, known
+from trsim.store.read import Run
 
 Array = NDArray[np.float64]
 
@@ -36,7 +38,7 @@ class Section(NamedTuple):
 
 
 class Diagram(NamedTuple):
-    """All cases, in the order of the study."""
+    """All cases that have the section, in the order of the study."""
 
     section: str
     axis: str  # x or y
@@ -46,13 +48,15 @@ class Diagram(NamedTuple):
     units: Mapping[str, str]  # of the keys
     written: Mapping[str, str]  # key -> unit as the scenario has it
     cases: tuple[Section, ...]
-    missing: tuple[str, ...]  # cases without a result
+    places: Mapping[str, float | str]  # case -> value of the swept key, also without points
+    why: Mapping[str, str]  # case that ended well -> why it has no such section
 
 
 def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
     """The diagram of SECTION[:AXIS][@WINDOW] over a key of a study, the first one unless named.
 
-    Raises UsageError where the study has no such key or its runs no such section.
+    Cases that do not vary the key are left out.  Raises UsageError where the study has no such key
+    or no run such a section.
     """
     key = swept(study, over)
     named, text = parted(word)
@@ -60,37 +64,41 @@ def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
     axis = axis or "x"
     if axis not in ("x", "y"):
         raise UsageError(f"a section has no axis '{axis}'", known(axis, ("x", "y")))
-    found, missing, about = [], [], None
+    every = answers(study, {word: lambda run: _points(run, name, text)})[word]
+    found = []
     for case in study.cases:
-        if case.status != "done":
-            missing.append(case.name)
-            continue
-        run = case.run()
-        sections = run.poincare
-        if name not in sections:
-            hint = known(name, sections) if sections else "Declare one under `poincare`."
-            raise UsageError(f"{run.path}: no section '{name}'", hint)
-        points = sections[name]
-        about = about or points
-        inside = window(run, text).of(points.time)
-        others = tuple((k, case.values[k]) for k in study.keys if k != key)
-        found.append(
-            Section(case.name, case.values[key], others, points.x[inside], points.y[inside], 0)
-        )
-    if about is None:
-        raise UsageError("no case of the study has a result", "Run the sweep first.")
+        if case.name in every.found and key in case.values:
+            points, inside = every.found[case.name]
+            others = tuple((k, case.values[k]) for k in study.keys if k != key and k in case.values)
+            found.append(
+                Section(case.name, case.values[key], others, points.x[inside], points.y[inside], 0)
+            )
+    if not found:
+        what = f"no case that varies {key} has section '{name}'"
+        raise UsageError(what, "Say another key with --over.")
+    about = next(iter(every.found.values()))[0]
     sizes = [spread([getattr(one, a) for one in found]) for a in ("x", "y")]
     cases = [one._replace(period=period(one.x, one.y, *sizes)) for one in found]
     unit = about.x_unit if axis == "x" else about.y_unit
+    places = {case.name: case.values[key] for case in study.cases if key in case.values}
     return Diagram(name, axis, str(about.definition[axis]), unit, key, study.units,
-                   study.written, tuple(cases), tuple(missing))  # fmt: skip
+                   study.written, tuple(cases), places, every.why)  # fmt: skip
+
+
+def _points(run: Run, name: str, text: str) -> Any:
+    """A section, and which of its points lie in a window."""
+    sections = run.poincare
+    if name not in sections:
+        hint = known(name, sections) if sections else "Declare one under `poincare`."
+        raise UsageError(f"{run.path}: no section '{name}'", hint)
+    points = sections[name]
+    return points, window(run, text).of(points.time)
 
 
 def swept(study: Any, over: str | None) -> str:
     """The key of a study to draw over: the one named, or the first that is a number."""
     if over is None:
-        numbers = [k for k in study.keys if all(isinstance(c.values[k], float | int)
-                                                for c in study.cases)]  # fmt: skip
+        numbers = [key for key in study.keys if numeric(varied(study, key))]
         keys = numbers or list(study.keys)
         if not keys:
             raise UsageError("the study sweeps nothing", "Give the scenario a `sweep:`.")

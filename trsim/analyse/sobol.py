@@ -78,10 +78,12 @@ def places(study: Any, cases: Sequence[Any]) -> Any:
 
     Raises UsageError where they are no such design.
     """
-    keys, n = factors(study), study.samples
+    keys, n = factors(study, cases), study.samples
     if study.method != "sobol":
         what = f"the study was made by `{study.method}`, not by `sobol`"
         raise UsageError(what, "Sobol indices need the cases of `sweep: {method: sobol}`.")
+    if not keys:
+        raise UsageError("nothing is sampled", "Give the case a key under `sweep`.")
     if len(cases) != n * (len(keys) + 2):
         what = f"{len(cases)} cases; {n} samples of {len(keys)} keys take {n * (len(keys) + 2)}"
         raise UsageError(what, "Make the study anew with `method: sobol`.")
@@ -94,9 +96,10 @@ def places(study: Any, cases: Sequence[Any]) -> Any:
     return table
 
 
-def factors(study: Any) -> tuple[str, ...]:
-    """The keys that are sampled."""
-    return tuple(key for key in study.keys if key != CASE)
+def factors(study: Any, cases: Sequence[Any]) -> tuple[str, ...]:
+    """The keys that are sampled in the cases of one design."""
+    own = {key for case in cases for key in case.values} - {CASE}
+    return tuple(key for key in study.keys if key in own)
 
 
 def blocks(table: Any, number: Callable[[Any], float]) -> tuple[Blocks, int]:

@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 
 from trsim.analyse.bifurcation import Diagram, told
+from trsim.analyse.cases import numeric
+from trsim.analyse.cases import told as because
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown
 from trsim.report.keys import Units, axis, named_value
-from trsim.report.style import colour, look, panels, save
+from trsim.report.style import colour, look, missed, panels, save
 
 DRAWN = 60_000  # points
 FEW = 200  # points of a case that are drawn large
@@ -34,8 +36,9 @@ def bifurcation(one: Shown, of: Diagram, folder: Path) -> Found:
         found.lines.append(f"{each.case}: {what}, {len(each.x)} points")
         value = float(each.period) if each.period >= 0 else np.nan
         found.values.append(Value(each.case, f"{of.section}: period", value, np.nan, "-"))
-    if of.missing:
-        found.lines.append(f"without a result: {', '.join(of.missing)}")
+    for name in of.why:
+        found.values.append(Value(name, f"{of.section}: period", np.nan, np.nan, "-"))
+    found.lines.extend(because(of.why))
     return found
 
 
@@ -45,15 +48,19 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
     a, b = upper[0], lower[0]
     factor, unit = one.display(of.unit)
     units = Units(of.units, of.written)
-    words = any(isinstance(each.over, str) for each in of.cases)
-    names = list(dict.fromkeys(str(each.over) for each in of.cases))
+    words = not numeric(of.places.values())
+    names = list(dict.fromkeys(map(str, of.places.values())))
     scale = 1.0 if words else units.display(one, of.over)[0]
+
+    def place(over: Any) -> float:
+        return float(names.index(str(over))) if words else float(over) * scale
+
     families = list(dict.fromkeys(each.series for each in of.cases))
     each_drawn = max(1, DRAWN // max(len(of.cases), 1))
     size = 3.5 if max(len(each.x) for each in of.cases) < FEW else 1.5
     for each in of.cases:
         k = families.index(each.series)
-        at = float(names.index(str(each.over))) if words else float(each.over) * scale
+        at = place(each.over)
         y = getattr(each, of.axis)[-each_drawn:] * factor
         a.plot(np.full(len(y), at), y, ".", ms=size, mew=0, color=colour(k))
         if each.period >= 0:
@@ -62,6 +69,9 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
     for k, series in enumerate(families if len(families) > 1 else []):
         text = ", ".join(named_value(one, units, key, value) for key, value in series)
         a.plot([], [], "o", ms=3.5, color=colour(k), label=text)
+    with_points = {each.case for each in of.cases if len(each.x)}
+    bare = [place(over) for case, over in of.places.items() if case not in with_points]
+    missed(a, bare, "without points")
     a.set_ylabel(f"{of.channel.replace('.', ', ').replace('_', ' ')}\n({unit})")
     highest = max([1, *(each.period for each in of.cases)])
     b.set_ylim(-0.6, highest + 0.6)
@@ -73,7 +83,7 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
         b.set_xticks(range(len(names)), names)
         b.set_xlim(-0.5, len(names) - 0.5)
     made.suptitle(f"Bifurcation: section {of.section}", fontsize=10)
-    if len(families) > 1:
+    if len(families) > 1 or bare:
         made.legend(*a.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     made.align_ylabels()
     return made

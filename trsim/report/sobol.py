@@ -5,48 +5,58 @@ from typing import Any
 
 import numpy as np
 
-from trsim.analyse.outputs import scalar
+from trsim.analyse.cases import Numbers, told
 from trsim.analyse.sobol import Indices, blocks, factors, indices, named, places
+from trsim.errors import Problems, TrsimError, UsageError
 from trsim.report.asked import Found, Value, file_name, nothing, table
-from trsim.report.display import short
+from trsim.report.display import Shown, short
 from trsim.report.keys import in_words, readable
 from trsim.report.style import COLOURS, colour, look, panels, save
 
 
-def sobol(study: Any, word: str, folder: Path) -> Found:
-    """Indices of one number, of each named case, as figure and table."""
-    found, units = nothing(), []
+def sobol(study: Any, one: Shown, of: Numbers, folder: Path) -> Found:
+    """Indices of one number, of each named case, as figure and table.
 
-    def number(case: Any) -> float:
-        if case.status != "done":
-            return float("nan")
-        value, unit = scalar(case.run(), word)
-        units.append(unit)
-        return value
-
+    A named case that has none is told of; raises UsageError where no one has.
+    """
+    found, wrong = nothing(), list[TrsimError]()
     for name, cases in named(study).items():
-        values, left_out = blocks(places(study, cases), number)
-        of = indices(factors(study), values, word, units[-1], left_out)
-        file = file_name("sobol", f"{word} {name}")
-        with look():
-            found.files.append(save(indexed(of, name), folder / f"{file}.png"))
-        rows = [tuple(one[:7]) for one in of.indices]
-        titles = ("key", "first", "first low", "first high", "total", "total low", "total high")
-        found.files.append(table(folder / f"{file}.csv", titles, rows))
-        for one in of.indices:
-            what = f"{word}: of {one.key}"
-            half = [0.5 * (one.first_high - one.first_low), 0.5 * (one.total_high - one.total_low)]
-            found.values.append(Value(name, f"{what}, first", one.first, half[0], "-"))
-            found.values.append(Value(name, f"{what}, total", one.total, half[1], "-"))
-            noise = "  (ought to have none: noise)" if one.noise else ""
-            found.lines.append(
-                f"{what}: first {one.first:.3f} ({one.first_low:.3f} .. {one.first_high:.3f}), "
-                f"total {one.total:.3f} ({one.total_low:.3f} .. {one.total_high:.3f}){noise}"
-            )
+        try:
+            values, left_out = blocks(places(study, cases), lambda case: of.values[case.name])
+            each = indices(factors(study, cases), values, of.word, of.unit, left_out)
+        except UsageError as error:
+            what = f"{name}: {error.what}" if name else error.what
+            wrong.append(UsageError(what, error.hint))
+            continue
+        found.add(written(each, name, one, folder))
+    if not found.files:
+        raise wrong[0] if len(wrong) == 1 else Problems(wrong)
+    found.lines.extend(f"{error.what}: no Sobol indices of {of.word}" for error in wrong)
+    found.lines.extend(told(of.why))
     return found
 
 
-def indexed(of: Indices, name: str) -> Any:
+def written(of: Indices, name: str, one: Shown, folder: Path) -> Found:
+    """The figure, the table and the lines of the indices of one named case."""
+    found, file = nothing(), file_name("sobol", f"{of.word} {name}")
+    with look():
+        found.files.append(save(indexed(of, name, one), folder / f"{file}.png"))
+    titles = ("key", "first", "first low", "first high", "total", "total low", "total high")
+    found.files.append(table(folder / f"{file}.csv", titles, [tuple(i[:7]) for i in of.indices]))
+    for each in of.indices:
+        what = f"{of.word}: of {each.key}"
+        half = [0.5 * (each.first_high - each.first_low), 0.5 * (each.total_high - each.total_low)]
+        found.values.append(Value(name, f"{what}, first", each.first, half[0], "-"))
+        found.values.append(Value(name, f"{what}, total", each.total, half[1], "-"))
+        noise = "  (ought to have none: noise)" if each.noise else ""
+        found.lines.append(
+            f"{what}: first {each.first:.3f} ({each.first_low:.3f} .. {each.first_high:.3f}), "
+            f"total {each.total:.3f} ({each.total_low:.3f} .. {each.total_high:.3f}){noise}"
+        )
+    return found
+
+
+def indexed(of: Indices, name: str, run: Shown) -> Any:
     """Bars with intervals; beside them how they settle with the number of rows."""
     made, axes = panels(1, 2, height=4.0, width_ratios=(3, 2))
     bars, settling = axes[0]
@@ -75,7 +85,9 @@ def indexed(of: Indices, name: str) -> Any:
     settling.set_ylabel("total index (-)")
     lines, told = settling.get_legend_handles_labels()
     made.legend(lines, told, loc="outside lower center", ncols=3, title="total index of")
-    mean = f"mean {short(of.mean)}, standard deviation {short(of.deviation, 3)} {of.unit}"
+    factor, unit = run.display(of.unit)
+    numbers = short(of.mean * factor), short(of.deviation * factor, 3)
+    mean = f"mean {numbers[0]}, standard deviation {numbers[1]}{'' if unit == '-' else f' {unit}'}"
     left = f", {of.left_out} rows left out" if of.left_out else ""
     head = f"Sobol indices of {in_words(of.word)}{f' ({name})' if name else ''}"
     made.suptitle(f"{head}\n{mean}{left}", fontsize=10)

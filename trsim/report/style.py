@@ -18,6 +18,7 @@ WIDTH = 6.3  # inch: the text width of an A4 page
 DPI = 150
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", ":")
+NO_NUMBER = "without a number"  # label of the crosses of `missed`
 STRETCHES = 1500  # of a curve: more than the pixels can show
 RC: Any = {
     "font.size": 9,
@@ -111,3 +112,10 @@ def apart(axes: Any, noise: float = 0.0) -> None:
     elif high - low < 1e-6 * largest:
         middle = 0.5 * (low + high)
         axes.set_ylim(middle - 0.05 * largest, middle + 0.05 * largest)
+
+
+def missed(axes: Any, places: list[float], label: str = NO_NUMBER) -> None:
+    """Crosses on the horizontal axis, where there would be something; it reaches as far as they."""
+    if places:
+        axes.plot(places, np.zeros(len(places)), "x", color="0.45", ms=4.5, clip_on=False,
+                  transform=axes.get_xaxis_transform(), label=label)  # fmt: skip
