@@ -108,7 +108,7 @@ def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
     si = units(named, found, keys, shown)
     if "" not in named:
         keys, si = (CASE, *keys), {CASE: "-", **si}
-    sweep = first.sweep
+    sweep = max((one.sweep for one in named.values()), key=lambda one: one.samples)
     return Plan(path, text, tree.files, keys, si, shown, sweep.method, sweep.samples,
                 sweep.seed, tuple(_distinct(found)), named)  # fmt: skip
 
