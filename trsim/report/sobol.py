@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from trsim.analyse.outputs import scalar
-from trsim.analyse.sobol import Indices, blocks, factors, indices, named, places
+from trsim.analyse.sobol import Indices, blocks, factors, impossible, indices, named, places
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import short
 from trsim.report.keys import in_words, readable
@@ -43,6 +43,7 @@ def sobol(study: Any, word: str, folder: Path) -> Found:
                 f"{what}: first {one.first:.3f} ({one.first_low:.3f} .. {one.first_high:.3f}), "
                 f"total {one.total:.3f} ({one.total_low:.3f} .. {one.total_high:.3f}){noise}"
             )
+        found.lines.extend(f"{word}: too few rows: {what}" for what in impossible(of))
     return found
 
 
