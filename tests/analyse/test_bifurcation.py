@@ -6,8 +6,29 @@ import pytest
 from tests import small
 from tests.analyse.series import logistic
 from tests.analyse.studies import Case, Study
-from trsim.analyse.bifurcation import diagram, period, spread, swept, told
+from trsim.analyse.bifurcation import NARROW, diagram, narrow, period, spread, swept, told
 from trsim.errors import UsageError
+
+PERIODIC = """
+bodies:
+  wheel: {mass: 1.0, inertia: 1.0e-3, at: [0, 0]}
+  mass:  {mass: 1.0, inertia: 1.0e-3, at: [0.1, 0], velocity: [1.0, 0]}
+joints:
+  axle:  {type: revolute, bodies: [ground, wheel], at: [0, 0]}
+  guide: {type: prismatic, bodies: [ground, mass], axis: [1, 0, 0]}
+forces:
+  spring: {type: spring_damper, bodies: [ground, mass], points: [[-0.9, 0], [0.1, 0]],
+           stiffness: 100.0}
+sensors:
+  x: {joint: guide}
+gravity: [0, 0, 0]
+solver: {end: 8.0, tolerance: 1e-9}
+output: {every: 0.01}
+poincare:
+  turn:  {every: 2*pi/10, plot: [x, x.rate]}
+  still: {when: x, crosses: up, plot: [wheel.position.x, mass.position.z]}
+  twice: {when: x, crosses: both, plot: [x, x.rate]}
+"""
 
 
 @pytest.mark.parametrize(
@@ -96,3 +117,30 @@ def test_a_case_without_the_key_the_section_or_its_file_is_left_out(study, tmp_p
     over = Study((rigid, good), ("case", "joints.B.clearance"))
     with pytest.raises(UsageError, match="no row lies in"):
         diagram(over, "journal@1 s..")
+
+
+@pytest.mark.parametrize("cases", [1, 2])
+def test_a_periodic_motion_is_so_where_no_other_point_gives_a_size(cases, tmp_path):
+    """x' = a cos a t from x = 0, once a period: its points differ by the errors of the solver."""
+    path = tmp_path / "run.h5"
+    small.run(path, text=PERIODIC)
+    key = "joints.B.clearance"
+    study = Study(tuple(Case(f"c{k}", {key: 0.1 * k}, path) for k in range(cases)))
+    for word in ("turn", "still"):
+        found = diagram(study, word)
+        points = found.cases[0]
+        assert len(points.x) >= 9
+        assert spread([points.x]) + spread([points.y]) < 1e-7
+        assert [one.period for one in found.cases] == [1] * cases
+    assert spread([diagram(study, "turn").cases[0].x]) > 0.0
+    swings = diagram(study, "twice").cases[0]
+    assert swings.period == 2
+
+
+def test_points_are_held_against_the_motion_of_their_channel(study):
+    run = study.cases[0].run()
+    x = run.channel("stroke")
+    peaks = [p.value for p in run.peaks if p.channel == "stroke"]
+    size = max(x.max(), *peaks) - min(x.min(), *peaks)
+    assert narrow(run, "stroke") == pytest.approx(NARROW * size, rel=1e-12)
+    assert narrow(run, "not.stored") == 0.0

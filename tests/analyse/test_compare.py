@@ -117,9 +117,21 @@ def test_reference_of_two_columns_needs_no_names(tmp_path):
     np.testing.assert_array_equal(reference(path, "stroke", "", ("s", "m")).x, [1.0, 2.0])
 
 
+@pytest.mark.parametrize("titles", ["time,stroke", "stroke,time", "stroke,other,time", "x,time"])
+def test_time_is_the_column_of_that_name(titles, tmp_path):
+    path = tmp_path / "old.csv"
+    rows = [[{"time": k, "other": 7}.get(name, 5 - k) for name in titles.split(",")]
+            for k in range(3)]  # fmt: skip
+    path.write_text("\n".join([titles, *(",".join(map(str, row)) for row in rows)]))
+    found = reference(path, "stroke", "", ("s", "m"))
+    np.testing.assert_array_equal(found.s, [0.0, 1.0, 2.0])
+    np.testing.assert_array_equal(found.x, [5.0, 4.0, 3.0])
+
+
 @pytest.mark.parametrize(
     "text, kind, what",
     [
+        ("stroke,b\n0,1\n1,2\n", UsageError, "'time' and 'stroke' at once"),
         ("a,b,c\n0,1,2\n1,2,3\n", UsageError, "no column named 'stroke'"),
         ("a,b\n0,1\n1,x\n", FileError, "no number in column 2"),
         ("a,b\n0,1\n1\n", FileError, "no number in column 2"),

@@ -19,3 +19,8 @@ def test_a_fast_sine_keeps_its_rms():
 
 def test_a_slow_sine_is_taken_out():
     assert fluctuation(t, np.sin(2 * np.pi * 1.0 * t), 0.1, 0.9) < 2e-3
+
+
+def test_one_row_or_none_fluctuates_by_no_number():
+    assert np.isnan(fluctuation(t[:1], t[:1], 0.0, 1.0))
+    assert np.isnan(fluctuation(t[:0], t[:0], 0.0, 1.0))

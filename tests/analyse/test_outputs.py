@@ -1,5 +1,7 @@
 """The words for numbers of a run."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -110,3 +112,34 @@ def test_several(run):
     assert scalars(run, ["final:stroke", "points:journal"]) == [
         scalar(run, "final:stroke"), scalar(run, "points:journal"),
     ]  # fmt: skip
+
+
+def test_extremes_of_a_component_in_a_window_are_of_accepted_steps(run):
+    """Between some rows of a contact its force is larger than in them."""
+    steps, time, x = run.steps("B"), run.time, run.channel("B.force.x")
+    force = steps["force"][:, 0]
+    after = np.clip(np.searchsorted(time, steps["time"]), 1, len(time) - 1)
+    beyond = force - np.maximum(x[after - 1], x[after])
+    k = int(np.argmax(beyond))
+    assert beyond[k] > 1.0  # N
+    window = f"{time[after[k] - 1].item()!r}..{time[after[k]].item()!r}"
+    inside = (steps["time"] >= time[after[k] - 1]) & (steps["time"] <= time[after[k]])
+    assert scalar(run, f"peak:B.force.x@{window}")[0] == pytest.approx(force[inside].max())
+    assert scalar(run, f"mean:B.force.x@{window}")[0] <= max(x[after[k] - 1], x[after[k]])
+
+
+@pytest.mark.parametrize("channel", ["stroke.rate", "stroke.acceleration", "B.force.y"])
+def test_a_window_that_leaves_nothing_out_is_none(channel, run):
+    for kind in ("peak", "least", "range"):
+        assert scalar(run, f"{kind}:{channel}@0..") == scalar(run, f"{kind}:{channel}")
+
+
+def test_time_is_a_channel_in_seconds(run):
+    assert scalar(run, "peak:time") == (run.time[-1], "s")
+    assert run.unit("time") == "s"
+
+
+def test_a_run_of_one_row_has_no_fluctuation(run):
+    one = replace(run, rows=1)
+    assert np.isnan(scalar(one, "fluctuation:stroke")[0])
+    assert scalar(one, "mean:stroke")[0] == run.channel("stroke")[0]

@@ -110,3 +110,8 @@ def test_refused(tmp_path):
     ):
         with pytest.raises(UsageError, match=what):
             section(run, *arguments)
+
+
+def test_a_key_that_is_there_twice_is_refused():
+    with pytest.raises(UsageError, match="has when= twice"):
+        asked("when=stroke,when=B.x,plot=a:b")

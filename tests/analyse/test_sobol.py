@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.analyse.studies import Case, Study, of_blocks
-from trsim.analyse.sobol import Blocks, blocks, factors, indices, named, noisy, places
+from trsim.analyse.sobol import Blocks, blocks, factors, impossible, indices, named, noisy, places
 from trsim.errors import UsageError
 
 KEYS = ("a.x", "a.y", "a.z", "parameters.dummy")
@@ -123,3 +123,21 @@ def test_what_is_no_design_is_refused(study):
     same = Blocks(np.ones(8), np.ones(8), np.ones((2, 8)))
     with pytest.raises(UsageError, match="same in all cases"):
         indices(("a", "b"), same, "x")
+
+
+def test_too_few_rows_are_told(study):
+    """Random rows of a sum: eight of them give what no indices can be, a thousand do not."""
+
+    def of(rows, seed):
+        a, b = np.random.default_rng(seed).random((2, rows, 3))
+        ab = np.array([np.where(np.arange(3) == i, b, a).sum(axis=1) for i in range(3)])
+        return indices(("a", "b", "c"), Blocks(a.sum(axis=1), b.sum(axis=1), ab), "x")
+
+    told = [text for seed in range(20) for text in impossible(of(8, seed))]
+    assert any("add up to" in text for text in told)
+    values, _ = blocks(places(study, study.cases), lambda case: ishigami(case.values))
+    good = indices(KEYS, values)
+    assert impossible(good) == []
+    odd = good.indices[0]._replace(first=0.8, first_low=0.7, total=0.5, total_high=0.6)
+    [text] = impossible(good._replace(indices=(odd, *good.indices[1:])))
+    assert text == f"first 0.800 of {odd.key} is more than its total 0.500"

@@ -1,5 +1,7 @@
 """Spectral density: known powers, lines, intervals and signs of aliasing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,15 @@ def test_a_line_has_its_frequency_and_amplitude(frequency):
     assert found.resolution == pytest.approx(1.5 * RATE / 4444, rel=1e-3)
 
 
+@pytest.mark.parametrize("frequency", [37.3, 41.25, 111.1, 217.05])
+def test_a_line_between_two_frequencies_has_its_amplitude(frequency):
+    """Up to half a bin of 2.25 Hz away; a parabola through the decibels would be 3 % out."""
+    few = t[:4000]
+    peak = spectrum(few, 0.010 * np.sin(2 * np.pi * frequency * few)).peaks[0]
+    assert peak.amplitude == pytest.approx(0.010, rel=1e-3)
+    assert peak.frequency == pytest.approx(frequency, abs=1e-3)
+
+
 def test_a_straight_line_is_no_oscillation():
     found = spectrum(t, 5.0 + 3.0 * t)
     assert found.rms < 1e-10
@@ -91,3 +102,14 @@ def test_extremes_between_the_rows_are_told(run):
     assert beyond(run, "B.contact_force", whole, sparse) == pytest.approx(share)
     assert share > 0.1
     assert beyond(run, "B.contact_force", Window(0.0, 0.5 * peak.time), sparse) == 0.0
+
+
+def test_time_has_no_spectrum(run):
+    with pytest.raises(UsageError, match="time has no spectrum"):
+        of_channel(run, "time", window(run))
+
+
+def test_one_row_is_too_few(run):
+    one = replace(run, rows=1)
+    with pytest.raises(UsageError, match="fewer than two rows"):
+        of_channel(one, "stroke", window(one))

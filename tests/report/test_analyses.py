@@ -11,12 +11,14 @@ from tests import small
 from tests.analyse.studies import Case, Study
 from tests.report.test_figures import drawn
 from trsim.analyse.bifurcation import diagram
+from trsim.analyse.compare import curve, difference
 from trsim.analyse.outputs import scalar
+from trsim.analyse.scaling import Line
 from trsim.analyse.sobol import Index, Indices
 from trsim.errors import FileError, UsageError
 from trsim.report import analysed, exponents, spectra, studies
 from trsim.report.asked import Asked, file_name, words
-from trsim.report.compared import chosen
+from trsim.report.compared import chosen, figure
 from trsim.report.diagrams import bifurcated
 from trsim.report.display import compared
 from trsim.report.keys import in_words, readable
@@ -66,6 +68,27 @@ def test_told_exponents():
     assert exponents.told_short(grows) == "0.9 \u00b1 0.1 1/s"
 
 
+def test_the_legend_of_exponents_fits_and_a_line_is_told_where_there_is_one(paths):
+    runs = compared([read(path) for path in paths])
+    reason = "the series is too short: " + "of all that it would take there is but little " * 3
+    none = exponents.Exponent(np.nan, np.nan, "undetermined", reason, np.zeros(0), np.zeros(0),
+                              None, 0, np.nan, np.nan, 0)  # fmt: skip
+    k = np.arange(9.0)
+    grows = none._replace(value=0.9, half=0.1, verdict="grows", reason="", time=k, curve=k,
+                          fit=Line(2, 8, 1.0, 0.0, 0.0))  # fmt: skip
+    for each, dashed in (([none, none], False), ([none, grows], True)):
+        with look():
+            made = exponents.figure(runs, each, ["a", "label " * 30], "Neighbours", "y (-)")
+            made.canvas.draw()
+        assert ("dashed" in made.get_suptitle()) is dashed
+        [legend] = made.legends
+        box, whole = legend.get_window_extent(), made.bbox
+        assert box.x0 >= whole.x0
+        assert box.x1 <= whole.x1
+        assert "too short" not in "".join(text.get_text() for text in legend.get_texts())
+    assert reason in exponents.told(none)
+
+
 def test_compare(paths, tmp_path):
     asked = Asked(compare=True, channels=("stroke*",), against="crank_angle")
     found = analysed(paths, tmp_path, asked)
@@ -96,6 +119,26 @@ def test_overlay(paths, tmp_path):
     assert found.values[0].value == pytest.approx(-0.002)
     with pytest.raises(UsageError, match="which channel"):
         analysed(paths[:1], tmp_path, Asked(overlay=("old.csv",)))
+
+
+@pytest.mark.parametrize("coarse", [False, True])
+def test_a_coarse_table_is_points(coarse, paths):
+    runs = compared([read(path) for path in paths[:1]])
+    given = curve(runs[0].run, "stroke")
+    named = [("table", given, None), ("run", given, difference("stroke", "m", given, given))]
+    with look():
+        upper, lower = figure(runs, "stroke", "", named, coarse).axes
+    markers = [line.get_marker() for line in (*upper.lines, lower.lines[0])]
+    assert markers == (["o", "None", "o"] if coarse else ["None"] * 3)
+    assert (upper.lines[0].get_linestyle() == "None") is coarse
+
+
+def test_against_time_is_the_usual_thing(paths, tmp_path):
+    usual, told = (
+        analysed(paths, tmp_path / name, Asked(compare=True, channels=("stroke",), against=name))
+        for name in ("", "time")
+    )
+    assert [v.value for v in told.values] == [v.value for v in usual.values]
 
 
 def test_table_of_numbers(paths, tmp_path):
@@ -207,7 +250,7 @@ def test_sobol(paths, tmp_path):
 def test_the_title_of_sobol_indices_is_in_display_units(study):
     one = studies.shown(study)
     index = Index("a.b", *np.full(6, 0.5), False)
-    of = Indices("range:stroke", "m", 8, 0, 0.0123, 1.745e-05, (index,), ((8, [0.5], [0.5]),))
+    of = Indices("range:stroke", "m", 8, 0, 0.0123, 1.745e-05, (index,), ((8, [0.5], [0.5]),), 0.0)
     with look():
         title = indexed(of, "", one).get_suptitle()
         plain = indexed(of._replace(unit="-"), "", one).get_suptitle()
@@ -331,6 +374,27 @@ def test_what_does_not_fit_is_refused(paths, tmp_path):
     with pytest.raises(FileError, match="file"):
         (tmp_path / "file").write_text("")
         analysed(paths, tmp_path / "file" / "o", Asked(table=("final:stroke",)))
+
+
+@pytest.mark.parametrize(
+    "asked, what",
+    [
+        (Asked(over="joints.B.clearance"), "--over is not for result files"),
+        (Asked(against="stroke"), "--against goes with --compare or --overlay"),
+        (Asked(against="stroke", table=("final:stroke",)), "--against goes with"),
+        (Asked(channels=("x*",)), "--channels goes with --compare"),
+        (Asked(channels=("x*",), overlay=("a.csv:x",)), "--channels goes with --compare"),
+    ],
+)
+def test_an_option_that_would_do_nothing_is_refused(asked, what, paths, tmp_path):
+    with pytest.raises(UsageError, match=what):
+        analysed(paths, tmp_path / "o", asked)
+    assert not (tmp_path / "o").exists()
+
+
+def test_an_option_that_would_do_nothing_to_a_sweep_is_refused(tmp_path):
+    with pytest.raises(UsageError, match="--over goes with"):
+        analysed([tmp_path], tmp_path / "o", Asked(over="a.b", sobol=("final:stroke",)))
 
 
 def test_names():

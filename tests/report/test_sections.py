@@ -34,3 +34,9 @@ def test_refused(tmp_path):
     small.run(tmp_path / "run.h5")
     with pytest.raises(UsageError, match="plot= is two channels"):
         analysed([tmp_path / "run.h5"], tmp_path / "figures", Asked(section=(WRONG,)))
+
+
+def test_time_crosses_nothing_again(tmp_path):
+    small.run(tmp_path / "run.h5")
+    with pytest.raises(UsageError, match="time does not cross"):
+        analysed([tmp_path / "run.h5"], tmp_path, Asked(section=("when=time,plot=time:stroke",)))

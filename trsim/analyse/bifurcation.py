@@ -2,11 +2,15 @@
 
 The motion of a case has period n where its section comes back to itself after n points,
 
-    |p(k + n) - p(k)| <= TOLERANCE * range        for all k,
+    |p(k + n) - p(k)| <= TOLERANCE * size        for all k,
+    size = max(range of all points of the study, NARROW * range of the channel over the run)
 
-the range being that of all points of the study, for x and y apart.  The least n is its number of
-distinct points; a case that has none up to a third of its points is scattered: chaotic,
-quasi-periodic, or still on its way.
+for x and y apart.  The least n is its number of distinct points; a case that has none up to a third
+of its points is scattered: chaotic, quasi-periodic, or still on its way.
+
+The second size is for studies whose points are all the same: their range is rounding, or what is
+left of a decay.  An axis that varies by less than TOLERANCE * NARROW of what its channel does comes
+back after every point, so it has no say; where neither axis varies by more the period is 1.
 """
 
 from collections.abc import Mapping
@@ -15,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.apart import STILL
 from trsim.analyse.cases import answers, numeric, varied
 from trsim.analyse.window import parted, window
 from trsim.errors import UsageError, known
@@ -23,6 +28,7 @@ from trsim.store.read import Run
 Array = NDArray[np.float64]
 
 TOLERANCE = 0.01
+NARROW = 1e-4  # points closer than TOLERANCE of this, of the range of the channel, are one point
 FEWEST = 6  # points: of fewer nothing is told
 
 
@@ -77,8 +83,10 @@ def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
         what = f"no case that varies {key} has section '{name}'"
         raise UsageError(what, "Say another key with --over.")
     about = next(iter(every.found.values()))[0]
-    sizes = [spread([getattr(one, a) for one in found]) for a in ("x", "y")]
-    cases = [one._replace(period=period(one.x, one.y, *sizes)) for one in found]
+    cases = [
+        one._replace(period=period(one.x, one.y, *size))
+        for one, size in zip(found, sizes(study, found, about.definition), strict=True)
+    ]
     unit = about.x_unit if axis == "x" else about.y_unit
     places = {case.name: case.values[key] for case in study.cases if key in case.values}
     return Diagram(name, axis, str(about.definition[axis]), unit, key, study.units,
@@ -112,6 +120,32 @@ def spread(parts: list[Array]) -> float:
     """The range of all values; 0 without any."""
     every = np.concatenate(parts)
     return float(np.ptp(every)) if every.size else 0.0
+
+
+def sizes(
+    study: Any, found: list[Section], definition: Mapping[str, Any]
+) -> list[tuple[float, float]]:
+    """Of x and y, for each case: the size its points are held against, see above."""
+    whole = {axis: spread([getattr(one, axis) for one in found]) for axis in ("x", "y")}
+    cases, each = {case.name: case for case in study.cases}, []
+    for one in found:
+        run = cases[one.case].run()
+        x, y = (max(whole[axis], narrow(run, str(definition[axis]))) for axis in ("x", "y"))
+        each.append((x, y))
+    return each
+
+
+def narrow(run: Run, channel: str) -> float:
+    """What points are held against at least, from the motion of their channel over a run.
+
+    Besides NARROW of its range it is so much that rounding is no motion (STILL of its largest
+    value); 0 for a channel that was not stored.
+    """
+    kept = [np.array([peak.value for peak in run.peaks if peak.channel == channel])]
+    if run.stores(channel):
+        kept.append(run.channel(channel).ravel())
+    largest = max((float(np.max(np.abs(part), initial=0.0)) for part in kept), default=0.0)
+    return max(NARROW * spread(kept), STILL / TOLERANCE * largest)
 
 
 def period(x: Array, y: Array, x_range: float, y_range: float) -> int:

@@ -8,8 +8,8 @@ but the solver or by less than ALIKE of a number, ought to be the same: where th
 nothing.  Largest difference and rms are then those before, and mean and rms of both runs stand for
 the rest.
 
-A reference is a table of numbers: its first column time or the channel compared against, another
-the values.
+A reference is a table of numbers: the column named as the channel compared against, or time, or
+else its first one; another the values.
 """
 
 import csv
@@ -180,10 +180,14 @@ def reference(path: Path, column: str, against: str, si: tuple[str, str]) -> Cur
         raise FileError(what, "The first line names the columns.", file=str(path))
     titles = [_title(text) for text in lines[0]]
     names = [name for name, _ in titles]
-    places = [names.index(against) if against in names else 0]
-    places.append(names.index(column) if column in names else 1)
     if column not in names and len(names) > 2:
         raise UsageError(f"{path}: no column named '{column}'", known(column, names))
+    over = against or "time"
+    places = [names.index(over) if over in names else 0]
+    places.append(names.index(column) if column in names else 1 - places[0])
+    if places[0] == places[1]:
+        what = f"{path}: column '{names[places[0]]}' would be '{over}' and '{column}' at once"
+        raise UsageError(what, f"Name one column '{over}' and another one '{column}'.")
     values = []
     for place, text in zip(places, si, strict=True):
         numbers = np.array([_number(path, line, place) for line in lines[1:]])

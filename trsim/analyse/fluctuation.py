@@ -28,6 +28,8 @@ def high_pass(t: Array, x: Array, width: float = 0.010) -> Array:
 
 
 def fluctuation(t: Array, x: Array, begin: float, end: float, width: float = 0.010) -> float:
-    """Root mean square of the high-passed curve for begin <= t <= end."""
+    """Root mean square of the high-passed curve for begin <= t <= end; nan of fewer than 2 rows."""
+    if len(t) < 2:
+        return np.nan
     inside = (t >= begin) & (t <= end)
     return float(np.sqrt(np.mean(high_pass(t, x, width)[inside] ** 2)))

@@ -4,8 +4,9 @@ This is the one place that turns words into numbers: tables, sweeps, bifurcation
 all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of the run counts
 (window.py).
 
-    peak, least          largest and smallest value: at accepted steps for the whole run; of rows,
-                         and of the steps of a contact, in a window
+    peak, least          largest and smallest value: at accepted steps for the whole run; in a
+                         window of rows, of the steps of a contact, and of the extremes of the run
+                         that lie in it
     range                peak - least
     mean, rms, std       of the rows
     fluctuation          rms of what is faster than 10 ms (fluctuation.py)
@@ -26,6 +27,7 @@ from trsim.analyse.fluctuation import fluctuation
 from trsim.analyse.shares import shares
 from trsim.analyse.window import Window, parted, scalar_channel, window
 from trsim.errors import UsageError, described, known
+from trsim.store.points import split
 from trsim.store.read import Run
 
 Array = NDArray[np.float64]
@@ -78,8 +80,8 @@ def _extreme(word: str) -> Any:
 
     def number(run: Run, channel: str, within: Window, part: bool) -> Number:
         values = [best(_rows(run, channel, within)[1].tolist())]
-        if not part:
-            values += [p.value for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
+        kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
+        values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
         values += _in_touch(run, channel, within)
         return best(values), run.unit(channel)
 
@@ -87,13 +89,17 @@ def _extreme(word: str) -> Any:
 
 
 def _in_touch(run: Run, channel: str, within: Window) -> list[float]:
-    """The values of a channel of a contact at its accepted steps."""
-    joint, _, name = channel.rpartition(".")
-    if joint not in run.contacts:
+    """The values of a channel of a contact, or of a component, at its accepted steps."""
+    joint = max((n for n in run.contacts if channel.startswith(f"{n}.")), key=len, default="")
+    if not joint:
         return []
     steps = run.steps(joint)
-    found = steps[name][within.of(steps["time"])] if name in steps else np.zeros(0)
-    return found.tolist() if found.ndim == 1 else []
+    sizes = {name: column.shape[1] if column.ndim == 2 else 1 for name, column in steps.items()}
+    name, component = split(channel.removeprefix(f"{joint}."), sizes)
+    if name not in steps:
+        return []
+    found = steps[name][within.of(steps["time"])]
+    return (found if component is None else found[:, component]).tolist()
 
 
 def _range(run: Run, channel: str, within: Window, part: bool) -> Number:

@@ -63,6 +63,9 @@ def section(run: Any, when: str, x: str, y: str, crosses: str = "up") -> Interpo
     if crosses not in DIRECTIONS:
         what = f"crosses must be one of {', '.join(DIRECTIONS)}, got '{crosses}'"
         raise UsageError(what)
+    if when == "time":
+        what = "time does not cross zero again and again"
+        raise UsageError(what, "Name a channel that does; declare `every` for equal intervals.")
     w, across, upwards = channels = [run.channel(name) for name in (when, x, y)]
     for name, values in zip((when, x, y), channels, strict=True):
         if values.ndim > 1:
@@ -81,10 +84,14 @@ def section(run: Any, when: str, x: str, y: str, crosses: str = "up") -> Interpo
 def asked(text: str) -> dict[str, str]:
     """The arguments of `section` in `when=B.x,crosses=up,plot=B.x:B.y`.  Raises UsageError."""
     example = "Write for example when=stroke.rate,crosses=up,plot=stroke:door_angle."
-    given = dict(part.partition("=")[::2] for part in text.split(","))
-    for key in given:
+    given: dict[str, str] = {}
+    for part in text.split(","):
+        key, _, value = part.partition("=")
         if key not in ("when", "crosses", "plot"):
-            raise UsageError(f"--section knows no '{key}'", f"{example}")
+            raise UsageError(f"--section knows no '{key}'", example)
+        if key in given:
+            raise UsageError(f"--section has {key}= twice", example)
+        given[key] = value
     for key in ("when", "plot"):
         if not given.get(key):
             raise UsageError(f"--section lacks {key}=", example)

@@ -5,7 +5,8 @@
 
 by scipy.stats.sobol_indices, from the blocks A, B and AB_i (A with column i of B) of Saltelli's
 design [Saltelli2010].  Intervals are 95 % by bootstrap; to see whether there are enough cases the
-indices are also taken of the first 8, 16, 32 ... rows of the blocks.
+indices are also taken of the first 8, 16, 32 ... rows of the blocks.  S_i <= T_i and sum S_i <= 1;
+estimates that are not so by more than their intervals are of too few rows.
 
 An output of a chaotic motion is a number with noise: whatever is changed, however little, changes
 it.  That raises every T_i.  A number that ought to have no influence (a parameter named `dummy`, or
@@ -55,6 +56,7 @@ class Indices(NamedTuple):
     deviation: float
     indices: tuple[Index, ...]
     convergence: tuple[tuple[int, Array, Array], ...]  # rows, S (d), T (d)
+    sum_low: float  # of the first orders, the lower end of its interval
 
 
 class Blocks(NamedTuple):
@@ -138,7 +140,21 @@ def indices(keys: Sequence[str], values: Blocks, word: str = "", unit: str = "-"
         word, unit, n, left_out, float(np.mean(every)), deviation,
         tuple(Index(*row) for row in table),
         tuple((m, *_indices(taken(values, slice(m)))) for m in steps),
+        float(np.quantile(again[:, 0].sum(axis=1), 0.5 - LEVEL / 2)),
     )  # fmt: skip
+
+
+def impossible(of: Indices) -> list[str]:
+    """What the indices say beyond their intervals that cannot be: S_i > T_i, or sum of S_i > 1."""
+    found = [
+        f"first {one.first:.3f} of {one.key} is more than its total {one.total:.3f}"
+        for one in of.indices
+        if one.first_low > one.total_high
+    ]
+    if of.sum_low > 1.0:
+        total = sum(one.first for one in of.indices)
+        found.append(f"the first orders add up to {total:.3f}, more than 1")
+    return found
 
 
 def taken(values: Blocks, rows: Any) -> Blocks:

@@ -7,7 +7,16 @@ under a Hann window w [Welch1967].  The resolution is the width of that window, 
 segments of n values.  P has nu = 36 K^2 / (19 K - 1) degrees of freedom for K segments, and by
 their chi-square distribution an interval.
 
-A line of amplitude a (a cos 2 pi f t) stands out as P = a^2 / (2 * 1.5 fs / n).
+A line of amplitude a (a cos 2 pi f t) on a frequency of the FFT stands out as
+
+    P = a^2 / (2 * 1.5 fs / n)
+
+and one that is s bins away from it, |s| <= 1/2, as less; r being the ratio of A on the neighbour at
+its side to A there,
+
+    s = (2 r - 1) / (1 + r),     a = sqrt(2 P 1.5 fs / n) (1 - s^2) pi s / sin(pi s)
+
+as follows from the transform of a Hann window.
 
 Rows are samples.  What moves faster than half of their rate appears at frequencies where it does
 not belong, and nothing in the rows tells; two signs of it are looked for.  Were P to fall like
@@ -106,7 +115,7 @@ def sampling(t: Array) -> float:
 
 
 def peaks(f: Array, p: Array, resolution: float) -> tuple[Peak, ...]:
-    """The largest maxima of a density p (n), their frequency and height by a parabola."""
+    """The largest maxima of a density p (n), as the sines they would be."""
     from scipy.signal import find_peaks
 
     if len(p) < 3 or p.max() <= 0.0:
@@ -115,17 +124,19 @@ def peaks(f: Array, p: Array, resolution: float) -> tuple[Peak, ...]:
     at, about = find_peaks(level, prominence=PROMINENT)
     found = []
     for k, prominence in zip(at.tolist(), about["prominences"].tolist(), strict=True):
-        left, top, right = level[k - 1 : k + 2]
-        bend = left - 2.0 * top + right
-        shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
-        height = 10.0 ** ((top - 0.25 * (left - right) * shift) / 10.0)
-        amplitude = float(np.sqrt(2.0 * height * resolution))
-        found.append(Peak(float(f[k] + shift * f[1]), amplitude, prominence))
+        left, top, right = np.sqrt(p[k - 1 : k + 2])
+        ratio = max(left, right) / top
+        shift = float(np.clip((2.0 * ratio - 1.0) / (1.0 + ratio), 0.0, 0.5))
+        amplitude = float(np.sqrt(2.0 * resolution) * top * (1.0 - shift**2) / np.sinc(shift))
+        place = k + shift if right > left else k - shift
+        found.append(Peak(float(place * f[1]), amplitude, prominence))
     return tuple(sorted(found, key=lambda peak: -peak.amplitude)[:PEAKS])
 
 
 def of_channel(run: Run, channel: str, within: Window, segments: int = SEGMENTS) -> Spectrum:
     """The spectral density of a channel of a run in a window; raises UsageError."""
+    if channel == "time":
+        raise UsageError("time has no spectrum", "Name a channel that varies with it.")
     time, x = run.time, scalar_channel(run, channel)
     inside = within.of(time)
     time, x = time[inside], x[inside]

@@ -81,6 +81,14 @@ def see_sense(paths: Sequence[str | PathLike], asked: "Asked") -> None:
     if wrong:
         of, rather = ("a sweep", "result files") if studies else ("result files", "a sweep")
         raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
+    if asked.over and not studies:
+        raise UsageError("--over is not for result files", "It is for a sweep.")
+    if asked.over and asked.sobol and not (asked.bifurcation or asked.table):
+        raise UsageError("--over goes with --bifurcation or --table")
+    if asked.against and not (asked.compare or asked.overlay):
+        raise UsageError("--against goes with --compare or --overlay")
+    if asked.channels and not asked.compare:
+        raise UsageError("--channels goes with --compare")
 
 
 @contextmanager

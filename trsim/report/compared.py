@@ -24,6 +24,7 @@ from trsim.report.style import apart, colour, look, panels, save, thinned, title
 
 TITLES = ("channel", "run", "unit", "largest difference", "at", "rms", "of range", "apart from",
           "mean of first", "mean", "rms of first", "rms of run")  # fmt: skip
+COARSE = 200  # rows: a table of fewer is drawn as points, nothing is known between them
 Named = tuple[str, Curve, Difference | None]  # label, curve, what it is apart from the first
 
 
@@ -68,7 +69,7 @@ def overlay(runs: list[Shown], word: str, against: str, folder: Path) -> Found:
         note(found, label(shown), off, against)
     name = file_name("overlay", f"{Path(file).stem} {channel}")
     with look():
-        drawn = figure(runs, channel, against, named)
+        drawn = figure(runs, channel, against, named, coarse=len(given.s) < COARSE)
         found.files.append(save(drawn, folder / f"{name}.png"))
     found.files.append(table(folder / f"{name}.csv", TITLES, rows))
     return found
@@ -109,19 +110,25 @@ def note(found: Found, name: str, off: Difference, against: str) -> None:
                               off.unit))  # fmt: skip
 
 
-def figure(runs: list[Shown], channel: str, against: str, named: list[Named]) -> Any:
-    """All curves on one scale; below what each is more than the first."""
+def figure(
+    runs: list[Shown], channel: str, against: str, named: list[Named], coarse: bool = False
+) -> Any:
+    """All curves on one scale; below what each is more than the first.
+
+    coarse: the first one and the differences, taken at its rows, are points.
+    """
     made, axes = panels(2, height=2.2, sharex=True, height_ratios=(3, 2))
     upper, lower = axes[:, 0]
-    first = runs[0]
+    first, points = runs[0], {"ls": "", "marker": "o", "ms": 2.5}
     over, over_unit = first.display(first.run.unit(against) if against else "s")
     factor, unit = first.display(first.run.unit(channel))
     for k, (name, one, off) in enumerate(named):
-        dashed = "--" if k else "-"
-        upper.plot(*thinned(one.s * over, one.x * factor), color=colour(k), ls=dashed, label=name)
+        style = points if coarse and not k else {"ls": "--" if k and not coarse else "-"}
+        upper.plot(*thinned(one.s * over, one.x * factor), color=colour(k), label=name, **style)
         if off is None:
             continue
-        lower.plot(*thinned(off.rest.s * over, off.rest.x * factor), color=colour(k))
+        lower.plot(*thinned(off.rest.s * over, off.rest.x * factor), color=colour(k),
+                   **(points if coarse else {}))  # fmt: skip
         lower.plot([off.at * over], [off.largest * factor], "o", ms=3.5, color=colour(k),
                    mec="white", mew=0.5, zorder=5)  # fmt: skip
         if np.isfinite(off.apart):

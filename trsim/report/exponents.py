@@ -1,6 +1,7 @@
 """Lyapunov exponents as figures: how neighbours, or two runs, part, and the line through it."""
 
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,8 @@ from trsim.report.display import Shown, short
 from trsim.report.marks import spaced
 from trsim.report.spectra import label
 from trsim.report.style import colour, look, panels, save, titled
+
+WIDE = 70  # characters of the legend that fit under the figure
 
 
 def draw(runs: list[Shown], word: str, folder: Path) -> Found:
@@ -59,14 +62,15 @@ def told(one: Exponent) -> str:
     return text
 
 
-def figure(runs: list[Shown], each: list[Exponent], labels: list[str], title: str, y: str) -> Any:
+def figure(runs: list[Shown], each: list[Exponent], labels: list[str], said: str, y: str) -> Any:
     """Curves of the logarithm of a distance, their lines, and the rates in the legend."""
     made, axes = panels(1, height=3.2)
     a = axes[0, 0]
     factor, second = runs[0].display("s")
+    title = said
     for k, (one, name) in enumerate(zip(each, labels, strict=True)):
         result = told_short(one)
-        text = f"{name}: {result}" if name else result
+        text = fill(f"{name}: {result}" if name else result, WIDE)
         if not one.time.size:
             a.plot([], [], color=colour(k), label=text)
             continue
@@ -75,16 +79,17 @@ def figure(runs: list[Shown], each: list[Exponent], labels: list[str], title: st
         if one.fit is not None and one.verdict == "grows":
             t = one.time[[one.fit.begin, one.fit.end - 1]]
             a.plot(t * factor, one.fit.offset + one.fit.slope * t, color="black", lw=1.2, ls="--")
+            title = f"{said} (dashed: fitted line)"
     a.set_xlabel(f"time since they were neighbours ({second})")
     a.set_ylabel(y)
     a.margins(x=0.01)
-    titled(made, runs, f"{title} (dashed: fitted line)")
+    titled(made, runs, title)
     made.legend(*a.get_legend_handles_labels(), loc="outside lower center", ncols=1)
     return made
 
 
 def told_short(one: Exponent) -> str:
+    """The rate, or the verdict without its reason, which is in the lines of the report."""
     if one.verdict == "grows":
         return f"{short(one.value, 3)} \u00b1 {short(one.half, 2)} 1/s"
-    words = {"none": "no growth"}.get(one.verdict, one.verdict)
-    return f"{words}: {one.reason}" if one.reason else words
+    return {"none": "no growth"}.get(one.verdict, one.verdict)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from trsim.analyse.cases import Numbers, told
-from trsim.analyse.sobol import Indices, blocks, factors, indices, named, places
+from trsim.analyse.sobol import Indices, blocks, factors, impossible, indices, named, places
 from trsim.errors import Problems, TrsimError, UsageError
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown, short
@@ -53,6 +53,7 @@ def written(of: Indices, name: str, one: Shown, folder: Path) -> Found:
             f"{what}: first {each.first:.3f} ({each.first_low:.3f} .. {each.first_high:.3f}), "
             f"total {each.total:.3f} ({each.total_low:.3f} .. {each.total_high:.3f}){noise}"
         )
+    found.lines.extend(f"{of.word}: too few rows: {what}" for what in impossible(of))
     return found
 
 

@@ -71,14 +71,18 @@ class Run:
     def channel(self, name: str) -> Array:
         """The rows of a channel, (n) or (n, size); `B.force.x` is one component."""
         stored, component = split(name, self.sizes)
-        if stored != "time" and stored not in self.units:
+        if not self.stores(name):
             raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
         with opened(self.path) as file:
             rows = file[stored][: self.rows]
         return rows if component is None else rows[:, component]
 
+    def stores(self, name: str) -> bool:
+        """Whether there are rows of a channel or of a component."""
+        return name == "time" or split(name, self.sizes)[0] in self.units
+
     def unit(self, name: str) -> str:
-        return self.units[split(name, self.sizes)[0]]
+        return "s" if name == "time" else self.units[split(name, self.sizes)[0]]
 
     def meaning(self, name: str) -> str:
         with opened(self.path) as file:
