@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper test release-check lint bench stress clean
+.PHONY: demo paper tolerances test release-check lint bench stress clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -16,6 +16,13 @@ demo: .venv/installed
 paper: .venv/installed
 	$(BIN)/trsim sweep scenarios/thrust_reverser/paper.yaml -o runs/paper
 	$(BIN)/trsim report --paper thrust-reverser runs/paper -o runs/paper/page
+
+# 896 runs; goes on where it was ended
+tolerances: .venv/installed
+	$(BIN)/trsim sweep scenarios/thrust_reverser/tolerances.yaml -o runs/tolerances
+	$(BIN)/trsim report runs/tolerances --sobol peak:B.contact_force \
+	  --sobol "peak:A.contact_force@0.29..0.5" --sobol "peak:actuator.force@0.5..1" \
+	  --sobol "fluctuation:door_angle.rate@0.31..0.98"
 
 test: .venv/developer lint
 	$(PYTEST)
