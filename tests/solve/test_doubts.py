@@ -10,6 +10,7 @@ from trsim.solve.doubts import doubts, of_start
 from trsim.solve.projected import projected
 from trsim.solve.start import start
 from trsim.spec.load import load, loads
+from trsim.sweep.plan import plan
 
 from ..runs import run
 
@@ -83,6 +84,9 @@ def test_check_tells_the_change_of_two_guides():
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
 def test_the_scenarios_start_as_given(path):
     scenario = load(path)
+    if scenario.cases and not scenario.bodies:  # a study of other scenarios
+        planned = plan(str(path))
+        scenario = planned.scenario(planned.cases[0])
     m = assemble(scenario)
     assert list(of_start(scenario, m, start(scenario, m, True))) == []
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Generator, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -60,6 +61,7 @@ def go(
     mine = folder / f"ledger{shard.name and '-'}{shard.name}.jsonl"
     with writing(mine):
         see_alone(plan, folder, shard, mine)
+        sweep_out(folder)
         write_plan(folder, plan, engine)
         with told(folder):
             ledger = Ledger(folder, shard.name)
@@ -80,6 +82,14 @@ def see_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
         other = lock.with_name(lock.name.removesuffix(".lock"))
         if other != mine and (not same or other.name == "ledger.jsonl"):
             refuse_if_written(other)
+
+
+def sweep_out(folder: Path) -> None:
+    """Remove what processes that were killed left beside results that are complete: locks."""
+    for lock in (folder / "cases").glob("*.h5.lock"):
+        with suppress(FileError):  # of a case that is being run
+            refuse_if_written(lock.with_name(lock.name.removesuffix(".lock")))
+            lock.unlink(missing_ok=True)
 
 
 def differing(plan: Plan, folder: Path) -> int:
