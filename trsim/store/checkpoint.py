@@ -103,13 +103,23 @@ def sources(package: Path) -> str:
 
 def differences(kept: Checkpoint, scenario: Any) -> str:
     """What is not as it was when a checkpoint was written, in words; nothing if all is."""
-    was, now = dict(_leaves(kept.keys)), dict(_leaves(keys(scenario)))
-    names = [n for n in sorted(was | now) if was.get(n) != now.get(n)]
+    was, now = leaves(kept.keys), leaves(keys(scenario))
+    names = differing(was, now)
     told = [
         f"{n.removeprefix('scenario.')} is {_short(now.get(n))}, was {_short(was.get(n))}"
         for n in names[:SHOWN]
     ]
     return "; ".join(told) + (f"; {len(names) - SHOWN} more" if len(names) > SHOWN else "")
+
+
+def leaves(tree: Any) -> dict[str, str]:
+    """Dotted path -> JSON of everything in a tree of mappings that is not a mapping itself."""
+    return dict(_leaves(tree))
+
+
+def differing(was: dict[str, str], now: dict[str, str]) -> list[str]:
+    """The paths of two trees that do not have the same in both."""
+    return [name for name in sorted(was | now) if was.get(name) != now.get(name)]
 
 
 def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, str]]:

@@ -106,8 +106,7 @@ def _gone_on(
     plan: Plan, folder: Path, engine: str, run: Runner, shard: Shard, ledger: Ledger
 ) -> Generator[Entry | int, None, None]:
     wanted, known = [], entries(folder)
-    for case in plan.cases[shard.i - 1 :: shard.n]:
-        found = need(case, known.get(case.name), folder, engine)
+    for case, found in needs(plan, folder, engine, shard):
         if found.why:
             wanted.append(case)
         elif found.entry and found.entry != known.get(case.name):  # its line was lost, or is old
@@ -117,7 +116,7 @@ def _gone_on(
         return
     cases = {case.name: case for case in wanted}
     tasks = (task(case, plan, named_file(folder, case.name)) for case in wanted)
-    table, known = read_plan(folder), entries(folder)
+    table, known = read_plan(folder), entries(folder)  # with what other shards did
     took, written = 0.0, time.monotonic()
     for one, ended in run(tasks):
         case = cases[one["name"]]

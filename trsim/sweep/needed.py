@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import h5py
 
+from trsim.store.checkpoint import differing, leaves
 from trsim.sweep.job import CONTACT, STATISTICS
 from trsim.sweep.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
 from trsim.sweep.plan import Case, Plan, named_file
@@ -98,21 +99,13 @@ def explained(plan: Plan, case: Case, told: Need, folder: Path) -> str:
         return told.why
     try:
         with h5py.File(named_file(folder, case.name), "r") as file:
-            was = dict(_leaves(json.loads(file["scenario/resolved"].asstr()[()])))
+            was = leaves(json.loads(file["scenario/resolved"].asstr()[()]))
     except (OSError, KeyError, RuntimeError, ValueError):
         return told.why
-    now = dict(_leaves(case.data))
-    names = [name for name in dict.fromkeys([*was, *now]) if was.get(name) != now.get(name)]
+    now = leaves(case.data)
     parts = [
-        f"{name} is {now.get(name, 'absent')}, was {was.get(name, 'absent')}" for name in names
+        f"{name} is {now.get(name, 'absent')}, was {was.get(name, 'absent')}"
+        for name in differing(was, now)
     ]
     more = f"; {len(parts) - SHOWN} more" if len(parts) > SHOWN else ""
     return f"{told.why}: {'; '.join(parts[:SHOWN])}{more}"
-
-
-def _leaves(tree: Any, path: str = "") -> Any:
-    if isinstance(tree, dict):
-        for name, inner in tree.items():
-            yield from _leaves(inner, f"{path}.{name}" if path else name)
-    else:
-        yield path, json.dumps(tree)

@@ -72,15 +72,22 @@ class _Named(NamedTuple):
     sweep: vary.Sweep
     settings: dict[str, _Setting]
 
-    def scenario(self, case: Case) -> Scenario:
-        tree = Tree(self.tree.data, dict(self.tree.marks), dict(self.tree.keys), self.tree.files)
-        tree.data = json.loads(json.dumps(tree.data))
+    def with_values(self, values: dict[str, Any]) -> Tree:
+        """The tree of a case; values: of the keys that vary by themselves.
+
+        Raises what the rules of --set have against a key.
+        """
+        data = json.loads(json.dumps(self.tree.data))
+        tree = Tree(data, dict(self.tree.marks), dict(self.tree.keys), self.tree.files)
         for key, setting_ in self.settings.items():
             source = setting_.axis.same_as or key
-            put(tree, key.split("."), case.values[source], setting_.at, setting_.key_place)
+            put(tree, key.split("."), values[source], setting_.at, setting_.key_place)
         for key in SWEPT:
             tree.data.pop(key, None)
-        return of_tree(tree, self.text)
+        return tree
+
+    def scenario(self, case: Case) -> Scenario:
+        return of_tree(self.with_values(case.values), self.text)
 
 
 def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
@@ -206,13 +213,7 @@ def _cases(name: str, one: _Named, digests: "Digests") -> Iterator[Case]:
         told = [each.at for each in one.settings.values() if each.at.file == "--set"]
         place = told[0] if told else one.tree.place(path)
         raise ScenarioError(error.what, error.hint, path, place) from None
-    if found and one.sweep.axes:  # the rules of --set, which know what is wrong with a key
-        values = {
-            key: found[0].values[one.settings[key].axis.same_as or key] for key in one.settings
-        }
-        tree = Tree(json.loads(json.dumps(base)))
-        for key, setting_ in one.settings.items():
-            put(tree, key.split("."), values[key], setting_.at, setting_.key_place)
+    one.with_values(found[0].values)  # a key that cannot be set is told here
     for point in found:
         data = base
         for key, value in point.values.items():
