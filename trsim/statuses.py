@@ -3,12 +3,13 @@
 from typing import Literal
 
 # said by the solver, said by the writer of the file
-Ended = Literal["done", "failed"]
+Ended = Literal["done", "jammed", "failed"]
 Status = Literal["running", Ended, "interrupted", "recovered"]
 
 STATUSES: dict[Status, str] = {
     "running": "goes on, or was killed: `trsim recover` copies what it left",
     "done": "reached its end, or an event of the scenario ended it",
+    "jammed": "a drive reached what it can do, or drives lost their synchronism",
     "failed": "the solver could not go on; the file holds what was computed until then",
     "interrupted": "ended by a signal; the file was closed and is named .part",
     "recovered": "copied out of a .part file",

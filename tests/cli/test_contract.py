@@ -306,6 +306,17 @@ def test_schema_modeline_is_a_scenario_comment(folder, document):
 # --- statuses --------------------------------------------------------------------------------
 
 
+JAMS = """
+bodies: {block: {mass: 2, inertia: 0.01}}
+joints: {slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}
+forces: {wall: {type: spring_damper, bodies: [ground, block], points: [[1, 0], [0, 0]],
+                stiffness: 1e4}}
+drives: {jack: {type: actuator, bodies: [ground, block], points: [[-0.5, 0], [0, 0]],
+                velocity: 0.1, stiffness: 1e5, stall: 5}}
+solver: {end: 20 ms}
+"""
+
+
 def of_every_status(folder, monkeypatch):
     """Result files with every status there is; the one of a run that goes on is copied."""
     scenario = loads(small.SLIDER_CRANK, ["solver.end=20ms"])
@@ -323,8 +334,10 @@ def of_every_status(folder, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         write(folder / "y.h5", scenario, mechanism, blocks(True))
     small.run(folder / "failed.h5", text=small.SLIDER_CRANK.replace(*WRONG[5]))
+    small.run(folder / "jammed.h5", text=JAMS)
     return {
         "done": "x.h5",
+        "jammed": "jammed.h5",
         "failed": "failed.h5",
         "interrupted": "y.h5.part",
         "running": "running.h5.part",

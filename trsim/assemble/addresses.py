@@ -42,6 +42,7 @@ class Addresses:
     n_s: int = 0
     timed: bool = False  # something depends on t explicitly
     notes: list[str] = field(default_factory=list)
+    instances: dict[tuple[str, str], Any] = field(default_factory=dict)  # packed so far
     switches: Any = None  # of user events, once all elements are packed
 
     def __post_init__(self) -> None:
@@ -193,13 +194,24 @@ class Addresses:
     def sensor(self, name: str) -> int:
         """Index of a sensor in S."""
         if name not in self.sensors:
-            self.sensors[name] = self.n_s
-            self.n_s += 1
+            self.sensors[name] = self.entry()
         return self.sensors[name]
 
+    def entry(self) -> int:
+        """Index of a new entry of S."""
+        self.n_s += 1
+        return self.n_s - 1
+
+    def packed(self, section: str, name: str, path: tuple[str | int, ...]) -> Any:
+        """The instance of an element that is packed before the one that asks."""
+        if (section, name) not in self.instances:
+            there = [n for s, n in self.instances if s == section]
+            raise ScenarioError(f"nothing named '{name}' in {section}", known(name, there), path)
+        return self.instances[section, name]
+
     def state(self, scale: str | float, follows: int = -1) -> int:
-        """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 0: none
-        or a magnitude), and the coordinate it starts at.  Returns its index in z."""
+        """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 'speed',
+        0: none or a magnitude), and the coordinate it starts at.  Returns its index in z."""
         from trsim.elements.contract import N_BOOK
 
         self.states.append((scale, follows))

@@ -174,11 +174,13 @@ def pack(  # type: ignore[no-untyped-def]
     for key, section, name, spec in wanted:
         told = len(at.notes)
         try:
-            instances.append(Instance(section, name, kinds[key], kinds[key].pack(name, spec, at)))
+            instance = Instance(section, name, kinds[key], kinds[key].pack(name, spec, at))
         except ScenarioError as error:
             raise error.at(section, name) from None
         except ValueError as error:
             raise ScenarioError(str(error), path=(section, name)) from None
+        instances.append(instance)
+        at.instances[section, name] = instance
         place = scenario.place((section, name))
         line = f"{place.show()}: " if place else ""
         at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]

@@ -12,8 +12,6 @@ from trsim.assemble.members import Beam
 from trsim.elements.contract import N_BOOK
 
 AT_A_NODE = 1e-9  # of the mechanism's size: an arm so long has no lever
-# where the state of an element stands in its Row.con
-STATE = {"drive": 3, "clearance_joint": 3}
 
 
 class Nodes(NamedTuple):
@@ -73,10 +71,10 @@ class _Coupling:
         """The nodes that an element couples."""
         if instance.section not in ("joints", "drives", "forces", "events"):
             return frozenset()
-        con, key = instance.row.con, instance.element.key
+        key = instance.element.key
         frames = set(instance.element.acts_on(instance.row))
-        states = {con[STATE[key]]} if key in STATE else set()
-        if key == "drive":
+        states = set(instance.row.states)
+        if instance.section in ("drives", "events"):
             states |= {state for state, _ in self.motions.get(instance.name, ())}
         if key in ("applied_load", "distributed_load"):
             frames |= self.read(self.scenario.forces[instance.name])

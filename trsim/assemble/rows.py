@@ -35,8 +35,8 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
     rows = []
     for n, instance in enumerate(instances):
         i, j = instance.row.con[0], instance.row.con[1] if len(instance.row.con) > 1 else 0
-        if instance.element.key == "drive" and instance.row.par[9] > 0.0:
-            continue  # a compliant drive is a force
+        if instance.row.is_force:
+            continue
         if instance.section == "events" and instance.name not in held:
             continue
         for index, axis in enumerate(instance.element.rows):
@@ -82,7 +82,7 @@ def choose_rows(
     """Rows of the solve: in the plane where the scene is planar, the redundant ones dropped."""
     _, _, J = jacobian(full, 0.0, y6)
     candidates = np.flatnonzero(in_solve(full, J, planar)).tolist()
-    is_drive = [instances[r.instance].element.key == "drive" for r in rows]
+    is_drive = [instances[r.instance].section in ("drives", "events") for r in rows]
     is_lock = [instances[r.instance].section == "events" for r in rows]
     # translations first: where a choice is left, moments go rather than forces; then locks, which
     # may hold what is held already, and drives last
@@ -94,7 +94,7 @@ def choose_rows(
             name = rows[f.row].element
             raise ModelError(
                 "moves a coordinate that joints or another drive already fix",
-                "two drives on one degree of freedom? remove one, or give it a `compliance`",
+                "two drives on one degree of freedom? remove one, or give it compliance",
                 ("drives", name),
             )
     dropped = {f.row for f in found if f.everywhere}

@@ -14,14 +14,13 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, Switches, lock_name
-from trsim.elements.contract import Row
+from trsim.elements.prescribed import OWN_STATE, C, K
 from trsim.elements.scene import Model
 
 Rows = list[RowName]
 # the same in every stage
 OUTPUTS = ("wanted", "joint_out", "column_energy", "n_out", "section", "section_at")
-STATE, MOTION = 3, 5  # of a drive's Row.con
-K, C = 9, 10  # of its par
+MOTION = 5  # of a drive's Row.con
 
 
 class Stages:
@@ -71,9 +70,8 @@ def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switc
     if to == LOOSE:
         par[K] = par[C] = 0.0
     else:
-        con[STATE], con[MOTION] = switches.motions[instance.name][to - 1]
-    row = Row(tuple(con), tuple(par), instance.row.contact)
-    return Instance(instance.section, instance.name, instance.element, row)
+        con[OWN_STATE], con[MOTION] = switches.motions[instance.name][to - 1]
+    return replace(instance, row=replace(instance.row, con=tuple(con), par=tuple(par)))
 
 
 def in_force(instances: list[Instance], at: dict[tuple[str, str], int]) -> Rows:

@@ -18,13 +18,19 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.mechanism import Instance
 from trsim.elements.event import DIRECTIONS, Event
+from trsim.elements.prescribed import ENTRY, OWN_STATE
 from trsim.errors import ScenarioError, known
+from trsim.statuses import Ended
 from trsim.units import quantity, unit
 
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
 UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
+TIME, LIMITS = (
+    -1,
+    -2,
+)  # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
 SECTION = "events"  # of the instances of locks
 
 
@@ -33,9 +39,9 @@ class UserEvent:
     """An event of the scenario, as the solver needs it."""
 
     name: str
-    entry: int  # of S; -1 for t
+    entry: int  # of S; TIME; LIMITS - e for what row e limits
     value: float
-    kind: str  # angle, stroke or time
+    kind: str  # angle, stroke, time or limit
     direction: int
     most: int
     turned: tuple[tuple[int, int], ...]  # switch, what it is put to
@@ -43,12 +49,16 @@ class UserEvent:
     end: bool
     said: str
     when: str  # what is watched
+    status: Ended = "done"  # of the run where it ends here
+    unit: str = ""  # of the value, where the kind does not tell
 
     def told(self) -> str:
         """When it happens and what it does, in words."""
         way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
         often = "" if self.most == ALWAYS else f", {self.most} times" if self.most > 1 else ", once"
-        return f"{self.when} {way} {self.value:g} {UNITS[self.kind]}{often}: {self.said}"
+        return (
+            f"{self.when} {way} {self.value:g} {self.unit or UNITS[self.kind]}{often}: {self.said}"
+        )
 
 
 @dataclass(frozen=True)
@@ -87,7 +97,8 @@ def check(name: str, there: Any, kind: str, path: tuple) -> None:
 
 def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switches:
     """The events of a scenario.  Raises ScenarioError for names and units that do not fit."""
-    if not scenario.events:
+    limited = limits(instances)
+    if not scenario.events and not limited:
         return Switches()
     method = scenario.solver.method
     if method.startswith("scipy:"):
@@ -99,7 +110,20 @@ def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switche
     of = _Packing(scenario, at, instances)
     events = tuple(of.event(name, spec) for name, spec in scenario.events.items())
     motions = {name: tuple(found) for name, found in of.motions.items()}
-    return Switches(tuple(of.names), motions, events, at.state(0.0))
+    jumps = at.state(0.0) if events else -1
+    return Switches(tuple(of.names), motions, (*events, *limited), jumps)
+
+
+def limits(instances: list[Instance]) -> tuple[UserEvent, ...]:
+    """The limits of elements, as events that end the run."""
+    return tuple(
+        UserEvent(
+            f"{instance.name}.{limit.name}", LIMITS - e, limit.value, "limit", DIRECTIONS["up"],
+            1, (), True, True, limit.said, instance.name, limit.status, limit.unit,
+        )
+        for e, instance in enumerate(instances)
+        for limit in instance.row.limits
+    )  # fmt: skip
 
 
 class _Packing:
@@ -131,7 +155,7 @@ class _Packing:
             check(spec.when, [*self.scenario.sensors, "t"], "sensor", path)
             kind = self.at.coordinate(self.scenario.sensors[spec.when].joint).kind
         self.check_value(name, spec.when, UNITS[kind])
-        return (-1 if kind == "time" else self.at.sensor(spec.when)), kind
+        return (TIME if kind == "time" else self.at.sensor(spec.when)), kind
 
     def check_value(self, name: str, when: str, wanted: str) -> None:
         """Refuse a written unit that does not fit what is watched."""
@@ -150,12 +174,23 @@ class _Packing:
         """Store a motion of a drive."""
         path = (SECTION, name, "do", "set", drive)
         check(drive, self.scenario.drives, "drive", path)
-        x = self.at.coordinate(self.scenario.drives[drive].joint)
         by_velocity = motion.position is None
+        spec = self.scenario.drives[drive]
+        if spec.type == "actuator":
+            if by_velocity != (spec.position is None):
+                raise ScenarioError(
+                    "an actuator goes on with what it began with",
+                    "set a velocity where it has a velocity, a position where it has a position",
+                    path,
+                )
+            kind, entry = "stroke", self.instances["drives", drive].row.con[ENTRY]
+        else:
+            x = self.at.coordinate(spec.joint)
+            kind, entry = x.kind, x.entry
         word = "velocity" if by_velocity else "position"
         units = ("rad/s", "m/s") if by_velocity else ("rad", "m")
         try:
-            self.at.check_unit(x.kind, *units, *path, word)
+            self.at.check_unit(kind, *units, *path, word)
         except ScenarioError as error:
             raise error.at(*path[:2]) from None
         given = motion.velocity if by_velocity else motion.position
@@ -163,18 +198,18 @@ class _Packing:
             offset = self.at.function(given, word, time_only=True)
         except ScenarioError as error:
             raise error.at(*path) from None
-        state = self.state(drive, x) if by_velocity else -1
+        state = self.state(drive, kind, entry) if by_velocity else -1
         found = self.motions.setdefault(drive, [])
         found.append((state, offset))
         return self.switch("drives", drive, len(found))
 
-    def state(self, drive: str, x: Any) -> int:
+    def state(self, drive: str, kind: str, entry: int) -> int:
         """The entry of z that holds the place of a drive with a velocity."""
-        own = self.instances["drives", drive].row.con[3]
+        own = self.instances["drives", drive].row.con[OWN_STATE]
         if own >= 0:
             return own
         if drive not in self.states:
-            self.states[drive] = self.at.state(x.kind, follows=x.entry)
+            self.states[drive] = self.at.state(kind, follows=entry)
         return self.states[drive]
 
     def released(self, name: str, k: int, one: str) -> tuple[int, int]:

@@ -16,6 +16,7 @@ from trsim.errors import ModelError
 Array = NDArray[np.float64]
 
 LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
+STATE_SCALES = {"angle": scales.ANGLE, "stroke": scales.LENGTH, "speed": scales.SPEED}
 SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
 
 
@@ -204,7 +205,7 @@ def norm(at: Addresses, d: int, size: float) -> tuple[NDArray[np.int64], Array]:
     lever += [1.0] * N_BOOK
     for scale, _ in at.states:
         if isinstance(scale, str):
-            kind.append(scales.ANGLE if scale == "angle" else scales.LENGTH)
+            kind.append(STATE_SCALES[scale])
             lever.append(size if scale == "angle" else 1.0)
         else:
             kind.append(scales.MAGNITUDE if scale else scales.OUTSIDE)
@@ -217,7 +218,11 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
     events = switches.events
     watch = [(e.entry, e.direction, e.most) for e in events]
     scale = {"angle": 1.0, "stroke": size, "time": 0.0}
-    at = [(e.value, BAND * scale[e.kind]) for e in events]
+    at = [
+        # of a limit the gap is watched, which has the limit taken off already
+        (0.0, BAND * e.value) if e.kind == "limit" else (e.value, BAND * scale[e.kind])
+        for e in events
+    ]
     return {
         "watch": np.array(watch, np.int64).reshape(-1, 3),
         "watch_at": np.array(at, float).reshape(-1, 2),

@@ -18,6 +18,7 @@ ELEMENTS = {
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`
     "drive": "drives",
+    "actuator": "drives",
     "sensor": "sensors",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
@@ -25,6 +26,7 @@ ELEMENTS = {
     "spring_damper": "forces",
     "torsion_spring": "forces",
     "limit_stop": "forces",
+    "sync_shaft": "forces",
 }
 
 

@@ -15,7 +15,8 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
     constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma
     coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to,
                 the angle itself in a planar scene
-    gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s)
+    gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s); or how far a limit of
+                the element is exceeded, and its rate
     corners     corner[e] = how far the element has left the branch in mem[e, BRANCH] of a law with
                 corners (< 0: inside), and the branch to go on with; `force` keeps the largest
                 such value it meets in left[e]
@@ -35,6 +36,7 @@ from typing import NamedTuple
 from trsim.elements.machine import Compiled
 from trsim.elements.scene import Scene
 from trsim.elements.signatures import Signature, f8, i8, void
+from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
 
@@ -101,6 +103,16 @@ class Contact(NamedTuple):
     slowest_impact: float  # m/s
 
 
+class Limit(NamedTuple):
+    """What ends a run where the gap of an element rises through zero; located like an event."""
+
+    name: str  # behind the element's: stall
+    value: float  # the limit itself
+    unit: str
+    status: Ended
+    said: str  # what has happened
+
+
 @dataclass(frozen=True)
 class Row:
     """One packed instance."""
@@ -109,6 +121,9 @@ class Row:
     par: tuple[float, ...]
     contact: Contact | None = None
     channels: tuple[Channel, ...] | None = None  # of this instance, where they are not its kind's
+    is_force: bool = False  # its constraint rows are never in force: a drive with compliance
+    states: tuple[int, ...] = ()  # entries of z it reads or changes
+    limits: tuple[Limit, ...] = ()
 
 
 def ends(row: Row) -> frozenset[int]:

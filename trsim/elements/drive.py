@@ -21,13 +21,11 @@ from trsim.elements.contract import (
     Channel,
     Element,
     Row,
-    compiled,
     kernel,
 )
 from trsim.elements.frames import along_row, arm, cross, dot, helper, push, separation, spin, twist
-from trsim.elements.signatures import A1, f8, i8, void
+from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, prescribed
 from trsim.fields import Function, Spec, Unit
-from trsim.laws.functions import motion
 
 
 class Compliance(Spec):
@@ -69,10 +67,6 @@ class Drive(Spec):
         return self
 
 
-STATE, ROTATES, MOTION = 4, 5, 6  # con, after the row: state of z; angle or stroke; tab
-K, C, SIGN = 9, 10, 11  # par, after the arms and the axis in body i
-
-
 COMPLIANCE_UNITS = (
     ("stiffness", "N*m/rad", "N/m"),
     ("damping", "N*m*s/rad", "N*s/m"),
@@ -100,22 +94,8 @@ def pack(name, spec, at):
         zeta = spec.compliance.damping_ratio
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
     con = (x.i, x.j, x.entry, state, int(x.kind == "angle"), f)
-    return Row(con, (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign)))
-
-
-@compiled(void(A1, i8, f8, A1))
-def rates_at(tab, offset, t, out):
-    """out = f, f', f'' of a function of tab at t."""
-    out[0], out[1], out[2] = motion(tab, offset, t)
-
-
-@helper
-def prescribed(t, z, tab, state, offset):
-    """f, f', f'' at the time t since the motion began."""
-    f, f_dot, f_ddot = motion(tab, offset, t)
-    if state < 0:
-        return f, f_dot, f_ddot
-    return z[state], f, f_dot
+    par = (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign))
+    return Row(con, par, is_force=k > 0.0, states=(state,))
 
 
 @kernel

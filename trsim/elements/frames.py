@@ -6,16 +6,19 @@ A frame i has position r_i, rotation R_i and twist (r_i', omega_i).  With s_i a 
     p_i' = omega_i x p_i
     v_i  = r_i' + omega_i x p_i        velocity of the point
 
-All joints are intersections of three rows [Nikravesh1988] [Haug1989]:
+All joints are intersections of four rows [Nikravesh1988] [Haug1989]:
 
     point          Phi = (r_j + p_j - r_i - p_i) . e      e a world axis
     along          Phi = u . (r_j + p_j - r_i - p_i)      u fixed in frame i
     perpendicular  Phi = u . w                            u fixed in frame i, w in frame j
+    distance       Phi = |r_j + p_j - r_i - p_i| - f
 
 J holds the row against (r_i', omega_i, r_j', omega_j); gamma the terms without accelerations,
 J V' = gamma.  A row index below 0 means the row was dropped (planar scene, redundant).
 The multiplier of a row is minus the generalised force it puts on body j along its direction.
 """
+
+from math import sqrt
 
 from trsim.elements.vectors import internal as helper
 
@@ -178,6 +181,42 @@ def perpendicular_row(scene, i, u, j, w, k):
         J[k, 6 + c] = 0.0
         J[k, 3 + c] = n[c]
         J[k, 9 + c] = -n[c]
+
+
+@helper
+def line(X, V, con, par, e):
+    """Arms, unit vector from i to j, length and its rate of a line between two points.
+
+    par holds the points, in the axes of both bodies, in its first six columns.  A line without
+    length has no direction: its unit vector is zero.
+    """
+    i, j = con[e, 0], con[e, 1]
+    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    d = separation(X, i, p_i, j, p_j)
+    length = sqrt(dot(d, d))
+    if length == 0.0:
+        return p_i, p_j, (0.0, 0.0, 0.0), 0.0, 0.0
+    n = (d[0] / length, d[1] / length, d[2] / length)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    return p_i, p_j, n, length, rate
+
+
+@helper
+def distance_row(scene, e, k):
+    """The length of the line of instance e, as row k; phi is the length itself."""
+    X, V, con, par = scene.X, scene.V, scene.con, scene.par
+    i, j = con[e, 0], con[e, 1]
+    p_i, p_j, n, length, rate = line(X, V, con, par, e)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
+    scene.phi[k] = length
+    scene.phi_t[k] = 0.0
+    scene.gamma[k] = dot(n, c_i) - dot(n, c_j) - (dot(d_dot, d_dot) - rate * rate) / length
+    _fill(scene.J, k, -1.0, n, p_i)
+    _fill(scene.J, k, 1.0, n, p_j)
 
 
 @helper

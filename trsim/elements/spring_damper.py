@@ -19,7 +19,7 @@ from trsim.elements.contract import (
     Row,
     kernel,
 )
-from trsim.elements.frames import arm, dot, helper, push, separation, velocity
+from trsim.elements.frames import line, push
 from trsim.fields import Spec, Unit, vector
 
 
@@ -52,22 +52,6 @@ def pack(name, spec, at):
         (i, j, -1),
         (*at.local(i, p), *at.local(j, q), spec.preload, spec.stiffness, spec.damping, free),
     )
-
-
-@helper
-def line(X, V, con, par, e):
-    """Arms, unit vector from i to j, length and its rate."""
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-    d = separation(X, i, p_i, j, p_j)
-    length = sqrt(dot(d, d))
-    if length == 0.0:
-        return p_i, p_j, (0.0, 0.0, 0.0), 0.0, 0.0
-    n = (d[0] / length, d[1] / length, d[2] / length)
-    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-    rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    return p_i, p_j, n, length, rate
 
 
 @kernel

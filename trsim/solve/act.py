@@ -13,7 +13,7 @@ from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
 from trsim.elements.contract import SINCE
-from trsim.elements.drive import MOTION, STATE, rates_at
+from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, STATE, rates_at
 from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve import record as rec
@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 
 TORN = 1e-6  # of the mechanism's size, rad: the most a drive may be away from its joint
 CLOSED = 1e-10  # the same, left by the projection
-ENTRY, PLACE = 2, 3  # of a drive's Row.con: its joint coordinate in S, its state in z
 
 
 class Acted(NamedTuple):
@@ -60,9 +59,23 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> A
             ended = "failed", told(event, error)
             break
         if event.end and ended is None:
-            ended = "done", f"event '{event.name}' ended the run"
+            ended = event.status, why_ended(mechanism, b, event, t)
     r.count[rec.FIRED] = 0
     return Acted(work, np.array(recorded).reshape(-1, 2 + work.n_out), ended)
+
+
+def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
+    """Of a limit what it was, when, and the forces of the actuators then, where they are told."""
+    if event.kind != "limit":
+        return f"event '{event.name}' ended the run"
+    names = {i.name for i in mechanism.instances if i.element.key == "actuator"}
+    forces = [
+        f"{c.name} {b.out[c.start]:.4g} N"
+        for c in mechanism.columns
+        if c.name.removesuffix(".force") in names and c.name.endswith(".force")
+    ]
+    said = f"{event.when} {event.said} ({event.value:g} {event.unit}) at t = {t:.6g} s"
+    return f"{said}: {', '.join(forces)}" if forces else said
 
 
 def told(event: UserEvent, error: ModelError) -> str:
@@ -139,7 +152,7 @@ def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64
     for n, (section, name) in enumerate(mechanism.stages.switches.names):
         if section == "locks" and r.stage[n] == HELD and before[n] != HELD:
             _, lock = instance_of(mechanism, SECTION, lock_name(name))
-            place = work.n_q + work.n_v + lock.row.con[PLACE]
+            place = work.n_q + work.n_v + lock.row.con[OWN_STATE]
             r.y[place] = work.S[lock.row.con[ENTRY], 0]
 
 

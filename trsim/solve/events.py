@@ -7,6 +7,7 @@ two points in flight, a separation between two points in contact).
 """
 
 from trsim.assemble.equations import call_one, poses
+from trsim.assemble.switches import LIMITS
 from trsim.elements.contract import CONTACT, FLIGHT, PHASE, UNLOCATED
 from trsim.elements.vectors import internal
 from trsim.solve.calls import call_interpolate
@@ -42,6 +43,9 @@ def inside(s, P, y, t, h, theta, c, scratch, interpolate):
     poses(s, scratch)
     if c >= s.contact.size:
         entry, value = s.watch[c - s.contact.size, 0], s.watch_at[c - s.contact.size, 0]
+        if entry <= LIMITS:
+            call_one(s, s.gaps, t + theta * h, LIMITS - entry)
+            return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]
         if entry < 0:
             return t + theta * h - value, 1.0
         return s.S[entry, 0] - value, s.S[entry, 1]

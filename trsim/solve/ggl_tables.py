@@ -160,11 +160,11 @@ def beam_entries(model: Model, start: Any, row: Any, in_group: Any) -> Any:
 
 def state_rows(mechanism: Mechanism, model: Model) -> list[tuple[int, int]]:
     """Constraint rows of drives by velocity: row, and the unknown of w that holds the place."""
-    from trsim.elements.drive import STATE
+    from trsim.elements.prescribed import STATE
 
     found = []
     for e, instance in enumerate(mechanism.instances):
-        if instance.element.key == "drive":
+        if instance.section in ("drives", "events"):
             row, state = int(model.con[e, 3]), int(model.con[e, STATE])
             if row >= 0 and state >= 0:
                 found.append((row, model.n_v + state - N_BOOK))

@@ -218,7 +218,8 @@ def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     """The scenario's drives, with those of the joints of `initial` replaced by rigid holds."""
     from trsim.elements.drive import Drive
 
-    drives = {n: d for n, d in scenario.drives.items() if d.joint not in initial.values}
+    moved = {n for n, d in scenario.drives.items() if getattr(d, "joint", "") in initial.values}
+    drives = {n: d for n, d in scenario.drives.items() if n not in moved}
     context: dict[str, Any] = {"parameters": {}}
     for name in initial.values:
         hold = {"joint": name, "velocity": 0.0}

@@ -11,7 +11,7 @@ from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import project_velocities
 from trsim.assemble.reduce import in_solve_axes, jacobian, weights, world_rates
-from trsim.elements.drive import K, rates_at
+from trsim.elements.prescribed import rates_at
 from trsim.elements.scene import Model, scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import follow
@@ -91,9 +91,9 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
     """Gradient and prescribed rate of the joint coordinates that compliant drives move."""
     found = []
     for instance in mechanism.instances:
-        if instance.element.key != "drive" or instance.row.par[K] == 0.0:
+        if instance.section != "drives" or not instance.row.is_force:
             continue
-        _, _, entry, state, _, offset = instance.row.con
+        _, _, entry, state, _, offset = instance.row.con[:6]
         prescribed = np.zeros(3)
         rates_at(mechanism.model.tab, offset, 0.0, prescribed)
         gradient = coordinate_gradient(mechanism.model, y, entry)

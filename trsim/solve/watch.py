@@ -9,6 +9,8 @@ turns the motion round or stops it there, and not where g touches the value and 
 In the tables of gaps and of roots the watched sensors follow the contacts.
 """
 
+from trsim.assemble.equations import call_one
+from trsim.assemble.switches import LIMITS
 from trsim.elements.vectors import internal
 from trsim.solve.events import NONE, SAME, bracketed_root, inside, turning_value
 from trsim.solve.record import EVENTS, FIRED, JUST_NOW, SIDE, TIMES
@@ -25,7 +27,11 @@ def watch(s, t, gap):
     first = s.contact.size
     for k in range(s.watch.shape[0]):
         entry = s.watch[k, ENTRY]
-        if entry < 0:
+        if entry <= LIMITS:
+            call_one(s, s.gaps, t, LIMITS - entry)
+            gap[first + k, 0] = s.gap[LIMITS - entry, 0]
+            gap[first + k, 1] = s.gap[LIMITS - entry, 1]
+        elif entry < 0:
             gap[first + k, 0], gap[first + k, 1] = t - s.watch_at[k, VALUE], 1.0
         else:
             gap[first + k, 0] = s.S[entry, 0] - s.watch_at[k, VALUE]

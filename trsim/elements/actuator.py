@@ -1,0 +1,278 @@
+"""Actuator: a ball-ended line of prescribed length between two bodies, rigid or with compliance.
+
+    e = l - l_0                                         stroke; l is the distance of its ends
+    rigid       Phi = e - f(t) = 0,  P = -lambda
+    compliant   P = -k (e - u) - c (e' - u')            thrust: pushes the ends apart
+    u = f, or with a supply that gives way
+    m u'' = -k_s (u - f) - c_s (u' - f') - P + G        piston; G from a shaft, see sync_shaft.py
+
+f is the prescribed stroke or, for a prescribed speed, its integral from the stroke at the start (a
+state of the element; u and u' - f' are two more).  A line of two ball ends takes no moment, so the
+force on body j is P n, with n from end i to end j.  The kinetic energy of the piston stands in the
+book with the springs.  [Featherstone2008] for the rigid row:  l'' = n . d'' + (d'.d' - l'^2) / l.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Ge, Gt
+from pydantic import model_validator
+
+from trsim.elements.contract import (
+    DAMPERS,
+    DRIVES,
+    SINCE,
+    SPRINGS,
+    Channel,
+    Element,
+    Limit,
+    Row,
+    kernel,
+)
+from trsim.elements.frames import distance_row, helper, line, push
+from trsim.elements.prescribed import MOTION, SIGN, STATE, C, K, prescribed
+from trsim.errors import ScenarioError
+from trsim.fields import Function, Spec, Unit, vector
+
+
+class Supply(Spec):
+    """What lies between the prescribed motion and the piston, such as a column of oil.
+
+    stiffness  of it
+    damping    of it
+    mass       that moves with the piston: its own and, by the square of its ratio, that of a gear
+    """
+
+    stiffness: Annotated[float, Gt(0), Unit("N/m")]
+    damping: Annotated[float, Ge(0), Unit("N*s/m")] = 0.0
+    mass: Annotated[float, Gt(0), Unit("kg")]
+
+
+class Actuator(Spec):
+    """A line with a ball at each end that grows with a speed, or to a stroke, of its own.
+
+    bodies     the two bodies
+    points     its ends on the first and on the second body, as drawn
+    velocity   rate of the stroke
+    position   the stroke, 0 as drawn; give one of the two
+    stiffness  between the piston and the second body, or of all of it; rigid without it
+    damping    the same
+    supply     what lies between the prescribed motion and the piston; for one that a shaft moves
+    stall      force, of either sign, that its source (the supply, where there is one) cannot
+               exceed: there the run ends as `jammed`
+    sign       of the channel `force`: 1 positive where it pushes its ends apart, -1 where it holds
+    """
+
+    type: ClassVar[str] = "actuator"
+    bodies: tuple[str, str]
+    points: tuple[vector("m"), vector("m")]
+    velocity: Function("m/s") | None = None
+    position: Function("m") | None = None
+    stiffness: Annotated[float, Gt(0), Unit("N/m")] | None = None
+    damping: Annotated[float, Ge(0), Unit("N*s/m")] = 0.0
+    supply: Supply | None = None
+    stall: Annotated[float, Gt(0), Unit("N")] | None = None
+    sign: Literal[1, -1] = 1
+
+    @model_validator(mode="after")
+    def consistent(self):
+        if (self.position is None) == (self.velocity is None):
+            raise ValueError("give either `position` or `velocity`")
+        for key in ("supply", "stall", "damping"):
+            if getattr(self, key) and self.stiffness is None:
+                raise ScenarioError(
+                    f"a rigid actuator has no {key}", "Give it a `stiffness`.", (key,)
+                )
+        return self
+
+
+LENGTH = 6  # par: l_0
+SUPPLY, SUPPLY_DAMPING, MASS, STALL = 12, 13, 14, 15
+PLACE, SLIP = 7, 8  # con: states u and u' - f', or -1
+
+
+def pack(name, spec, at):
+    p, q = spec.points
+    i, j = at.bodies(spec.bodies, p, q)
+    drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
+    if drawn == 0.0:
+        raise ScenarioError("its ends coincide as drawn", "the line has no direction", ("points",))
+    entry = at.entry()
+    by_velocity = spec.position is None
+    word = "velocity" if by_velocity else "position"
+    f = at.function(getattr(spec, word), word, time_only=True)
+    states = (at.state("stroke", follows=entry) if by_velocity else -1, -1, -1)
+    supply = (0.0, 0.0, 0.0)
+    if spec.supply is not None:
+        states = (states[0], at.state("stroke", follows=entry), at.state("speed"))
+        supply = (spec.supply.stiffness, spec.supply.damping, spec.supply.mass)
+    par = (
+        *at.local(i, p), *at.local(j, q), drawn, 0.0, 0.0,
+        spec.stiffness or 0.0, spec.damping, float(spec.sign), *supply, spec.stall or 0.0,
+    )  # fmt: skip
+    limits = (Limit("stall", spec.stall, "N", "jammed", STALLED),) if spec.stall else ()
+    own = None if spec.supply is None else (*CHANNELS, *WITH_SUPPLY)
+    con = (i, j, entry, states[0], 0, f, *states[1:])
+    return Row(con, par, None, own, spec.stiffness is not None, states, limits)
+
+
+STALLED = "reached its stall force"
+
+
+@kernel
+def coordinate(t, scene, a, b):
+    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    for e in range(a, b):
+        _, _, _, length, rate = line(X, V, con, par, e)
+        S[con[e, 2], 0] = length - par[e, LENGTH]
+        S[con[e, 2], 1] = rate
+
+
+@kernel
+def constraint(t, scene, a, b):
+    z, con, par, tab, mem = scene.z, scene.con, scene.par, scene.tab, scene.mem
+    for e in range(a, b):
+        k = con[e, 3]
+        if k < 0:
+            continue
+        f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
+        distance_row(scene, e, k)
+        scene.phi[k] -= par[e, LENGTH] + f
+        scene.phi_t[k] = -f_dot
+        scene.gamma[k] += f_ddot
+
+
+@helper
+def state_of(t, scene, e):
+    """Thrust, force of the supply on the piston, piston u and u', f' and f'' of instance e.
+
+    Reads the stroke and its rate from S.  Without a supply the piston is where f puts it.
+    """
+    S, z, con, par, mem = scene.S, scene.z, scene.con, scene.par, scene.mem
+    f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, scene.tab, con[e, STATE], con[e, MOTION])
+    u, u_dot = f, f_dot
+    if con[e, PLACE] >= 0:
+        u, u_dot = z[con[e, PLACE]], f_dot + z[con[e, SLIP]]
+    s = con[e, 2]
+    P = -par[e, K] * (S[s, 0] - u) - par[e, C] * (S[s, 1] - u_dot)
+    behind = -par[e, SUPPLY] * (u - f) - par[e, SUPPLY_DAMPING] * (u_dot - f_dot)
+    if con[e, PLACE] < 0:
+        behind = P
+    return P, behind, u, u_dot, f_dot, f_ddot
+
+
+@kernel
+def force(t, scene, a, b):
+    X, V, S, con, par, F, zd = (
+        scene.X, scene.V, scene.S, scene.con, scene.par, scene.F, scene.zd,
+    )  # fmt: skip
+    for e in range(a, b):
+        P, behind, _, u_dot, f_dot, f_ddot = state_of(t, scene, e)
+        if con[e, STATE] >= 0:
+            zd[con[e, STATE]] = f_dot
+        if con[e, PLACE] >= 0:
+            slip = u_dot - f_dot
+            zd[con[e, PLACE]] = u_dot
+            zd[con[e, SLIP]] = (behind - P) / par[e, MASS] - f_ddot
+            zd[DAMPERS] -= par[e, SUPPLY_DAMPING] * slip * slip
+        if par[e, K] > 0.0:
+            stretch = S[con[e, 2], 1] - u_dot
+            zd[DAMPERS] -= par[e, C] * stretch * stretch
+            p_i, p_j, n, _, _ = line(X, V, con, par, e)
+            push(F, con[e, 1], p_j, (P * n[0], P * n[1], P * n[2]))
+            push(F, con[e, 0], p_i, (-P * n[0], -P * n[1], -P * n[2]))
+            zd[DRIVES] += behind * f_dot
+
+
+@kernel
+def gap(t, scene, a, b):
+    S, con, par, g = scene.S, scene.con, scene.par, scene.gap
+    for e in range(a, b):
+        _, behind, _, u_dot, f_dot, _ = state_of(t, scene, e)
+        sign = 1.0 if behind > 0.0 else -1.0
+        g[e, 0] = sign * behind - par[e, STALL]
+        # of the spring alone: that of the damper takes accelerations
+        g[e, 1] = -sign * par[e, K] * (S[con[e, 2], 1] - u_dot)
+        if con[e, PLACE] >= 0:
+            g[e, 1] = -sign * par[e, SUPPLY] * (u_dot - f_dot)
+
+
+@kernel
+def energy(t, scene, a, b):
+    S, z, con, par, mem, E = scene.S, scene.z, scene.con, scene.par, scene.mem, scene.E
+    for e in range(a, b):
+        if par[e, K] == 0.0:
+            continue
+        f, f_dot, _ = prescribed(t - mem[e, SINCE], z, scene.tab, con[e, STATE], con[e, MOTION])
+        u = f
+        if con[e, PLACE] >= 0:
+            u, u_dot = z[con[e, PLACE]], f_dot + z[con[e, SLIP]]
+            E[SPRINGS] += 0.5 * par[e, SUPPLY] * (u - f) ** 2 + 0.5 * par[e, MASS] * u_dot**2
+        E[SPRINGS] += 0.5 * par[e, K] * (S[con[e, 2], 0] - u) ** 2
+
+
+@kernel
+def measure(t, scene, a, b):
+    X, V, S, lam, con, par = scene.X, scene.V, scene.S, scene.lam, scene.con, scene.par
+    col, out, mem = scene.wanted, scene.out, scene.mem
+    for e in range(a, b):
+        o = col[e]
+        if o < 0:
+            continue
+        P, behind, u, _, f_dot, _ = state_of(t, scene, e)
+        f, _, _ = prescribed(
+            t - mem[e, SINCE], scene.z, scene.tab, con[e, STATE], con[e, MOTION]
+        )  # fmt: skip
+        if con[e, 3] >= 0:
+            P = -lam[con[e, 3]]
+            behind = P
+        _, _, n, _, _ = line(X, V, con, par, e)
+        out[o] = par[e, SIGN] * P
+        for c in range(3):
+            out[o + 1 + c] = P * n[c]
+        out[o + 4], out[o + 5] = S[con[e, 2], 0], S[con[e, 2], 1]
+        out[o + 6], out[o + 7], out[o + 8] = f, f_dot, behind * f_dot
+        if con[e, PLACE] >= 0:
+            out[o + 9], out[o + 10] = u, par[e, SIGN] * behind
+
+
+CHANNELS = (
+    Channel("force", "N", "sign times the thrust along its line"),
+    Channel("reaction", "N", "force on the second body, world axes", 3),
+    Channel("stroke", "m", "how much longer it is than drawn"),
+    Channel("stroke_rate", "m/s", "its rate"),
+    Channel("position", "m", "prescribed stroke"),
+    Channel("velocity", "m/s", "its rate"),
+    Channel("power", "W", "given to the mechanism"),
+)
+WITH_SUPPLY = (
+    Channel("piston", "m", "stroke of the piston"),
+    Channel("supply_force", "N", "sign times the force of the supply on the piston"),
+)
+
+ELEMENT = Element(
+    key="actuator",
+    section="drives",
+    spec=Actuator,
+    pack=pack,
+    rows=("length",),
+    channels=CHANNELS,
+    kernels={
+        "coordinate": coordinate,
+        "constraint": constraint,
+        "force": force,
+        "gaps": gap,
+        "energy": energy,
+        "measure": measure,
+    },
+    example="""
+bodies:
+  block: {mass: 2 kg, inertia: 0.01 kg*m^2}
+joints:
+  slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}
+drives:
+  jack: {type: actuator, bodies: [ground, block], points: [[-0.3, 0], [0, 0]],
+         velocity: "0.1*smoothstep(t/0.2)", stiffness: 1e5 N/m, damping: 100 N*s/m}
+solver: {end: 0.5 s}
+""",
+)

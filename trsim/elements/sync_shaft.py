@@ -1,0 +1,266 @@
+"""Synchronising shaft: a flexible shaft between actuators, joined to each piston by a worm gear.
+
+    M_k = g k (u_{k+1} - u_k) + g c (u'_{k+1} - u'_k)     torque in the segment behind station k
+    G_k = g (M_k - M_{k-1})                               ideal force of the gear on piston k
+
+g is the turn of the shaft per stroke (rad/m), so a segment acts like a spring of g^2 k (N/m)
+between two pistons, which pulls who lags and holds who leads.  Of the ideal force the gear loses
+
+    (1 - eta) |G|           where the shaft moves the piston (G u' > 0)
+    (1 / eta_b - 1) |G|     where the piston moves the shaft, eta_b = 2 - 1 / eta      [Shigley2015]
+
+to friction, against the motion.  With eta <= 1/2 a piston cannot turn the shaft at all: the gear is
+self-locking, and a piston that leads is held like in a brake, by LOCK u', until it no longer does.
+
+Pistons are moved where their actuators have a `supply`.  Without one their motion is prescribed:
+then the shaft changes nothing, and its torque is only told.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar
+
+from annotated_types import Ge, Gt, Le
+from pydantic import model_validator
+
+from trsim.elements.actuator import MASS
+from trsim.elements.contract import (
+    DAMPERS,
+    DRIVES,
+    FRICTION,
+    SPRINGS,
+    Channel,
+    Element,
+    Limit,
+    Row,
+    kernel,
+)
+from trsim.elements.frames import helper
+from trsim.errors import ScenarioError
+from trsim.fields import Flag, Spec, Unit
+
+
+class SyncShaft(Spec):
+    """A shaft that keeps actuators together.
+
+    actuators     along the shaft, each driven by a `velocity`
+    stiffness     torsional, of a segment between two neighbours
+    damping       torsional, of a segment
+    ratio         turn of the shaft per stroke
+    efficiency    of the worm gears where the shaft moves a piston
+    self_locking  whether no piston can turn the shaft; by nature so up to an efficiency of 0.5
+    lost_at       difference of the strokes of neighbours at which synchronism counts as lost and
+                  the run ends as `jammed`; of a shaft of strength M it is M / (stiffness ratio)
+    """
+
+    type: ClassVar[str] = "sync_shaft"
+    actuators: tuple[str, ...]
+    stiffness: Annotated[float, Ge(0), Unit("N*m/rad")]
+    damping: Annotated[float, Ge(0), Unit("N*m*s/rad")] = 0.0
+    ratio: Annotated[float, Gt(0), Unit("rad/m")]
+    efficiency: Annotated[float, Gt(0), Le(1), Unit("-")] = 1.0
+    self_locking: Flag | None = None
+    lost_at: Annotated[float, Gt(0), Unit("m")] | None = None
+
+    @model_validator(mode="after")
+    def a_gear(self):
+        if self.efficiency <= 0.5 and self.self_locking is False:
+            raise ScenarioError(
+                f"a worm gear of efficiency {self.efficiency:g} is self-locking",
+                "Leave `self_locking` out, or give an efficiency above 0.5.",
+                ("self_locking",),
+            )
+        return self
+
+
+K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST = range(6)  # par; of a self-locking gear LOSS_BACK is -1
+MASSES = 6  # and on: of the pistons
+COUNT, STATIONS = 2, 3  # con: how many pistons, then of each its place and its slip in z, or -1
+SMOOTH = 1e-3  # m/s: friction turns round over such a speed
+LOCK, ONSET = 1e6, 1.0  # N*s/m; N from which the brake of a self-locking gear holds
+
+
+def pack(name, spec, at):
+    if len(spec.actuators) < 2 or len(set(spec.actuators)) < len(spec.actuators):
+        raise ScenarioError("joins two or more different actuators", "", ("actuators",))
+    stations, masses, frames = [], [], set()
+    for k, one in enumerate(spec.actuators):
+        found = at.packed("drives", one, ("actuators", k))
+        if found.element.key != "actuator" or found.row.con[3] < 0:
+            raise ScenarioError(
+                f"'{one}' is no actuator with a velocity",
+                "a shaft joins elements of `type: actuator`",
+                ("actuators", k),
+            )
+        _, _, _, place, _, _, piston, slip = found.row.con
+        stations += [place if piston < 0 else piston, slip]
+        masses.append(found.row.par[MASS])
+        frames |= {*found.row.con[:2]}
+    if not any(masses):
+        at.notes.append(
+            "the speeds of its actuators are prescribed, so it changes nothing: its torque is told "
+            "(a `supply` lets a piston give way)"
+        )
+    back = 2.0 - 1.0 / spec.efficiency
+    locks = spec.self_locking or spec.efficiency <= 0.5
+    par = (
+        spec.stiffness, spec.damping, spec.ratio, 1.0 - spec.efficiency,
+        -1.0 if locks else 1.0 / back - 1.0, spec.lost_at or 0.0, *masses,
+    )  # fmt: skip
+    n = len(spec.actuators)
+    said = "synchronism was lost: the strokes of two neighbours differ too much"
+    limits = (Limit("lost", spec.lost_at, "m", "jammed", said),) if spec.lost_at else ()
+    own = tuple(s for s in stations if s >= 0)
+    return Row((0, 0, n, *stations), par, None, channels(n), states=own, limits=limits)
+
+
+def channels(n):
+    """Of a shaft between n actuators."""
+    return (
+        *(
+            Channel(
+                f"torque_{k}", "N*m", f"in segment {k}, positive where the later actuator leads"
+            )
+            for k in range(1, n)
+        ),
+        *(
+            Channel(f"force_{k}", "N", f"of the gear on piston {k}, along its stroke")
+            for k in range(1, n + 1)
+        ),
+        Channel("difference", "m", "largest difference of the strokes of neighbours"),
+    )
+
+
+@helper
+def place(scene, e, k):
+    """Stroke of piston k and its rate, which its actuator left in zd."""
+    s = scene.con[e, STATIONS + 2 * k]
+    return scene.z[s], scene.zd[s]
+
+
+@helper
+def torque(scene, e, k):
+    """In segment k between pistons k and k + 1; zero beyond the ends."""
+    if k < 0 or k >= scene.con[e, COUNT] - 1:
+        return 0.0
+    u, u_dot = place(scene, e, k)
+    v, v_dot = place(scene, e, k + 1)
+    par = scene.par
+    return par[e, RATIO] * (par[e, K] * (v - u) + par[e, DAMPING] * (v_dot - u_dot))
+
+
+@helper
+def gear(scene, e, k):
+    """Ideal and real force on piston k, and its speed."""
+    par = scene.par
+    ideal = par[e, RATIO] * (torque(scene, e, k) - torque(scene, e, k - 1))
+    _, speed = place(scene, e, k)
+    way = speed / sqrt(speed * speed + SMOOTH * SMOOTH)
+    if ideal * speed > 0.0:
+        return ideal, ideal - par[e, LOSS] * abs(ideal) * way, speed
+    if par[e, LOSS_BACK] < 0.0:
+        grip = ideal * ideal / (ideal * ideal + ONSET * ONSET)
+        return ideal, ideal - grip * LOCK * speed, speed
+    return ideal, ideal - par[e, LOSS_BACK] * abs(ideal) * way, speed
+
+
+@kernel
+def force(t, scene, a, b):
+    con, par, zd = scene.con, scene.par, scene.zd
+    for e in range(a, b):
+        n = con[e, COUNT]
+        for k in range(n - 1):
+            _, u_dot = place(scene, e, k)
+            _, v_dot = place(scene, e, k + 1)
+            twist = par[e, RATIO] * (v_dot - u_dot)
+            zd[DAMPERS] -= par[e, DAMPING] * twist * twist
+        for k in range(n):
+            ideal, G, speed = gear(scene, e, k)
+            zd[FRICTION] += (G - ideal) * speed
+            slip = con[e, STATIONS + 2 * k + 1]
+            if slip >= 0:
+                zd[slip] += G / par[e, MASSES + k]
+            else:
+                zd[DRIVES] -= G * speed  # whoever prescribes the motion takes the force
+
+
+@helper
+def largest_difference(scene, e):
+    """Of the strokes of neighbours, and its rate."""
+    largest, rate = -1.0, 0.0
+    for k in range(scene.con[e, COUNT] - 1):
+        u, u_dot = place(scene, e, k)
+        v, v_dot = place(scene, e, k + 1)
+        if abs(v - u) > largest:
+            largest = abs(v - u)
+            rate = v_dot - u_dot if v > u else u_dot - v_dot
+    return largest, rate
+
+
+@kernel
+def gap(t, scene, a, b):
+    for e in range(a, b):
+        # the rate is that of the last evaluation: near enough to see whether it turns
+        difference, rate = largest_difference(scene, e)
+        scene.gap[e, 0] = difference - scene.par[e, LOST]
+        scene.gap[e, 1] = rate
+
+
+@kernel
+def energy(t, scene, a, b):
+    par, E = scene.par, scene.E
+    for e in range(a, b):
+        for k in range(scene.con[e, COUNT] - 1):
+            u, _ = place(scene, e, k)
+            v, _ = place(scene, e, k + 1)
+            twist = par[e, RATIO] * (v - u)
+            E[SPRINGS] += 0.5 * par[e, K] * twist * twist
+
+
+@kernel
+def measure(t, scene, a, b):
+    out = scene.out
+    for e in range(a, b):
+        o = scene.wanted[e]
+        if o < 0:
+            continue
+        n = scene.con[e, COUNT]
+        for k in range(n - 1):
+            out[o + k] = torque(scene, e, k)
+        for k in range(n):
+            _, G, _ = gear(scene, e, k)
+            out[o + n - 1 + k] = G
+        difference, _ = largest_difference(scene, e)
+        out[o + 2 * n - 1] = difference
+
+
+def no_frames(row):
+    """It acts on pistons only, which are states."""
+    return frozenset()
+
+
+ELEMENT = Element(
+    key="sync_shaft",
+    section="forces",
+    spec=SyncShaft,
+    pack=pack,
+    channels=channels(2),  # and so on for more actuators
+    acts_on=no_frames,
+    kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
+    example="""
+bodies:
+  left: {mass: 2 kg, inertia: 0.01 kg*m^2}
+  right: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [0, 0.1]}
+joints:
+  upper: {type: prismatic, bodies: [ground, left], axis: [1, 0, 0]}
+  lower: {type: prismatic, bodies: [ground, right], axis: [1, 0, 0]}
+drives:
+  one: {type: actuator, bodies: [ground, left], points: [[-0.3, 0], [0, 0]], velocity: 0.1 m/s,
+        stiffness: 1e5 N/m, supply: {stiffness: 1e5 N/m, damping: 200 N*s/m, mass: 1 kg}}
+  two: {type: actuator, bodies: [ground, right], points: [[-0.3, 0.1], [0, 0.1]],
+        velocity: 0.11 m/s, stiffness: 1e5 N/m,
+        supply: {stiffness: 1e5 N/m, damping: 200 N*s/m, mass: 1 kg}}
+forces:
+  shaft: {type: sync_shaft, actuators: [one, two], stiffness: 0.1 N*m/rad, ratio: 700 rad/m}
+solver: {end: 0.1 s}
+""",
+)
