@@ -166,3 +166,27 @@ def test_a_stroke_is_reached_with_clearance(more, monkeypatch):
     assert len(seen) < 600
     x = mechanism.coordinates["guide"]
     assert mechanism.model.n > 0 and s.branch[x.entry] == pytest.approx(0.1, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        "{joint: guide, velocity: 0.5, compliance: {stiffness: 1e6, damping: 2e3}}",
+        "{type: actuator, bodies: [ground, slider], points: [[-1, 0], [0.11, 0]], velocity: 0.5, "
+        "stiffness: 1e6, damping: 2e3}",
+        "{type: actuator, bodies: [ground, slider], points: [[-1, 0], [0.11, 0]], velocity: 0.5, "
+        "stiffness: 1e6, damping: 2e3, supply: {stiffness: 1e6, damping: 2e3, mass: 1}}",
+    ],
+)
+def test_dampers_of_drives_do_not_push_an_equilibrium(drive):
+    """2 kN s/m at 0.5 m/s would move it by a millimetre."""
+    text = f"""
+bodies: {{slider: {{mass: 1, inertia: 0.01, at: [0.11, 0]}}}}
+joints: {{guide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}}}
+drives: {{motor: {drive}}}
+initial: {{equilibrium: [guide]}}
+solver: {{end: 1 ms}}
+"""
+    there = run(text)
+    assert there["slider.position"][0] == pytest.approx([0.11, 0.0, 0.0], abs=1e-12)
+    assert there["slider.velocity"][0, 0] == pytest.approx(0.5)

@@ -85,6 +85,11 @@ class Actuator(Spec):
                 )
         return self
 
+    def at_rest(self):
+        """The same without dampers, which would push a body at rest along with the motion."""
+        supply = self.supply and self.supply.model_copy(update={"damping": 0.0})
+        return self.model_copy(update={"damping": 0.0, "supply": supply})
+
 
 LENGTH = 6  # par: l_0
 SUPPLY, SUPPLY_DAMPING, MASS, STALL = 12, 13, 14, 15

@@ -66,6 +66,13 @@ class Drive(Spec):
             raise ValueError("give either `position` or `velocity`")
         return self
 
+    def at_rest(self):
+        """The same without damper, which would push a joint at rest along with the motion."""
+        if self.compliance is None:
+            return self
+        without = {"damping": None, "damping_ratio": None}
+        return self.model_copy(update={"compliance": self.compliance.model_copy(update=without)})
+
 
 COMPLIANCE_UNITS = (
     ("stiffness", "N*m/rad", "N/m"),

@@ -215,11 +215,11 @@ def by_ideal_joints(
 
 
 def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
-    """The scenario's drives, with those of the joints of `initial` replaced by rigid holds."""
+    """The scenario's drives at rest, those of the joints of `initial` replaced by rigid holds."""
     from trsim.elements.drive import Drive
 
     moved = {n for n, d in scenario.drives.items() if getattr(d, "joint", "") in initial.values}
-    drives = {n: d for n, d in scenario.drives.items() if n not in moved}
+    drives = {n: d.at_rest() for n, d in scenario.drives.items() if n not in moved}
     context: dict[str, Any] = {"parameters": {}}
     for name in initial.values:
         hold = {"joint": name, "velocity": 0.0}
