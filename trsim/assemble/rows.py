@@ -148,6 +148,7 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
                 ("bodies", name),
             )
     loads(at, instances)
+    bushings(at, instances)
     cross_sections(at, instances)
     for instance in instances:
         i, j = (*instance.row.con[:2], 0)[:2] if instance.section == "joints" else (0, 0)
@@ -185,6 +186,22 @@ def loads(at: Addresses, instances: list[Instance]) -> None:
             )
 
 
+def bushings(at: Addresses, instances: list[Instance]) -> None:
+    """What a bushing holds of a flexible bar in space: places, no turns."""
+    for instance in instances:
+        if instance.element.key != "bushing":
+            continue
+        _, j, _, turns = instance.row.con
+        if turns and at.is_node(j):
+            raise ModelError(
+                f"holds the turning of '{at.owners[j]}', a flexible bar, about itself, and in "
+                "space that has no torsion",
+                "leave out its rotational stiffness and damping, let it act on a rigid body fixed "
+                "to the bar, or draw the mechanism in the x-y plane",
+                ("forces", instance.name),
+            )
+
+
 def cross_sections(at: Addresses, instances: list[Instance]) -> None:
     """What would be carried along by the cross-section of a bar in space, whose turn about the bar
     nobody knows: welds of bars at an angle, walls and directions across a bar."""
@@ -195,6 +212,8 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
             "limit_stop": (con[0], par[6:9]) if key == "limit_stop" and con[3] == 0 else None,
             "applied_load": (con[1], par[3:6]) if key == "applied_load" and not con[3] else None,
             "distributed_load": (con[2], par[1:4]) if key == "distributed_load" else None,
+            # of its three axes two at least point across a bar
+            "bushing": (con[0], (0.0, 0.0, 0.0)),
         }.get(key)
         if turning and at.is_node(turning[0]) and abs(turning[1][0]) < ALONG:
             raise ModelError(

@@ -24,6 +24,7 @@ ELEMENTS = {
     "applied_load": "forces",
     "distributed_load": "forces",
     "spring_damper": "forces",
+    "bushing": "forces",
     "torsion_spring": "forces",
     "limit_stop": "forces",
     "sync_shaft": "forces",

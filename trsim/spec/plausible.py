@@ -120,9 +120,8 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
                 add(body, getattr(joint, "at", None))
     for force in scenario.forces.values():
         add(getattr(force, "body", None), getattr(force, "at", None))
-        for body, at in zip(
-            getattr(force, "bodies", ()), getattr(force, "points", ()), strict=False
-        ):
+        places = getattr(force, "points", None) or (getattr(force, "at", None),) * 2
+        for body, at in zip(getattr(force, "bodies", ()), places, strict=False):
             add(body, at)
         for end in (getattr(force, "point", None), getattr(force, "wall", None)):
             add(getattr(end, "body", None), getattr(end, "at", None))
