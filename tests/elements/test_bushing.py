@@ -88,6 +88,17 @@ def test_rotation_vector_of_any_turn(seed):
             assert np.array(found) == pytest.approx(theta, abs=3e-15 if angle < 3 else 1e-14)
 
 
+@pytest.mark.parametrize("angle", [1e-5, 0.02, 0.0999, 0.1001, 0.5, 3.0, np.pi])
+def test_moment_that_does_the_work_along_theta(angle):
+    """Against the closed form, which is exact enough as it is multiplied by theta twice."""
+    axis, g = np.array([0.48, 0.6, 0.64]), np.array([1.0, -2.0, 0.5])
+    h = (1 - angle / 2 / np.tan(angle / 2)) / angle**2
+    once = np.cross(angle * axis, g)
+    wanted = g + once / 2 + h * np.cross(angle * axis, once)
+    found = rotations.gradient(tuple(angle * axis), tuple(g))
+    assert np.array(found) == pytest.approx(wanted, abs=2e-15)
+
+
 DAMPED = """
 bodies:
   mass: {{mass: 2, inertia: [0.02, 0.02, 0.02], at: [0.3, 0.1, {z}]{moving}}}
