@@ -87,9 +87,9 @@ def test_what_is_proposed():
     _, _, found = released(slider_crank())
     assert [(c.joint, c.becomes, c.type) for c in found.changes] == [
         ("B", "spherical", "spherical"),
-        ("track", "cylindrical", None),
+        ("C", "universal", "universal"),
     ]
-    assert found.rows == ("B.tilt 1", "B.tilt 2", "track.turn") and found.alternatives == 0
+    assert found.rows == ("B.tilt 1", "B.tilt 2", "C.tilt 1") and found.alternatives == 3
     _, _, found = released(DOOR)
     assert [(c.joint, c.becomes) for c in found.changes] == [
         ("top", "spherical"),
@@ -109,6 +109,16 @@ def test_a_type_proposed_does_in_the_scenario_what_was_said():
     )
     m = built(spherical)
     assert (len(m.redundant), m.mobility, m.mobility_by_count) == (1, 1, 0)
+    _, _, found = released(spherical)
+    assert [(c.joint, c.type) for c in found.changes] == [("C", "universal")]
+    # of the axes across the hinge, x and y, the row of y is left
+    assert found.rows == ("C.tilt 1",)
+    universal = spherical.replace(
+        "type: revolute, bodies: [coupler, rocker]",
+        "type: universal, axis: [0, 1], second_axis: [0, 0, 1], bodies: [coupler, rocker]",
+    )
+    m = built(universal)
+    assert (m.redundant, m.mobility, m.mobility_by_count) == ((), 1, 1)
 
 
 def test_joints_whose_angle_is_needed_stay():

@@ -16,6 +16,7 @@ AT, ALONG = "at: [0.2, 0.1, 0]", "axis: [0.48, 0.6, 0.64]"
 JOINTS = {
     "revolute": f"type: revolute, {AT}, {ALONG}",
     "spherical": f"type: spherical, {AT}",
+    "universal": f"type: universal, {AT}, {ALONG}, second_axis: [0.6, -0.48, 0]",
     "prismatic": f"type: prismatic, {AT}, {ALONG}",
     "fixed": f"type: fixed, {AT}",
     "clearance_joint": f"type: revolute, {AT}, {ALONG}, clearance: 0.03, contact: law",
@@ -31,7 +32,14 @@ DRIVES = {
 }
 CASES = {name: (name, "") for name in JOINTS}
 CASES |= {f"{d} of {j}": (j, d) for j in ("revolute", "prismatic") for d in DRIVES}
-ROWS = {"revolute": 5, "spherical": 3, "prismatic": 5, "fixed": 6, "clearance_joint": 3}
+ROWS = {
+    "revolute": 5,
+    "spherical": 3,
+    "universal": 4,
+    "prismatic": 5,
+    "fixed": 6,
+    "clearance_joint": 3,
+}
 
 
 def thrown(case, seed):

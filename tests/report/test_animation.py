@@ -44,6 +44,20 @@ initial: {a: 100 deg}
 solver: {end: 0.1 s, tolerance: 1e-9}
 output: {every: 0.1 ms, channels: ["*", "*.rotation"]}
 """
+CARDAN = """
+planar: false
+bodies:
+  driver: {mass: 1, inertia: [0.02, 0.01, 0.01], at: [-0.3, 0.05, 0], angular_velocity: [20, 0, 0]}
+  driven: {mass: 1, inertia: [0.04, 0.04, 0.04], at: [0.24, 0.18, 0]}
+joints:
+  one: {type: revolute, bodies: [ground, driver], at: [-0.5, 0, 0], axis: [1, 0, 0]}
+  two: {type: revolute, bodies: [ground, driven], at: [0.4, 0.3, 0], axis: [4, 3, 0]}
+  cross: {type: universal, bodies: [driver, driven], at: [0, 0, 0], axis: [0, 0, 1],
+          second_axis: [-3, 4, 0]}
+initial: {one: 50 deg}
+solver: {end: 0.1 s, tolerance: 1e-9}
+output: {every: 0.1 ms, channels: ["*", "*.rotation"]}
+"""
 ROD = """
 gravity: [0, -9.81, 0]
 bodies:
@@ -84,7 +98,7 @@ def angle(p, q):
 # --- poses -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("text", "exact"), [(SPINNING, 1e-6), (FOUR_BAR, 1e-7)])
+@pytest.mark.parametrize(("text", "exact"), [(SPINNING, 1e-6), (FOUR_BAR, 1e-7), (CARDAN, 1e-7)])
 def test_attitudes_are_those_recorded(text, exact, tmp_path):
     """The integral of the velocities, from a start that is not the drawing, is the rotation."""
     run = of(tmp_path, text=text)

@@ -123,18 +123,21 @@ def changes(instance: Instance, stress: Stress, used: Any) -> Iterator[Change]:
     axial = axial_row(instance)
     wanted: list[tuple[tuple[str, ...], str, str | None]] = []
     if key in ("revolute", "clearance_joint"):
-        wanted += [(tilts, "spherical" if key == "revolute" else "free to tilt", None)]
-        wanted += [(("tilt 1",), "universal", None), (("tilt 2",), "universal", None)]
+        ball = ("spherical", "spherical") if key == "revolute" else ("free to tilt", None)
+        wanted += [(tilts, *ball)]
+        cross = "universal" if key == "revolute" else None
+        wanted += [(("tilt 1",), "universal", cross), (("tilt 2",), "universal", cross)]
         if axial:
             wanted += [((axial,), "cylindrical", None)]
             wanted += [((axial, *tilts), "a ball in a sleeve", None)]
+    elif key == "universal":
+        wanted += [(("tilt",), "spherical", "spherical")]
     elif key == "prismatic":
         wanted += [(turn, "cylindrical", None), ((*tilts, *turn), "a ball in a sleeve", None)]
     elif key == "fixed":
         wanted += [(turn, "revolute", "revolute"), ((*tilts, *turn), "spherical", "spherical")]
     for axes, becomes, kind in wanted:
         if all(axis in own for axis in axes) and len(axes) < len(own):
-            kind = "spherical" if (becomes, key) == ("spherical", "revolute") else kind
             yield Change(instance.name, tuple(own[axis] for axis in axes), becomes, kind)
 
 

@@ -14,6 +14,7 @@ ELEMENTS = {
     "ancf_cable": "bodies",  # also a rigid_body with the key `flexible`
     "revolute": "joints",
     "spherical": "joints",
+    "universal": "joints",
     "prismatic": "joints",
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`

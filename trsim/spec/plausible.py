@@ -18,7 +18,7 @@ POISSON = 0.3  # where a law that gives K says nothing
 STICKIEST = 2.0  # rubber on rubber is about 1
 LIGHTEST, HEAVIEST = 1.0, 3e4  # kg/m^3; osmium is 22 600
 WIRE = 100.0  # length over thickness
-POINT_JOINTS = ("revolute", "spherical", "clearance_joint", "fixed")
+POINT_JOINTS = ("revolute", "spherical", "universal", "clearance_joint", "fixed")
 
 
 def moduli(scenario: Any) -> Iterator[str]:

@@ -7,25 +7,28 @@ from numpy.typing import NDArray
 
 from trsim.assemble.members import members
 from trsim.elements.joint import perpendicular
+from trsim.fields import direction
 from trsim.spec.load import loads
 from trsim.store.read import Run
 
 Array = NDArray[np.float64]
 
 GROUND = "ground"
-IDEAL_POINTS = ("revolute", "spherical", "fixed")  # joints that hold two points together
+# joints that hold two points together
+IDEAL_POINTS = ("revolute", "spherical", "universal", "fixed")
+SPATIAL = ("spherical", "universal")  # joints that let a body leave a plane
 STIFF = ("prismatic", "fixed")  # joints that let no body turn against the other
 
 
 class Joint(NamedTuple):
-    """A joint between bodies i and j."""
+    """A joint between bodies i and j; a and w of a universal one are its first and second axis."""
 
     name: str
     type: str
     i: str
     j: str
     at: Array  # (3) m, as drawn
-    axes: Array  # (3, 3) rows u, w, a; a is the axis of the hinge or of the slide
+    axes: Array  # (3, 3) rows u, w, a; a is the axis of the hinge, the slide, the weld
     clearance: float  # m
     bearing: float  # m, radius of the bearing; 0 where there is none
     comes_apart: bool  # an event may release it
@@ -92,6 +95,9 @@ def joints(drawn: Drawing) -> tuple[Joint, ...]:
         if at is None:  # a slide: at the centre of the second body
             at = drawn.bodies[j] if j in drawn.bodies else middle(drawn, j)
         axes = np.array(perpendicular(getattr(spec, "axis", (0.0, 0.0, 1.0))))
+        if spec.type == "universal":
+            axes[1] = direction(spec.second_axis)
+            axes[0] = np.cross(axes[1], axes[2])
         clearance = getattr(spec, "clearance", 0.0)
         # a clearance of 0 is an ideal joint, also where it was written down
         kind = "revolute" if spec.type == "clearance_joint" and clearance == 0.0 else spec.type

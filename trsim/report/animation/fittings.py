@@ -7,7 +7,7 @@ import numpy as np
 from trsim.fields import direction
 from trsim.report.animation import solids, turns
 from trsim.report.animation.bodies import arm, lifted
-from trsim.report.animation.drawing import GROUND, Array, Joint
+from trsim.report.animation.drawing import GROUND, SPATIAL, Array, Joint
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.things import (
     JOURNAL,
@@ -33,6 +33,11 @@ def pins(moved: Motion, look: Look) -> Iterator[Thing]:
         place, turn = moved.point(holder, joint.at), moved.turn(holder)
         if joint.type == "spherical":
             mesh = solids.ball(1.15 * look.radius)
+        elif joint.type == "universal":
+            arms = [
+                solids.cylinder(0.5 * look.radius, 2.6 * look.radius, a) for a in joint.axes[1:]
+            ]
+            mesh = solids.joined(*arms)
         elif joint.type == "fixed":
             mesh = solids.box(np.full(3, 1.3 * look.radius), np.eye(3))
         else:
@@ -50,7 +55,7 @@ def spanned(joint: Joint, look: Look) -> tuple[float, Array]:
 
 def middle(joint: Joint, look: Look) -> Array:
     """Of the layers of the two bodies, from the point of the joint."""
-    if look.normal is None or joint.type == "spherical":
+    if look.normal is None or joint.type in SPATIAL:
         return np.zeros(3)
     return 0.5 * (look.height(joint.i) + look.height(joint.j)) * look.normal
 
@@ -98,7 +103,7 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
             base = r * np.array([[-3.6, -4.2], [3.6, -4.2], [3.6, -3.4], [-3.6, -3.4]])
             parts = [solids.prism(shape, look.thick, look.normal) for shape in (outline, base)]
             mesh = solids.joined(*parts).moved(-look.pitch * look.normal)
-        elif joint.type == "spherical":
+        elif joint.type in SPATIAL:
             post = solids.cylinder(0.9 * r, 3.0 * r, np.array([0.0, 1.0, 0.0]))
             foot = solids.cylinder(2.4 * r, 0.6 * r, np.array([0.0, 1.0, 0.0]))
             down = np.array([0.0, -r, 0.0])

@@ -6,6 +6,7 @@ Gauss-Newton on
 
     x_i + Q_i (s_i + e) - x_j - Q_j s_j = 0         points, e the recorded eccentricity
     Q_i a - Q_j a = 0                               axes of hinges; all axes of slides and welds
+    Q_i a . Q_j w = 0                               axes of universal joints
 
 with Q the turn of a body since it was drawn; what the joints leave free stays as drawn.
 """
@@ -14,7 +15,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from trsim.report.animation.drawing import GROUND, STIFF, Array, Drawing, Joint
+from trsim.report.animation.drawing import GROUND, SPATIAL, STIFF, Array, Drawing, Joint
 from trsim.report.animation.turns import STILL, of_vector, product, shortest, turned
 
 CLOSED = 1e-9  # residual, of the size of the mechanism
@@ -72,13 +73,14 @@ class Problem:
             found.append(tuple(v / self.drawn.size for v in one))
         if joint.type in STIFF:
             found += [(np.zeros(3), axis, axis) for axis in joint.axes]
-        elif joint.type != "spherical":
+        elif joint.type not in SPATIAL:
             found.append((np.zeros(3), joint.axis, joint.axis))
         return found  # type: ignore[return-value]
 
     def residual(self, turn: Mapping[str, Array]) -> Array:
         parts = [c + turned(turn[joint.i], a) - turned(turn[joint.j], b)
                  for joint in self.drawn.joints for c, a, b in self.equations(joint)]  # fmt: skip
+        parts += [np.array([a @ b]) for _, a, b in self.crosses(turn)]
         return np.concatenate(parts) if parts else np.zeros(0)
 
     def jacobian(self, turn: Mapping[str, Array]) -> Array:
@@ -92,7 +94,22 @@ class Problem:
                         k = 3 * self.names.index(body)
                         row[:, k : k + 3] = sign * skew(turned(turn[body], v))
                 rows.append(row)
+        for joint, a, b in self.crosses(turn):
+            row = np.zeros((1, 3 * len(self.names)))
+            for body, sign in ((joint.i, 1.0), (joint.j, -1.0)):
+                if body in self.drawn.bodies:
+                    k = 3 * self.names.index(body)
+                    row[:, k : k + 3] = sign * np.cross(a, b)
+            rows.append(row)
         return np.concatenate(rows)
+
+    def crosses(self, turn: Mapping[str, Array]) -> list[tuple[Joint, Array, Array]]:
+        """The universal joints, with their axes on the first and on the second body."""
+        return [
+            (joint, turned(turn[joint.i], joint.axis), turned(turn[joint.j], joint.axes[1]))
+            for joint in self.drawn.joints
+            if joint.type == "universal"
+        ]
 
     def passed_on(self, fixed: Mapping[str, Array]) -> dict[str, Array]:
         """First guesses, from bodies that are known to those they are joined to."""

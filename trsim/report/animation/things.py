@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.report.animation.drawing import GROUND, Array, Drawing
+from trsim.report.animation.drawing import GROUND, SPATIAL, Array, Drawing
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.solids import Mesh
 from trsim.report.animation.turns import STILL
@@ -77,7 +77,7 @@ def ends(drawn: Drawing, body: str) -> list[Array]:
 
 def plane(drawn: Drawing) -> Array | None:
     """The normal of a flat mechanism; None of one in space."""
-    if any(joint.type == "spherical" for joint in drawn.joints):
+    if any(joint.type in SPATIAL for joint in drawn.joints):
         return None
     hinges = [joint.axis for joint in drawn.joints if joint.type in ("revolute", "clearance_joint")]
     normal = hinges[0] if hinges else np.array([0.0, 0.0, 1.0])

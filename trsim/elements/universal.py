@@ -1,0 +1,91 @@
+"""Universal joint: two points coincide and two crossed axes stay perpendicular.
+
+    Phi_1..3 = r_j + p_j - r_i - p_i = 0
+    Phi_4    = a_i . b_j = 0               [Nikravesh1988]
+
+a is the axis on body i, b the one on body j: the bearings of the cross between them, which has no
+mass.  reaction is the force on body j at the point, world axes; reaction_moment is along a x b.
+"""
+
+from typing import ClassVar
+
+from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.frames import arm, perpendicular_row, point_rows
+from trsim.elements.joint import Joint
+from trsim.errors import ScenarioError
+from trsim.fields import direction, vector
+
+SQUARE = 1e-6  # cosine of the angle between the axes as drawn
+
+
+class Universal(Joint):
+    """A cross joint: both bodies turn about the axes of a cross, one on each.
+
+    axis         of the cross on the first body, as drawn; of any length
+    second_axis  on the second body, perpendicular to the first one as drawn
+    """
+
+    type: ClassVar[str] = "universal"
+    axis: vector("-")
+    second_axis: vector("-")
+
+
+def axes(spec):
+    """Unit vectors along both axes, world axes as drawn, exactly perpendicular."""
+    for key in ("axis", "second_axis"):
+        if not any(getattr(spec, key)):
+            raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
+    a, b = direction(spec.axis), direction(spec.second_axis)
+    along = sum(p * q for p, q in zip(a, b, strict=True))
+    across = tuple(q - along * p for p, q in zip(a, b, strict=True))
+    if abs(along) > SQUARE:
+        near = ", ".join(f"{q:.6g}" for q in across)
+        hint = f"perpendicular in this plane is [{near}]"
+        raise ScenarioError(
+            f"`axis` and `second_axis` are not perpendicular: the cosine is {along:.3g}",
+            hint if abs(along) < 1.0 - SQUARE else "give a direction across `axis`",
+            ("second_axis",),
+        )
+    return a, direction(across)
+
+
+def pack(name, spec, at):
+    i, j = at.bodies(spec.bodies, spec.at)
+    a, b = axes(spec)
+    return Row(
+        (i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *at.axes(i, a), *at.axes(j, b))
+    )
+
+
+@kernel
+def constraint(t, scene, a, b):
+    X, con, par = scene.X, scene.con, scene.par
+    for e in range(a, b):
+        i, j = con[e, 0], con[e, 1]
+        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
+        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        a_i = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        b_j = arm(X, j, par[e, 9], par[e, 10], par[e, 11])
+        perpendicular_row(scene, i, a_i, j, b_j, con[e, 6])
+
+
+ELEMENT = Element(
+    key="universal",
+    section="joints",
+    spec=Universal,
+    pack=pack,
+    rows=("x", "y", "z", "tilt"),
+    kernels={"constraint": constraint},
+    example="""
+planar: false
+bodies:
+  shaft: {mass: 1 kg, inertia: [0.02, 0.02, 0.001], at: [0, 0, -0.2], angular_velocity: [0, 3, 0]}
+joints:
+  cross: {type: universal, bodies: [ground, shaft], at: [0, 0, 0], axis: [1, 0, 0],
+          second_axis: [0, 1, 0]}
+gravity: [0, 0, -9.81]
+solver: {end: 1 s}
+""",
+)
