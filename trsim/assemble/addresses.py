@@ -209,6 +209,11 @@ class Addresses:
             raise ScenarioError(f"nothing named '{name}' in {section}", known(name, there), path)
         return self.instances[section, name]
 
+    def sensor_kind(self, name: str) -> str:
+        """What a sensor shows: an angle or a stroke, its own or that of its joint."""
+        own = self.elements["sensors", name].coordinate
+        return own or self.coordinate(self.scenario.sensors[name].joint).kind
+
     def state(self, scale: str | float, follows: int = -1) -> int:
         """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 'speed',
         0: none or a magnitude), and the coordinate it starts at.  Returns its index in z."""

@@ -64,7 +64,11 @@ def nodes_of(beam: Beam) -> range:
 class _Coupling:
     def __init__(self, scenario: Any, mechanism: Mechanism, bodies: int) -> None:
         self.scenario, self.bodies = scenario, bodies
-        self.coordinates = mechanism.coordinates
+        self.sensed = {
+            instance.name: instance.element.acts_on(instance.row)
+            for instance in mechanism.instances
+            if instance.section == "sensors"
+        }
         self.motions = mechanism.stages.switches.motions
 
     def group(self, instance: Instance) -> frozenset[int]:
@@ -87,6 +91,4 @@ class _Coupling:
             function = load.force_per_length
         else:
             function = load.torque if load.force is None else load.force
-        joints = [self.scenario.sensors[n].joint for n in function.names - {"t", "pi"}]
-        found = [self.coordinates[joint] for joint in joints]
-        return {frame for x in found for frame in (x.i, x.j)}
+        return {f for name in function.names - {"t", "pi"} for f in self.sensed[name]}

@@ -27,6 +27,8 @@ def unit(instance: Instance, channel: Channel, at: "Addresses") -> str:
     """The unit of a channel; some depend on whether a joint turns or slides."""
     if channel.unit == channel.unit_on("rad") == channel.unit_on("m"):
         return channel.unit
+    if instance.section == "sensors":
+        return channel.unit_on("rad" if at.sensor_kind(instance.name) == "angle" else "m")
     spec = getattr(at.scenario, instance.section).get(instance.name)
     if instance.element.key == "drive":  # also one made for the start of a run, or for a lock
         *_, rotates, _ = instance.row.con

@@ -214,13 +214,14 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
             "distributed_load": (con[2], par[1:4]) if key == "distributed_load" else None,
             # of its three axes two at least point across a bar
             "bushing": (con[0], (0.0, 0.0, 0.0)),
+            "displacement": (con[0], par[6:9]),
         }.get(key)
         if turning and at.is_node(turning[0]) and abs(turning[1][0]) < ALONG:
             raise ModelError(
                 f"turns with '{at.owners[turning[0]]}', a flexible bar, of which in space nobody "
                 "knows how it turns about itself",
                 "let it turn with a rigid body, or draw the mechanism in the x-y plane",
-                ("forces", instance.name),
+                (instance.section, instance.name),
             )
         bars = key == "fixed" and at.is_node(con[0]) and at.is_node(con[1])
         if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:

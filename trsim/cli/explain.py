@@ -51,7 +51,8 @@ def element(page: dict[str, Any]) -> Iterator[str]:
     yield from ("", page["law"], "", page["about"])
     yield from keys(page)
     if page["coordinate"]:
-        yield from ("", f"joint coordinate: {page['coordinate']}")
+        of = "joint " if page["section"] == "joints" else ""
+        yield from ("", f"{of}coordinate: {page['coordinate']}")
     if page["channels"]:
         yield from ("", "channels:")
     for channel in page["channels"]:

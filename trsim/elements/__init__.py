@@ -21,6 +21,7 @@ ELEMENTS = {
     "drive": "drives",
     "actuator": "drives",
     "sensor": "sensors",
+    "displacement": "sensors",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
     "distributed_load": "forces",

@@ -140,7 +140,7 @@ class Element:
     spec: type
     pack: Callable  # (name, spec, at) -> Row
     rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
-    coordinate: str = ""  # name of the joint coordinate: angle, stroke
+    coordinate: str = ""  # what a joint, or a sensor without one, has: angle, stroke
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     n_mem: int = 0

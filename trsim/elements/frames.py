@@ -237,8 +237,17 @@ def turn_acceleration(V, A, i, j, axis):
 
 
 @helper
+def stroke(X, V, i, p_i, j, p_j, axis):
+    """axis . d and its rate, with the axis fixed in body i and d the separation."""
+    d = separation(X, i, p_i, j, p_j)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    return dot(axis, d), dot(axis, d_dot) + dot(cross(spin(V, i), axis), d)
+
+
+@helper
 def stroke_acceleration(X, V, A, i, p_i, j, p_j, axis):
-    """Second rate of axis . d, with the axis fixed in body i and d the separation."""
+    """Second rate of the same."""
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])

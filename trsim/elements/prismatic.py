@@ -10,16 +10,7 @@ The stroke is a_i . d, zero as drawn.  reaction acts on body j at its point.
 from typing import ClassVar
 
 from trsim.elements.contract import Element, Row, kernel
-from trsim.elements.frames import (
-    along_row,
-    arm,
-    cross,
-    dot,
-    perpendicular_row,
-    separation,
-    spin,
-    velocity,
-)
+from trsim.elements.frames import along_row, arm, perpendicular_row, stroke
 from trsim.elements.joint import triads
 from trsim.fields import Spec, vector
 
@@ -76,11 +67,7 @@ def coordinate(t, scene, a, b):
         p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
         p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
         axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
-        d = separation(X, i, p_i, j, p_j)
-        v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-        d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-        S[s, 0] = dot(axis, d)
-        S[s, 1] = dot(axis, d_dot) + dot(cross(spin(V, i), axis), d)
+        S[s, 0], S[s, 1] = stroke(X, V, i, p_i, j, p_j, axis)
 
 
 ELEMENT = Element(

@@ -55,9 +55,9 @@ def acted_on(mechanism: Mechanism) -> NDArray[np.int64]:
     All there are of rigid bodies and of nodes with a joint or a load, and of damped bars.
     """
     model = mechanism.model
-    frames = {x for c in mechanism.coordinates.values() for x in (c.i, c.j)}
+    frames = set[int]()
     for instance in mechanism.instances:
-        if instance.section in ("joints", "drives", "forces", "events"):
+        if instance.section in ("joints", "drives", "sensors", "forces", "events"):
             frames |= instance.element.acts_on(instance.row)
         elif instance.element.key == "ancf_cable" and instance.row.par[BETA] > 0.0:
             first, nodes = instance.row.con[:2]

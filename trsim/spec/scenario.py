@@ -237,7 +237,7 @@ class Scenario(Spec):
     bodies           what has mass
     joints           what holds bodies together
     drives           prescribed motion of joints
-    sensors          joint coordinates with a name, for loads, expressions and plots
+    sensors          angles and strokes with a name, for loads, expressions and plots
     forces           what acts on bodies
     contact_laws     laws of clearance joints, by name
     initial          how the mechanism starts, where that is not as drawn with the drives at speed
