@@ -190,3 +190,28 @@ solver: {{end: 1 ms}}
     there = run(text)
     assert there["slider.position"][0] == pytest.approx([0.11, 0.0, 0.0], abs=1e-12)
     assert there["slider.velocity"][0, 0] == pytest.approx(0.5)
+
+
+def test_what_bushings_hold_starts_at_rest():
+    """A sled on a rail that gives way: its links alone would have it start across the rail."""
+    text = """
+bodies:
+  sled: {mass: 5, inertia: 0.1, at: [0, 0]}
+  link: {mass: 2, inertia: 0.02, at: [0.1, 0.1]}
+  crank: {mass: 2, inertia: 0.02, at: [0.2, 0.1]}
+joints:
+  pin: {type: revolute, bodies: [sled, link], at: [0, 0]}
+  knee: {type: revolute, bodies: [link, crank], at: [0.2, 0.2]}
+  end: {type: revolute, bodies: [ground, crank], at: [0.2, 0]}
+drives:
+  jack: {type: actuator, bodies: [ground, sled], points: [[-1, 0], [0, 0]], velocity: 0.5,
+         stiffness: 1e6}
+forces:
+  rail: {type: bushing, bodies: [ground, sled], at: [0, 0], stiffness: [0, RAIL, 0],
+         rotational_stiffness: [0, 0, 1e4]}
+solver: {end: 1 ms}
+"""
+    free, held = (run(text.replace("RAIL", k))["sled.velocity"][0] for k in ("0", "1e6"))
+    assert held == pytest.approx([0.5, 0.0, 0.0], abs=1e-12)
+    assert free[0] == pytest.approx(0.5)
+    assert abs(free[1]) > 0.01

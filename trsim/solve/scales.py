@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import gaps, poses
-from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.mechanism import Instance, Mechanism
 from trsim.assemble.reduce import against_rates
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR, R_B, C
 from trsim.elements.scene import Scene, scene
@@ -158,7 +158,7 @@ def contact_scales(
             poses(w, begun.y)
             inverse, sliding = journal(w, e, linear.twists, bool(closed[e]))
         else:
-            inverse, sliding = along(w, begun.y, e, linear.twists), 0.0
+            inverse, sliding = along(w, begun.y, e, instance, linear.twists), 0.0
         free = inverse * alone > IMMOVABLE
         mass = 1.0 / inverse if free else np.inf
         k, force = n * K * d ** (n - 1.0), K * d**n
@@ -177,7 +177,7 @@ def contact_scales(
         )
 
 
-def along(w: Scene, y: Array, e: int, twists: Array) -> float:
+def along(w: Scene, y: Array, e: int, instance: Instance, twists: Array) -> float:
     """g Z Z^T g^T of a gap, 1/kg."""
 
     def rate(moving: Array) -> float:
@@ -185,7 +185,8 @@ def along(w: Scene, y: Array, e: int, twists: Array) -> float:
         gaps(w, 0.0)
         return float(w.gap[e, 1])
 
-    return float(np.sum((twist_gradient(w, y, rate) @ twists) ** 2))
+    frames = instance.element.acts_on(instance.row)
+    return float(np.sum((twist_gradient(w, y, rate, frames) @ twists) ** 2))
 
 
 def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float]:

@@ -1,6 +1,6 @@
 """Velocities a run starts with: what joints and drives demand, nearest to what was given."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import project_velocities
 from trsim.assemble.reduce import in_solve_axes, jacobian, weights, world_rates
+from trsim.elements.bushing import ROTATIONAL, STIFFNESS
 from trsim.elements.prescribed import rates_at
 from trsim.elements.scene import Model, scene, workspace
 from trsim.errors import ModelError
@@ -19,12 +20,15 @@ from trsim.solve.bars import as_rigid, moving_as_rigid
 
 Array = NDArray[np.float64]
 
+INDEPENDENT = 1e-8  # of its own size: what must be left of a wish that is not fixed already
+
 
 def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
     """v nearest to the given one (in the metric of M) that the mechanism allows.
 
     Clearance joints count as ideal, unless a body's velocity is given: then journals may fly.
-    A compliant drive starts at its speed too, where nothing stiffer says otherwise.
+    A compliant drive starts at its speed too, where nothing stiffer says otherwise, and then what
+    bushings hold is at rest: they would spring back as soon as the motion begins.
     After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
     their rates are zero.
     """
@@ -58,15 +62,15 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
     wishes = compliant_drives(ideal, y_ideal)
+    wishes += [(gradient, 0.0) for gradient in bushings(ideal, y_ideal)]
     if named:
-        wishes += [(gradient, 0.0) for gradient in closed_stops(model, y_ideal)]
-        wishes += [(coordinate_gradient(model, y_ideal, ideal.coordinates[n].entry), 0.0)
+        wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
+        wishes += [(coordinate_gradient(ideal, y_ideal, ideal.coordinates[n]), 0.0)
                    for n in named if n in ideal.coordinates]  # fmt: skip
     scale = weights(model)
-    for wish, wanted in wishes:  # a wish that contradicts what is fixed already is dropped
-        more = np.vstack([J, wish])
-        if np.linalg.matrix_rank(more * scale, 1e-8) > np.linalg.matrix_rank(J * scale, 1e-8):
-            J, rate = more, np.append(rate, wanted)
+    kept = independent(J * scale, [gradient * scale for gradient, _ in wishes])
+    J = np.vstack([J, *(wishes[k][0] for k in kept)])
+    rate = np.append(rate, [wishes[k][1] for k in kept])
     v = world_rates(model, y_ideal)
     if len(J):
         v = v + scale * np.linalg.lstsq(J * scale, rate - J @ v, rcond=1e-10)[0]
@@ -77,6 +81,23 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
     return np.asarray(v)
+
+
+def independent(J: Array, wishes: list[Array]) -> list[int]:
+    """Which wishes, one after the other, are not fixed by the rows of J and the wishes before."""
+    basis = np.zeros((0, J.shape[1]))
+    if len(J):
+        _, s, vt = np.linalg.svd(J, full_matrices=False)
+        basis = vt[s > INDEPENDENT * s.max()]
+    kept = []
+    for k, wish in enumerate(wishes):
+        left = wish - basis.T @ (basis @ wish)
+        left -= basis.T @ (basis @ left)
+        size = np.linalg.norm(left)
+        if size > INDEPENDENT * np.linalg.norm(wish):
+            basis = np.vstack([basis, left / size])
+            kept.append(k)
+    return kept
 
 
 def allowed(model: Model, y: Array) -> Array:
@@ -93,16 +114,50 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
     for instance in mechanism.instances:
         if instance.section != "drives" or not instance.row.is_force:
             continue
-        _, _, entry, state, _, offset = instance.row.con[:6]
+        i, j, entry, state, _, offset = instance.row.con[:6]
         prescribed = np.zeros(3)
         rates_at(mechanism.model.tab, offset, 0.0, prescribed)
-        gradient = coordinate_gradient(mechanism.model, y, entry)
+        gradient = rate_of_entry(mechanism.model, y, entry, (i, j))
         found.append((gradient, float(prescribed[0 if state >= 0 else 1])))
     return found
 
 
-def closed_stops(model: Model, y: Array) -> list[Array]:
+def bushings(mechanism: Mechanism, y: Array) -> list[Array]:
+    """Gradients of the rates of what bushings hold: along and about their stiff directions."""
+    w = workspace(mechanism.model)
+    poses(w, y)
+    found = []
+    for instance in mechanism.instances:
+        if instance.element.key != "bushing":
+            continue
+        i, j = instance.row.con[:2]
+        par = np.array(instance.row.par)
+        R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
+        place = w.X[j, :3] + R_j @ par[3:6]
+        for k, a in enumerate(par[6:15].reshape(3, 3) @ R_i.T):
+            if par[STIFFNESS + k] > 0.0:
+                found.append(twist_row(w.n, (i, j), a, [place - w.X[f, :3] for f in (i, j)]))
+            if par[ROTATIONAL + k] > 0.0:
+                found.append(twist_row(w.n, (i, j), a))
+    return found
+
+
+def twist_row(
+    n: int, frames: tuple[int, int], axis: Array, arms: list[Array] | None = None
+) -> Array:
+    """Rate of frame j against frame i along an axis at a place, or about it without arms."""
+    row = np.zeros((n, 6))
+    for k, (f, sign) in enumerate(zip(frames, (-1.0, 1.0), strict=True)):
+        if arms is None:
+            row[f, 3:] += sign * axis
+        else:
+            row[f] += sign * np.concatenate([axis, np.cross(arms[k], axis)])
+    return row[1:].ravel()
+
+
+def closed_stops(mechanism: Mechanism, y: Array) -> list[Array]:
     """Gradients of the gap rates of contacts that are closed at y."""
+    model = mechanism.model
     w = workspace(model)
     poses(w, y)
     gaps(w, 0.0)
@@ -113,7 +168,10 @@ def closed_stops(model: Model, y: Array) -> list[Array]:
         gaps(w, 0.0)
         return float(w.gap[e, 1])
 
-    return [twist_gradient(model, y, lambda moving, e=e: rate(moving, e)) for e in closed]
+    acts_on = [instance.element.acts_on(instance.row) for instance in mechanism.instances]
+    return [
+        twist_gradient(model, y, lambda moving, e=e: rate(moving, e), acts_on[e]) for e in closed
+    ]
 
 
 def with_velocities(model: Model, y: Array, v: Array) -> Array:
@@ -125,21 +183,28 @@ def with_velocities(model: Model, y: Array, v: Array) -> Array:
     return y
 
 
-def coordinate_gradient(model: Model, y: Array, s: int) -> Array:
+def coordinate_gradient(mechanism: Mechanism, y: Array, x: Any) -> Array:
     """Rate of a joint coordinate per unit of every world-axes rate."""
+    return rate_of_entry(mechanism.model, y, x.entry, (x.i, x.j))
+
+
+def rate_of_entry(model: Model, y: Array, s: int, frames: Iterable[int]) -> Array:
+    """Rate of an entry of S, a coordinate between some frames, per unit of world-axes rates."""
     w = workspace(model)
 
     def rate(moving: Array) -> float:
         poses(w, moving)
         return float(w.S[s, 1])
 
-    return twist_gradient(model, y, rate)
+    return twist_gradient(model, y, rate, frames)
 
 
-def twist_gradient(model: Model, y: Array, rate: Callable[[Array], float]) -> Array:
-    """A rate, linear in the velocities, per unit of every world-axes rate."""
+def twist_gradient(
+    model: Model, y: Array, rate: Callable[[Array], float], frames: Iterable[int]
+) -> Array:
+    """A rate, linear in the velocities of some frames, per unit of every world-axes rate."""
     gradient = np.zeros(6 * (model.n - 1))
-    for k in range(gradient.size):
+    for k in (6 * (f - 1) + c for f in frames if f > 0 for c in range(6)):
         unit = np.zeros_like(gradient)
         unit[k] = 1.0
         gradient[k] = rate(with_velocities(model, y, unit))
