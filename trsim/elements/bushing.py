@@ -17,7 +17,7 @@ from typing import Annotated, ClassVar
 from annotated_types import Ge
 
 from trsim.elements.contract import DAMPERS, SPRINGS, Channel, Element, Row, kernel
-from trsim.elements.frames import arm, cross, dot, helper, push, separation, spin, twist, velocity
+from trsim.elements.frames import arm, dot, helper, push, separation, spin, twist, velocity
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, vector
@@ -58,12 +58,21 @@ def axes(spec):
         if not any(getattr(spec, key)):
             raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
     x, y = direction(spec.x_axis), direction(spec.y_axis)
-    z = cross(x, y)
+    z = product(x, y)
     if max(map(abs, z)) < 1e-6:
         what = "`y_axis` has the direction of `x_axis`"
         raise ScenarioError(what, "give the one across it, for example [0, 0, 1]", ("y_axis",))
     z = direction(z)
-    return x, cross(z, x), z
+    return x, product(z, x), z
+
+
+def product(a, b):
+    """a x b; `cross` is for compiled code, and Python's call of it would compile it anew."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
 
 
 def pack(name, spec, at):
