@@ -25,6 +25,7 @@ ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from 
 STEPS = 200
 STALLED = 1e-3  # of the force: a smaller change, step after step, is none
 PATIENCE = 30  # steps without a change, and those that cross the widest clearance
+PLAINLY, DEPENDENT = 1e-6, 1e-10  # relative sizes of rows that are, or are not, independent
 INDIFFERENT = 1e-6  # of the largest eigenvalue scale: see `equilibrium`
 
 
@@ -54,12 +55,23 @@ def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
     if len(J) == 0:
         basis = np.eye(int(free.sum()))
     else:
-        _, s, vt = np.linalg.svd(J[:, free] / root, full_matrices=True)
-        rank = int(np.sum(s > 1e-10 * max(s.max(initial=0.0), 1e-300)))
-        basis = vt[rank:].T
+        basis = null_space(J[:, free] / root)
     Z = np.zeros((free.size, basis.shape[1]))
     Z[free] = basis / root[:, None]
     return Z
+
+
+def null_space(J: Array) -> Array:
+    """Columns: an orthonormal basis of what J maps to zero."""
+    m, n = J.shape
+    if m <= n:  # a tenth of the cost, where the rows are plainly independent
+        Q, R = np.linalg.qr(J.T, mode="complete")
+        size = np.abs(np.diag(R))
+        if size.min(initial=1.0) > PLAINLY * size.max(initial=1.0):
+            return np.asarray(Q[:, m:])
+    _, s, vt = np.linalg.svd(J, full_matrices=True)
+    rank = int(np.sum(s > DEPENDENT * max(s.max(initial=0.0), 1e-300)))
+    return np.asarray(vt[rank:].T)
 
 
 def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Array:

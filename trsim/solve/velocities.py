@@ -1,6 +1,7 @@
 """Velocities a run starts with: what joints and drives demand, nearest to what was given."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -58,6 +59,7 @@ def at_the_start(scenario: Any, named: tuple[str, ...]) -> Mechanism:
 def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
     """World-axes rates nearest to those of y that joints, drives and closed stops allow."""
     model = workspace(ideal.model)
+    ideal = replace(ideal, model=model)  # one workspace for all that follows
     y_ideal = follow(ideal, y)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
