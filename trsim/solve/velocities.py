@@ -29,7 +29,8 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
 
     Clearance joints count as ideal, unless a body's velocity is given: then journals may fly.
     A compliant drive starts at its speed too, where nothing stiffer says otherwise, and then what
-    bushings hold is at rest: they would spring back as soon as the motion begins.
+    bushings hold is at rest, unless a body's velocity is given: they would spring back as soon as
+    the motion begins.
     After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
     their rates are zero.
     """
@@ -38,33 +39,42 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
         y_ideal = np.zeros(ideal.model.n_q + ideal.model.n_v + ideal.model.n_z)
         n = ideal.model.n_q + ideal.model.n_v
         y_ideal[:n] = y[:n]
-        return with_velocities(mechanism.model, y, nearest(ideal, y_ideal, named))
+        return with_velocities(
+            mechanism.model, y, nearest(ideal, y_ideal, named, not given(scenario))
+        )
     try:
         stiff = at_the_start(scenario, named)
-        v = nearest(stiff, as_rigid(mechanism, stiff, y), named)
+        v = nearest(stiff, as_rigid(mechanism, stiff, y), named, not given(scenario))
         moving = with_velocities(mechanism.model, y, moving_as_rigid(mechanism, stiff, y, v))
     except ModelError:  # it moves only because its bars give way
         moving = y
     return allowed(mechanism.model, moving)
 
 
+def given(scenario: Any) -> bool:
+    """Whether somebody wrote down how a body moves at the start."""
+    return any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
+
+
 def at_the_start(scenario: Any, named: tuple[str, ...]) -> Mechanism:
     """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
-    given = any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
-    joints = scenario.joints.items() if not given else ()
+    joints = scenario.joints.items() if not given(scenario) else ()
     playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
     return assemble(scenario, playing, coordinates=named, stiff=True)
 
 
-def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
-    """World-axes rates nearest to those of y that joints, drives and closed stops allow."""
+def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> Array:
+    """World-axes rates nearest to those of y that joints, drives and closed stops allow.
+
+    held: whether what bushings hold is to be at rest.
+    """
     model = workspace(ideal.model)
     ideal = replace(ideal, model=model)  # one workspace for all that follows
     y_ideal = follow(ideal, y)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
     wishes = compliant_drives(ideal, y_ideal)
-    wishes += [(gradient, 0.0) for gradient in bushings(ideal, y_ideal)]
+    wishes += [(gradient, 0.0) for gradient in (bushings(ideal, y_ideal) if held else ())]
     if named:
         wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
         wishes += [(coordinate_gradient(ideal, y_ideal, ideal.coordinates[n]), 0.0)
