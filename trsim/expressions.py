@@ -212,6 +212,21 @@ def names(node: Node) -> set[str]:
     return set()
 
 
+def renamed(node: Node, names: Mapping[str, str]) -> Node:
+    """The expression with other names for those in `names`; of `B.angle` what counts is B."""
+    match node:
+        case ("name", name):
+            first, dot, rest = name.partition(".")
+            return ("name", names.get(first, first) + dot + rest)
+        case ("call", word, arguments):
+            return ("call", word, tuple(renamed(a, names) for a in arguments))
+        case ("unary", sign, operand):
+            return ("unary", sign, renamed(operand, names))
+        case ("binary", sign, left, right):
+            return ("binary", sign, renamed(left, names), renamed(right, names))
+    return node
+
+
 def substitute(node: Node, values: Mapping[str, float]) -> Node:
     """The expression with numbers for the names in `values` and for pi; constant parts folded."""
     match node:

@@ -1,73 +1,40 @@
 """What a user-written number is made of: units, quantities, expressions of parameters.
 
     stiffness: Annotated[float, Ge(0), Unit("N*m/rad")]     3, 3e0, 3 N*m/rad, 3000 N*mm/rad, k/2
-    at: vector("m")                                         [1, 2] or [1, 2, 0], each as above
+    at: point("m")                                          [1, 2] or [1, 2, 0], each as above
+    axis: vector("-")                                       the same; a free vector
     force: Function("N")                                    a number, an expression, a table
 
-A plain number is SI.  The dimension of a quantity must be the field's.  Parameters come through
-pydantic's validation context: {"parameters": {"speed": 0.5}}.
+A plain number is SI.  The dimension of a quantity must be the field's.  What else is known comes
+through pydantic's validation context, all of it optional:
+
+    parameters  {"speed": 0.5}
+    frame       the Frame it is written in: vectors are turned, points turned and moved to the world
+    names       {"door": "left_door"}: what references and names in expressions mean
 """
 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    PrivateAttr,
+    ValidationError,
+    model_validator,
+)
 from pydantic_core import core_schema
 
 from trsim import expressions
 from trsim.errors import ScenarioError, described, known
-from trsim.units import inside, kind, quantity, told, unit
-
-LARGEST = 1e50  # its fourth power is still a number
-
-
-def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) -> float:
-    """The SI value of a YAML number, a quantity or an expression of parameters."""
-    parameters = parameters or {}
-    if isinstance(value, str):
-        found = quantity(value, parameters)
-        if found is None:
-            return _of_parameters(value, units, parameters)
-        if found[1]:
-            _check_dimension(found[1], units)
-        value = found[0]
-    if isinstance(value, bool):
-        raise ScenarioError(f"must be a number, got {described(value)}", told(units))
-    try:
-        result = float(value)
-    except OverflowError:
-        result = math.inf
-    if not math.isfinite(result):
-        raise ScenarioError("must be a finite number", told(units))
-    if abs(result) > LARGEST:
-        raise ScenarioError(f"no quantity of a mechanism is {result:.0e}", told(units))
-    return result
-
-
-def _of_parameters(text: str, units: tuple[str, ...], parameters: Any) -> float:
-    try:
-        node = expressions.parse(text)
-    except ScenarioError as error:
-        raise ScenarioError(error.what, f"{told(units)}  {error.hint}".strip()) from None
-    for name in sorted(expressions.names(node) - {"pi"}):
-        if name not in parameters:
-            if name == "t":
-                raise ScenarioError("this number cannot depend on t", told(units))
-            hint = known(name, parameters) if parameters else told(units)
-            raise ScenarioError(f"no parameter named {described(name)}", hint)
-    return expressions.evaluate(node, parameters)
-
-
-def _check_dimension(written: str, units: tuple[str, ...]) -> None:
-    _, dimension = unit(written)
-    allowed = [unit(text)[1] for text in units]
-    if dimension in allowed or (not any(dimension) and unit("rad")[1] in allowed):
-        return
-    name = kind(dimension)
-    what = f"wrong unit: {described(written)}{f' is {name}' if name else ''}"
-    raise ScenarioError(f"{what}; {inside(units)}")
+from trsim.frame import Frame
+from trsim.numbers import number
+from trsim.references import renamed
+from trsim.units import check_dimension, quantity, unit
 
 
 class Unit:
@@ -132,21 +99,34 @@ def _or_text(schema: Any) -> Any:
 
 
 class _VectorUnit(Unit):
-    """Two or three numbers; z = 0 when omitted."""
+    """Two or three numbers; z = 0 when omitted.  From the frame of the context into the world."""
+
+    into_world = staticmethod(Frame.turned)
 
     def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
         if not isinstance(value, list | tuple) or len(value) not in (2, 3):
             raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
-        return tuple([*numbers, 0.0][:3])
+        frame = context.get("frame")
+        whole = tuple([*numbers, 0.0][:3])
+        return self.into_world(frame, whole) if frame else whole
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
         return {**super().__get_pydantic_json_schema__(schema, handler), "minItems": 2}
 
 
+class _PointUnit(_VectorUnit):
+    into_world = staticmethod(Frame.moved)
+
+
 def vector(*units: str) -> Any:
-    """The type of a vector: three floats, given as two or three numbers."""
+    """The type of a free vector (a direction, a velocity): three floats; two or three numbers."""
     return Annotated[tuple[float, float, float], _VectorUnit(*units)]
+
+
+def point(*units: str) -> Any:
+    """The type of a place: three floats, given as two or three numbers."""
+    return Annotated[tuple[float, float, float], _PointUnit(*units)]
 
 
 def direction(v: Iterable[float]) -> tuple[float, ...]:
@@ -194,22 +174,22 @@ class _FunctionUnit(Unit):
         return {"anyOf": [{"type": "number"}, {"type": "string"}, {"type": "object"}]}
 
     def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
-        parameters = context.get("parameters") or {}
+        parameters, names = context.get("parameters") or {}, context.get("names") or {}
         if isinstance(value, FunctionSpec):
             return value
         if isinstance(value, dict):
-            return self._table(value, parameters)
+            return self._table(value, parameters, names)
         if isinstance(value, str) and quantity(value, {"t", *parameters}) is None:
             node = expressions.substitute(expressions.parse(value), parameters)
             if node[0] != "number":
-                return FunctionSpec("expression", node=node)
+                return FunctionSpec("expression", node=expressions.renamed(node, names))
             value = node[1]
         if not isinstance(value, str | int | float):
             what = "must be a number, an expression or a table"
             raise ScenarioError(f"{what}, got {described(value)}")
         return FunctionSpec("constant", number(value, self.units, parameters))
 
-    def _table(self, given: dict, parameters: dict) -> FunctionSpec:
+    def _table(self, given: dict, parameters: dict, names: dict) -> FunctionSpec:
         """{table: [[x, y], ...], of: stroke, ends: hold, units: [mm, N]}"""
         for key in given:
             if key not in TABLE_KEYS:
@@ -225,7 +205,7 @@ class _FunctionUnit(Unit):
             raise ScenarioError(what, path=("ends",))
         scale = _at("units", self._scale, given.get("units"))
         x, y = _at("table", self._columns, given["table"], scale, parameters)
-        return FunctionSpec("table", x=x, y=y, of=of, ends=ends)
+        return FunctionSpec("table", x=x, y=y, of=names.get(of, of), ends=ends)
 
     def _scale(self, units: Any) -> tuple[float, float]:
         """The factors of the two columns to SI."""
@@ -233,8 +213,8 @@ class _FunctionUnit(Unit):
             return 1.0, 1.0
         if not isinstance(units, list) or [type(text) for text in units] != [str, str]:
             raise ScenarioError("must be two units, [of x, of y]")
-        _at(0, _check_dimension, units[0], VARIABLES)
-        _at(1, _check_dimension, units[1], self.units)
+        _at(0, check_dimension, units[0], VARIABLES)
+        _at(1, check_dimension, units[1], self.units)
         return float(unit(units[0])[0]), float(unit(units[1])[0])
 
     def _columns(self, rows: Any, scale: tuple[float, float], parameters: dict) -> Any:
@@ -288,11 +268,37 @@ class Spec(BaseModel):
         frozen=True, extra="forbid", allow_inf_nan=False, arbitrary_types_allowed=True
     )
     type: ClassVar[str] = ""  # the word after `type:`
+    _drawn_in: Frame | None = PrivateAttr(None)
+
+    @property
+    def drawn_in(self) -> Frame | None:
+        """The frame it was written in; None: the world's."""
+        return self._drawn_in
 
     @model_validator(mode="wrap")
     @classmethod
-    def _with_class(cls, data: Any, handler: Any) -> Any:
+    def _in_context(cls, data: Any, handler: Any, info: Any) -> Any:
+        context = info.context or {}
+        frame = context.get("frame")
+        if context.get("names") and isinstance(data, dict):
+            data = renamed(cls.model_fields, data, context["names"])
+        if frame and isinstance(data, dict):  # the default axis is one of the frame, too
+            data = {**_default_vectors(cls), **data}
         try:
-            return handler(data)
+            made = handler(data)
         except ValidationError as error:
             raise SpecError(cls, error) from None
+        if frame:
+            made._drawn_in = frame
+        return made
+
+
+@cache
+def _default_vectors(spec: type[Spec]) -> dict[str, Any]:
+    """The vectors among the keys that may be left out, with what they are then."""
+    return {
+        key: field.default
+        for key, field in spec.model_fields.items()
+        if isinstance(field.default, tuple)
+        and any(isinstance(mark, _VectorUnit) for mark in field.metadata)
+    }

@@ -209,3 +209,14 @@ def si(text: str) -> str:
         return next(text for text in KINDS if unit(text)[1] == dimension)
     powers = [(base, p) for base, p in zip(BASE, dimension, strict=True) if p]
     return "*".join(base if p == 1 else f"{base}^{p:g}" for base, p in powers)
+
+
+def check_dimension(written: str, units: tuple[str, ...]) -> None:
+    """Refuse a written unit that is none of the allowed ones in kind; rad may be left out."""
+    _, dimension = unit(written)
+    allowed = [unit(text)[1] for text in units]
+    if dimension in allowed or (not any(dimension) and unit("rad")[1] in allowed):
+        return
+    name = kind(dimension)
+    what = f"wrong unit: {described(written)}{f' is {name}' if name else ''}"
+    raise ScenarioError(f"{what}; {inside(units)}")

@@ -1,16 +1,19 @@
 """What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
 
 from dataclasses import dataclass, field
+from math import atan2
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
+from trsim.assemble.orientation import orientations
+from trsim.assemble.overshoot import overshoot
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import names
+from trsim.frame import Frame
 from trsim.laws import functions
-from trsim.laws.tables import akima_coefficients
 from trsim.units import quantity, unit
 
 
@@ -56,16 +59,8 @@ class Addresses:
             self.owners += [name] * beam.nodes
         nodes = [place for beam in self.beams.values() for place in beam.places]
         self.at_start = np.array([(0.0, 0.0, 0.0), *(s.at for s in rigid.values()), *nodes], float)
-        self.angle = np.array([0.0, *(spec.angle for spec in rigid.values())])
-        c, s = np.cos(self.angle), np.sin(self.angle)
-        self.rotation = np.zeros((len(self.frames), 3, 3))
-        self.rotation[: self.n_rigid, 0, 0], self.rotation[: self.n_rigid, 0, 1] = c, -s
-        self.rotation[: self.n_rigid, 1, 0], self.rotation[: self.n_rigid, 1, 1] = s, c
-        self.rotation[: self.n_rigid, 2, 2] = 1.0
-        for beam in self.beams.values():
-            self.rotation[beam.first : beam.first + beam.nodes] = beam.axes
-            angle = np.arctan2(beam.tangent[1], beam.tangent[0])
-            self.angle = np.append(self.angle, [angle] * beam.nodes)
+        self.angle, self.about_z, self.rotation = orientations(rigid, self.beams)
+        self.flat = all(spec.drawn_in is None or spec.drawn_in.flat for spec in rigid.values())
         self.points: list[tuple[int, tuple[float, ...]]] = []  # for arms and the size
 
     def body(self, name: str, *path: str | int, near: Any = None, off: float = AT_A_NODE) -> int:
@@ -130,9 +125,26 @@ class Addresses:
         """A world direction as drawn, in the axes of a body."""
         return tuple(self.rotation[i].T @ np.array(direction))
 
-    def drawn_angle(self, i: int, j: int, axis: tuple[float, ...]) -> float:
-        """Angle of body j's axes against body i's about an axis, as drawn."""
-        return float((self.angle[j] - self.angle[i]) * axis[2]) if abs(axis[2]) > 0.999 else 0.0
+    def drawn_angle(
+        self, i: int, j: int, axis: tuple[float, ...], frame: Frame | None = None
+    ) -> float:
+        """Angle of body j's axes against body i's about a world axis, as drawn.
+
+        frame: what the joint was drawn in; its angle is that of the same drawing in the world.
+        """
+        along = (frame.inside((axis[0], axis[1], axis[2])) if frame else axis)[2]
+        if abs(along) <= 0.999:
+            return 0.0
+        return float((self.own_angle(j, frame) - self.own_angle(i, frame)) * along)
+
+    def own_angle(self, i: int, frame: Frame | None) -> float:
+        """Angle of a body's axes about the z axis of a frame, or of the world, as drawn."""
+        if frame is None:
+            return float(self.about_z[i])
+        if not self.is_node(i):
+            return float(self.angle[i])
+        x, y, _ = frame.inside(self.beams[self.owners[i]].tangent)
+        return atan2(y, x)
 
     def mass(self, i: int) -> float:
         if i == 0:
@@ -176,7 +188,7 @@ class Addresses:
             spec = self.scenario.joints[joint]
             i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
-            axis = perpendicular(spec.axis)[2]
+            axis = perpendicular(spec.axis, spec.drawn_in)[2]
             self.coordinates[joint] = JointCoordinate(
                 self.n_s,
                 element.coordinate,
@@ -186,7 +198,9 @@ class Addresses:
                 self.local(j, place),
                 self.axes(i, axis),
                 axis,
-                self.drawn_angle(i, j, axis) if element.coordinate == "angle" else 0.0,
+                self.drawn_angle(i, j, axis, spec.drawn_in)
+                if element.coordinate == "angle"
+                else 0.0,
             )
             self.n_s += 1
         return self.coordinates[joint]
@@ -240,7 +254,7 @@ class Addresses:
         elif spec.kind == "table":
             variable = -1 if spec.of == "t" else self.known_sensor(spec.of, time_only, path)
             self.timed = self.timed or variable < 0
-            self.look_for_overshoot(spec, path)
+            self.notes += overshoot(spec, path)
             code = functions.table(spec.x, spec.y, variable, spec.ends)
         else:
             self.timed = self.timed or "t" in names(spec.node)
@@ -267,29 +281,6 @@ class Addresses:
             f"this number is in {wanted}",
             path[2:],
         )
-
-    def look_for_overshoot(self, spec: Any, path: tuple[str, ...]) -> None:
-        """Refuse an Akima curve that leaves its data far behind; note one that leaves it."""
-        x, y = np.array(spec.x), np.array(spec.y)
-        span = float(np.ptp(y))
-        if span == 0.0:
-            return
-        a, b, c, d = np.array(akima_coefficients(x, y)).T
-        s = np.linspace(0.0, 1.0, 33)[:, None] * np.diff(x)
-        curve = a + s * (b + s * (c + s * d))
-        over = np.maximum(curve - np.maximum(y[:-1], y[1:]), np.minimum(y[:-1], y[1:]) - curve)
-        row = int(np.argmax(over.max(axis=0)))
-        worst = float(over[:, row].max()) / span
-        reached = float(curve[np.argmax(over[:, row]), row])
-        what = f"the Akima curve reaches {reached:g} between rows {row + 1} and {row + 2}"
-        if worst > 0.5:
-            raise ScenarioError(
-                f"{what}, far from the data",
-                "add a point on each side of a corner: ... [0.499, 0], [0.5, 0], [0.501, 1000] ...",
-                (*path, "table"),
-            )
-        if worst > 0.05:
-            self.notes.append(f"{'.'.join(path)}: {what}; more points at the corner keep it in")
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
         if time_only and name not in self.scenario.sensors:

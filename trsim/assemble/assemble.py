@@ -67,7 +67,7 @@ def assemble(
     rows = all_rows(instances)
     full = scene(build(scenario, at, instances, rows, 6))  # one workspace for all
     y6 = drawn(at, 6)
-    planar, assumed = planarity(scenario, full, y6)
+    planar, assumed = planarity(scenario, full, y6, at.flat)
     check_inertias(at, planar)
     if not planar:
         check_space(at, instances)
@@ -238,7 +238,7 @@ def build(
         par=par,
         tab=np.array(at.tab),
         n_s=at.n_s,
-        turn=turns(at, d),
+        **turns(at, d),
         **kernels(instances),
         **pattern(frames, n, [(beam.first, beam.nodes) for beam in at.beams.values()]),
         **band_tables(list(at.beams.values()), frames),

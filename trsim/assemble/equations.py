@@ -80,7 +80,7 @@ def poses(s, y):
             i, j, sign = turn[k, 1], turn[k, 2], turn[k, 3]
             angle_i = y[3 * (i - 1) + 2] if i > 0 else 0.0
             angle_j = y[3 * (j - 1) + 2] if j > 0 else 0.0
-            branch[turn[k, 0]] = sign * (angle_j - angle_i)
+            branch[turn[k, 0]] = sign * (angle_j - angle_i) + s.parallel[k]
     else:
         for f in range(1, s.n_r):
             spatial_pose(X, V, f, y, 7 * (f - 1), s.n_q + 6 * (f - 1))

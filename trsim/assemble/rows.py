@@ -101,8 +101,8 @@ def choose_rows(
     return [rows[k] for k in candidates if k not in dropped], found
 
 
-def planarity(scenario: Any, full: Model, y6: Array) -> tuple[bool, bool]:
-    """(planar, only assumed)."""
+def planarity(scenario: Any, full: Model, y6: Array, flat: bool) -> tuple[bool, bool]:
+    """(planar, only assumed); flat: the z axes of all bodies are the world's."""
     from trsim.assemble.equations import forces, poses
 
     def sample(y: Array) -> Array:
@@ -114,8 +114,14 @@ def planarity(scenario: Any, full: Model, y6: Array) -> tuple[bool, bool]:
 
     if scenario.planar is False or full.n == 1:
         return False, False
+    if scenario.planar and not flat:
+        raise ModelError(
+            "`planar: true`, but the frame of an instance turns its bodies out of the x-y plane",
+            "turn it about z only or set `planar: false`",
+            ("planar",),
+        )
     inside, held = is_planar(full, y6, sample)
-    inside = inside and not np.any(world_rates(full, y6)[~moves(full, True)])
+    inside = inside and flat and not np.any(world_rates(full, y6)[~moves(full, True)])
     if scenario.planar and not inside:
         raise ModelError(
             "`planar: true`, but joints, loads or velocities leave the x-y plane",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
@@ -130,27 +131,32 @@ def drawn(at: Addresses, d: int) -> Array:
         spec = at.members[name]
         v = n_q + d * (f - 1)
         if d == 3:
-            y[3 * (f - 1) : 3 * f] = (*spec.at[:2], spec.angle)
+            y[3 * (f - 1) : 3 * f] = (*spec.at[:2], at.about_z[f])
             y[v : v + 3] = (*spec.velocity[:2], spec.angular_velocity[2])
         else:
             q = 7 * (f - 1)
             y[q : q + 3] = spec.at
-            y[q + 3], y[q + 6] = np.cos(spec.angle / 2), np.sin(spec.angle / 2)
+            y[q + 3 : q + 7] = quaternion(spec)
             y[v : v + 3] = spec.velocity
             y[v + 3 : v + 6] = at.axes(f, spec.angular_velocity)
     return y
 
 
-def turns(at: Addresses, d: int) -> NDArray[np.int64]:
-    """Planar joint angles: (entry of S, i, j, sign of the axis), for their branch."""
-    if d == 6:
-        return np.zeros((0, 4), np.int64)
-    rows = [
-        (x.entry, x.i, x.j, 1 if x.axis[2] > 0 else -1)
-        for x in at.coordinates.values()
+def turns(at: Addresses, d: int) -> dict[str, Any]:
+    """Planar joint angles: (entry of S, i, j, sign of the axis), for their branch, and what each
+    is when the axes of its bodies are parallel: not 0 between a body of an instance and others."""
+    found = [
+        (x, 1 if x.axis[2] > 0 else -1)
+        for x in (at.coordinates.values() if d == 3 else ())
         if x.kind == "angle" and not (at.is_node(x.i) or at.is_node(x.j))
     ]
-    return np.array(rows, np.int64).reshape(-1, 4)
+    rows = [(x.entry, x.i, x.j, sign) for x, sign in found]
+    alike = at.about_z == at.angle
+    parallel = [
+        0.0 if alike[x.i] and alike[x.j] else x.drawn - sign * (at.about_z[x.j] - at.about_z[x.i])
+        for x, sign in found
+    ]
+    return {"turn": np.array(rows, np.int64).reshape(-1, 4), "parallel": np.array(parallel, float)}
 
 
 def extent(at: Addresses) -> float:

@@ -141,7 +141,7 @@ def tolerance(text: str) -> float:
 
 
 def seconds(text: str) -> float:
-    from trsim.fields import number
+    from trsim.numbers import number
 
     try:
         value = number(text, ("s",))

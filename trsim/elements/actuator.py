@@ -32,7 +32,7 @@ from trsim.elements.contract import (
 from trsim.elements.frames import distance_row, helper, line, push
 from trsim.elements.prescribed import MOTION, SIGN, STATE, C, K, prescribed
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec, Unit, vector
+from trsim.fields import Function, Spec, Unit, point
 
 
 class Supply(Spec):
@@ -65,7 +65,7 @@ class Actuator(Spec):
 
     type: ClassVar[str] = "actuator"
     bodies: tuple[str, str]
-    points: tuple[vector("m"), vector("m")]
+    points: tuple[point("m"), point("m")]
     velocity: Function("m/s") | None = None
     position: Function("m") | None = None
     stiffness: Annotated[float, Gt(0), Unit("N/m")] | None = None

@@ -21,7 +21,7 @@ from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element,
 from trsim.elements.frames import cross, dot, helper
 from trsim.elements.vectors import clear_table
 from trsim.errors import ScenarioError
-from trsim.fields import vector
+from trsim.fields import point, vector
 from trsim.laws import cable
 from trsim.laws.cable_section import position, stress, uniform_shares
 from trsim.laws.cable_tangent import add_damping, add_stiffness
@@ -37,8 +37,8 @@ class AncfCable(Cable):
     """
 
     type: ClassVar[str] = "ancf_cable"
-    start: vector("m")
-    end: vector("m")
+    start: point("m")
+    end: point("m")
     velocity: vector("m/s") = (0.0, 0.0, 0.0)
     angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
 

@@ -12,7 +12,7 @@ from pydantic import model_validator
 
 from trsim.elements.contract import LOADS, Channel, Element, Row, kernel
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
-from trsim.fields import Function, Spec, direction, vector
+from trsim.fields import Function, Spec, direction, point, vector
 from trsim.laws.functions import value
 
 
@@ -29,7 +29,7 @@ class AppliedLoad(Spec):
 
     type: ClassVar[str] = "applied_load"
     body: str
-    at: vector("m") | None = None
+    at: point("m") | None = None
     frame: str = "world"
     direction: vector("-")
     force: Function("N") | None = None

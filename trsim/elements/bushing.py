@@ -20,7 +20,7 @@ from trsim.elements.contract import DAMPERS, SPRINGS, Channel, Element, Row, ker
 from trsim.elements.frames import arm, dot, helper, push, separation, spin, twist, velocity
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
-from trsim.fields import Spec, Unit, direction, vector
+from trsim.fields import Spec, Unit, direction, point, vector
 
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
@@ -43,7 +43,7 @@ class Bushing(Spec):
 
     type: ClassVar[str] = "bushing"
     bodies: tuple[str, str]
-    at: vector("m")
+    at: point("m")
     x_axis: vector("-") = (1.0, 0.0, 0.0)
     y_axis: vector("-") = (0.0, 1.0, 0.0)
     stiffness: Annotated[Three, Unit("N/m")]

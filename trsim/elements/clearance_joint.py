@@ -145,7 +145,7 @@ def pack(name, spec, at):
     par = (
         *at.local(i, spec.at),
         *at.local(j, spec.at),
-        *triads(i, j, spec.axis, at),
+        *triads(i, j, spec.axis, at, spec.drawn_in),
         law.bearing_radius,
         spec.clearance,
         K,

@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar, Literal
 from trsim.elements.contract import Channel, Element, Row, kernel
 from trsim.elements.frames import arm, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
-from trsim.fields import Spec, Unit, vector
+from trsim.fields import Spec, Unit, point, vector
 
 
 class Displacement(Spec):
@@ -27,7 +27,7 @@ class Displacement(Spec):
 
     type: ClassVar[str] = "displacement"
     bodies: tuple[str, str]
-    at: vector("m")
+    at: point("m")
     axis: vector("-")
     sign: Literal[1, -1] = 1
     at_start: Annotated[float, Unit("m")] = 0.0

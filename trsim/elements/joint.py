@@ -7,7 +7,7 @@ par[21]                         joint angle as drawn
 """
 
 from trsim.errors import ScenarioError
-from trsim.fields import Spec, direction, vector
+from trsim.fields import Spec, direction, point
 
 
 class Joint(Spec):
@@ -18,13 +18,18 @@ class Joint(Spec):
     """
 
     bodies: tuple[str, str]
-    at: vector("m")
+    at: point("m")
 
 
-def perpendicular(axis):
-    """Unit vectors u, w, a with a along the axis; (x, y, z) for the z axis."""
+def perpendicular(axis, frame=None):
+    """Unit vectors u, w, a with a along the axis; (x, y, z) for the z axis.
+
+    frame: what the axis was drawn in; there u and w are those of the same axis in the world.
+    """
     if not any(axis):
         raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", ("axis",))
+    if frame:
+        return tuple(frame.turned(v) for v in perpendicular(frame.inside(axis)))
     a = direction(axis)
     # project the world axis least aligned with a, cyclically after the largest component,
     # so that a z axis gives u = x and w = y exactly
@@ -41,14 +46,14 @@ def perpendicular(axis):
     return u, w, a
 
 
-def triads(i, j, axis, at):
-    """par[6:22] of a joint between frames i and j about a world axis as drawn."""
-    u, w, a = perpendicular(axis)
+def triads(i, j, axis, at, frame=None):
+    """par[6:22] of a joint between bodies i and j about a world axis, as drawn in a frame."""
+    u, w, a = perpendicular(axis, frame)
     return (
         *at.axes(i, u),
         *at.axes(i, w),
         *at.axes(i, a),
         *at.axes(j, u),
         *at.axes(j, a),
-        at.drawn_angle(i, j, a),
+        at.drawn_angle(i, j, a, frame),
     )

@@ -28,7 +28,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
 from trsim.errors import ScenarioError
-from trsim.fields import Spec, Unit, direction, vector
+from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.laws.contact import ramped_damping
 
 
@@ -40,7 +40,7 @@ class BodyPoint(Spec):
     """
 
     body: str
-    at: vector("m")
+    at: point("m")
 
 
 class Wall(Spec):
@@ -52,7 +52,7 @@ class Wall(Spec):
     """
 
     body: str
-    at: vector("m")
+    at: point("m")
     normal: vector("-")
 
 

@@ -12,7 +12,7 @@ from typing import ClassVar
 from trsim.elements.contract import Element, Row, kernel
 from trsim.elements.frames import along_row, arm, perpendicular_row, stroke
 from trsim.elements.joint import triads
-from trsim.fields import Spec, vector
+from trsim.fields import Spec, point, vector
 
 
 class Prismatic(Spec):
@@ -26,13 +26,16 @@ class Prismatic(Spec):
     type: ClassVar[str] = "prismatic"
     bodies: tuple[str, str]
     axis: vector("-")
-    at: vector("m") | None = None
+    at: point("m") | None = None
 
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     place = at.centre(j) if spec.at is None else spec.at
-    return Row((i, j, -1), (*at.local(i, place), *at.local(j, place), *triads(i, j, spec.axis, at)))
+    return Row(
+        (i, j, -1),
+        (*at.local(i, place), *at.local(j, place), *triads(i, j, spec.axis, at, spec.drawn_in)),
+    )
 
 
 @kernel

@@ -37,7 +37,8 @@ class Revolute(Joint):
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     return Row(
-        (i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *triads(i, j, spec.axis, at))
+        (i, j, -1),
+        (*at.local(i, spec.at), *at.local(j, spec.at), *triads(i, j, spec.axis, at, spec.drawn_in)),
     )
 
 

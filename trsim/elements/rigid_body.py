@@ -2,7 +2,8 @@
 
     m r'' = F,    I omega' + omega x I omega = M          omega and I in body axes
 
-Its axes are the world's at t = 0 unless `angle` turns them about z.  There is no force kernel: the
+Its axes are at t = 0 those of the frame it is drawn in, the world's or its instance's, unless
+`angle` turns them about the z axis of that frame.  There is no force kernel: the
 equations of motion hold the masses (assemble/equations.py).
 """
 
@@ -13,7 +14,7 @@ from pydantic import BeforeValidator
 
 from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Row, kernel
-from trsim.fields import Spec, Unit, vector
+from trsim.fields import Spec, Unit, point, vector
 
 KG_M2 = Unit("kg*m^2")
 INERTIA = Annotated[float, Ge(0), KG_M2]
@@ -35,7 +36,7 @@ class RigidBody(Spec):
                       ones; or Ixx, Iyy, Izz, Ixy, Ixz, Iyz, products with the sign of the
                       tensor's entries, in body axes
     at                centre of mass, as drawn
-    angle             turns the body axes about z
+    angle             turns the body axes about z; those of an instance about the z of its frame
     velocity          of the centre of mass at the start; where any body has a velocity, clearance
                       joints start free, otherwise as ideal ones
     angular_velocity  at the start, world axes
@@ -58,7 +59,7 @@ class RigidBody(Spec):
             Annotated[float, KG_M2],
         ]
     )
-    at: vector("m") = (0.0, 0.0, 0.0)
+    at: point("m") = (0.0, 0.0, 0.0)
     angle: Annotated[float, Unit("rad")] = 0.0
     velocity: vector("m/s") = (0.0, 0.0, 0.0)
     angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)

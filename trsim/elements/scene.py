@@ -57,6 +57,7 @@ class Model(Packed):
     par: A2  # (N, n_par) how much
     tab: A1  # everything of variable length   laws/functions.py
     turn: I2  # (n_turn, 4) planar joint angles: s, i, j, sign of the axis
+    parallel: A1  # (n_turn) their values where the axes of both bodies are parallel
     force: I2  # (kinds, 3) kernel address, first row, end row
     constraint: I2
     coordinate: I2

@@ -20,7 +20,7 @@ from trsim.elements.contract import (
     kernel,
 )
 from trsim.elements.frames import line, push
-from trsim.fields import Spec, Unit, vector
+from trsim.fields import Spec, Unit, point
 
 
 class SpringDamper(Spec):
@@ -36,7 +36,7 @@ class SpringDamper(Spec):
 
     type: ClassVar[str] = "spring_damper"
     bodies: tuple[str, str]
-    points: tuple[vector("m"), vector("m")]
+    points: tuple[point("m"), point("m")]
     stiffness: Annotated[float, Ge(0), Unit("N/m")]
     damping: Annotated[float, Ge(0), Unit("N*s/m")] = 0.0
     free_length: Annotated[float, Ge(0), Unit("m")] | None = None

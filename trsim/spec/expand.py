@@ -25,10 +25,11 @@ from trsim.errors import (
     known,
     unreadable,
 )
-from trsim.fields import number, quantity
+from trsim.numbers import number
 from trsim.spec.merge import graft, merge, override, part
 from trsim.spec.table import rows
 from trsim.spec.text import LARGEST, Tree, decoded, read
+from trsim.units import quantity
 
 DEEPEST = 8  # levels of extends
 MOST = 40  # files

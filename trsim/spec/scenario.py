@@ -17,7 +17,8 @@ from trsim import elements
 from trsim.elements.contact_law import ContactLaw
 from trsim.elements.event import Event
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
-from trsim.fields import Flag, Spec, Unit, number, vector
+from trsim.fields import Flag, Spec, Unit, vector
+from trsim.numbers import number
 from trsim.spec import shown
 from trsim.spec.sections import PhasePortrait, PoincareSection
 from trsim.spec.text import Tree

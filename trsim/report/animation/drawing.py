@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.members import members
+from trsim.assemble.orientation import quaternion
 from trsim.elements.joint import perpendicular
 from trsim.fields import direction
 from trsim.spec.load import loads
@@ -43,7 +44,7 @@ class Drawing(NamedTuple):
 
     scenario: Any
     bodies: dict[str, Array]  # rigid ones -> centre of mass (3)
-    angles: dict[str, float]  # rad, of their axes about z
+    axes: dict[str, Array]  # their axes, quaternions (4) with the scalar last
     bars: dict[str, Array]  # flexible ones -> nodes (k, 3)
     thickness: dict[str, float]  # m, of the bars
     joints: tuple[Joint, ...]
@@ -64,7 +65,7 @@ class Drawing(NamedTuple):
 def drawing(run: Run) -> Drawing:
     """What a run was made of; bodies without a recorded place are left out and named."""
     scenario = loads(run.text("scenario/resolved"))
-    bodies, angles, bars, thickness, lost = {}, {}, {}, {}, []
+    bodies, axes, bars, thickness, lost = {}, {}, {}, {}, []
     for name, spec in members(scenario).items():
         flexible = spec.type == "ancf_cable"
         nodes = spec.elements + 1 if flexible else 0
@@ -76,9 +77,9 @@ def drawing(run: Run) -> Drawing:
             bars[name] = (1.0 - part) * np.array(spec.start) + part * np.array(spec.end)
             thickness[name] = spec.thickness
         else:
-            bodies[name], angles[name] = np.array(spec.at), spec.angle
+            bodies[name], axes[name] = np.array(spec.at), np.roll(quaternion(spec), -1)
     planar = bool(run.group("mechanism").get("planar", False))
-    found = Drawing(scenario, bodies, angles, bars, thickness, (), planar, tuple(lost))
+    found = Drawing(scenario, bodies, axes, bars, thickness, (), planar, tuple(lost))
     return found._replace(joints=joints(found))
 
 
@@ -94,7 +95,7 @@ def joints(drawn: Drawing) -> tuple[Joint, ...]:
         at = getattr(spec, "at", None)
         if at is None:  # a slide: at the centre of the second body
             at = drawn.bodies[j] if j in drawn.bodies else middle(drawn, j)
-        axes = np.array(perpendicular(getattr(spec, "axis", (0.0, 0.0, 1.0))))
+        axes = np.array(perpendicular(getattr(spec, "axis", (0.0, 0.0, 1.0)), spec.drawn_in))
         if spec.type == "universal":
             axes[1] = direction(spec.second_axis)
             axes[0] = np.cross(axes[1], axes[2])

@@ -110,8 +110,7 @@ def attitudes_over_time(
     found, unknown = {}, []
     for name in drawn.bodies:
         if f"{name}.rotation" in run.units:
-            half = 0.5 * drawn.angles[name]
-            back = np.array([0.0, 0.0, -np.sin(half), np.cos(half)])
+            back = drawn.axes[name] * (-1.0, -1.0, -1.0, 1.0)
             recorded = turns.of_matrices(run.channel(f"{name}.rotation").reshape(-1, 3, 3))
             found[name] = turns.product(recorded, np.broadcast_to(back, recorded.shape))
             continue
