@@ -5,12 +5,9 @@
     axis: vector("-")                                       the same; a free vector
     force: Function("N")                                    a number, an expression, a table
 
-A plain number is SI.  The dimension of a quantity must be the field's.  What else is known comes
-through pydantic's validation context, all of it optional:
-
-    parameters  {"speed": 0.5}
-    frame       the Frame it is written in: vectors are turned, points turned and moved to the world
-    names       {"door": "left_door"}: what references and names in expressions mean
+A plain number is SI.  The dimension of a quantity must be the field's.  pydantic's validation
+context may hold `parameters`, {"speed": 0.5}; `frame`, a Frame from which vectors are turned, and
+points turned and moved, into the world; `names`, {"door": "left_door"}, what references mean.
 """
 
 import math
@@ -272,7 +269,7 @@ class Spec(BaseModel):
 
     @property
     def drawn_in(self) -> Frame | None:
-        """The frame it was written in; None: the world's."""
+        """The frame of its instance; None: the world's."""
         return self._drawn_in
 
     @model_validator(mode="wrap")

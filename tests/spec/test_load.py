@@ -8,8 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from trsim.errors import ModelError, Problems, ScenarioError, TrsimError
+from trsim.spec.initial import Initial
 from trsim.spec.load import load, loads, locate
-from trsim.spec.scenario import Initial, Scenario
+from trsim.spec.scenario import Scenario
 
 from .conftest import CASE, MECHANISM
 
@@ -227,7 +228,7 @@ solver: {end: 1}
             "    ^\n"
             "  Did you mean 'solver'?  Known: title, planar, gravity, parameters, bodies, joints,"
             " drives, sensors, forces, contact_laws, initial, solver, output, phase_portraits"
-            " ... (7 more)",
+            " ... (9 more)",
         ),
     ],
 )

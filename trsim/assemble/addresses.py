@@ -14,7 +14,7 @@ from trsim.errors import ScenarioError, known
 from trsim.expressions import names
 from trsim.frame import Frame
 from trsim.laws import functions
-from trsim.units import quantity, unit
+from trsim.units import unit
 
 
 class JointCoordinate(NamedTuple):
@@ -266,11 +266,7 @@ class Addresses:
 
     def check_unit(self, kind: str, angle: str, stroke: str, *path: str) -> None:
         """Refuse a written unit that does not fit a joint that turns, or one that slides."""
-        raw = self.scenario.resolved
-        for key in path:
-            raw = raw.get(key) if isinstance(raw, dict) else None
-        names = {"t", *self.scenario.parameters}  # of an expression: 1/t is none per tonne
-        written = quantity(raw, names) if isinstance(raw, str) else None
+        written = self.scenario.quantity(*path)
         wanted = angle if kind == "angle" else stroke
         if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
             return

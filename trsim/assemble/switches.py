@@ -21,7 +21,7 @@ from trsim.elements.event import DIRECTIONS, Event
 from trsim.elements.prescribed import ENTRY, OWN_STATE
 from trsim.errors import ScenarioError, known
 from trsim.statuses import Ended
-from trsim.units import quantity, unit
+from trsim.units import unit
 
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
@@ -159,8 +159,7 @@ class _Packing:
 
     def check_value(self, name: str, when: str, wanted: str) -> None:
         """Refuse a written unit that does not fit what is watched."""
-        raw = self.scenario.resolved[SECTION][name].get("value")
-        written = quantity(raw) if isinstance(raw, str) else None
+        written = self.scenario.quantity(SECTION, name, "value")
         if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
             return
         if wanted != "rad" or any(unit(written[1])[1]):

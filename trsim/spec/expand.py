@@ -206,6 +206,13 @@ def parameters(tree: Tree) -> tuple[dict[str, float], list[ScenarioError]]:
     if not isinstance(given, dict):
         what = f"must be a mapping of names to numbers, got {described(given)}"
         return {}, [ScenarioError(what, path=("parameters",))]
+    return numbers(given, {}, ("parameters",))
+
+
+def numbers(
+    given: dict[str, Any], others: dict[str, float], path: tuple[str, ...]
+) -> tuple[dict[str, float], list[ScenarioError]]:
+    """The value of each entry of a mapping, which may use others and those before it."""
     values: dict[str, float] = {}
     problems: list[ScenarioError] = []
     for name, value in given.items():
@@ -214,11 +221,12 @@ def parameters(tree: Tree) -> tuple[dict[str, float], list[ScenarioError]]:
         try:
             if not isinstance(value, str | int | float):
                 raise ScenarioError(f"must be a number, got {described(value)}")
-            found = quantity(value, values) if isinstance(value, str) else None
-            values[name] = number(found[0] if found else value, ("-",), values)
+            there = others | values
+            found = quantity(value, there) if isinstance(value, str) else None
+            values[name] = number(found[0] if found else value, ("-",), there)
         except ScenarioError as error:
             later = [other for other in given if f"'{other}'" in error.what and other != name]
             hint = f"{later[0]} is defined after {name}." if later else error.hint
-            problems.append(ScenarioError(error.what, hint, ("parameters", name)))
+            problems.append(ScenarioError(error.what, hint, (*path, name)))
             values[name] = 1.0  # so that what uses it is not reported as well
     return values, problems

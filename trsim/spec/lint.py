@@ -32,9 +32,24 @@ def lint(scenario: Any) -> tuple[str, ...]:
     checks = (
         *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
         *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
-        slender,
+        *(slender, _unused),
     )
-    return tuple(message for check in checks for message in check(scenario))
+    found = (message for check in checks for message in check(scenario))
+    return tuple(dict.fromkeys(_as_written(scenario, message) for message in found))
+
+
+def _as_written(scenario: Any, message: str) -> str:
+    """The message with the place of what it is about in the templates, once for all instances."""
+    where, colon, what = message.partition(": ")
+    return ".".join(map(str, scenario.written(tuple(where.split("."))))) + colon + what
+
+
+def _unused(scenario: Any) -> Iterator[str]:
+    """Templates that stand nowhere."""
+    used = {instance.template for instance in scenario.instances.values()}
+    for name in scenario.templates:
+        if name not in used:
+            yield f"templates.{name}: no instance uses it; put it in place under `instances`"
 
 
 # --- bodies ----------------------------------------------------------------------------------

@@ -12,9 +12,11 @@ from pydantic import ValidationError
 from trsim.errors import Problems, ScenarioError, TrsimError, closest, described
 from trsim.fields import Spec, SpecError, Unit
 from trsim.spec import expand
+from trsim.spec.memory import Memory
 from trsim.spec.names import name_faults, sweep_faults
-from trsim.spec.scenario import Memory, Scenario, suggestion
+from trsim.spec.scenario import Scenario, suggestion
 from trsim.spec.text import Tree
+from trsim.spec.unfold import unfold
 from trsim.units import told
 
 SHOWN = 30  # problems in one message
@@ -45,11 +47,12 @@ def valid(data: dict, memory: Memory) -> bool:
     To say what is wrong takes a tree.
     """
     values, faults = expand.parameters(Tree(data))
-    if faults:
+    whole, more = unfold(Tree(data), values, memory.merged)
+    if faults or more:
         return False
     context = {"parameters": values, "memory": memory}
     try:
-        Scenario.model_validate({**data, "parameters": values}, context=context)
+        Scenario.model_validate({**whole.entries(), "parameters": values}, context=context)
     except (ValidationError, SpecError):
         return False
     return True
@@ -64,28 +67,30 @@ def locate(error: TrsimError, scenario: Scenario) -> TrsimError:
 
 def _validated(tree: Tree, text: str) -> Scenario:
     values, faults = expand.parameters(tree)
+    whole, more = unfold(tree, values)
     problems: list[TrsimError] = [
-        *islice(name_faults(tree.data), SHOWN),
-        *islice(sweep_faults(tree.data), SHOWN),
+        *islice(name_faults(whole.data), SHOWN),
+        *islice(sweep_faults(whole.data), SHOWN),
     ]
     for problem in problems:  # it is the key that is wrong
-        problem.place = tree.key_place(problem.path)
+        problem.place = whole.key_place(problem.path)
     problems += faults
+    for fault, path in more:
+        problems += _unfolded(fault, path, whole)
     try:
-        data = {**tree.data, "parameters": values}
+        data = {**whole.entries(), "parameters": values}
         scenario = Scenario.model_validate(data, context={"parameters": values})
     except (ValidationError, SpecError) as error:
-        problems += _unfolded(error, (), tree)
+        problems += _unfolded(error, (), whole)
     for problem in problems:
-        problem.place = problem.place or tree.place(problem.path)
+        problem.place = problem.place or whole.place(problem.path)
     if problems:
         files = list(tree.files)
-        unique = {(problem.path, problem.what): problem for problem in problems}
-        problems = sorted(unique.values(), key=lambda problem: _order(problem, files))
+        problems = sorted(whole.once(problems), key=lambda problem: _order(problem, files))
         if len(problems) == 1:
             raise problems[0]
         raise Problems(problems[:SHOWN], len(problems) - SHOWN if len(problems) > SHOWN else 0)
-    scenario._tree, scenario._text = tree, text
+    scenario._tree, scenario._unfolded, scenario._text = tree, whole, text
     return scenario
 
 

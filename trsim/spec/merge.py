@@ -12,6 +12,7 @@ from trsim.errors import Place, ScenarioError, UsageError, described, known
 from trsim.spec.text import Tree, read
 
 NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws", "events")  # by name
+KNOWN = ("parameters", *NAMED, "templates", "instances")  # --set changes what is there
 
 
 def merge(base: Tree, over: Tree) -> None:
@@ -43,6 +44,19 @@ def _same_kind(before: Any, value: Any) -> bool:
     if not (isinstance(before, dict) and isinstance(value, dict)):
         return False
     return before.get("type") in (None, value.get("type", before.get("type")))
+
+
+def merged(base: Any, over: Any) -> Any:
+    """Data overridden by other data; neither is changed, and what is the same is not copied."""
+    if not _same_kind(base, over):
+        return over
+    found = dict(base)
+    for key, value in over.items():
+        if value is None and key in found:
+            del found[key]
+        else:
+            found[key] = merged(found.get(key), value)
+    return found
 
 
 def part(tree: Tree, path: tuple) -> Tree:
@@ -103,7 +117,7 @@ def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> N
     """Change one value of a tree, which remembers where it came from."""
     section = tree.data.get(keys[0])
     named = section if isinstance(section, dict) else {}
-    if len(keys) > 1 and keys[0] in ("parameters", *NAMED) and keys[1] not in named:
+    if len(keys) > 1 and keys[0] in KNOWN and keys[1] not in named:
         what = f"nothing named {described(keys[1])} in {keys[0]}"
         raise ScenarioError(what, known(keys[1], named), (keys[0],), key_place)
     inner: Any = tree.data

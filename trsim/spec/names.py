@@ -15,6 +15,7 @@ RESERVED = {
     *("steps", "events", "peaks", "summary", "solver", "phase", "poincare", "scenario"),
     *("provenance", *FUNCTIONS, *keyword.kwlist),
 }
+NAME = r"[A-Za-z_][A-Za-z0-9_]*"
 NEW = {"parameters"}  # sections in which a name that is not there means nothing
 
 
@@ -25,7 +26,7 @@ def name_faults(data: dict) -> Iterator[ScenarioError]:
         entries = data.get(section)
         for name in entries if isinstance(entries, dict) else ():
             path = (section, name)
-            if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
+            if not re.fullmatch(NAME, name):
                 hint = "A name is letters, digits and _, a letter first."
                 yield ScenarioError(f"not a name: {described(name)}", hint, path)
             elif name in RESERVED:

@@ -4,8 +4,6 @@ The elements bring their own specs: the word after `type:` says which, and only 
 scenario uses are imported.
 """
 
-import json
-import re
 from collections.abc import Iterable
 from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
@@ -18,10 +16,13 @@ from trsim.elements.contact_law import ContactLaw
 from trsim.elements.event import Event
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, vector
-from trsim.numbers import number
 from trsim.spec import shown
+from trsim.spec.initial import Initial, initial_of
 from trsim.spec.sections import PhasePortrait, PoincareSection
+from trsim.spec.template import Instance, Template
 from trsim.spec.text import Tree
+from trsim.spec.unfolded import Entry, Unfolded
+from trsim.units import quantity
 
 METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
            "scipy:BDF", "scipy:Radau", "scipy:RK45")  # fmt: skip
@@ -35,40 +36,26 @@ EMPTY: Any = Field(default_factory=dict)
 # --- elements --------------------------------------------------------------------------------
 
 
-class Memory:
-    """Specs that were made already, for scenarios that are much alike; see spec/load.py."""
-
-    def __init__(self, parameters: Iterable[str]) -> None:
-        self.made: dict[tuple, Any] = {}
-        self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
-        self.word = re.compile("|".join(rf"\b{name}\b" for name in parameters) or r"(?!)")
-
-    def key(self, section: str, data: Any, parameters: dict[str, float]) -> tuple:
-        """Of a piece of data: its text, and the values of the parameters that the text names."""
-        if id(data) not in self.pieces:
-            text = json.dumps(data)
-            self.pieces[id(data)] = data, text, sorted(set(self.word.findall(text)))
-        _, text, names = self.pieces[id(data)]
-        return section, text, *(parameters[name] for name in names)
-
-
 def _Element(section: str) -> BeforeValidator:
     """Makes an entry of a section a spec, of the class that its `type` names."""
     return BeforeValidator(partial(_element, section))
 
 
 def _element(section: str, data: Any, info: Any) -> Any:
+    context, scope = info.context or {}, None
+    if isinstance(data, Entry):
+        data, scope = data
+        context = {**context, **scope._asdict()}
     if not isinstance(data, dict):
         raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
-    context = info.context or {}
     memory, key = context.get("memory"), ()
     if memory is not None:
-        key = memory.key(section, data, context["parameters"])
+        key = memory.key(section, data, context["parameters"], scope)
         if key in memory.made:
             return memory.made[key]
     spec: Any = elements.load(word(section, data)).spec
     rest = {key: value for key, value in data.items() if key != "type"}
-    made = spec.model_validate(rest, context=info.context)
+    made = spec.model_validate(rest, context=context)
     if memory is not None:
         memory.made[key] = made
     return made
@@ -91,6 +78,13 @@ def word(section: str, data: dict) -> str:
     if named == "revolute" and any(edits(key, "clearance") <= 1 for key in data):
         return "clearance_joint"
     return named
+
+
+def _event(data: Any, info: Any) -> Any:
+    """The event of an instance, read as it is meant there; others as they are."""
+    if not isinstance(data, Entry):
+        return data
+    return Event.model_validate(data.data, context={**(info.context or {}), **data.scope._asdict()})
 
 
 # --- sections --------------------------------------------------------------------------------
@@ -170,57 +164,6 @@ class OutputSpec(Spec):
     channels: tuple[str, ...] = ("*",)
 
 
-ALL = "all"  # the joints
-
-
-class Initial(NamedTuple):
-    """How the mechanism starts where that is not as drawn and moving with its drives."""
-
-    equilibrium: tuple[str, ...] = ()  # joints free in the balance of forces
-    values: dict[str, float] = {}  # joint -> coordinate, rad or m  # noqa: RUF012
-    whole: bool = False  # `equilibrium: all`, of which there may be no joint
-
-    @property
-    def settles(self) -> bool:
-        """Whether forces are to balance at the start."""
-        return self.whole or bool(self.equilibrium)
-
-
-def _initial(data: Any, info: Any) -> Initial:
-    if isinstance(data, Initial):
-        return data
-    if not isinstance(data, dict):
-        raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
-    names = data.get("equilibrium") or []
-    whole = names == ALL
-    if whole:
-        names = list(info.data.get("joints", ()))
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        what = f"must be a list of joints, or `{ALL}`"
-        raise ScenarioError(what, path=("equilibrium",))
-    parameters, values = (info.context or {}).get("parameters"), {}
-    joints = [*info.data.get("joints", ()), "equilibrium"]
-    for k, name in enumerate(names):
-        if name not in joints[:-1] and "joints" in info.data:
-            hint = known(name, joints[:-1])
-            if name in info.data.get("bodies", ()):
-                hint = f"`equilibrium: {ALL}` balances all forces on all bodies"
-            what = f"no joint named {described(name)}"
-            raise ScenarioError(what, hint, ("equilibrium", k))
-    for key, value in data.items():
-        if key == "equilibrium":
-            continue
-        if key not in joints and "joints" in info.data:
-            raise ScenarioError(f"unknown key {described(key)}", known(key, joints), (key,))
-        if not isinstance(value, str | int | float):
-            raise ScenarioError(f"must be a number, got {described(value)}", path=(key,))
-        try:
-            values[key] = number(value, ("rad", "m"), parameters)
-        except ScenarioError as error:
-            raise error.at(key) from None
-    return Initial(tuple(names), values, whole)
-
-
 class Source(NamedTuple):
     """What a scenario was read from."""
 
@@ -247,6 +190,8 @@ class Scenario(Spec):
     phase_portraits  one channel against another
     poincare         two channels where the motion passes a surface: crossings, a period, touches
     events           what happens where a sensor, or the time, crosses a value
+    templates        parts of the mechanism described once, put in place by instances
+    instances        templates put in place; entry `door` of instance `left` is left_door
     phases           kept for load steps; not used yet
     cases            named overrides, each a scenario of a sweep; not used by `run`
     sweep            values of keys to vary, by dotted path; not used by `run`
@@ -263,18 +208,21 @@ class Scenario(Spec):
     sensors: dict[str, Annotated[Any, _Element("sensors")]] = EMPTY
     forces: dict[str, Annotated[Any, _Element("forces")]] = EMPTY
     contact_laws: dict[str, ContactLaw] = EMPTY
-    initial: Annotated[Any, BeforeValidator(_initial)] = Initial()
+    initial: Annotated[Any, BeforeValidator(initial_of)] = Initial()
     solver: SolverSpec = SolverSpec()
     output: OutputSpec = OutputSpec()
     phase_portraits: dict[str, PhasePortrait] = EMPTY
     poincare: dict[str, PoincareSection] = EMPTY
-    events: dict[str, Event] = EMPTY
+    events: dict[str, Annotated[Event, BeforeValidator(_event)]] = EMPTY
+    templates: dict[str, Template] = EMPTY
+    instances: dict[str, Instance] = EMPTY
     phases: Any = None
     cases: dict[str, Any] = EMPTY
     sweep: dict[str, Any] = EMPTY
     report: Annotated[dict[str, Any], AfterValidator(shown.report)] = EMPTY
 
     _tree: Tree = PrivateAttr()
+    _unfolded: Unfolded = PrivateAttr()
     _text: str = PrivateAttr()
 
     @property
@@ -288,7 +236,24 @@ class Scenario(Spec):
 
     def place(self, path: tuple) -> Place | None:
         """Where in the files a path of the scenario stands."""
-        return self._tree.place(path)
+        return self._unfolded.place(path)
+
+    def quantity(self, *path: str) -> tuple[float, str] | None:
+        """The quantity written at the path of an entry, and its unit; None where none is."""
+        raw: Any = self._unfolded.data
+        for key in path:
+            raw = raw.get(key) if isinstance(raw, dict) else None
+        scope = self._unfolded.scope(path)
+        names = {"t", *(scope.parameters if scope else self.parameters)}  # 1/t is none per tonne
+        return quantity(raw, names) if isinstance(raw, str) else None
+
+    def written(self, path: tuple) -> tuple:
+        """Where in the files the path of an entry is written: of an instance, in its template."""
+        return self._unfolded.written(path)
+
+    def meant(self, path: Iterable[str]) -> tuple[str, ...]:
+        """The path of an entry, for one that leads to it through a template or an instance."""
+        return self._unfolded.meant(path)
 
 
 def suggestion(name: str, spec: type[Spec], present: dict) -> tuple[str | None, str]:

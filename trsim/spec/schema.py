@@ -10,9 +10,11 @@ from pydantic.json_schema import models_json_schema
 
 from trsim import elements
 from trsim.fields import Spec
+from trsim.spec.initial import ALL
 from trsim.spec.load import unit_of
 from trsim.spec.meanings import description, meanings, specs
-from trsim.spec.scenario import ALL, DEFAULT, Scenario
+from trsim.spec.scenario import DEFAULT, Scenario
+from trsim.spec.template import SECTIONS
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 EXTENDS = {
@@ -53,6 +55,7 @@ def schema() -> dict[str, Any]:
         root["properties"][section]["additionalProperties"] = (
             {"anyOf": entries} if len(entries) > 1 else entries[0]
         )
+    _templates(root, definitions)
     root["properties"]["initial"] |= INITIAL
     del root["properties"]["initial"]["default"]  # as drawn, the drives at speed
     root["properties"]["extends"] = EXTENDS
@@ -67,6 +70,18 @@ def schema() -> dict[str, Any]:
         "then": {"$ref": whole.replace("#/$defs/", "#/$defs/part_")},
         "else": {"$ref": whole},
     }
+
+
+def _templates(root: dict[str, Any], definitions: dict[str, Any]) -> None:
+    """Let templates hold what the sections of a scenario do, and instances parts of it."""
+    for name in ("Template", "Instance"):
+        keys = definitions[name]["properties"]
+        keys["parameters"]["additionalProperties"] = NUMBER
+        for section in SECTIONS:
+            entries = root["properties"][section]["additionalProperties"]
+            keys[section]["additionalProperties"] = (
+                entries if name == "Template" else _or_null(_part(entries))
+            )
 
 
 def _definition(definitions: dict[str, Any], reference: Any) -> dict[str, Any]:

@@ -15,8 +15,9 @@ from trsim.spec import vary
 from trsim.spec.cases import cases as named_cases
 from trsim.spec.expand import SWEPT, expand
 from trsim.spec.load import of_tree, valid
+from trsim.spec.memory import Memory
 from trsim.spec.merge import put, setting
-from trsim.spec.scenario import Memory, Scenario
+from trsim.spec.scenario import Scenario
 from trsim.spec.text import Tree
 from trsim.sweep.digest import Digests
 from trsim.sweep.points import Point, points
@@ -125,7 +126,7 @@ def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
     memories: dict[str, Memory] = {}
     for case in found.cases:
         if case.case not in memories:
-            memories[case.case] = Memory(case.data.get("parameters") or {})
+            memories[case.case] = Memory(case.data)
         if not valid(case.data, memories[case.case]) or case is found.cases[0]:
             try:
                 found.scenario(case)

@@ -56,7 +56,7 @@ def units(
 
 
 def _of_field(scenario: Any, key: str) -> str:
-    inner, words = scenario, key.split(".")
+    inner, words = scenario, scenario.meant(key.split("."))
     for k, word in enumerate(words):
         if isinstance(inner, dict):
             inner = inner.get(word)

@@ -1,0 +1,57 @@
+"""The section `initial`: how the mechanism starts."""
+
+from typing import Any, NamedTuple
+
+from trsim.errors import ScenarioError, described, known
+from trsim.numbers import number
+
+ALL = "all"  # the joints
+
+
+class Initial(NamedTuple):
+    """How the mechanism starts where that is not as drawn and moving with its drives."""
+
+    equilibrium: tuple[str, ...] = ()  # joints free in the balance of forces
+    values: dict[str, float] = {}  # joint -> coordinate, rad or m  # noqa: RUF012
+    whole: bool = False  # `equilibrium: all`, of which there may be no joint
+
+    @property
+    def settles(self) -> bool:
+        """Whether forces are to balance at the start."""
+        return self.whole or bool(self.equilibrium)
+
+
+def initial_of(data: Any, info: Any) -> Initial:
+    """The section as read; joints are those of the scenario that it begins."""
+    if isinstance(data, Initial):
+        return data
+    if not isinstance(data, dict):
+        raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
+    names = data.get("equilibrium") or []
+    whole = names == ALL
+    if whole:
+        names = list(info.data.get("joints", ()))
+    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
+        what = f"must be a list of joints, or `{ALL}`"
+        raise ScenarioError(what, path=("equilibrium",))
+    parameters, values = (info.context or {}).get("parameters"), {}
+    joints = [*info.data.get("joints", ()), "equilibrium"]
+    for k, name in enumerate(names):
+        if name not in joints[:-1] and "joints" in info.data:
+            hint = known(name, joints[:-1])
+            if name in info.data.get("bodies", ()):
+                hint = f"`equilibrium: {ALL}` balances all forces on all bodies"
+            what = f"no joint named {described(name)}"
+            raise ScenarioError(what, hint, ("equilibrium", k))
+    for key, value in data.items():
+        if key == "equilibrium":
+            continue
+        if key not in joints and "joints" in info.data:
+            raise ScenarioError(f"unknown key {described(key)}", known(key, joints), (key,))
+        if not isinstance(value, str | int | float):
+            raise ScenarioError(f"must be a number, got {described(value)}", path=(key,))
+        try:
+            values[key] = number(value, ("rad", "m"), parameters)
+        except ScenarioError as error:
+            raise error.at(key) from None
+    return Initial(tuple(names), values, whole)

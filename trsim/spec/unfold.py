@@ -1,0 +1,156 @@
+"""The entries of instances among the others of a scenario.
+
+    instances: {left: {template: chain}}     door of the template becomes left_door
+
+What an entry says stays as written.  Its Scope tells what it means there: the numbers of its
+parameters, its frame, and that `door` is left_door.  An instance overrides its template key by key.
+"""
+
+import re
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from trsim.errors import ScenarioError, described, known
+from trsim.fields import SpecError
+from trsim.frame import Frame
+from trsim.spec.expand import numbers
+from trsim.spec.merge import merged
+from trsim.spec.names import NAME, name_faults
+from trsim.spec.template import SECTIONS, Placement
+from trsim.spec.text import Path, Tree
+from trsim.spec.unfolded import Origin, Scope, Unfolded
+
+Fault = tuple[Exception, Path]  # and where it was found
+Merge = Callable[[Any, Any], Any]
+
+
+def unfold(
+    tree: Tree, values: dict[str, float], merge: Merge = merged
+) -> tuple[Unfolded, list[Fault]]:
+    """The tree with its instances unfolded, and what is wrong with these.
+
+    values: of the parameters.  Shapes that are wrong altogether are left out here; that they are is
+    found when the sections `templates` and `instances` are validated.
+    """
+    whole, faults = Unfolded(tree), list[Fault]()
+    templates, instances = _mapping(tree.data, "templates"), _mapping(tree.data, "instances")
+    for name, template in templates.items():
+        if isinstance(template, dict):
+            here = ("templates", name)
+            faults += [(fault.at(*here), ()) for fault in name_faults(template)]
+    if not instances:
+        return whole, faults
+    whole.data["instances"] = dict(instances)
+    for section in SECTIONS:
+        if isinstance(whole.data.get(section, {}), dict):
+            whole.data[section] = dict(whole.data.get(section, {}))
+    for name, given in instances.items():
+        try:
+            of = _template(name, given, templates)
+        except ScenarioError as error:
+            faults.append((error.at("instances", name), ()))
+            continue
+        if of is not None:
+            faults += _put(whole, name, given, of, values, merge)
+    return whole, faults
+
+
+def _mapping(data: Any, key: str) -> dict[str, Any]:
+    found = data.get(key)
+    return found if isinstance(found, dict) else {}
+
+
+def _template(name: str, given: Any, templates: dict[str, Any]) -> dict[str, Any] | None:
+    """The template of an instance; None where a shape is wrong."""
+    if not re.fullmatch(NAME, name):
+        hint = "Its name begins the names of its entries: letters, digits and _, a letter first."
+        raise ScenarioError(f"not a name: {described(name)}", hint)
+    word = given.get("template") if isinstance(given, dict) else None
+    if not isinstance(word, str):
+        return None
+    if word not in templates:
+        hint = known(word, templates) if templates else "Describe it under `templates`."
+        raise ScenarioError(f"no template named {described(word)}", hint, ("template",))
+    return templates[word] if isinstance(templates[word], dict) else None
+
+
+def _put(
+    whole: Unfolded, name: str, given: dict, of: dict, values: dict[str, float], merge: Merge
+) -> Iterator[Fault]:
+    """Put one instance among the entries; what is wrong with it."""
+    view = whole.data["instances"][name] = {**of, **given}
+    local, faults = _numbers(name, given, of, values)
+    yield from faults
+    if isinstance(_mapping(of, "parameters"), dict) and isinstance(
+        given.get("parameters", {}), dict
+    ):
+        view["parameters"] = {**_mapping(of, "parameters"), **given.get("parameters", {})}
+    own = {entry: f"{name}_{entry}" for section in SECTIONS for entry in _mapping(of, section)}
+    numbers_here = {key: value for key, value in values.items() if key not in own} | local
+    frame, faults = _frame(name, given, of, view, numbers_here, merge)
+    yield from faults
+    whole.scopes[name] = Scope(numbers_here, frame, own)
+    for section in SECTIONS:
+        if section in given and not isinstance(given[section], dict):
+            continue
+        over, entries = _mapping(given, section), {}
+        for entry in over:
+            if entry not in _mapping(of, section):
+                what = f"template {described(given['template'])} has no {described(entry)} there"
+                hint = known(entry, _mapping(of, section)) if _mapping(of, section) else ""
+                yield ScenarioError(what, hint), ("instances", name, section, entry)
+        for entry, data in _mapping(of, section).items():
+            if entry in over and over[entry] is None:
+                continue
+            entries[entry] = merge(data, over[entry]) if entry in over else data
+            yield from _entry(whole, section, own[entry], entries[entry],
+                              Origin(name, given["template"], section, entry))  # fmt: skip
+        if section in view:
+            view[section] = entries
+
+
+def _entry(whole: Unfolded, section: str, name: str, data: Any, origin: Origin) -> Iterator[Fault]:
+    taken = whole.data.get(section)
+    if not isinstance(taken, dict):
+        return
+    if name in taken:
+        what = f"its entry {described(origin.name)} is {described(name)}, a name that is taken"
+        hint = f"There is {section}.{name}: rename one of them, or the instance."
+        yield ScenarioError(what, hint), ("instances", origin.instance)
+        return
+    taken[name] = data
+    whole.origins[section, name] = origin
+
+
+def _numbers(
+    name: str, given: dict, of: dict, values: dict[str, float]
+) -> tuple[dict[str, float], list[Fault]]:
+    """The numbers of an instance's parameters: its own, and of the others those of the template."""
+    defaults, mine = _mapping(of, "parameters"), _mapping(given, "parameters")
+    here, there = ("instances", name, "parameters"), ("templates", given["template"], "parameters")
+    faults: list[Fault] = []
+    for key in mine:
+        if key not in defaults:
+            what = f"template {described(given['template'])} has no parameter {described(key)}"
+            hint = known(key, defaults) if defaults else f"Name it in {'.'.join(there)}."
+            faults.append((ScenarioError(what, hint), (*here, key)))
+    found, wrong = numbers(mine, values, here)
+    rest = {key: value for key, value in defaults.items() if key not in mine}
+    others, more = numbers(rest, values | found, there)
+    faults += [(error, ()) for error in (*wrong, *more)]
+    return found | others, faults
+
+
+def _frame(
+    name: str, given: dict, of: dict, view: dict, values: dict[str, float], merge: Merge
+) -> tuple[Frame | None, list[Fault]]:
+    """The frame of an instance; that of the template where it says nothing."""
+    written = [one["frame"] for one in (of, given) if one.get("frame") is not None]
+    if not written:
+        return None, []
+    both = len(written) > 1 and all(isinstance(one, dict) for one in written)
+    view["frame"] = merge(written[0], written[1]) if both else written[-1]
+    try:
+        return Placement.model_validate(view["frame"], context={"parameters": values}).frame, []
+    except (SpecError, ScenarioError) as error:
+        return None, [(error, ("instances", name, "frame"))]
