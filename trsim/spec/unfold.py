@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from trsim.errors import ScenarioError, described, known
-from trsim.fields import SpecError
 from trsim.frame import Frame
 from trsim.spec.expand import numbers
 from trsim.spec.merge import merged
@@ -78,48 +77,55 @@ def _put(
     whole: Unfolded, name: str, given: dict, of: dict, values: dict[str, float], merge: Merge
 ) -> Iterator[Fault]:
     """Put one instance among the entries; what is wrong with it."""
-    view = whole.data["instances"][name] = {**of, **given}
+    view = whole.data["instances"][name] = dict(given)
     local, faults = _numbers(name, given, of, values)
     yield from faults
-    if isinstance(_mapping(of, "parameters"), dict) and isinstance(
-        given.get("parameters", {}), dict
-    ):
-        view["parameters"] = {**_mapping(of, "parameters"), **given.get("parameters", {})}
+    if isinstance(given.get("parameters", {}), dict):
+        view["parameters"] = {**_mapping(of, "parameters"), **_mapping(given, "parameters")}
     own = {entry: f"{name}_{entry}" for section in SECTIONS for entry in _mapping(of, section)}
-    numbers_here = {key: value for key, value in values.items() if key not in own} | local
-    frame, faults = _frame(name, given, of, view, numbers_here, merge)
+    here = {key: value for key, value in values.items() if key not in own} | local
+    frame, faults = _frame(name, given, of, view, here, merge)
     yield from faults
-    whole.scopes[name] = Scope(numbers_here, frame, own)
+    whole.scopes[name] = Scope(here, frame, own)
+    put: set[str] = set()
     for section in SECTIONS:
-        if section in given and not isinstance(given[section], dict):
+        if not isinstance(given.get(section, {}), dict):
             continue
-        over, entries = _mapping(given, section), {}
-        for entry in over:
-            if entry not in _mapping(of, section):
-                what = f"template {described(given['template'])} has no {described(entry)} there"
-                hint = known(entry, _mapping(of, section)) if _mapping(of, section) else ""
-                yield ScenarioError(what, hint), ("instances", name, section, entry)
-        for entry, data in _mapping(of, section).items():
-            if entry in over and over[entry] is None:
-                continue
-            entries[entry] = merge(data, over[entry]) if entry in over else data
-            yield from _entry(whole, section, own[entry], entries[entry],
-                              Origin(name, given["template"], section, entry))  # fmt: skip
-        if section in view:
-            view[section] = entries
+        known_here, over = _mapping(of, section), _mapping(given, section)
+        yield from _strangers(name, given["template"], section, over, known_here)
+        view[section] = {
+            entry: merge(data, over[entry]) if entry in over else data
+            for entry, data in known_here.items()
+            if over.get(entry, data) is not None
+        }
+        for entry in [entry for entry in view[section] if entry not in put]:
+            yield from _entry(whole, own[entry], Origin(name, given["template"], section, entry))
+        put |= known_here.keys()  # a name that comes twice is a fault of the template
 
 
-def _entry(whole: Unfolded, section: str, name: str, data: Any, origin: Origin) -> Iterator[Fault]:
-    taken = whole.data.get(section)
+def _strangers(
+    name: str, template: str, section: str, over: dict, entries: dict
+) -> Iterator[Fault]:
+    """Entries an instance would change that its template does not have."""
+    for entry in over:
+        if entry not in entries:
+            what = f"template {described(template)} has no {described(entry)} in its {section}"
+            hint = known(entry, entries) if entries else ""
+            yield ScenarioError(what, hint), ("instances", name, section, entry)
+
+
+def _entry(whole: Unfolded, name: str, origin: Origin) -> Iterator[Fault]:
+    """Put one entry among those of its section; what is wrong with that."""
+    taken = whole.data.get(origin.section)
     if not isinstance(taken, dict):
         return
     if name in taken:
         what = f"its entry {described(origin.name)} is {described(name)}, a name that is taken"
-        hint = f"There is {section}.{name}: rename one of them, or the instance."
+        hint = f"There is {origin.section}.{name}: rename one of them, or the instance."
         yield ScenarioError(what, hint), ("instances", origin.instance)
         return
-    taken[name] = data
-    whole.origins[section, name] = origin
+    taken[name] = whole.data["instances"][origin.instance][origin.section][origin.name]
+    whole.origins[origin.section, name] = origin
 
 
 def _numbers(
@@ -152,5 +158,5 @@ def _frame(
     view["frame"] = merge(written[0], written[1]) if both else written[-1]
     try:
         return Placement.model_validate(view["frame"], context={"parameters": values}).frame, []
-    except (SpecError, ScenarioError) as error:
+    except ValueError as error:  # as pydantic has it, or one of ours
         return None, [(error, ("instances", name, "frame"))]
