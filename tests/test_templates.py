@@ -137,6 +137,17 @@ def test_events_of_a_template():
     assert "a.yaml:12:36: events.left_stop.value: wrong unit: 'mm'" in wrong
 
 
+def test_what_an_event_sets_has_the_unit_of_its_drive():
+    text = TEXT.replace(
+        "    sensors:\n      opening",
+        "    drives:\n      motor: {joint: P, velocity: 1}\n"
+        "    events:\n      go: {when: opening, do: {set: {motor: {velocity: 1 m/s}}}}\n"
+        "    sensors:\n      opening",
+    )
+    found = shown_by_assembly(text)
+    assert found.startswith("a.yaml:14:56: events.left_go.do.set.left_motor.velocity: wrong unit")
+
+
 def shown_by_assembly(text):
     s = loads(text, name="a.yaml")
     with pytest.raises(TrsimError) as caught:

@@ -5,9 +5,9 @@
     axis: vector("-")                                       the same; a free vector
     force: Function("N")                                    a number, an expression, a table
 
-A plain number is SI.  The dimension of a quantity must be the field's.  pydantic's validation
-context may hold `parameters`, {"speed": 0.5}; `frame`, a Frame from which vectors are turned, and
-points turned and moved, into the world; `names`, {"door": "left_door"}, what references mean.
+A plain number is SI.  A quantity has the dimension of its field.  The validation context may hold
+`parameters`, {"speed": 0.5}; `frame`, from which vectors are turned, and points moved too, into
+the world; `names`, {"door": "left_door"}, what references mean.
 """
 
 import math
@@ -104,9 +104,8 @@ class _VectorUnit(Unit):
         if not isinstance(value, list | tuple) or len(value) not in (2, 3):
             raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
-        frame = context.get("frame")
         whole = tuple([*numbers, 0.0][:3])
-        return self.into_world(frame, whole) if frame else whole
+        return self.into_world(frame, whole) if (frame := context.get("frame")) else whole
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
         return {**super().__get_pydantic_json_schema__(schema, handler), "minItems": 2}
@@ -292,7 +291,7 @@ class Spec(BaseModel):
 
 @cache
 def _default_vectors(spec: type[Spec]) -> dict[str, Any]:
-    """The vectors among the keys that may be left out, with what they are then."""
+    """The vectors that may be left out, and what they are then."""
     return {
         key: field.default
         for key, field in spec.model_fields.items()

@@ -240,9 +240,7 @@ class Scenario(Spec):
 
     def quantity(self, *path: str) -> tuple[float, str] | None:
         """The quantity written at the path of an entry, and its unit; None where none is."""
-        raw: Any = self._unfolded.data
-        for key in path:
-            raw = raw.get(key) if isinstance(raw, dict) else None
+        raw = self._unfolded.value(path)
         scope = self._unfolded.scope(path)
         names = {"t", *(scope.parameters if scope else self.parameters)}  # 1/t is none per tonne
         return quantity(raw, names) if isinstance(raw, str) else None

@@ -71,7 +71,8 @@ class Unfolded(Tree):
         path = tuple(path)
         origin = self.origins.get(path[:2])
         if origin:
-            path = (*origin.own, *path[2:])
+            own = {name: word for word, name in self.scopes[origin.instance].names.items()}
+            path = (*origin.own, *(own.get(str(key), key) for key in path[2:]))
         if path[:1] == ("instances",) and len(path) > 2 and path not in self.marks:
             given = self.data["instances"].get(path[1])
             template = given.get("template") if isinstance(given, dict) else None
@@ -91,6 +92,14 @@ class Unfolded(Tree):
 
     def key_place(self, path: Path) -> Place | None:
         return super().key_place(self.written(path))
+
+    def value(self, path: Path) -> Any:
+        """What is written for the value at the path of an entry; None where nothing is."""
+        written, found = self.written(path), self.data
+        inner = (*path[:2], *written[4:]) if tuple(path[:2]) in self.origins else written
+        for key in inner:
+            found = found.get(key) if isinstance(found, dict) else None
+        return found
 
     def meant(self, path: Iterable[str]) -> tuple[str, ...]:
         """The path of a validated entry for one through a template or an instance."""
