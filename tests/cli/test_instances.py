@@ -49,7 +49,7 @@ def test_commands(result, trsim):
         code, _, err = trsim("report", "a.h5", "-o", "figures", *words)
         assert code == 0, err
     assert "b_pin" in " ".join(path.name for path in (result / "figures").rglob("*"))
-    for word in ("templates", "instances", "instance.frame", "y_axis"):
+    for word in ("templates", "instances", "instances.frame", "y_axis"):
         assert trsim("explain", word)[0] == 0
     code, _, err = trsim("check", "a.yaml", "--set", "instances.b.parameters.puhs=1")
     assert code == 3

@@ -235,3 +235,40 @@ def test_flexible_bars(planar):
     flat = run(text({**more, **part}, planar=planar))
     ours = run(text({**more, **instance(part, frame)}, planar=planar))
     same(flat, ours, frame, 1e-7)
+
+
+@pytest.mark.parametrize("frame", [FRAME, {"x_axis": [0.6, 0.8], "y_axis": [-8, 6]}])
+def test_the_angle_as_drawn_is_that_of_the_template(frame):
+    """Against the ground, whose axes stay the world's, and against a body that is turned itself."""
+    part = {
+        "bodies": {name: {"mass": 1, "inertia": [1, 1, 1], "angle": a} for name, a in ROD_ANGLES},
+        "joints": {
+            "A": {"type": "revolute", "bodies": ["ground", "rod"], "at": [0, 0]},
+            "B": {"type": "revolute", "bodies": ["bob", "rod"], "at": [1, 0], "axis": [0, 0, -1]},
+        },
+        "sensors": {"qA": {"joint": "A"}, "qB": {"joint": "B"}},
+    }
+    drawn = {n[-1]: x.drawn for n, x in built(text(instance(part, frame))).coordinates.items()}
+    assert drawn == pytest.approx({"A": 0.3, "B": -0.5}, abs=1e-15)
+
+
+ROD_ANGLES = (("rod", 0.3), ("bob", -0.2))
+
+
+def test_a_body_whose_axes_leave_the_plane_is_solved_in_space():
+    """A disc in the x-y plane of the world, about the y axis of its frame: theta0 cos(omega t)."""
+    part = {
+        "bodies": {"disc": {"mass": 1, "inertia": [1, 2, 4]}},
+        "joints": {
+            "pin": {"type": "revolute", "bodies": ["ground", "disc"], "at": [0, 0], "axis": [0, 1]}
+        },
+        "sensors": {"q": {"joint": "pin", "at_start": 0.3}},
+        "forces": {
+            "coil": {"type": "torsion_spring", "joint": "pin", "stiffness": 50, "preload": -15}
+        },
+        "solver": {"end": 1, "tolerance": 1e-10},
+    }
+    solver = {"solver": part.pop("solver")}
+    r = run(text({**solver, **instance(part, {"y_axis": [0, 0, 1]})}, planar=None))
+    assert not r.mechanism.planar
+    assert np.abs(r["a_q"] - 0.3 * np.cos(5.0 * r.t)).max() < 1e-8
