@@ -70,7 +70,7 @@ class SparseBuffers(Buffers):
     rate0: A1  # (m) Phi' at the place of the Jacobian
     slope: A2  # (2, n_v)
     move: A2  # (2, n_v)
-    mu: A2  # (2, m)
+    mu: A2  # (2, n_x) of rows, and of hubs
 
 
 def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -> SparseRecord:
@@ -291,7 +291,7 @@ def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]
         "rate0": np.zeros(m),
         "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),
-        "mu": np.zeros((2, m)),
+        "mu": np.zeros((2, len(model.column_start) - 1)),
     }
 
 
