@@ -7,7 +7,7 @@ lists made here, each from its beginning to its end.
 
 All rows of one body meet each other, and those of a body with many are as dense as S can be: for n
 chains on one body the cost would grow with n^3.  Such a hub h is taken out of S = S_0 + B M_h^-1
-B^T, with B the rows on it, and what the multipliers do to it, u = M_h^-1 B^T lam, becomes an unknown
+B^T, with B the rows on it, and what multipliers do to it, u = M_h^-1 B^T lam, becomes an unknown
 
     [ S_0   B   ] [ lam ]   [ b ]
     [ B^T  -M_h ] [ u   ] = [ 0 ]

@@ -102,8 +102,8 @@ def hub_mass(s, f, pair):
         value[entry[pair + 2]] = -I[f, 8]
         return pair + 3
     for c in range(3):
-        value[entry[pair]] = -s.mass[f]
-        pair += 1
+        value[entry[pair + c]] = -s.mass[f]
+    pair += 3
     for a in range(3):
         for c in range(a + 1):
             value[entry[pair]] = -I[f, 3 * a + c]
