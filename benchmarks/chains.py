@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from itertools import pairwise
 from statistics import median
 from typing import Any, NamedTuple
 
@@ -114,12 +115,15 @@ def compared(text: Callable[[int], str], sizes: tuple[int, ...], method: str) ->
             found[n].append(costs(read[n], models[n], method))
     print("  us: chains  rows   step  per chain | evaluation  per chain | equations  elements  "
           "matrix  factors  solution | assembled s")  # fmt: skip
-    for n in sizes:
-        c = Costs(*(median(values) for values in zip(*found[n][1:], strict=True)))
+    middle = {n: Costs(*map(median, zip(*found[n][1:], strict=True))) for n in sizes}
+    for n, c in middle.items():
         print(f"  {n:11d} {models[n].model.m:5d} {c.step:6.0f} {c.step / n:10.1f} | "
               f"{c.evaluation:10.2f} {c.evaluation / n:10.2f} | {c.equations:9.2f} "
               f"{c.elements:9.2f} {c.matrix:7.2f} {c.factors:8.2f} {c.solution:9.2f} | "
               f"{built[n]:11.2f}")  # fmt: skip
+    for few, many in pairwise(sizes):
+        growth = middle[many].step / middle[few].step
+        print(f"  {many} chains over {few}: {growth:.2f} times the cost of a step")
 
 
 def main() -> None:

@@ -198,8 +198,9 @@ def hung_chains(n: int) -> str:
             f"at: {_placed(LOWER, out)}, {pin}}}",
         ]
         forces.append(f"  spring{i}: {{type: torsion_spring, joint: B{i}, stiffness: 3}}")
-    end = "solver: {end: 0.2 s, tolerance: 1e-7, max_step: 1 ms}\noutput: {every: 0.1 s, channels: []}\n"
-    return "\n".join([*bodies, *joints, *forces, end])
+    solver = "solver: {end: 0.2 s, tolerance: 1e-7, max_step: 1 ms}"
+    output = "output: {every: 0.1 s, channels: []}\n"
+    return "\n".join([*bodies, *joints, *forces, solver, output])
 
 
 def _placed(point: tuple[float, float], out: tuple) -> list[float]:
