@@ -188,8 +188,8 @@ def hung_chains(n: int) -> str:
                           f"inertia: {_turned(inertia, along, out, aside)}}}")  # fmt: skip
         pin = f"axis: {_listed(aside)}"
         joints += [
-            f"  A{i}: {{type: spherical, bodies: [ground, large_rod{i}], "
-            f"at: {_placed((0.0, 0.0), out)}}}",
+            f"  A{i}: {{type: universal, bodies: [ground, large_rod{i}], "
+            f"at: {_placed((0.0, 0.0), out)}, {pin}, second_axis: {_across(KNEE, out)}}}",
             f"  P{i}: {{type: spherical, bodies: [large_rod{i}, transfer{i}], "
             f"at: {_placed(KNEE, out)}}}",
             f"  Q{i}: {{type: revolute, bodies: [door{i}, transfer{i}], "
@@ -206,6 +206,12 @@ def hung_chains(n: int) -> str:
 def _placed(point: tuple[float, float], out: tuple) -> list[float]:
     """(x, y) of a chain's plane in space."""
     return _listed((point[0], *((RADIUS_OF_A + point[1]) * c for c in out[1:])))
+
+
+def _across(along: tuple[float, float], out: tuple) -> list[float]:
+    """The direction across a link in its chain's plane."""
+    x, y = along
+    return _listed((-y, *(x * c for c in out[1:])))
 
 
 def _turned(inertia: tuple, along: tuple[float, float], out: tuple, aside: tuple) -> list[float]:
