@@ -1,9 +1,10 @@
-"""The scenarios of the problems that come in sizes: four-bar windows (P4) and chains (P5).
+"""The scenarios of the problems that come in sizes: windows (P4), chains (P5), chains on one body.
 
 `python -m benchmarks.problems` writes the smallest of each into scenarios/validation.
 """
 
-from math import cos, sin
+from collections.abc import Iterable
+from math import cos, hypot, radians, sin
 from typing import NamedTuple
 
 from benchmarks.measure import SCENARIOS
@@ -153,6 +154,79 @@ def stiff_chain(n: int, planar: bool = True) -> str:
     lines.append("solver: {method: radau, end: 50 ms, tolerance: 1e-6}")
     lines.append(f'output: {{every: 1 ms, channels: ["rod{n - 1}.*", "energy.*"]}}')
     return "\n".join(lines) + "\n"
+
+
+HUNG = """\
+# {n} chains of three bodies round the x axis, all hinged to one body that slides along x: a
+# thrust reverser in space, where the rows of all chains meet on the fairing.  Steps of 1 ms, for a
+# cost of each; the motion would allow longer ones.
+# Expected: chains differ by their places round the axis only, so all doors turn alike.
+title: {n} chains on one body
+planar: false
+bodies:
+  fairing: {{mass: 50, inertia: [18.1, 5.6, 17.9], at: [0.128, 0, 0.497], velocity: [0.5, 0, 0]}}
+"""
+RADIUS_OF_A = 0.459  # m, of the supports round the x axis
+KNEE, UPPER, LOWER = (-0.074336, 0.207061), (-0.047267, 0.230794), (-0.242, 0.241)  # P, Q, B
+LINKS = {  # mass, kg; principal inertias along the link, across it, about e_t; centre; direction
+    "large_rod": (0.5, (2e-4, 2.017e-3, 2.017e-3), (-0.037168, 0.103530), KNEE),
+    "transfer": (0.3, (4e-5, 1.777e-4, 1.777e-4), (-0.068720, 0.206465), (0.027069, 0.023733)),
+    "door": (5.0, (7.35e-2, 8.93e-2, 1.584e-2), (-0.144634, 0.235897), (0.194733, -0.010206)),
+}
+
+
+def hung_chains(n: int) -> str:
+    """Pull-rod chains in sectors of one arc, as drawn in a plane (x, y) through the axis each."""
+    bodies, joints, forces = [HUNG.format(n=n).rstrip()], ["joints:"], ["forces:"]
+    joints.append("  guide: {type: prismatic, bodies: [ground, fairing], axis: [1, 0, 0]}")
+    for i in range(n):
+        chi = radians(-72.0 + 144.0 * i / (n - 1) if n > 1 else 0.0)
+        out, aside = (0.0, sin(chi), cos(chi)), (0.0, -cos(chi), sin(chi))  # e_r, e_t = e_x x e_r
+        for name, (mass, inertia, centre, along) in LINKS.items():
+            moving = "velocity: [0.5, 0, 0], " if name == "door" else ""
+            bodies.append(f"  {name}{i}: {{mass: {mass}, at: {_placed(centre, out)}, {moving}"
+                          f"inertia: {_turned(inertia, along, out, aside)}}}")  # fmt: skip
+        pin = f"axis: {_listed(aside)}"
+        joints += [
+            f"  A{i}: {{type: universal, bodies: [ground, large_rod{i}], "
+            f"at: {_placed((0.0, 0.0), out)}, {pin}, second_axis: {_across(KNEE, out)}}}",
+            f"  P{i}: {{type: spherical, bodies: [large_rod{i}, transfer{i}], "
+            f"at: {_placed(KNEE, out)}}}",
+            f"  Q{i}: {{type: revolute, bodies: [door{i}, transfer{i}], "
+            f"at: {_placed(UPPER, out)}, {pin}}}",
+            f"  B{i}: {{type: revolute, bodies: [fairing, door{i}], "
+            f"at: {_placed(LOWER, out)}, {pin}}}",
+        ]
+        forces.append(f"  spring{i}: {{type: torsion_spring, joint: B{i}, stiffness: 3}}")
+    solver = "solver: {end: 0.2 s, tolerance: 1e-7, max_step: 1 ms}"
+    output = "output: {every: 0.1 s, channels: []}\n"
+    return "\n".join([*bodies, *joints, *forces, solver, output])
+
+
+def _placed(point: tuple[float, float], out: tuple) -> list[float]:
+    """(x, y) of a chain's plane in space."""
+    return _listed((point[0], *((RADIUS_OF_A + point[1]) * c for c in out[1:])))
+
+
+def _across(along: tuple[float, float], out: tuple) -> list[float]:
+    """The direction across a link in its chain's plane."""
+    x, y = along
+    return _listed((-y, *(x * c for c in out[1:])))
+
+
+def _turned(inertia: tuple, along: tuple[float, float], out: tuple, aside: tuple) -> list[float]:
+    """Principal inertias along a link, across it and aside as a tensor: xx, yy, zz, xy, xz, yz."""
+    length = hypot(*along)
+    x, y = along[0] / length, along[1] / length
+    axes = ((x, y * out[1], y * out[2]), (-y, x * out[1], x * out[2]), aside)
+    pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+    return _listed(
+        sum(I * e[i] * e[j] for I, e in zip(inertia, axes, strict=True)) for i, j in pairs
+    )
+
+
+def _listed(numbers: Iterable[float]) -> list[float]:
+    return [round(float(number), 15) for number in numbers]
 
 
 def _ahead(start: tuple, direction: tuple, part: float) -> list[float]:

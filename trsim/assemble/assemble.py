@@ -11,11 +11,12 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
+from trsim.assemble.hubs import hubs
 from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
-from trsim.assemble.pattern import pattern
+from trsim.assemble.pattern import Hubs, pattern
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -73,7 +74,7 @@ def assemble(
         check_space(at, instances)
     kept, found = choose_rows(full, y6, instances, planar, rows)
     d = 3 if planar else 6
-    model = build(scenario, at, instances, kept, d)
+    model = build(scenario, at, instances, kept, d, hubs(full, y6, rows, kept, planar, spans(at)))
     y0 = drawn(at, d)
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
@@ -115,7 +116,8 @@ def stages(
     def built(instances: list[Instance], rows: list[RowName]) -> tuple[Model, list[RowName]]:
         full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
         kept, _ = choose_rows(full, y6, instances, planar, rows)
-        return build(scenario, at, instances, kept, 3 if planar else 6), kept
+        own = hubs(full, y6, rows, kept, planar, spans(at))
+        return build(scenario, at, instances, kept, 3 if planar else 6, own), kept
 
     return Stages(at.switches, instances, first, built)
 
@@ -199,8 +201,18 @@ def pack(  # type: ignore[no-untyped-def]
     return at, instances
 
 
+def spans(at: Addresses) -> list[tuple[int, int]]:
+    """First frame and number of nodes of every flexible bar."""
+    return [(beam.first, beam.nodes) for beam in at.beams.values()]
+
+
 def build(
-    scenario: Any, at: Addresses, instances: list[Instance], rows: list[RowName], d: int
+    scenario: Any,
+    at: Addresses,
+    instances: list[Instance],
+    rows: list[RowName],
+    d: int,
+    hubs: Hubs = Hubs(),  # noqa: B008 - nothing in it can change
 ) -> Model:
     """The arrays of a model with the given constraint rows, without outputs."""
     n, N = len(at.frames), max(len(instances), 1)
@@ -240,7 +252,7 @@ def build(
         n_s=at.n_s,
         **turns(at, d),
         **kernels(instances),
-        **pattern(frames, n, [(beam.first, beam.nodes) for beam in at.beams.values()]),
+        **pattern(frames, n, spans(at), hubs),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
         on_beams=np.array(addresses(at.beams), np.int64),

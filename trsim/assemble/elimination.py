@@ -8,8 +8,12 @@ Always the one with the fewest unknowns left around it goes next [George1989], b
 constraints never before all the nodes it acts on.  Every leading part of the matrix is then a
 constrained system of its own, complete with the rows on it, and regular where H is positive on its
 free motions and the rows are independent: no pivots have to be looked for when numbers come in.
+
+Constraints wait for a body with many of them too, and then meet each other.  Those that are
+independent with such hubs held (pattern.py) need not: their leading parts are regular without it.
 """
 
+from collections.abc import Collection
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
@@ -29,13 +33,28 @@ class Elimination(NamedTuple):
     lower: Indices  # their columns, rising
 
 
-def order(neighbours: list[set[int]], size: list[int], free: int) -> list[int]:
+def order(
+    neighbours: list[set[int]],
+    size: list[int],
+    free: int,
+    hubs: Collection[int] = (),
+    early: Collection[int] = (),
+) -> list[int]:
     """Nodes in the order of elimination; those from `free` on wait for their neighbours below it.
 
-    Changes `neighbours`: in the end these are the nodes after each that its elimination touches.
+    early: groups of constraints that do not wait for `hubs`.  Changes `neighbours`: in the end
+    these are the nodes after each that its elimination touches.
     """
-    waits = [sum(o < free for o in n) if k >= free else 0 for k, n in enumerate(neighbours)]
-    acts_on = [{o for o in n if o >= free} for n in neighbours[:free]]  # without fill
+
+    def waited_for(k: int) -> set[int]:
+        on = {o for o in neighbours[k] if o < free} if k >= free else set()
+        return on.difference(hubs) if k in early else on
+
+    waits = [len(waited_for(k)) for k in range(len(neighbours))]
+    acts_on = [  # without fill
+        {o for o in n if o >= free and not (k in hubs and o in early)}
+        for k, n in enumerate(neighbours[:free])
+    ]
 
     def weight(k: int) -> int:
         return sum(size[o] for o in neighbours[k])
@@ -62,14 +81,20 @@ def order(neighbours: list[set[int]], size: list[int], free: int) -> list[int]:
     return found
 
 
-def elimination(neighbours: list[set[int]], size: list[int], free: int) -> Elimination:
+def elimination(
+    neighbours: list[set[int]],
+    size: list[int],
+    free: int,
+    hubs: Collection[int] = (),
+    early: Collection[int] = (),
+) -> Elimination:
     """Order and pattern of the factors of a matrix of dense blocks.
 
     neighbours: of each node, both ways; size: unknowns of each node, numbered node by node; free:
-    the first group of constraints.
+    the first group of constraints; hubs, early: nodes, and groups that need not wait for them.
     """
     after = [set(n) for n in neighbours]
-    nodes = order(after, size, free)
+    nodes = order(after, size, free, hubs, early)
     first = np.concatenate([[0], np.cumsum(size)])
     at = {}
     place = 0

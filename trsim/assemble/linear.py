@@ -11,6 +11,10 @@ Near such a position, delta away, S has an eigenvalue of delta^2 and multipliers
 1/delta, so that the rounding of S itself is felt in the accelerations as eps/delta^2.  Residuals
 are therefore taken with the bodies' own accelerations, b - J (M^-1 J^T x), not with S; refined
 with them the accelerations are right to eps/delta.
+
+Unknowns after the rows are the motions of hubs (pattern.py), with negative pivots and nothing on
+the right-hand side.  A pivot of a row is small too where the row depends on others with the hubs
+held only; what is refined is right all the same, since residuals are those of S.
 """
 
 from math import sqrt
@@ -36,18 +40,37 @@ def factorise(s):
     """
     s.status[2] += 1
     s.status[0] = SOUND
-    for k in range(s.m):
-        s.first[k] = s.value[s.column_start[k]]
+    diagonal(s)
     copy_to(s.original, s.value)
     smallest = eliminate(s, TINY)
     if smallest <= TINY:
         s.status[0] = SINGULAR
         copy_to(s.value, s.original)
-        for k in range(s.m):
-            s.value[s.column_start[k]] += SHIFT * s.first[k]
+        for k in range(s.first.size):
+            if s.row[s.column_start[k]] < s.m:
+                s.value[s.column_start[k]] += SHIFT * s.first[k]
         eliminate(s, TINY)
     elif smallest < SMALL:
         s.status[0] = POOR
+
+
+@internal
+def diagonal(s):
+    """first <- the diagonal of S; of a hub it is known when its turn comes."""
+    for k in range(s.first.size):
+        row = s.row[s.column_start[k]]
+        s.first[k] = s.value[s.column_start[k]]
+        if row < s.m:
+            s.first[k] += s.through[row]
+
+
+@internal
+def hub_diagonal(s, k):
+    """The same of a hub whose first unknown is eliminated k-th: its mass with all that hangs on it,
+    of which what is held in common cancels."""
+    if (s.row[s.column_start[k]] - s.m) % s.d == 0:
+        for c in range(s.d):
+            s.first[k + c] = -s.value[s.column_start[k + c]]
 
 
 @internal
@@ -55,17 +78,20 @@ def eliminate(s, tiny):
     """Right-looking elimination; returns the smallest pivot, as a share of its diagonal."""
     value, target, column_start = s.value, s.target, s.column_start
     smallest, u = 1.0, 0
-    for k in range(s.m):
+    for k in range(s.first.size):
         start, end = column_start[k], column_start[k + 1]
-        D = value[start]
+        D, sign = value[start], 1.0
+        if s.row[start] >= s.m:
+            hub_diagonal(s, k)
+            D, sign = -D, -1.0
         if SMALL * s.first[k] >= D:
             smallest = min(smallest, D / s.first[k] if s.first[k] > 0.0 else 0.0)
             if tiny * s.first[k] >= D:
                 D = tiny * s.first[k]
                 if D == 0.0:
                     D = 1.0
-                value[start] = D
-        inverse = 1.0 / D
+                value[start] = sign * D
+        inverse = sign / D
         # from the last row up: what is left of the column is still that of S
         for p in range(end - 1, start, -1):
             L = value[p] * inverse
@@ -80,12 +106,14 @@ def eliminate(s, tiny):
 def substitute(s, value, x):
     """x <- (L D L^T)^-1 x."""
     row, column_start = s.row, s.column_start
-    for k in range(s.m):
+    for k in range(s.m, x.size):
+        x[k] = 0.0
+    for k in range(x.size):
         start = column_start[k]
         x_k = x[row[start]]
         for p in range(start + 1, column_start[k + 1]):
             x[row[p]] -= value[p] * x_k
-    for k in range(s.m - 1, -1, -1):
+    for k in range(x.size - 1, -1, -1):
         start = column_start[k]
         total = x[row[start]] / value[start]
         for p in range(start + 1, column_start[k + 1]):
@@ -138,8 +166,10 @@ def contradictory(s, x):
     copy_to(s.r2, s.r)
     residual(s, x, s.r2)
     left, whole = 0.0, 0.0
-    for k in range(s.m):
+    for k in range(s.first.size):
         row = s.row[s.column_start[k]]
+        if row >= s.m:
+            continue
         left = max(left, abs(s.r2[row]) / sqrt(s.first[k]))
         whole = max(whole, abs(s.r[row]) / sqrt(s.first[k]))
     return left > LEFT_OVER * whole
@@ -148,6 +178,5 @@ def contradictory(s, x):
 @internal
 def independent(s):
     """Whether the rows whose J J^T was just filled into s.value do not depend on each other."""
-    for k in range(s.m):
-        s.first[k] = s.value[s.column_start[k]]
+    diagonal(s)
     return eliminate(s, PLAIN) > PLAIN

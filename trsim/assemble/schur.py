@@ -6,7 +6,8 @@ angular velocity),
 
     B = its part of J,        W = M^-1 B^T,        S = sum of B W over the slots that share a frame
 
-so every loop here goes through the bodies once, and through lists from beginning to end.
+so every loop here goes through the bodies once, and through lists from beginning to end.  Of a hub
+B and -M stand in the matrix themselves (pattern.py).
 """
 
 from trsim.assemble.on_beams import PLAIN, ROWS, call_beams
@@ -18,6 +19,7 @@ from trsim.elements.vectors import internal as equation
 def rows(s):
     """B, W and S of the J of the last evaluation."""
     clear(s.value)
+    clear(s.through)
     pair = planar_rows(s) if s.d == 3 else spatial_rows(s)
     if s.n_r < s.n:
         call_beams(s.on_beams[ROWS], s, s.x, s.x, pair)
@@ -36,9 +38,12 @@ def planar_rows(s):
             w2 = b2 * s.inertia_inverse[f, 8]
             B[p, 0], B[p, 1], B[p, 2] = b0, b1, b2
             W[p, 0], W[p, 1], W[p, 2] = w0, w1, w2
-            for o in range(frame_start[f], p + 1):
-                value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
-                pair += 1
+            if s.hub[f] < 0:
+                for o in range(frame_start[f], p + 1):
+                    value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
+                    pair += 1
+        if s.hub[f] >= 0:
+            pair = hub_mass(s, f, hub_rows(s, f, B, W, pair))
     return pair
 
 
@@ -62,12 +67,47 @@ def spatial_rows(s):
             w5 = K[f, 6] * b3 + K[f, 7] * b4 + K[f, 8] * b5
             B[p, 0], B[p, 1], B[p, 2], B[p, 3], B[p, 4], B[p, 5] = b0, b1, b2, b3, b4, b5
             W[p, 0], W[p, 1], W[p, 2], W[p, 3], W[p, 4], W[p, 5] = w0, w1, w2, w3, w4, w5
-            for o in range(frame_start[f], p + 1):
-                value[entry[pair]] += (
-                    B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
-                    + (B[o, 3] * w3 + B[o, 4] * w4 + B[o, 5] * w5)
-                )  # fmt: skip
-                pair += 1
+            if s.hub[f] < 0:
+                for o in range(frame_start[f], p + 1):
+                    value[entry[pair]] += (
+                        B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
+                        + (B[o, 3] * w3 + B[o, 4] * w4 + B[o, 5] * w5)
+                    )  # fmt: skip
+                    pair += 1
+        if s.hub[f] >= 0:
+            pair = hub_mass(s, f, hub_rows(s, f, B, W, pair))
+    return pair
+
+
+@equation
+def hub_rows(s, f, B, W, pair):
+    """The rows on a hub, and what of S acts through it on their diagonal; `pair` moves on."""
+    value, entry, through = s.value, s.entry, s.through
+    for p in range(s.frame_start[f], s.frame_start[f + 1]):
+        total = 0.0
+        for c in range(s.d):
+            value[entry[pair]] = B[p, c]
+            total += B[p, c] * W[p, c]
+            pair += 1
+        through[s.slot_row[p]] += total
+    return pair
+
+
+@equation
+def hub_mass(s, f, pair):
+    """-M of a hub; `pair` moves on."""
+    value, entry, I = s.value, s.entry, s.inertia
+    if s.d == 3:
+        value[entry[pair]] = value[entry[pair + 1]] = -s.mass[f]
+        value[entry[pair + 2]] = -I[f, 8]
+        return pair + 3
+    for c in range(3):
+        value[entry[pair + c]] = -s.mass[f]
+    pair += 3
+    for a in range(3):
+        for c in range(a + 1):
+            value[entry[pair]] = -I[f, 3 * a + c]
+            pair += 1
     return pair
 
 
@@ -76,8 +116,12 @@ def plain_rows(s):
     """J J^T in place of S, from B; rotations are weighed by the mechanism's size."""
     B, value, turn = s.B, s.value, 1.0 / (s.size * s.size)
     clear(value)
+    clear(s.through)
     pair = 0
     for f in range(1, s.n_r):
+        if s.hub[f] >= 0:
+            pair = plain_hub(s, f, pair, turn)
+            continue
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for o in range(s.frame_start[f], p + 1):
                 for a in range(s.d):
@@ -86,6 +130,27 @@ def plain_rows(s):
                 pair += 1
     if s.n_r < s.n:
         call_beams(s.on_beams[PLAIN], s, s.x, s.x, pair)
+
+
+@equation
+def plain_hub(s, f, pair, turn):
+    """The same of a hub: as if it had the mass 1 and the inertia 1 / turn; `pair` moves on."""
+    B, value, entry = s.B, s.value, s.entry
+    for p in range(s.frame_start[f], s.frame_start[f + 1]):
+        for c in range(s.d):
+            angular = c >= 3 or (s.d == 3 and c == 2)
+            value[entry[pair]] = B[p, c]
+            s.through[s.slot_row[p]] += B[p, c] * B[p, c] * (turn if angular else 1.0)
+            pair += 1
+    if s.d == 3:
+        value[entry[pair]] = value[entry[pair + 1]] = -1.0
+        value[entry[pair + 2]] = -1.0 / turn
+        return pair + 3
+    for c in range(3):
+        value[entry[pair + c]] = -1.0
+    for k in (3, 5, 8):  # the diagonal of what turns, row by row
+        value[entry[pair + k]] = -1.0 / turn
+    return pair + 9
 
 
 @equation

@@ -70,9 +70,10 @@ class Model(Packed):
     frame_start: I1  # (n+1) slots of a frame: one per row that touches it, the ground has none
     slot_row: I1  # (slots) its row
     slot_column: I1  # (slots) its first column of J: 0 for frame i, 6 for frame j
-    entry: I1  # (pairs) the place in S that two slots of one frame add to
-    column_start: I1  # (m+1) places of the column of S and of L that is eliminated k-th
-    row: I1  # (places) their rows, that of the diagonal first
+    hub: I1  # (n) first unknown of a body whose motion is one of the solve, after the rows; or -1
+    entry: I1  # (pairs) the place in S that two slots of one frame, or slot and hub, add to
+    column_start: I1  # (n_x+1) places of the column of S and of L that is eliminated k-th
+    row: I1  # (places) their unknowns, that of the diagonal first: m rows, then d of each hub
     target: I1  # (updates) the place that two entries of one column of L are taken from
     derivative: i8  # address of the equations of motion
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
@@ -128,10 +129,11 @@ class Scene(Model):
     W: A2  # (slots, 6) M^-1 B^T
     value: A1  # (places) S = J M^-1 J^T, then its factors
     original: A1  # (places) S
-    first: A1  # (m) its diagonal, in elimination order
-    x: A1  # (m) right-hand side, then solution
-    r: A1  # (m) refinement
-    r2: A1  # (m)
+    first: A1  # (n_x) its diagonal, in elimination order
+    through: A1  # (m) what of the diagonal acts through hubs
+    x: A1  # (n_x) right-hand side, then solution
+    r: A1  # (n_x) refinement
+    r2: A1  # (n_x)
     moved: A2  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: A2  # (n, 6) accelerations without constraints, axes of the solve
     gap: A2  # (N, 2) penetration and its rate
@@ -155,7 +157,7 @@ def scene(model: Model) -> Scene:
 
     from trsim.elements.contract import N_MEM
 
-    n, m, slots = model.n, model.m, len(model.slot_row)
+    n, m, n_x, slots = model.n, model.m, len(model.column_start) - 1, len(model.slot_row)
     elements = int(np.sum(model.beam[:, 1] - 1))
     X = np.zeros((n, 12))
     X[:, [3, 7, 11]] = 1.0
@@ -186,10 +188,11 @@ def scene(model: Model) -> Scene:
         W=np.zeros((slots, 6)),
         value=np.zeros(len(model.row)),
         original=np.zeros(len(model.row)),
-        first=np.zeros(m),
-        x=np.zeros(m),
-        r=np.zeros(m),
-        r2=np.zeros(m),
+        first=np.zeros(n_x),
+        through=np.zeros(m),
+        x=np.zeros(n_x),
+        r=np.zeros(n_x),
+        r2=np.zeros(n_x),
         moved=np.zeros((n, 6)),
         free=np.zeros((n, 6)),
         gap=np.zeros((len(model.con), 2)),

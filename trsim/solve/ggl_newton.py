@@ -20,6 +20,7 @@ all derivatives are differences, many columns at a time [CurtisPowellReid1974].
 
 from trsim.assemble.beams import node_products
 from trsim.assemble.linear import factorise, substitute
+from trsim.assemble.schur import hub_mass, hub_rows
 from trsim.elements.contract import N_BOOK
 from trsim.elements.vectors import clear, copy_to, internal
 from trsim.solve.displacements import active, moved_by, twisted, w_index, width_of
@@ -80,6 +81,7 @@ def some_of(table):
 def schur(s, r, b):
     """M^-1 B^T and the factors of S of the Jacobian, into b."""
     clear(s.value)
+    clear(s.through)
     pair = 0
     for f in range(1, s.n_r):
         I = s.inertia_inverse[f]
@@ -91,10 +93,13 @@ def schur(s, r, b):
                 for i in range(3):
                     W[i] = B[i] * s.mass_inverse[f]
                     W[3 + i] = I[3 * i] * B[3] + I[3 * i + 1] * B[4] + I[3 * i + 2] * B[5]
-            for o in range(s.frame_start[f], p + 1):
-                for k in range(s.d):
-                    s.value[s.entry[pair]] += r.at_rows[o, k] * W[k]
-                pair += 1
+            if s.hub[f] < 0:
+                for o in range(s.frame_start[f], p + 1):
+                    for k in range(s.d):
+                        s.value[s.entry[pair]] += r.at_rows[o, k] * W[k]
+                    pair += 1
+        if s.hub[f] >= 0:
+            pair = hub_mass(s, f, hub_rows(s, f, r.at_rows, b.across, pair))
     if s.n_r < s.n:
         node_products(s, r.at_rows, pair)
     factorise(s)

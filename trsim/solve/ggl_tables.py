@@ -70,7 +70,7 @@ class SparseBuffers(Buffers):
     rate0: A1  # (m) Phi' at the place of the Jacobian
     slope: A2  # (2, n_v)
     move: A2  # (2, n_v)
-    mu: A2  # (2, m)
+    mu: A2  # (2, n_x) of rows, and of hubs
 
 
 def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -> SparseRecord:
@@ -237,11 +237,21 @@ def eliminated(found: Nodes, model: Model, held: Any) -> Elimination:
         for node in on:
             near[node].add(free + k)
     size = sizes(found, model) + [len(rows) for rows, _ in joints]
-    order = elimination(near, size, free)
+    hubs = {int(f) - 1 for f in np.flatnonzero(model.hub >= 0)}
+    before = before_hubs(model)
+    early = {free + k for k, (rows, _) in enumerate(joints) if before.issuperset(rows)}
+    order = elimination(near, size, free, hubs, early)
     number = np.array([*range(n_w), *(n_w + j for rows, _ in joints for j in rows)], np.int64)
     rank = np.zeros(n_w + model.m, np.int64)
     rank[number] = order.rank
     return order._replace(rank=rank)
+
+
+def before_hubs(model: Model) -> set[int]:
+    """Constraint rows eliminated before a hub (assemble/pattern.py); none without hubs."""
+    unknowns = model.row[model.column_start[:-1]]
+    last = int(np.max(np.flatnonzero(unknowns >= model.m), initial=-1))
+    return set(unknowns[: last + 1].tolist()) - set(range(model.m, len(unknowns)))
 
 
 def entries(model: Model, start: Any, row: Any, held: Any, rank: Any) -> dict[str, Any]:
@@ -291,17 +301,17 @@ def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]
         "rate0": np.zeros(m),
         "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),
-        "mu": np.zeros((2, m)),
+        "mu": np.zeros((2, len(model.column_start) - 1)),
     }
 
 
 def constraint_groups(found: Nodes, model: Model, held: Any) -> list[tuple[list[int], list[int]]]:
-    """Constraint rows that act on the same nodes: rows, nodes."""
+    """Constraint rows that act on the same nodes, and are before hubs or not: rows, nodes."""
     by_nodes: dict[tuple[int, ...], list[int]] = {}
-    state = dict(held.tolist())
+    state, before = dict(held.tolist()), before_hubs(model)
     for j in range(model.m):
         on = {frame - 1 for frame in model.row_frame[j].tolist() if frame > 0}
         if j in state:
             on.add(found.bodies + state[j] - model.n_v)
-        by_nodes.setdefault(tuple(sorted(on)), []).append(j)
-    return [(rows, list(on)) for on, rows in by_nodes.items()]
+        by_nodes.setdefault((j in before, *sorted(on)), []).append(j)
+    return [(rows, list(on)) for (_, *on), rows in by_nodes.items()]
