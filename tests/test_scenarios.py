@@ -10,7 +10,7 @@ from trsim.spec.load import load
 from .runs import energy_error, run
 
 FOLDER = Path(__file__).parent.parent / "scenarios"
-PARTS = ("mechanism.yaml", "paper.yaml")  # of scenarios, not one each
+PARTS = ("mechanism.yaml", "spatial_mechanism.yaml", "paper.yaml")  # of scenarios, not one each
 FILES = sorted(p for p in FOLDER.rglob("*.yaml") if p.name not in PARTS)
 VALIDATION = FOLDER / "validation"
 
