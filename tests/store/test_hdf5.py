@@ -12,7 +12,7 @@ from tests.sizes import RELEASE
 from trsim.errors import FileError, SolverError
 from trsim.solve.record import EVENT_NAMES
 from trsim.solve.simulate import simulate
-from trsim.store import hdf5
+from trsim.store import grow, hdf5
 from trsim.store.hdf5 import read, write
 from trsim.store.read import verify
 
@@ -230,15 +230,15 @@ def test_part_can_be_read_while_it_is_written(scenario, mechanism, tmp_path, mon
 def test_write_fault(number, n, scenario, mechanism, tmp_path, monkeypatch):
     """Writes fail after the n-th: told with path and bytes, what was flushed is there."""
     monkeypatch.setattr(hdf5, "FLUSHED", 0.0)
-    original, calls = h5py.Dataset.__setitem__, [0]
+    original, calls = grow.extended, [0]
 
-    def faulty(self, where, value):
+    def faulty(*arguments):
         calls[0] += 1
         if calls[0] > n:
             raise OSError(number, os.strerror(number))
-        original(self, where, value)
+        original(*arguments)
 
-    monkeypatch.setattr(h5py.Dataset, "__setitem__", faulty)
+    monkeypatch.setattr(grow, "extended", faulty)
     path = tmp_path / "run.h5"
     said = rf"run\.h5\.part: .* \d+ bytes: {os.strerror(number)}"
     with pytest.raises(FileError, match=said) as caught:

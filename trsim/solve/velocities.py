@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
@@ -35,7 +36,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     their rates are zero.
     """
     if not mechanism.beams:
-        ideal = at_the_start(scenario, named)
+        ideal = at_the_start(scenario, mechanism, named)
         y_ideal = np.zeros(ideal.model.n_q + ideal.model.n_v + ideal.model.n_z)
         n = ideal.model.n_q + ideal.model.n_v
         y_ideal[:n] = y[:n]
@@ -43,7 +44,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
             mechanism.model, y, nearest(ideal, y_ideal, named, not given(scenario))
         )
     try:
-        stiff = at_the_start(scenario, named)
+        stiff = at_the_start(scenario, mechanism, named)
         v = nearest(stiff, as_rigid(mechanism, stiff, y), named, not given(scenario))
         moving = with_velocities(mechanism.model, y, moving_as_rigid(mechanism, stiff, y, v))
     except ModelError:  # it moves only because its bars give way
@@ -56,10 +57,13 @@ def given(scenario: Any) -> bool:
     return any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
 
 
-def at_the_start(scenario: Any, named: tuple[str, ...]) -> Mechanism:
+def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) -> Mechanism:
     """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
     joints = scenario.joints.items() if not given(scenario) else ()
     playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
+    with_coordinate = [n for n in named if elements.load(scenario.joints[n].type).coordinate]
+    if not playing and not mechanism.beams and {*with_coordinate} <= {*mechanism.coordinates}:
+        return mechanism
     return assemble(scenario, playing, coordinates=named, stiff=True)
 
 

@@ -4,12 +4,14 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
+from h5py import h5a, h5d, h5p, h5s, h5t
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory
+TEXT, SCALAR = h5py.string_dtype(), h5s.create(h5s.SCALAR)
 AXES = {3: "component.xyz", 9: "component.rotation"}  # scale of the second dimension, by size
 LABELS = {
     "component.xyz": ["x", "y", "z"],
@@ -65,8 +67,7 @@ class Growing:
             return
         rows, n = self.waiting[: self.n_waiting], self.n + self.n_waiting
         for field, dataset in zip(self.fields, self.datasets, strict=True):
-            dataset.resize(n, axis=0)
-            dataset[self.n : n] = _values(field, rows)
+            extended(dataset, self.n, np.ascontiguousarray(_values(field, rows)))
         self.n, self.n_waiting = n, 0
 
     def full(self, n: int) -> int:
@@ -90,23 +91,29 @@ def scales(file: h5py.File, sizes: set[int]) -> None:
 
 
 def _dataset(group: h5py.Group, field: Field, chunk: int) -> h5py.Dataset:
+    """An empty dataset that grows.  A run may have hundreds, which h5py's own way makes slow."""
     shape = () if field.size == 1 else (field.size,)
-    dtype: Any = "f8"
-    if field.words:
-        dtype = f"S{max(len(word) for word in field.words)}"
-    dataset = group.create_dataset(
-        field.name,
-        (0, *shape),
-        maxshape=(None, *shape),
-        chunks=(chunk, *shape),
-        dtype=dtype,
-        fillvalue=None if field.words else np.nan,  # a row that was never written says so
-        fletcher32=True,
-    )
-    if field.unit:
-        dataset.attrs["units"] = field.unit
-    dataset.attrs["long_name"] = field.meaning
-    return dataset
+    kind = np.dtype(f"S{max(map(len, field.words))}" if field.words else "f8")
+    plan = h5p.create(h5p.DATASET_CREATE)
+    plan.set_chunk((chunk, *shape))
+    plan.set_fletcher32()
+    if not field.words:
+        plan.set_fill_value(np.array(np.nan))  # a row that was never written says so
+    space = h5s.create_simple((0, *shape), (h5s.UNLIMITED, *shape))
+    made = h5d.create(group.id, field.name.encode(), h5t.py_create(kind, logical=True), space, plan)
+    for name, text in ((b"units", field.unit), (b"long_name", field.meaning)):
+        if text:
+            attribute = h5a.create(made, name, h5t.py_create(TEXT, logical=True), SCALAR)
+            attribute.write(np.array(text, TEXT))
+    return h5py.Dataset(made)
+
+
+def extended(dataset: h5py.Dataset, n: int, values: Any) -> None:
+    """Put rows behind the first n of a dataset."""
+    dataset.id.set_extent((n + len(values), *values.shape[1:]))
+    space = dataset.id.get_space()
+    space.select_hyperslab((n, *[0] * (values.ndim - 1)), values.shape)
+    dataset.id.write(h5s.create_simple(values.shape), space, values)
 
 
 def _values(field: Field, rows: Array) -> Any:
