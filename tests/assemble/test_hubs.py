@@ -262,6 +262,23 @@ def test_near_a_singular_position(forced, bodies, away):
     assert error < 5e-15 / away + 1e-12
 
 
+LIGHT = """
+planar: true
+bodies:
+  plate: {mass: 1e-8, inertia: 1e-8, at: [2, 0]}
+  left: {mass: 1, inertia: 0.2, at: [0, 0.3]}
+  right: {mass: 2, inertia: 0.3, at: [0.5, -1]}
+joints:
+  one: {type: revolute, bodies: [plate, left], at: [1, 0]}
+  other: {type: revolute, bodies: [plate, right], at: [1, 0]}
+"""
+
+
+def test_a_light_hub_on_heavy_bodies(forced):
+    """About their pin it has only its own inertia, 1e-8 of what it carries: a small pivot."""
+    assert compare(LIGHT, forced, 1, 1e-7) == POOR
+
+
 @pytest.mark.parametrize("bodies", [1, 99])
 def test_redundant_rows(forced, bodies):
     """Three rows of a planar four-bar in space are dropped, hubs or not."""

@@ -13,6 +13,7 @@ Constraints wait for a body with many of them too, and then meet each other.  Th
 independent with such hubs held (pattern.py) need not: their leading parts are regular without it.
 """
 
+from collections import Counter
 from collections.abc import Collection
 from heapq import heapify, heappop, heappush
 from typing import NamedTuple
@@ -45,16 +46,12 @@ def order(
     early: groups of constraints that do not wait for `hubs`.  Changes `neighbours`: in the end
     these are the nodes after each that its elimination touches.
     """
-
-    def waited_for(k: int) -> set[int]:
-        on = {o for o in neighbours[k] if o < free} if k >= free else set()
-        return on.difference(hubs) if k in early else on
-
-    waits = [len(waited_for(k)) for k in range(len(neighbours))]
-    acts_on = [  # without fill
+    acts_on = [  # without fill: the groups that wait for a node
         {o for o in n if o >= free and not (k in hubs and o in early)}
         for k, n in enumerate(neighbours[:free])
     ]
+    waiting = Counter(o for groups in acts_on for o in groups)
+    waits = [waiting[k] for k in range(len(neighbours))]
 
     def weight(k: int) -> int:
         return sum(size[o] for o in neighbours[k])

@@ -185,13 +185,8 @@ def pattern(
     first[list(hubs.frames)] = len(row_frames) + hubs.d * np.arange(len(hubs.frames))
     entry = []
     for f, members in enumerate(of_body):
-        own = rank[[k for k, _ in members]]
-        if f in hubs.frames:
-            unknowns = rank[first[f] : first[f] + hubs.d]
-            entry += [spread(own, unknowns, ranks, column_start)]
-            entry += [triangle(unknowns, ranks, column_start)[masses_of(hubs.d)]]
-        else:
-            entry += [triangle(own, ranks, column_start)[np.tril_indices(len(members))]]
+        hub = rank[first[f] : first[f] + hubs.d] if f in hubs.frames else None
+        entry += places(rank[[k for k, _ in members]], hub, ranks, column_start)
     return {
         "row_frame": np.array(row_frames, np.int64).reshape(-1, 2),
         "frame_start": np.cumsum([0, *map(len, of_frame)]),
@@ -205,6 +200,16 @@ def pattern(
             [*(t[own] for t, own in zip(target, lower, strict=True)), np.zeros(0, np.int64)]
         ),
     }
+
+
+def places(
+    rows: Indices, hub: Indices | None, ranks: list[Indices], column_start: Indices
+) -> list[Indices]:
+    """Places of what a body adds to the matrix; ranks of its rows, and of its unknowns as a hub."""
+    if hub is None:
+        return [triangle(rows, ranks, column_start)[np.tril_indices(len(rows))]]
+    own = triangle(hub, ranks, column_start)[masses_of(len(hub))]
+    return [spread(rows, hub, ranks, column_start), own]
 
 
 def spread(rows: Indices, unknowns: Indices, ranks: list[Indices], column_start: Indices) -> Any:
