@@ -179,6 +179,12 @@ def test_an_identity_frame_is_the_flat_scenario():
 # --- the tree stays as written ---------------------------------------------------------------
 
 
+def test_a_setting_of_an_unfolded_name_is_shown_its_place():
+    with pytest.raises(TrsimError) as caught:
+        loads(TEXT, ["joints.left_B.clearance=0.3mm"])
+    assert "instances.left.joints.B.clearance" in caught.value.hint
+
+
 def test_settings_reach_templates_and_instances():
     both = loads(TEXT, ["templates.chain.joints.P.clearance=0.1mm"])
     assert [both.joints[f"{name}_P"].type for name in ("left", "right")] == ["clearance_joint"] * 2

@@ -119,7 +119,8 @@ def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> N
     named = section if isinstance(section, dict) else {}
     if len(keys) > 1 and keys[0] in KNOWN and keys[1] not in named:
         what = f"nothing named {described(keys[1])} in {keys[0]}"
-        raise ScenarioError(what, known(keys[1], named), (keys[0],), key_place)
+        hint = _of_an_instance(tree, keys) or known(keys[1], named)
+        raise ScenarioError(what, hint, (keys[0],), key_place)
     inner: Any = tree.data
     path: tuple = ()
     for k, word in enumerate(keys):
@@ -133,6 +134,17 @@ def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> N
         inner = inner[key]
     for here in _paths(new, path):
         tree.marks[here], tree.keys[here] = at, key_place
+
+
+def _of_an_instance(tree: Tree, keys: list[str]) -> str:
+    """Where an entry of an instance is changed; nothing if the name is none."""
+    instances = tree.data.get("instances")
+    for instance in instances if isinstance(instances, dict) else ():
+        if keys[1].startswith(f"{instance}_"):
+            own = keys[1].removeprefix(f"{instance}_")
+            rest = ".".join((keys[0], own, *keys[2:]))
+            return f"Entries of an instance are changed in it: instances.{instance}.{rest}"
+    return ""
 
 
 def _key(inner: Any, word: str, path: tuple, place: Place) -> str | int:

@@ -121,7 +121,8 @@ def _entry(whole: Unfolded, name: str, origin: Origin) -> Iterator[Fault]:
         return
     if name in taken:
         what = f"its entry {described(origin.name)} is {described(name)}, a name that is taken"
-        hint = f"There is {origin.section}.{name}: rename one of them, or the instance."
+        own = ".".join(map(str, origin.own))
+        hint = f"There is {origin.section}.{name}: rename one, or change the entry at {own}."
         yield ScenarioError(what, hint), ("instances", origin.instance)
         return
     taken[name] = whole.data["instances"][origin.instance][origin.section][origin.name]
