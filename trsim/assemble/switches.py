@@ -54,6 +54,8 @@ class UserEvent:
 
     def told(self) -> str:
         """When it happens and what it does, in words."""
+        if self.kind == "limit":
+            return f"{self.when} {self.said} ({self.value:g} {self.unit}): the run is {self.status}"
         way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
         often = "" if self.most == ALWAYS else f", {self.most} times" if self.most > 1 else ", once"
         return (
