@@ -69,3 +69,14 @@ DOOR = text(
     },
     more="gravity: [0, 0, -10]",
 )
+
+
+def spatial(changes="", chains=(1, 2, 3, 4, 5), guided=False):
+    """The thrust reverser in space with these chains; guided: on an ideal slide and no rails."""
+    left_out = [f"chain_{c}: null" for c in range(1, 6) if c not in chains]
+    lines = ["extends: spatial_mechanism.yaml", f"instances: {{{', '.join(left_out)}}}"]
+    if guided:
+        lines += ["joints: {guide: {type: prismatic, bodies: [ground, fairing], axis: [1, 0, 0]}}"]
+        rails = [f"rail_{k}_{end}: null" for k in (1, 2) for end in ("front", "rear")]
+        lines += [f"forces: {{{', '.join(rails)}}}"]
+    return "\n".join([*lines, changes, ""])
