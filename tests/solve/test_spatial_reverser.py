@@ -195,7 +195,7 @@ def with_shaft(case, *sets):
     planned = plan(SHAFT, sets)
     (found,) = (c for c in planned.cases if c.name == case)
     r = run(planned.scenario(found))
-    assert energy_error(r) < 1e-6
+    assert energy_error(r) < 1e-8
     return r
 
 
