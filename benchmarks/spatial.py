@@ -1,0 +1,76 @@
+"""Thrust reverser in space: a run and the twelve asynchronous ones as commands; error of its peaks.
+
+CPU and wall seconds of whole processes, start-up and result files included; then the largest error
+of the three peaks against a run at a tolerance of 1e-11, equal speeds and actuator 2 slower, and
+the CPU of the integration alone, median of three.
+"""
+
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+
+import numpy as np
+from numpy.typing import NDArray
+
+from benchmarks.measure import SCENARIOS, run, trsim
+from benchmarks.startup import REPEATS, took
+from trsim.sweep.local import processors
+
+FOLDER = SCENARIOS / "thrust_reverser"
+TOLERANCES = ("1e-3", "1e-4", "1e-5", "1e-6", "1e-7", "1e-8", "1e-9")
+REFERENCE = "1e-11"
+CASES = {"equal speeds": (), "actuator 2 at 418 mm/s": ("parameters.speed_2=418 mm/s",)}
+ROUNDS = 3
+
+
+def commands() -> None:
+    """Print what a user waits for."""
+    print(f"  {'':44s} {'wall s':>8s} {'CPU s':>8s} {'of it integration':>18s}")
+    with TemporaryDirectory() as folder:
+        out = str(Path(folder) / "run.h5")
+        command = trsim("run", str(FOLDER / "spatial_synchronous.yaml"), "-q", "--json", "-o", out)
+        took(command)
+        once = [took(command) for _ in range(REPEATS)]
+        wall, cpu, integration = (median(column) for column in zip(*once, strict=True))
+        print(f"  {f'equal speeds, median of {REPEATS}':44s} {wall:8.2f} {cpu:8.2f} "
+              f"{integration:18.2f}")  # fmt: skip
+        for k in range(ROUNDS):
+            sweep = ("sweep", str(FOLDER / "spatial_asynchronous.yaml"), "-q", "-o")
+            whole = took(trsim(*sweep, str(Path(folder) / f"sweep_{k}")))
+            label = f"the twelve asynchronous runs, {processors()} processors"
+            print(f"  {label:44s} {whole.wall:8.1f} {whole.cpu:8.1f}", flush=True)
+
+
+def peaks(sets: tuple[str, ...], tolerance: str) -> tuple[NDArray[np.float64], float, dict]:
+    """Of the three forces, N; CPU of the integration, s; numbers of the run."""
+    from trsim.assemble.assemble import assemble
+    from trsim.spec.load import load
+
+    scenario = load(FOLDER / "spatial_synchronous.yaml", (*sets, f"solver.tolerance={tolerance}"))
+    mechanism = assemble(scenario)
+    runs = [run(scenario, mechanism) for _ in range(ROUNDS)]
+    found = np.array([runs[0].peak(f"actuator_{k}.force") for k in (1, 2, 3)])
+    numbers = runs[0].outcome.statistics
+    return found, median(r.outcome.statistics["integration_cpu"] for r in runs), numbers
+
+
+def precision() -> None:
+    """Print errors over tolerances."""
+    print(f"\n  {'':24s} tolerance   CPU s   steps  evaluations  error of peaks  energy residual")
+    for label, sets in CASES.items():
+        exact, _, _ = peaks(sets, REFERENCE)
+        for tolerance in TOLERANCES:
+            found, cpu, numbers = peaks(sets, tolerance)
+            error = np.abs(found / exact - 1.0).max()
+            print(f"  {label:24s} {tolerance:>9s} {cpu:7.2f} {numbers['steps']:7d} "
+                  f"{numbers['evaluations']:12d} {error:15.1e} "
+                  f"{numbers['energy_residual_relative']:16.0e}", flush=True)  # fmt: skip
+
+
+def main() -> None:
+    commands()
+    precision()
+
+
+if __name__ == "__main__":
+    main()
