@@ -7,9 +7,10 @@ from benchmarks.problems import chain
 from trsim.assemble import rank
 from trsim.assemble.rank import (
     PLAIN,
+    dense_proof,
     dependent_rows,
     of_length_one,
-    plainly_independent,
+    sparse_proof,
     unique_reactions,
 )
 from trsim.spec.load import loads
@@ -26,8 +27,12 @@ def linked(rng, m=24, width=3):
     return of_length_one(J, np.ones(J.shape[1]))
 
 
+PROOFS = pytest.mark.parametrize("plainly_independent", [sparse_proof, dense_proof])
+
+
+@PROOFS
 @pytest.mark.parametrize("seed", range(8))
-def test_proof_is_true_and_does_not_ask_for_too_much(seed):
+def test_proof_is_true_and_does_not_ask_for_too_much(seed, plainly_independent):
     rng = np.random.default_rng(seed)
     rows = linked(rng)
     for shrunk in (1.0, 1e-3, 3e-5, 1e-9, 0.0):
@@ -41,7 +46,8 @@ def test_proof_is_true_and_does_not_ask_for_too_much(seed):
         assert said or least < PLAIN * np.sqrt(len(near))
 
 
-def test_trace_of_the_inverse(monkeypatch):
+@PROOFS
+def test_trace_of_the_inverse(monkeypatch, plainly_independent):
     """The bound is where trace(G^-1) says, to rounding."""
     rows = linked(np.random.default_rng(1), 40)
     bound = 1.0 / np.sqrt(np.trace(np.linalg.inv(rows @ rows.T)))
@@ -77,7 +83,7 @@ def test_a_long_chain_is_judged_by_the_proof(monkeypatch):
     monkeypatch.setattr(rank.np.linalg, "svd", None)
     proofs = []
     monkeypatch.setattr(
-        rank, "plainly_independent", lambda rows: proofs.append(plainly_independent(rows)) or True
+        rank, "plainly_independent", lambda rows: proofs.append(sparse_proof(rows)) or True
     )
     mechanism = assemble(loads(chain(40)))
     assert proofs and all(proofs)

@@ -16,7 +16,7 @@ from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
-from trsim.assemble.pattern import Hubs, pattern
+from trsim.assemble.pattern import Hubs, no_pattern, pattern
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -212,9 +212,12 @@ def build(
     instances: list[Instance],
     rows: list[RowName],
     d: int,
-    hubs: Hubs = Hubs(),  # noqa: B008 - nothing in it can change
+    hubs: Hubs | None = None,
 ) -> Model:
-    """The arrays of a model with the given constraint rows, without outputs."""
+    """The arrays of a model with the given constraint rows, without outputs.
+
+    hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
+    """
     n, N = len(at.frames), max(len(instances), 1)
     con, par = tables(instances, rows)
     mass, inertia, mass_inverse, inertia_inverse = masses(at, d)
@@ -252,7 +255,7 @@ def build(
         n_s=at.n_s,
         **turns(at, d),
         **kernels(instances),
-        **pattern(frames, n, spans(at), hubs),
+        **(no_pattern(frames, n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
         on_beams=np.array(addresses(at.beams), np.int64),

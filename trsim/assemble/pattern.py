@@ -160,6 +160,22 @@ def structure(
     return Structure(of_body, order, below)
 
 
+def no_pattern(row_frames: list[tuple[int, int]], n: int) -> dict[str, Any]:
+    """That of a model whose equations nobody solves: only its rows are looked at."""
+    none, m = np.zeros(0, np.int64), len(row_frames)
+    return {
+        "row_frame": np.array(row_frames, np.int64).reshape(-1, 2),
+        "frame_start": np.zeros(n + 1, np.int64),
+        "slot_row": none,
+        "slot_column": none,
+        "hub": np.full(n, -1),
+        "entry": none,
+        "column_start": np.zeros(m + 1, np.int64),
+        "row": none,
+        "target": none,
+    }
+
+
 def pattern(
     row_frames: list[tuple[int, int]],
     n: int,

@@ -20,6 +20,7 @@ from trsim.assemble.pattern import eliminate, minimum_degree
 Array = NDArray[np.float64]
 
 DEPENDENT = 1e-8  # of a row left after the rows before it are taken out
+FEW = 250  # rows up to which a dense matrix is cheaper
 PLAIN = 1e-4  # least singular value of rows that are independent beyond doubt
 
 
@@ -47,6 +48,11 @@ def neighbours_of(rows: Array) -> list[set[int]]:
 
 def plainly_independent(rows: Array) -> bool:
     """Whether rows of length one have no singular value below PLAIN; True is a proof."""
+    return dense_proof(rows) if len(rows) <= FEW else sparse_proof(rows)
+
+
+def sparse_proof(rows: Array) -> bool:
+    """The same by L D L^T of rows rows^T along its zeros."""
     m = len(rows)
     near = neighbours_of(rows)
     order = minimum_degree(near)
@@ -69,6 +75,15 @@ def plainly_independent(rows: Array) -> bool:
         inverse[k, k] = 1.0 / D - L @ across
         trace += inverse[k, k]
     return bool(trace * PLAIN * PLAIN < 1.0)
+
+
+def dense_proof(rows: Array) -> bool:
+    """The same, where it is cheaper not to look for zeros."""
+    try:
+        inverse = np.linalg.inv(np.linalg.cholesky(rows @ rows.T))
+    except np.linalg.LinAlgError:
+        return False
+    return bool(np.sum(inverse * inverse) * PLAIN * PLAIN < 1.0)
 
 
 def dependent_rows(J: Array, scale: Array, order: list[int], least: float = DEPENDENT) -> set[int]:
