@@ -1,6 +1,6 @@
 """The figures of the study, by the numbers they have there."""
 
-from trsim.report.paper.figures import clearance, laws, pendulum, place, rod, speed
+from trsim.report.paper.figures import clearance, laws, pendulum, place, rod, spatial, speed, sticking
 from trsim.report.paper.figures.drawing import Drawn
 
 FIGURES: tuple[Drawn, ...] = (
@@ -10,4 +10,6 @@ FIGURES: tuple[Drawn, ...] = (
     *place.FIGURES,
     *speed.FIGURES,
     *rod.FIGURES,
+    *spatial.FIGURES,
+    *sticking.FIGURES,
 )
