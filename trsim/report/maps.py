@@ -1,4 +1,4 @@
-"""A number over two swept keys: a cell for each case of a grid, with the number and how it ended."""
+"""A number over two swept keys: a cell for each case of a grid, its number, and how it ended."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -67,7 +67,9 @@ def gridded(study: Any, of: Numbers, over: str | None) -> Grid:
     for case in study.cases:
         place = ys.index(case.values[up]), xs.index(case.values[across])
         if place in taken:
-            raise UsageError(f"several cases have the same {across} and {up}", "A map is of a grid.")
+            raise UsageError(
+                f"several cases have the same {across} and {up}", "A map is of a grid."
+            )
         taken.add(place)
         values[place] = of.values[case.name]
         ends[place[0]][place[1]] = case.status if case.status != "done" else ""
@@ -91,17 +93,19 @@ def cells(
     ends: Sequence[Sequence[str]],
 ) -> Any:  # fmt: skip
     """Coloured cells with their numbers and ends; what tells the colours."""
-    shade = axes.pcolormesh(np.arange(len(across) + 1) - 0.5, np.arange(len(up) + 1) - 0.5,
-                            np.ma.masked_invalid(values), cmap="cividis", ec="white", lw=1.0)  # fmt: skip
+    x, y = np.arange(len(across) + 1) - 0.5, np.arange(len(up) + 1) - 0.5
+    shade = axes.pcolormesh(x, y, np.ma.masked_invalid(values), cmap="cividis", ec="white", lw=1.0)
     axes.set_xticks(range(len(across)), list(across))
     axes.set_yticks(range(len(up)), list(up))
     axes.grid(visible=False)
     axes.set_facecolor("0.88")  # of cells without a number
-    for y, line in enumerate(values if max(len(across), len(up)) <= MOST else ()):
-        for x, value in enumerate(line.tolist()):
-            number = "" if np.isnan(value) else short(value, 3)
-            text = "\n".join(part for part in (number, ends[y][x]) if part)
-            bright = np.isnan(value) or shade.norm(value) > DARK
-            axes.text(x, y, text, ha="center", va="center", fontsize=7, linespacing=1.1,
-                      color="black" if bright else "white")  # fmt: skip
+    if max(len(across), len(up)) > MOST:
+        return shade
+    for y, x in np.ndindex(values.shape):
+        value = float(values[y, x])
+        number = "" if np.isnan(value) else short(value, 3)
+        text = "\n".join(part for part in (number, ends[y][x]) if part)
+        bright = np.isnan(value) or shade.norm(value) > DARK
+        axes.text(x, y, text, ha="center", va="center", fontsize=7, linespacing=1.1,
+                  color="black" if bright else "white")  # fmt: skip
     return shade

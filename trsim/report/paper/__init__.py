@@ -36,7 +36,7 @@ def paper(
     folder: str | os.PathLike,
     figures: Sequence[Drawn] | None = None,
 ) -> list[Path]:
-    """Write the figures, the tables (claims, numbers, peaks, sticking) and index.html of a study into a folder.
+    """Write the figures, the tables as CSV and index.html of a study into a folder.
 
     study: what `trsim sweep scenarios/thrust_reverser/paper.yaml` made.  What is missing there is
     missing in the figures, and undetermined among the claims.  figures: all unless given.  Returns

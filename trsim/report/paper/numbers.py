@@ -160,8 +160,8 @@ def apart(member: Member, asked: Word, reference: Member | None) -> Number:
     return Number(float(np.sqrt(np.max(np.sum(difference**2, axis=0)))), member.run.unit(asked.of))
 
 
-SHARED = ("fluctuation", "range", "mean", "dispersion", "flight", "impacts",
-          "final", "summary")  # fmt: skip; as in outputs.py
+# as in outputs.py
+SHARED = ("fluctuation", "range", "mean", "dispersion", "flight", "impacts", "summary")
 KINDS: dict[str, Callable[..., Number] | None] = {
     **dict.fromkeys(SHARED),
     "peak": peak,

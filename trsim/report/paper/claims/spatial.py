@@ -25,6 +25,7 @@ ASSISTING = (
     "it would be reversed"
 )
 ONLY = "our reading: the study tells of the largest only, which are those our data were fitted to"
+RESISTING = "ours: a force against the motion, twice what the gas drives"
 FITTED = "stiffnesses, radius and load shares were fitted to the study's nine peaks"
 
 
@@ -216,24 +217,24 @@ CONCLUSIONS = (
         "advice_faster", "8", "25",
         "Where actuator 2 is to differ, slower than 1 and 3 gives lower peaks than faster.",
         Below(),
-        tuple(Reading(f"{slow} and {fast} mm/s", most((f"{fast} mm/s", case(2, fast)),
-                                                      (f"{slow} mm/s", case(2, slow))))
-              for slow, fast in ((418, 422), (419, 421)))
-        + (Reading("418 and 422 mm/s, a load that resists",
-                   most(("422 mm/s", "spatial_resisted_422"), ("418 mm/s", "spatial_resisted_418")),
-                   "ours: a force against the motion, twice what the gas drives"),),
+        (*(Reading(f"{slow} and {fast} mm/s", most((f"{fast} mm/s", case(2, fast)),
+                                                   (f"{slow} mm/s", case(2, slow))))
+           for slow, fast in ((418, 422), (419, 421))),
+         Reading("418 and 422 mm/s, a load that resists",
+                 most(("422 mm/s", "spatial_resisted_422"), ("418 mm/s", "spatial_resisted_418")),
+                 RESISTING)),
         note=f"largest magnitude of all three actuators; {ASSISTING}",
     ),
     Claim(
         "advice", "8", "25",
         "Running actuator 2 slower than 1 and 3 reduces the peak of the driving force.",
         Below(),
-        tuple(Reading(f"{slow} mm/s, against one speed",
-                      most(("420 mm/s", "spatial_420"), (f"{slow} mm/s", case(2, slow))))
-              for slow in (418, 419))
-        + (Reading("418 mm/s, against one speed, a load that resists",
-                   most(("420 mm/s", "spatial_resisted_420"), ("418 mm/s", "spatial_resisted_418")),
-                   "ours: a force against the motion, twice what the gas drives"),),
+        (*(Reading(f"{slow} mm/s, against one speed",
+                   most(("420 mm/s", "spatial_420"), (f"{slow} mm/s", case(2, slow))))
+           for slow in (418, 419)),
+         Reading("418 mm/s, against one speed, a load that resists",
+                 most(("420 mm/s", "spatial_resisted_420"), ("418 mm/s", "spatial_resisted_418")),
+                 RESISTING)),
         note=f"largest magnitude of all three actuators; {ASSISTING}",
     ),
 )  # fmt: skip

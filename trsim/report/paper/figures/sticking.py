@@ -44,7 +44,7 @@ def sticking(runs: Runs) -> Any:
 
 
 FIGURES = (
-    Drawn("25 until it sticks", "", "When an actuator stalls, its supply at 3 kN (ours): actuator 2 "
-          "slower than the others, over the stiffness of the synchronising shaft. A full stroke "
+    Drawn("25 until it sticks", "", "When an actuator stalls, its supply at 3 kN (ours): actuator "
+          "2 slower than the others, over the stiffness of the synchronising shaft. A full stroke "
           "takes 1.19 s.", CASES, sticking),
 )  # fmt: skip
