@@ -5,9 +5,9 @@ TITLE = "Thrust reverser: the published study, checked"
 LEAD = (
     "A study of a cascade thrust reverser simulates one chain of its mechanism with clearance"
     " in two pins, A and B, and with a rigid and a flexible rod, and draws conclusions from "
-    "single runs. Here every configuration was run again as an ensemble: the start of the "
-    "stroke, the clearance (by 2 %) and the tolerance of the solver are varied, since impacts"
-    " multiply any difference. Figures show the member as stated; verdicts rest on all "
+    "single runs. Here every configuration with impacts was run again as an ensemble: the start "
+    "of the stroke, the clearance (by 2 %) and the tolerance of the solver are varied, since "
+    "impacts multiply any difference. Figures show the member as stated; verdicts rest on all "
     "members.",
     "Conclusions about this data set are no conclusions about the real machine, nor about the"
     " data of the study, most of which it does not state.",
