@@ -11,8 +11,8 @@ demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
 	$(BIN)/trsim report runs/demo.h5 -o runs/demo
 
-# every configuration of the published study as an ensemble, and a page with a verdict on each of its
-# claims; goes on where it was ended
+# every configuration of the published study, those with impacts as ensembles, and a page with a verdict
+# on each of its claims; goes on where it was ended
 paper: .venv/installed
 	$(BIN)/trsim sweep scenarios/thrust_reverser/paper.yaml -o runs/paper
 	$(BIN)/trsim report --paper thrust-reverser runs/paper -o runs/paper/page

@@ -4,6 +4,7 @@ from typing import Literal
 
 # said by the solver, said by the writer of the file
 Ended = Literal["done", "jammed", "failed"]
+WELL: tuple[Ended, ...] = ("done", "jammed")  # a run says what it was asked
 Status = Literal["running", Ended, "interrupted", "recovered"]
 
 STATUSES: dict[Status, str] = {

@@ -11,12 +11,13 @@ from tests import small
 from tests.analyse.studies import Case, Study
 from tests.report.test_figures import drawn
 from trsim.analyse.bifurcation import diagram
+from trsim.analyse.cases import numbers
 from trsim.analyse.compare import curve, difference
 from trsim.analyse.outputs import scalar
 from trsim.analyse.scaling import Line
 from trsim.analyse.sobol import Index, Indices
 from trsim.errors import FileError, UsageError
-from trsim.report import analysed, exponents, spectra, studies
+from trsim.report import analysed, exponents, maps, spectra, studies
 from trsim.report.asked import Asked, file_name, words
 from trsim.report.compared import chosen, figure
 from trsim.report.diagrams import bifurcated
@@ -176,6 +177,56 @@ def test_numbers_of_a_study(study, tmp_path):
     expected = scalar(study.cases[1].run(), "peak:B.contact_force")[0]
     assert float(table[1]["peak:B.contact_force [N]"]) == expected
     assert found.lines == ["1 of 5 cases did not end well and are left out: lost"]
+
+
+@pytest.fixture
+def grid(paths):
+    """Two by two cases; one of them jammed, one failed."""
+    keys = ("joints.B.clearance", "a.b")
+    ends = ("done", "jammed", "done", "failed")
+    places = [(c, b) for c in (0.5e-3, 0.1e-3) for b in (1.0, 2.0)]
+    cases = tuple(
+        Case(f"{end}{k}", dict(zip(keys, place, strict=True)), paths[k % 2], end)
+        for k, (place, end) in enumerate(zip(places, ends, strict=True))
+    )
+    return Study(cases, keys, {keys[0]: "m", "a.b": "-"})
+
+
+def test_jammed_runs_are_results(grid, tmp_path):
+    found = studies.draw(grid, Asked(), ["peak:B.contact_force"], tmp_path)
+    given = [row["peak:B.contact_force [N]"] != "nan" for row in rows(tmp_path / "sweep.csv")]
+    assert given == [True, True, True, False]
+    assert found.lines[-1] == "1 of 4 cases did not end well and are left out: failed3"
+
+
+def test_map(grid, tmp_path):
+    word = "peak:B.contact_force"
+    found = studies.draw(grid, Asked(map=(word,)), [], tmp_path)
+    assert named(found) == {f"map_peak_B_contact_force.{kind}" for kind in ("png", "csv")}
+    assert 0.005 < drawn(tmp_path / "map_peak_B_contact_force.png") < 0.8
+    table = rows(tmp_path / "map_peak_B_contact_force.csv")
+    assert [row["status"] for row in table] == ["done", "jammed", "done", "failed"]
+    of = numbers(grid, [word])[word]
+    place = maps.gridded(grid, of, None)
+    assert (place.across, place.up) == ([0.1e-3, 0.5e-3], [1.0, 2.0])
+    values = [scalar(case.run(), word)[0] for case in grid.cases]
+    np.testing.assert_allclose(place.values, [[values[2], values[0]], [np.nan, values[1]]])
+    assert place.ends == [["", ""], ["failed", "jammed"]]
+    turned = maps.gridded(grid, of, "a.b")
+    np.testing.assert_array_equal(turned.values, place.values.T)
+
+
+def test_maps_that_make_no_sense(grid, study, paths, tmp_path):
+    word = "peak:B.contact_force"
+    of = numbers(grid, [word])[word]
+    twice = replace(grid, cases=(*grid.cases, grid.cases[0]))
+    three = replace(grid, keys=(*grid.keys, "c.d"))
+    for plan, over, what in ((twice, None, "several cases"), (three, None, "varies 3"),
+                             (grid, "c.d", "does not sweep")):  # fmt: skip
+        with pytest.raises(UsageError, match=what):
+            maps.gridded(plan, of, over)
+    with pytest.raises(UsageError, match="--map is not for result files"):
+        analysed(paths, tmp_path / "o", Asked(map=(word,)))
 
 
 def test_a_curve_for_each_family_in_order_of_the_swept_key(study):

@@ -13,9 +13,8 @@ import numpy as np
 
 from trsim.analyse.outputs import scalar
 from trsim.errors import LISTED, FileError, TrsimError, UsageError
+from trsim.statuses import WELL
 from trsim.store.read import Run
-
-DONE = "done"
 
 
 class Answers(NamedTuple):
@@ -43,7 +42,7 @@ def answers(study: Any, questions: Mapping[str, Callable[[Run], Any]]) -> dict[s
     every = {key: Answers({}, {}) for key in questions}
     errors: dict[str, list[TrsimError]] = {key: [] for key in questions}
     for case in study.cases:
-        for key, answer in _answered(case, questions) if case.status == DONE else ():
+        for key, answer in _answered(case, questions) if case.status in WELL else ():
             if isinstance(answer, TrsimError):
                 errors[key].append(answer)
                 every[key].why[case.name] = reason(answer, case)
@@ -110,7 +109,7 @@ def told(why: Mapping[str, str]) -> list[str]:
 
 def unfinished(study: Any) -> list[str]:
     """Which cases are left out, since their runs did not end well or are not there."""
-    lost = [case for case in study.cases if case.status != DONE]
+    lost = [case for case in study.cases if case.status not in WELL]
     kinds = {
         "did not end well": [case.name for case in lost if case.there],
         "have no result": [case.name for case in lost if not case.there],

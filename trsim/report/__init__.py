@@ -11,7 +11,7 @@ from trsim.errors import FileError, UsageError
 if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
 
-SWEEP = ("bifurcation", "sobol")  # what only a study has
+SWEEP = ("bifurcation", "sobol", "map")  # what only a study has
 RUNS = ("section", "spectrum", "lyapunov", "compare", "overlay")  # what only runs have
 
 
@@ -83,8 +83,8 @@ def see_sense(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
     if asked.over and not studies:
         raise UsageError("--over is not for result files", "It is for a sweep.")
-    if asked.over and asked.sobol and not (asked.bifurcation or asked.table):
-        raise UsageError("--over goes with --bifurcation or --table")
+    if asked.over and asked.sobol and not (asked.bifurcation or asked.table or asked.map):
+        raise UsageError("--over goes with --bifurcation, --table or --map")
     if asked.against and not (asked.compare or asked.overlay):
         raise UsageError("--against goes with --compare or --overlay")
     if asked.channels and not asked.compare:

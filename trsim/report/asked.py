@@ -22,6 +22,7 @@ class Asked(NamedTuple):
     table: tuple[str, ...] = ()  # words of analyse/outputs.py
     bifurcation: tuple[str, ...] = ()  # SECTION[:AXIS][@WINDOW]
     sobol: tuple[str, ...] = ()  # words
+    map: tuple[str, ...] = ()  # words
     over: str | None = None  # swept key
 
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from trsim.analyse.bifurcation import diagram
 from trsim.analyse.cases import (
-    DONE,
     Numbers,
     no_result,
     numbers,
@@ -19,12 +18,14 @@ from trsim.analyse.cases import (
     without,
 )
 from trsim.errors import FileError, UsageError, known
+from trsim.report import maps
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.diagrams import bifurcation
 from trsim.report.display import Shown, compared
 from trsim.report.keys import Units, axis, in_words, named_value
 from trsim.report.sobol import sobol
 from trsim.report.style import NO_NUMBER, colour, look, missed, panels, save
+from trsim.statuses import WELL
 
 SERIES = 8  # curves of a family that have a line in the legend
 
@@ -33,7 +34,7 @@ def shown(study: Any) -> Shown:
     """A run of the study, for its units; raises UsageError or FileError where none can be read."""
     wrong: UsageError | FileError = no_result()
     for case in study.cases:
-        if case.status == DONE:
+        if case.status in WELL:
             try:
                 return compared([case.run()])[0]
             except FileError as error:
@@ -49,15 +50,17 @@ def units(study: Any) -> Units:
 def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
     """What was asked for of a study; its chosen numbers where nothing was."""
     one, found = shown(study), nothing()
-    if not (words or asked.bifurcation or asked.sobol):
+    if not (words or asked.bifurcation or asked.sobol or asked.map):
         words = usual(one)
-    of = numbers(study, dict.fromkeys([*words, *asked.sobol]))
+    of = numbers(study, dict.fromkeys([*words, *asked.sobol, *asked.map]))
     for word in asked.bifurcation:
         drawn = diagram(study, word, asked.over)
         found.add(bifurcation(one, drawn, folder))
         found.lines.extend(without(study, drawn.over))
     for word in asked.sobol:
         found.add(sobol(study, one, of[word], folder))
+    for word in asked.map:
+        found.add(maps.drawn(study, one, of[word], asked.over, folder))
     if words:
         found.add(outputs(study, one, [of[word] for word in words], asked.over, folder))
     lines = [*found.lines, *unfinished(study)]

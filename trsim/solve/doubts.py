@@ -26,6 +26,7 @@ from trsim.solve.record import T
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
 from trsim.solve.strained import of_bars
+from trsim.statuses import WELL
 
 Array = NDArray[np.float64]
 
@@ -153,7 +154,7 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
             "exchanged; tighten `tolerance`" + ("; does the velocity of a drive jump?" * driven)
         )
     given = numbers.get("work_of_projection_relative", 0.0)
-    if given > GIVEN and work > NOTHING * natural and outcome.status == "done":
+    if given > GIVEN and work > NOTHING * natural and outcome.status in WELL:
         yield (
             f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
             "largest energy exchanged; does a drive jump?  Else `tolerance` or the step is too "

@@ -8,7 +8,7 @@ from pathlib import Path
 from trsim.errors import FileError
 from trsim.report.page import Block, Markup, Picture, Points, Section, Text
 from trsim.report.page import write as write_page
-from trsim.report.paper import content, tables
+from trsim.report.paper import content, peaks, tables
 from trsim.report.paper.claims import CLAIMS
 from trsim.report.paper.figures import FIGURES
 from trsim.report.paper.figures.drawing import UNITS, Drawn
@@ -24,6 +24,7 @@ SECTIONS = {
     "7.1.2": "Section 7.1.2: place of the clearance",
     "7.1.3": "Section 7.1.3: driving speed",
     "7.1.4": "Section 7.1.4: flexible rod",
+    "7.2": "Section 7.2: five doors and three actuators",
     "8": "Section 8: conclusions beyond section 7",
 }
 
@@ -35,7 +36,7 @@ def paper(
     folder: str | os.PathLike,
     figures: Sequence[Drawn] | None = None,
 ) -> list[Path]:
-    """Write the figures, claims.csv, numbers.csv and index.html of a study into a folder.
+    """Write the figures, the tables as CSV and index.html of a study into a folder.
 
     study: what `trsim sweep scenarios/thrust_reverser/paper.yaml` made.  What is missing there is
     missing in the figures, and undetermined among the claims.  figures: all unless given.  Returns
@@ -57,7 +58,7 @@ def paper(
             if runs.has(*one.cases):
                 drawn.append((one, save(one.draw(runs), folder / f"{one.anchor}.png")))
     absent = [one for one in figures if not runs.has(*one.cases)]
-    files = tables.write(rows, folder)
+    files = [*tables.write(rows, folder), *peaks.write(runs, folder)]
     page = write_page(folder / "index.html", content.TITLE, content.LEAD,
                       sections(runs, rows, drawn, absent))  # fmt: skip
     return [page, *files, *(path for _, path in drawn)]
@@ -88,6 +89,7 @@ def sections(
     ]
     return [
         *found,
+        *peaks.sections(runs),
         Section("figures", "Figures", pictures),
         *moving(runs),
         Section("assumptions", "What is assumed", [Points(content.ASSUMPTIONS)]),

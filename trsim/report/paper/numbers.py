@@ -5,6 +5,7 @@ is one of stroke, m, since the runs of an ensemble start at different strokes; w
 whole run.
 """
 
+import fnmatch
 import math
 from collections.abc import Callable
 from typing import NamedTuple
@@ -113,6 +114,22 @@ def jolt(member: Member, asked: Word) -> Number:
     return Number(float(member.stroke[found]), "m")
 
 
+def most(member: Member, asked: Word) -> Number:
+    """The largest magnitude of all channels that a pattern fits."""
+    fitting = fnmatch.filter(member.run.units, asked.of)
+    if not fitting:
+        raise UsageError(f"{member.file}: no channel fits '{asked.of}'")
+    every = [peak(member, word(asked.text.replace(asked.of, channel))) for channel in fitting]
+    return max(every)
+
+
+def sideways(member: Member, asked: Word) -> Number:
+    """The largest size of a vector across x, over its largest component along x."""
+    vector = member.channel(asked.of)
+    across = np.max(np.linalg.norm(vector[:, 1:], axis=1))
+    return Number(float(across / np.max(np.abs(vector[:, 0]))), "-")
+
+
 def orbit(member: Member, asked: Word) -> Number:
     """Root mean square distance of the journal from its mean place."""
     channels = [f"{asked.of}.eccentricity_{axis}" for axis in "xy"]
@@ -143,7 +160,8 @@ def apart(member: Member, asked: Word, reference: Member | None) -> Number:
     return Number(float(np.sqrt(np.max(np.sum(difference**2, axis=0)))), member.run.unit(asked.of))
 
 
-SHARED = ("fluctuation", "range", "mean", "dispersion", "flight", "impacts")  # as in outputs.py
+# as in outputs.py
+SHARED = ("fluctuation", "range", "mean", "dispersion", "flight", "impacts", "summary")
 KINDS: dict[str, Callable[..., Number] | None] = {
     **dict.fromkeys(SHARED),
     "peak": peak,
@@ -151,6 +169,8 @@ KINDS: dict[str, Callable[..., Number] | None] = {
     "place": place,
     "jolt": jolt,
     "scaled": scaled,
+    "most": most,
+    "sideways": sideways,
     "orbit": orbit,
     "drift": drift,
     "apart": apart,

@@ -1,4 +1,7 @@
-"""The runs of the study: of every case its ensemble, the member as stated first."""
+"""The runs of the study: of every case its ensemble, the member as stated first.
+
+The runs of a grid are no ensemble: each is a case of its own, under the name of its file.
+"""
 
 import os
 from collections.abc import Mapping
@@ -8,9 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from trsim.errors import UsageError
+from trsim.statuses import WELL
 from trsim.store.grow import Array
 from trsim.store.read import Points, Run
 
+GRIDS = ("spatial_jam",)
 BOOK = 1e-3  # J an energy book may miss; the chain has 6 J, and misses 1e-8 or, with bars, 1e-4
 
 
@@ -72,9 +77,10 @@ class Runs:
             raise UsageError(f"{folder} is the sweep of one scenario, not of a study", hint)
         for case in found.cases:
             name = str(case.values["case"])
+            name = case.name if name in GRIDS else name
             index = self.planned.get(name, 0)
             self.planned[name] = index + 1
-            if case.status == "done":
+            if case.status in WELL:
                 member = Member(name, index, Path(case.file), read(case.file))
                 self.members.setdefault(name, []).append(member)
             else:

@@ -87,13 +87,13 @@ def members(row: Row) -> list[list[float]]:
 
 
 def cases(row: Row) -> str:
-    """The cases a row rests on, and how many runs of each."""
+    """The cases a row rests on, and how many runs of each; of those of a grid the grid."""
     count: dict[str, set[int]] = {}
     for source in row.sources:
         count.setdefault(source.case, set()).add(source.member)
     sizes = {len(members) for members in count.values()}
     each = f" ({max(sizes)} each)" if sizes and max(sizes) > 1 else ""
-    return ", ".join(count) + each
+    return ", ".join(dict.fromkeys(case.partition(",")[0] for case in count)) + each
 
 
 def figure(text: str, figures: Sequence[Drawn]) -> str:

@@ -1,6 +1,6 @@
 """What the study of the thrust reverser claims, section by section."""
 
-from trsim.report.paper.claims import clearance, conclusions, model, place, rod, speed
+from trsim.report.paper.claims import clearance, conclusions, model, place, rod, spatial, speed
 from trsim.report.paper.claims.claim import Claim
 
 CLAIMS: tuple[Claim, ...] = (
@@ -9,5 +9,7 @@ CLAIMS: tuple[Claim, ...] = (
     *place.CLAIMS,
     *speed.CLAIMS,
     *rod.CLAIMS,
+    *spatial.CLAIMS,
     *conclusions.CLAIMS,
+    *spatial.CONCLUSIONS,
 )

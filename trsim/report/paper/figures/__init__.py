@@ -1,6 +1,16 @@
 """The figures of the study, by the numbers they have there."""
 
-from trsim.report.paper.figures import clearance, laws, pendulum, place, rod, speed
+from trsim.report.paper.figures import (
+    clearance,
+    laws,
+    mechanism,
+    pendulum,
+    place,
+    rod,
+    spatial,
+    speed,
+    sticking,
+)
 from trsim.report.paper.figures.drawing import Drawn
 
 FIGURES: tuple[Drawn, ...] = (
@@ -10,4 +20,7 @@ FIGURES: tuple[Drawn, ...] = (
     *place.FIGURES,
     *speed.FIGURES,
     *rod.FIGURES,
+    *mechanism.FIGURES,
+    *spatial.FIGURES,
+    *sticking.FIGURES,
 )

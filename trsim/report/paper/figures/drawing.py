@@ -178,12 +178,12 @@ def timed(axes: Sequence[Any]) -> None:
         a.set_xlabel("time (s)")
 
 
-def told(figure: Any, axes: Any, runs: Sequence[Shown]) -> Any:
-    """The figure, with its legend below, in the order of the runs."""
+def told(figure: Any, axes: Any, runs: Sequence[Shown], most: int = 3) -> Any:
+    """The figure, with its legend below, in the order of the runs, `most` to a line."""
     lines, names = axes.get_legend_handles_labels()
     found = dict(zip(names, lines, strict=True))
     labels = [shown.label for shown in runs if shown.label in found]
-    columns = 1 if max(map(len, labels)) > 34 else min(3, len(labels))
+    columns = 1 if max(map(len, labels)) > 34 else min(most, len(labels))
     shown = figure.legend([found[n] for n in labels], labels, loc="outside lower center",
                           ncols=columns)  # fmt: skip
     for line in shown.get_lines():

@@ -1,0 +1,111 @@
+"""A number over two swept keys: a cell for each case of a grid, its number, and how it ended."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.analyse.cases import Numbers, told
+from trsim.errors import UsageError, known
+from trsim.report.asked import Found, file_name, nothing, table
+from trsim.report.display import Shown, short
+from trsim.report.keys import Units, axis, in_words
+from trsim.report.style import look, panels, save
+
+MOST = 14  # cells of a line: more have no room for numbers
+DARK = 0.55  # of the colour scale: below it letters are white
+
+
+class Grid(NamedTuple):
+    """Cases by their places: values (rows, columns), nan where there is none."""
+
+    keys: tuple[str, str]  # across, up
+    across: list[Any]
+    up: list[Any]
+    values: NDArray[np.float64]
+    ends: list[list[str]]  # "jammed" where a run was; else nothing
+
+
+def drawn(study: Any, one: Shown, of: Numbers, over: str | None, folder: Path) -> Found:
+    """The map of one number, as figure and table."""
+    grid, found = gridded(study, of, over), nothing()
+    factor, unit = one.display(of.unit)
+    units = Units(study.units, study.written)
+    with look():
+        made, axes = panels(1, height=0.6 + 0.42 * max(len(grid.up), 4))
+        names = [named(one, units, key, values) for key, values in
+                 zip(grid.keys, (grid.across, grid.up), strict=True)]  # fmt: skip
+        shade = cells(axes[0, 0], names[0], names[1], factor * grid.values, grid.ends)
+        axes[0, 0].set_xlabel(axis(one, units, grid.keys[0]))
+        axes[0, 0].set_ylabel(axis(one, units, grid.keys[1]))
+        made.colorbar(shade, label=f"{in_words(of.word)} ({unit})")
+        found.files.append(save(made, folder / f"{file_name('map', of.word)}.png"))
+    titles = [f"{key} [{study.units.get(key, '-')}]" for key in grid.keys]
+    head = ["case", "status", *titles, f"{of.word} [{of.unit}]"]
+    rows = [(case.name, case.status, *(case.values[key] for key in grid.keys),
+             of.values[case.name]) for case in study.cases]  # fmt: skip
+    found.files.append(table(folder / f"{file_name('map', of.word)}.csv", head, rows))
+    found.lines.extend(told(of.why))
+    return found
+
+
+def gridded(study: Any, of: Numbers, over: str | None) -> Grid:
+    """The cases of a study of two keys; raises UsageError for any other."""
+    keys = list(study.keys)
+    if over is not None and over not in keys:
+        raise UsageError(f"the study does not sweep '{over}'", known(over, keys))
+    if len(keys) != 2:
+        what = f"a map is over two keys, the study varies {len(keys)}: {', '.join(keys)}"
+        raise UsageError(what, "Sweep two keys, and give the others one value each with --set.")
+    across = over or keys[0]
+    up = keys[1 - keys.index(across)]
+    xs, ys = (ordered(case.values[key] for case in study.cases) for key in (across, up))
+    values, ends = np.full((len(ys), len(xs)), np.nan), [[""] * len(xs) for _ in ys]
+    taken = set()
+    for case in study.cases:
+        place = ys.index(case.values[up]), xs.index(case.values[across])
+        if place in taken:
+            raise UsageError(
+                f"several cases have the same {across} and {up}", "A map is of a grid."
+            )
+        taken.add(place)
+        values[place] = of.values[case.name]
+        ends[place[0]][place[1]] = case.status if case.status != "done" else ""
+    return Grid((across, up), xs, ys, values, ends)
+
+
+def ordered(values: Any) -> list[Any]:
+    """Different values: numbers by size, words as they come."""
+    found = list(dict.fromkeys(values))
+    return found if any(isinstance(v, str) for v in found) else sorted(found)
+
+
+def named(one: Shown, units: Units, key: str, values: Sequence[Any]) -> list[str]:
+    """The values of a key in the unit of its axis."""
+    factor = units.display(one, key)[0]
+    return [v if isinstance(v, str) else short(v * factor) for v in values]
+
+
+def cells(
+    axes: Any, across: Sequence[str], up: Sequence[str], values: NDArray[np.float64],
+    ends: Sequence[Sequence[str]],
+) -> Any:  # fmt: skip
+    """Coloured cells with their numbers and ends; what tells the colours."""
+    x, y = np.arange(len(across) + 1) - 0.5, np.arange(len(up) + 1) - 0.5
+    shade = axes.pcolormesh(x, y, np.ma.masked_invalid(values), cmap="cividis", ec="white", lw=1.0)
+    axes.set_xticks(range(len(across)), list(across))
+    axes.set_yticks(range(len(up)), list(up))
+    axes.grid(visible=False)
+    axes.set_facecolor("0.88")  # of cells without a number
+    if max(len(across), len(up)) > MOST:
+        return shade
+    for y, x in np.ndindex(values.shape):
+        value = float(values[y, x])
+        number = "" if np.isnan(value) else short(value, 3)
+        text = "\n".join(part for part in (number, ends[y][x]) if part)
+        bright = np.isnan(value) or shade.norm(value) > DARK
+        axes.text(x, y, text, ha="center", va="center", fontsize=7, linespacing=1.1,
+                  color="black" if bright else "white")  # fmt: skip
+    return shade
