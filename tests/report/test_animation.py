@@ -318,6 +318,19 @@ def test_spring(hatch):
     assert np.ptp(np.linalg.norm(ends[1] - ends[0], axis=1)) > 1e-2
 
 
+def test_spring_without_length(tmp_path):
+    """Two points that are always one have no direction: nothing is drawn between them."""
+    text = (
+        small.SLIDER_CRANK
+        + """
+forces: {none: {type: spring_damper, bodies: [ground, crank], points: [[0, 0], [0, 0]],
+                stiffness: 1}}
+"""
+    )
+    _, _, things = named(of(tmp_path, text=text))
+    assert "none" not in things
+
+
 def test_bushing(hatch):
     """A block on the second body; where it slides it is longer and runs on a rail of the first."""
     moved, sizes, things = named(hatch)

@@ -48,9 +48,11 @@ def actuator(moved: Motion, look: Look, line: Line) -> Iterator[Thing]:
 
 
 def spring(moved: Motion, look: Look, line: Line) -> Iterator[Thing]:
-    """A coil that is stretched."""
+    """A coil that is stretched; none between points that never part."""
     a, _, turn, length = course(moved, look, line)
     r, usual = look.radius, float(length.max())
+    if usual < 0.1 * r:  # its ends are in one place, and rounding gives their direction
+        return
     coil = solids.coil(usual, 0.8 * r, 0.15 * r, COILS)
     size = np.stack([length / usual, *[np.ones(len(length))] * 2], axis=1)
     yield Thing(line.name, ((coil, STEEL),), a, turn, size, label=line.name)
