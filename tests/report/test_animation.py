@@ -10,9 +10,11 @@ from tests import small
 from trsim.cli import main
 from trsim.errors import UsageError
 from trsim.report.animation import film, forces, section, solids, turns, write
+from trsim.report.animation.bodies import rails, skeleton
+from trsim.report.animation.lines import lines
 from trsim.report.animation.motion import FRAMES, frames, motion
 from trsim.report.animation.page import arrow_scale
-from trsim.report.animation.things import look
+from trsim.report.animation.things import colours, look
 from trsim.store.read import read
 
 from .browser import CHROMIUM, browser
@@ -67,6 +69,32 @@ joints: {pin: {type: revolute, bodies: [ground, rod], at: [0, 0]}}
 solver: {end: 0.2 s, tolerance: 1e-4}
 """
 
+# a hatch on a rail, pushed by an actuator, with two equal flaps held by springs
+HATCH = """
+planar: false
+templates:
+  flap:
+    parameters: {z: 0}
+    frame: {at: [0, 0, z]}
+    bodies: {leaf: {mass: 0.1, inertia: [1e-3, 1e-3, 1e-3], at: [0, 0.3, 0],
+                    angular_velocity: [6, 0, 0]}}
+    joints: {hinge: {type: revolute, bodies: [hatch, leaf], at: [0, 0.2, 0], axis: [1, 0, 0]}}
+    forces: {hold: {type: spring_damper, bodies: [hatch, leaf], points: [[0.2, 0.1], [0.2, 0.4]],
+                    stiffness: 2}}
+instances: {low: {template: flap}, high: {template: flap, parameters: {z: 0.8}}}
+bodies:
+  hatch: {mass: 3, inertia: [0.2, 0.2, 0.2], at: [0, 0, 0.4]}
+drives:
+  jack: {type: actuator, bodies: [ground, hatch], points: [[-0.8, 0.1, 0.4], [-0.3, 0, 0.4]],
+         velocity: "0.4*smoothstep(t/0.2)", stiffness: 1e5, damping: 500}
+forces:
+  rail: {type: bushing, bodies: [ground, hatch], at: [0, 0, 0.4], stiffness: [0, 1e5, 1e5],
+         rotational_stiffness: [1e3, 1e3, 1e3], rotational_damping: [10, 10, 10]}
+  mount: {type: bushing, bodies: [hatch, high_leaf], at: [0, 0.4, 0.8], stiffness: [1, 1, 1]}
+solver: {end: 0.5 s}
+output: {every: 5 ms}
+"""
+
 
 def of(folder, *sets, text=small.SLIDER_CRANK):
     small.run(folder / "run.h5", *sets, text=text)
@@ -82,6 +110,11 @@ def crank(tmp_path_factory):
 @pytest.fixture(scope="module")
 def bar(tmp_path_factory):
     return of(tmp_path_factory.mktemp("bar"), text=ROD)
+
+
+@pytest.fixture(scope="module")
+def hatch(tmp_path_factory):
+    return of(tmp_path_factory.mktemp("hatch"), text=HATCH)
 
 
 def without_rotation(run):
@@ -198,6 +231,7 @@ SOLIDS = {
     "bar": (solids.bar(np.zeros(3), np.array([0.0, 3.0, 0.0]), 1.0, 0.5, Z), 3.0 + 0.5 * np.pi),
     "ring": (solids.ring(1.0, 2.0, 1.0, Z), 3.0 * np.pi),
     "rod": (solids.rod(np.zeros(3), 3.0 * X, 1.0), 3.0 * np.pi + 4.0 / 3.0 * np.pi),
+    "coil": (solids.coil(6.0, 1.0, 0.2, 3), 1.5 * 3.0**0.5 * 0.04 * np.hypot(6.0, 6.0 * np.pi)),
     "arrow": (solids.arrow(0.3, 0.4), np.pi * (0.16 * 0.7 + 0.1)),
 }
 
@@ -240,6 +274,136 @@ def test_scale_in_words():
     assert arrow_scale(0.5) == "1 N is 500 mm"
 
 
+# --- what acts between points of bodies --------------------------------------------------------
+
+
+def named(run):
+    moved = motion(run)
+    sizes = look(moved.drawn)
+    things = (*lines(moved, sizes), *rails(moved, sizes))
+    return moved, sizes, {thing.name: thing for thing in things}
+
+
+def reach(thing):
+    """Where the end of a mesh from 0 to 1 along x is over the frames."""
+    return thing.place + turns.turned(thing.turn, thing.scale[:, :1] * X)
+
+
+def test_actuator(hatch):
+    """Its rod ends on both bodies; its cylinder keeps its length and is never longer than that."""
+    moved, sizes, things = named(hatch)
+    head = moved.point("hatch", np.array([-0.3, 0.0, 0.4]))
+    assert np.ptp(head[:, 0]) > 0.1
+    assert things["jack"].place == pytest.approx(np.tile([-0.8, 0.1, 0.4], (len(head), 1)))
+    assert reach(things["jack rod"]) == pytest.approx(head)
+    assert things["jack head"].place == pytest.approx(head)
+    (cylinder, _), _ = things["jack"].pieces
+    assert things["jack"].scale is None
+    length = np.linalg.norm(head - [-0.8, 0.1, 0.4], axis=1)
+    assert 0.5 * length.min() < cylinder.points[:, 0].max() < length.min() - sizes.radius
+
+
+def test_spring(hatch):
+    """The coil is stretched from the one body to the other."""
+    moved, _, things = named(hatch)
+    coil = things["high_hold"]
+    ((mesh, _),) = coil.pieces
+    x = mesh.points[:, 0]
+    size = x.min() + x.max()  # of the line in the middle of the wire
+    ends = [moved.point(body, np.array([0.2, y, 0.8])) for body, y in
+            (("hatch", 0.1), ("high_leaf", 0.4))]  # fmt: skip
+    assert coil.place == pytest.approx(ends[0])
+    found = coil.place + turns.turned(coil.turn, size * coil.scale[:, :1] * X)
+    assert found == pytest.approx(ends[1])
+    assert np.ptp(np.linalg.norm(ends[1] - ends[0], axis=1)) > 1e-2
+
+
+def test_spring_without_length(tmp_path):
+    """Two points that are always one have no direction: nothing is drawn between them."""
+    text = (
+        small.SLIDER_CRANK
+        + """
+forces: {none: {type: spring_damper, bodies: [ground, crank], points: [[0, 0], [0, 0]],
+                stiffness: 1}}
+"""
+    )
+    _, _, things = named(of(tmp_path, text=text))
+    assert "none" not in things
+
+
+def test_bushing(hatch):
+    """A block on the second body; where it slides it is longer and runs on a rail of the first."""
+    moved, sizes, things = named(hatch)
+    assert things["mount"].place == pytest.approx(moved.point("high_leaf", np.array([0, 0.4, 0.8])))
+    assert things["mount"].turn is moved.turn("high_leaf")
+    for name, ratio in (("mount", 1.0), ("rail", 2.0)):
+        sides = np.ptp(things[name].pieces[0][0].points, axis=0)
+        assert sides == pytest.approx(sides[1] * np.array([ratio, 1.0, 1.0]))
+    assert [name for name in things if name.endswith(" rail")] == ["rail rail"]
+    ((rail, _),) = things["rail rail"].pieces
+    x = moved.places["hatch"][:, 0]
+    assert rail.points[:, 0].min() < x.min() - sizes.radius
+    assert rail.points[:, 0].max() > x.max() + sizes.radius
+
+
+def test_lines_of_a_flat_mechanism(tmp_path):
+    """They stand in front of their bodies; stiffness out of the plane makes no rail."""
+    text = (
+        small.SLIDER_CRANK
+        + """
+forces:
+  pad: {type: bushing, bodies: [ground, slider], at: [0.17, 0], stiffness: [10, 10, 0]}
+  spring: {type: spring_damper, bodies: [crank, rod], points: [[0, 0], [0.11, 0]], stiffness: 1}
+"""
+    )
+    moved, sizes, things = named(of(tmp_path, text=text))
+    assert sizes.normal.tolist() == [0.0, 0.0, 1.0]
+    height = things["spring"].place[:, 2]
+    assert height == pytest.approx(np.full(len(moved.time), sizes.front("crank", "rod")))
+    assert "pad rail" not in things
+
+
+def test_many_points_are_one_body(hatch):
+    """Where lines act counts; links go from neighbour to neighbour and reach every point."""
+    drawn = motion(hatch).drawn
+    found = [(tuple(a), tuple(b)) for a, b in skeleton(drawn, look(drawn), "hatch")]
+    points = {(-0.3, 0.0, 0.4), (0.0, 0.0, 0.4)}
+    points |= {(x, y, z) for x, y in ((0.0, 0.2), (0.2, 0.1)) for z in (0.0, 0.8)}
+    points.add((0.0, 0.4, 0.8))  # of the mount
+    assert {point for pair in found for point in pair} == points
+    assert len(found) == len(points) - 1
+    # the shortest way to hold them: by hand
+    total = sum(np.linalg.norm(np.subtract(a, b)) for a, b in found)
+    assert total == pytest.approx(0.3 + 2 * 0.2**0.5 + 2 * 0.05**0.5 + 0.2)
+
+
+def test_equal_bodies_have_one_colour(hatch):
+    found = colours(motion(hatch).drawn)
+    assert found["low_leaf"] == found["high_leaf"] != found["hatch"]
+    assert list(film(hatch).colours) == ["hatch", "flap_leaf"]
+
+
+@pytest.mark.parametrize("gravity", [[0, 0, 0], [0, -9.81, 0], [0, 0, -9.81], [9.81, 0, 0]])
+def test_first_view_in_space_is_oblique(gravity, tmp_path):
+    """Upright against gravity; the axes have three directions and lengths that are seen."""
+    run = of(tmp_path, f"gravity={gravity}", text=HATCH)
+    gltf, _ = arrays(film(run).glb)
+    extras = gltf.scenes[0].extras
+    up, back = np.array(extras["up"]), np.array(extras["back"])
+    assert up == pytest.approx(-np.sign(gravity) if any(gravity) else Z)
+    assert 0.3 < up @ back < 0.7
+    # two axes fall together on the screen where the line of sight has nothing of the third
+    assert np.abs(back).min() > 0.3
+    assert "normal" not in extras
+
+
+def test_first_view_of_the_plane(crank):
+    gltf, _ = arrays(film(crank).glb)
+    extras = gltf.scenes[0].extras
+    assert extras["normal"] == [0.0, 0.0, 1.0]
+    assert not {"up", "back"} & set(extras)
+
+
 # --- the file --------------------------------------------------------------------------------
 
 
@@ -261,7 +425,7 @@ def arrays(glb):
     return gltf, found
 
 
-@pytest.mark.parametrize("name", ["crank", "bar"])
+@pytest.mark.parametrize("name", ["crank", "bar", "hatch"])
 def test_glb(name, request):
     """Valid where programs are strict: bounds, unit quaternions, indices, lengths, targets."""
     run = request.getfixturevalue(name)
@@ -436,6 +600,36 @@ def test_drawn(page, crank, tmp_path):
         assert all((hues(picture) == hue).sum() > 40 for hue in ("blue", "orange", "green"))
     assert (hues(pictures[0]) != hues(pictures[1])).sum() > 500
     assert (hues(pictures[1]) == "red").sum() > 40 > (hues(pictures[0]) == "red").sum()
+
+
+@in_browser
+def test_view(page, hatch, tmp_path):
+    """All of the motion is in the first picture, and `Reset view` goes back to it."""
+    from PIL import Image
+
+    (_, file), _ = write(hatch.path, tmp_path)
+    canvas = "document.querySelector('canvas')"
+
+    def seen(drawn):
+        box = page.until(f"{SECTION}?.dataset.drawn > {drawn}",
+                         f"(b => [b.left, b.top, b.right, b.bottom])({canvas}"
+                         ".getBoundingClientRect())")  # fmt: skip
+        page.picture(tmp_path / "page.png")
+        with Image.open(tmp_path / "page.png") as image:
+            return np.asarray(image.convert("RGB").crop(box), dtype=float)
+
+    for t in (0.0, hatch.time[-1]):
+        page.open(file, f"#t={t:.9g}")
+        page.value("document.querySelector('.named').click()")
+        first = seen(1)
+        coloured = hues(first) != "grey"
+        assert coloured.sum() > 200
+        assert not (coloured[:2].any() or coloured[-2:].any())
+        assert not (coloured[:, :2].any() or coloured[:, -2:].any())
+    page.value(f"{canvas}.dispatchEvent(new WheelEvent('wheel', {{deltaY: -300}}))")
+    assert (seen(2) != first).any()
+    page.value("document.querySelector('.reset').click()")
+    assert np.array_equal(seen(3), first)
 
 
 @in_browser

@@ -16,7 +16,7 @@ class Film(NamedTuple):
     scale: float  # m/N of the arrows; 0 without contact forces
     magnified: float  # clearances
     open: float  # m, by which ideal joints come apart in it
-    colours: dict[str, str]  # body -> colour
+    colours: dict[str, str]  # kind of body -> colour
     warnings: tuple[str, ...]
 
 

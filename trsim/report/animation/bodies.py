@@ -6,17 +6,18 @@ from itertools import pairwise
 import numpy as np
 
 from trsim.report.animation import solids, turns
-from trsim.report.animation.drawing import Array, Drawing, Joint
+from trsim.report.animation.drawing import Array, Drawing, Joint, Line
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.solids import Mesh
-from trsim.report.animation.things import SUPPORT, Look, Thing, colours, ends, origin, pose
+from trsim.report.animation.things import SUPPORT, Look, Thing, colours, origin, points, pose
 
 LONG = 4.5  # half widths of a link: what a rail is longer than the stroke, at each end
+MANY = 4  # points of a body, of which a star is still understood
 SEGMENTS = 48  # of a bar that is shown: more nodes than that are passed over
 
 
 def links(moved: Motion, look: Look) -> Iterator[Thing]:
-    """Every rigid body as a solid between its joints."""
+    """Every rigid body as a solid between its joints and lines."""
     drawn = moved.drawn
     colour = colours(drawn)
     for body in drawn.bodies:
@@ -41,16 +42,30 @@ def slides(drawn: Drawing, body: str) -> list[Joint]:
 def skeleton(drawn: Drawing, look: Look, body: str) -> list[tuple[Array, Array]]:
     """Where the links of a body begin and end, as drawn.
 
-    Two joints: one between them; more: from their middle to each; one: to the centre of mass.
+    Two points: one between them; more: from their middle to each; one: to the centre of mass.  Of
+    many points a star is a web: they are joined from neighbour to neighbour, as along a shell.
     """
-    points = ends(drawn, body)
-    if len(points) == 2:
-        return [(points[0], points[1])]
-    if len(points) == 1:
+    held = points(drawn, body)
+    if len(held) == 2:
+        return [(held[0], held[1])]
+    if len(held) == 1:
         centre = drawn.bodies[body]
-        far = np.linalg.norm(points[0] - centre) > look.radius or not slides(drawn, body)
-        return [(points[0], centre)] if far else []
-    return [(np.mean(points, axis=0), point) for point in points]
+        far = np.linalg.norm(held[0] - centre) > look.radius or not slides(drawn, body)
+        return [(held[0], centre)] if far else []
+    if len(held) > MANY:
+        return tree(held)
+    return [(np.mean(held, axis=0), point) for point in held]
+
+
+def tree(points: list[Array]) -> list[tuple[Array, Array]]:
+    """The shortest links that hold all points together (Prim)."""
+    inside, outside, found = points[:1], points[1:], []
+    while outside:
+        away = np.array([[np.linalg.norm(p - q) for q in outside] for p in inside])
+        a, b = np.unravel_index(away.argmin(), away.shape)
+        found.append((inside[a], outside[b]))
+        inside.append(outside.pop(b))
+    return found
 
 
 def arm(drawn: Drawing, look: Look, body: str, at: Array) -> list[Mesh]:
@@ -89,22 +104,31 @@ def lifted(mesh: Mesh, look: Look, body: str) -> Mesh:
 
 
 def rails(moved: Motion, look: Look) -> Iterator[Thing]:
-    """What slides run on: a bar on the first body, as long as the stroke."""
+    """What slides run on, and bushings that are free along one axis."""
     for joint in moved.drawn.joints:
-        if joint.type != "prismatic":
-            continue
-        d = moved.point(joint.j, joint.at) - moved.point(joint.i, joint.at)
-        stroke = np.sum(d * turns.turned(moved.turn(joint.i), joint.axis), axis=1)
-        low, high = stroke.min() - LONG * look.radius, stroke.max() + LONG * look.radius
-        at = joint.at - origin(moved.drawn, joint.i) + 0.5 * (low + high) * joint.axis
-        if look.normal is None:
-            axes, wide, deep = np.roll(solids.frame(joint.axis), 1, axis=0), 0.7, 0.7
-        else:
-            axes = np.stack([joint.axis, np.cross(look.normal, joint.axis), look.normal])
-            at, wide, deep = at - look.pitch * look.normal, 1.3, 0.9
-        sides = np.array([high - low, wide * look.radius, deep * look.radius])
-        mesh = solids.box(sides, axes).moved(at)
-        yield Thing(f"{joint.name} rail", ((mesh, SUPPORT),), *pose(moved, joint.i))
+        if joint.type == "prismatic":
+            yield rail(moved, look, joint, joint.at, joint.axis)
+    for line in moved.drawn.lines:
+        axis = np.zeros(3) if line.slide is None else line.axes[line.slide]
+        # stiffness across a flat mechanism says nothing
+        if axis.any() and (look.normal is None or abs(axis @ look.normal) < 1e-9):
+            yield rail(moved, look, line, line.ends[0], axis)
+
+
+def rail(moved: Motion, look: Look, held: Joint | Line, at: Array, axis: Array) -> Thing:
+    """A bar on the first body, as long as the stroke."""
+    d = moved.point(held.j, at) - moved.point(held.i, at)
+    stroke = np.sum(d * turns.turned(moved.turn(held.i), axis), axis=1)
+    low, high = stroke.min() - LONG * look.radius, stroke.max() + LONG * look.radius
+    middle = at - origin(moved.drawn, held.i) + 0.5 * (low + high) * axis
+    if look.normal is None:
+        axes, wide, deep = np.roll(solids.frame(axis), 1, axis=0), 0.7, 0.7
+    else:
+        axes = np.stack([axis, np.cross(look.normal, axis), look.normal])
+        middle, wide, deep = middle - look.pitch * look.normal, 1.3, 0.9
+    sides = np.array([high - low, wide * look.radius, deep * look.radius])
+    mesh = solids.box(sides, axes).moved(middle)
+    return Thing(f"{held.name} rail", ((mesh, SUPPORT),), *pose(moved, held.i))
 
 
 def bars(moved: Motion, look: Look) -> Iterator[Thing]:

@@ -1,4 +1,4 @@
-"""A mechanism as drawn: where its bodies, bars and joints are before anything moves."""
+"""A mechanism as drawn: where its bodies, bars, joints and lines are before anything moves."""
 
 from typing import Any, NamedTuple
 
@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.members import members
 from trsim.assemble.orientation import quaternion
+from trsim.elements.bushing import axes as bushing_axes
 from trsim.elements.joint import perpendicular
 from trsim.fields import direction
 from trsim.spec.load import loads
@@ -18,6 +19,7 @@ GROUND = "ground"
 # joints that hold two points together
 IDEAL_POINTS = ("revolute", "spherical", "universal", "fixed")
 SPATIAL = ("spherical", "universal")  # joints that let a body leave a plane
+LINES = ("actuator", "spring_damper", "bushing")  # forces and drives that have a place
 STIFF = ("prismatic", "fixed")  # joints that let no body turn against the other
 
 
@@ -39,8 +41,20 @@ class Joint(NamedTuple):
         return self.axes[2]
 
 
+class Line(NamedTuple):
+    """What acts between a point of body i and a point of body j without joining them."""
+
+    name: str
+    type: str
+    i: str
+    j: str
+    ends: tuple[Array, Array]  # (3) m, as drawn; a bushing has both in one place
+    axes: Array  # (3, 3) rows: directions of its stiffnesses, of a bushing
+    slide: int | None  # the one along which a bushing has none: that of a rail
+
+
 class Drawing(NamedTuple):
-    """Bodies, bars and joints of a run, SI units, world axes."""
+    """Bodies, bars, joints and lines of a run, SI units, world axes."""
 
     scenario: Any
     bodies: dict[str, Array]  # rigid ones -> centre of mass (3)
@@ -48,6 +62,7 @@ class Drawing(NamedTuple):
     bars: dict[str, Array]  # flexible ones -> nodes (k, 3)
     thickness: dict[str, float]  # m, of the bars
     joints: tuple[Joint, ...]
+    lines: tuple[Line, ...]
     planar: bool
     lost: tuple[str, ...]  # bodies whose place was not recorded
 
@@ -56,8 +71,9 @@ class Drawing(NamedTuple):
 
     @property
     def size(self) -> float:
-        """Diagonal of the box around all joints and centres of mass, m; never zero."""
+        """Diagonal of the box around all joints, lines and centres of mass, m; never zero."""
         places = [*self.bodies.values(), *(joint.at for joint in self.joints)]
+        places += [end for line in self.lines for end in line.ends]
         places += [node for nodes in self.bars.values() for node in nodes]
         return float(np.linalg.norm(np.ptp(np.array(places), axis=0))) or 1.0
 
@@ -79,8 +95,8 @@ def drawing(run: Run) -> Drawing:
         else:
             bodies[name], axes[name] = np.array(spec.at), np.roll(quaternion(spec), -1)
     planar = bool(run.group("mechanism").get("planar", False))
-    found = Drawing(scenario, bodies, axes, bars, thickness, (), planar, tuple(lost))
-    return found._replace(joints=joints(found))
+    found = Drawing(scenario, bodies, axes, bars, thickness, (), (), planar, tuple(lost))
+    return found._replace(joints=joints(found), lines=lines(found))
 
 
 def joints(drawn: Drawing) -> tuple[Joint, ...]:
@@ -108,6 +124,23 @@ def joints(drawn: Drawing) -> tuple[Joint, ...]:
             radius = scenario.contact_laws[law].bearing_radius or 0.0
         found.append(Joint(name, kind, i, j, np.array(at), axes, clearance, radius,
                            name in released))  # fmt: skip
+    return tuple(found)
+
+
+def lines(drawn: Drawing) -> tuple[Line, ...]:
+    """Actuators, springs and bushings between bodies that are drawn."""
+    found = []
+    for name, spec in {**drawn.scenario.drives, **drawn.scenario.forces}.items():
+        if spec.type not in LINES or not all(drawn.has(body) for body in spec.bodies):
+            continue
+        axes, slide = np.eye(3), None
+        if spec.type == "bushing":
+            axes, free = np.array(bushing_axes(spec)), np.flatnonzero(np.equal(spec.stiffness, 0.0))
+            slide = int(free[0]) if len(free) == 1 else None
+        first, second = (spec.at, spec.at) if spec.type == "bushing" else spec.points
+        ends = np.array(first), np.array(second)
+        i, j = spec.bodies
+        found.append(Line(name, spec.type, i, j, ends, axes, slide))
     return tuple(found)
 
 

@@ -104,10 +104,9 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
             parts = [solids.prism(shape, look.thick, look.normal) for shape in (outline, base)]
             mesh = solids.joined(*parts).moved(-look.pitch * look.normal)
         elif joint.type in SPATIAL:
-            post = solids.cylinder(0.9 * r, 3.0 * r, np.array([0.0, 1.0, 0.0]))
-            foot = solids.cylinder(2.4 * r, 0.6 * r, np.array([0.0, 1.0, 0.0]))
-            down = np.array([0.0, -r, 0.0])
-            mesh = solids.joined(post.moved(2.2 * down), foot.moved(3.8 * down))
+            post = solids.cylinder(0.9 * r, 3.0 * r, look.up).moved(-2.2 * r * look.up)
+            foot = solids.cylinder(2.4 * r, 0.6 * r, look.up).moved(-3.8 * r * look.up)
+            mesh = solids.joined(post, foot)
         else:
             mesh = solids.cylinder(1.3 * r, 1.6 * r, joint.axis)
         yield Thing(f"{joint.name} support", ((mesh, SUPPORT),), joint.at[None], turns.STILL[None])

@@ -5,15 +5,16 @@ from itertools import product
 import numpy as np
 
 from trsim.errors import UsageError
-from trsim.report.animation import Film, bodies, fittings
+from trsim.report.animation import Film, bodies, fittings, lines
 from trsim.report.animation.bodies import LONG
-from trsim.report.animation.drawing import GROUND, Array
+from trsim.report.animation.drawing import Array, Drawing
 from trsim.report.animation.forces import arrows
 from trsim.report.animation.glb import glb
 from trsim.report.animation.motion import Motion, motion
-from trsim.report.animation.things import Look, colours, look
+from trsim.report.animation.things import Look, colours, kinds, look
 from trsim.store.read import Run
 
+AROUND, ABOVE = 50.0, 28.0  # deg, of the first view in space
 MOST = 1e4  # times its size
 
 
@@ -31,6 +32,7 @@ def shoot(run: Run, magnified: float) -> Film:
         *fittings.supports(moved, sizes),
         *bodies.links(moved, sizes),
         *bodies.bars(moved, sizes),
+        *lines.lines(moved, sizes),
         *fittings.stops(moved, sizes),
         *fittings.pins(moved, sizes),
         *fittings.bearings(moved, sizes, magnified),
@@ -42,8 +44,7 @@ def shoot(run: Run, magnified: float) -> Film:
         "outermost": outermost(moved, sizes).tolist(),
         "margin": 2.5 * sizes.radius,
     }
-    if sizes.normal is not None:
-        extras["normal"] = sizes.normal.tolist()
+    extras |= sight(sizes)
     playing = any(joint.type == "clearance_joint" for joint in moved.drawn.joints)
     return Film(
         glb([*things, *forces], moved.time, extras),
@@ -52,9 +53,32 @@ def shoot(run: Run, magnified: float) -> Film:
         scale,
         magnified if playing else 1.0,
         moved.open,
-        {name: colour for name, colour in colours(moved.drawn).items() if name != GROUND},
+        legend(moved.drawn),
         moved.warnings,
     )
+
+
+def legend(drawn: Drawing) -> dict[str, str]:
+    """Kind of body -> colour."""
+    known = colours(drawn)
+    return {kind: known[name] for name, kind in kinds(drawn).items()}
+
+
+def sight(sizes: Look) -> dict[str, list[float]]:
+    """Where the first view is from: the normal of a flat mechanism, or upwards and to who looks.
+
+    In space it is oblique: no two of the axes fall together on the screen, and none is a point.
+    """
+    if sizes.normal is not None:
+        return {"normal": sizes.normal.tolist()}
+    up = sizes.up
+    right = np.eye(3)[0] if abs(up[0]) < 0.9 else np.eye(3)[1]
+    right = right - (right @ up) * up
+    right /= np.linalg.norm(right)
+    front, around, above = np.cross(right, up), np.deg2rad(AROUND), np.deg2rad(ABOVE)
+    level = np.cos(around) * front + np.sin(around) * right
+    back = np.cos(above) * level + np.sin(above) * up
+    return {"up": up.tolist(), "back": back.tolist()}
 
 
 def outermost(moved: Motion, sizes: Look) -> Array:
@@ -63,8 +87,17 @@ def outermost(moved: Motion, sizes: Look) -> Array:
     for joint in moved.drawn.joints:
         places += [moved.point(body, joint.at) for body in (joint.i, joint.j)]
         if joint.type == "prismatic":
-            ahead = LONG * sizes.radius * joint.axis
-            places += [moved.point(joint.j, joint.at) + side * ahead for side in (-1.0, 1.0)]
+            places += beyond(moved.point(joint.j, joint.at), joint.axis, sizes)
+    for line in moved.drawn.lines:
+        first, second = moved.point(line.i, line.ends[0]), moved.point(line.j, line.ends[1])
+        places += [first, second]
+        if line.slide is not None:
+            places += beyond(second, line.axes[line.slide], sizes)
     every = np.concatenate(places)
     ways = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
     return every[np.unique(np.argmax(every @ ways.T, axis=0))]
+
+
+def beyond(places: Array, axis: Array, sizes: Look) -> list[Array]:
+    """The ends of a rail around places on it."""
+    return [places + side * LONG * sizes.radius * axis for side in (-1.0, 1.0)]

@@ -13,6 +13,7 @@ from trsim.elements.joint import perpendicular
 Array = NDArray[np.float64]
 
 ROUND = 24  # corners of a circle
+WINDING, WIRE = 12, 6  # of a turn of a coil, of its wire
 
 
 class Mesh(NamedTuple):
@@ -128,13 +129,17 @@ def turned_profile(profile: Array, axis: Array, corners: int = ROUND) -> Mesh:
     r, z, n_r, n_z = (column[:, None, None] for column in np.asarray(profile).T)
     points = (r * spokes + z * axes[2]).reshape(-1, 3)
     normals = (n_r * spokes + n_z * axes[2]).reshape(-1, 3)
+    return Mesh(points, normals, skin(len(r), corners))
+
+
+def skin(rings: int, corners: int) -> NDArray[np.int64]:
+    """Triangles between rings, each of that many corners with the first once more at its end."""
     wide = corners + 1
-    low = (wide * np.arange(len(profile) - 1)[:, None] + np.arange(corners)).reshape(-1)
-    triangles = np.concatenate([
+    low = (wide * np.arange(rings - 1)[:, None] + np.arange(corners)).reshape(-1)
+    return np.concatenate([
         np.stack([low, low + 1, low + wide + 1], axis=1),
         np.stack([low, low + wide + 1, low + wide], axis=1),
     ])  # fmt: skip
-    return Mesh(points, normals, triangles)
 
 
 def rod(a: Array, b: Array, radius: float) -> Mesh:
@@ -169,3 +174,19 @@ def arrow(head: float = 0.28, shaft: float = 0.42) -> Mesh:
         [1.0, -head, n_r, n_x], [0.0, 0.0, n_r, n_x],
     ])  # fmt: skip
     return turned_profile(profile, np.array([1.0, 0.0, 0.0]), 16)
+
+
+def coil(length: float, radius: float, wire: float, turns: int) -> Mesh:
+    """A spring from the origin along x: a wire by its radius, wound by another about the axis."""
+    along = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, WINDING * turns + 1)
+    # at both ends the wire closes to a point
+    thick = np.pad(np.full(len(along), wire), 1)[:, None, None]
+    corners = 2.0 * np.pi * np.linspace(0.0, 1.0, WIRE + 1)
+    t, around = np.meshgrid(np.pad(along, 1, mode="edge"), corners, indexing="ij")
+    pitch, level = length / (2.0 * np.pi * turns), np.zeros_like(t)
+    out = np.stack([level, np.cos(t), np.sin(t)], axis=2)
+    heading = np.stack([level + pitch, -radius * np.sin(t), radius * np.cos(t)], axis=2)
+    aside = np.cross(heading / np.hypot(pitch, radius), out)
+    normals = np.cos(around)[..., None] * out + np.sin(around)[..., None] * aside
+    points = np.stack([pitch * t, level, level], axis=2) + radius * out + thick * normals
+    return Mesh(points.reshape(-1, 3), normals.reshape(-1, 3), skin(len(t), WIRE))

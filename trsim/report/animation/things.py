@@ -37,6 +37,7 @@ class Look:
     radius: float  # half width of a link
     thick: float  # of a plate
     normal: Array | None  # of the plane of a flat mechanism
+    up: Array  # against gravity; without it y of a plane, z of space
     layers: dict[str, int]
 
     @property
@@ -62,16 +63,37 @@ def look(drawn: Drawing) -> Look:
     shortest = min((length for length in lengths if length > 1e-3 * size), default=size)
     radius = max(min(WIDE * size, SHORT * shortest), THIN * size)
     normal = plane(drawn)
-    return Look(radius, 0.9 * radius, normal, {} if normal is None else layers(drawn))
+    return Look(
+        radius, 0.9 * radius, normal, upward(drawn), {} if normal is None else layers(drawn)
+    )
+
+
+def upward(drawn: Drawing) -> Array:
+    """Against gravity; where there is none, y of a plane and z of space."""
+    pull = np.array(drawn.scenario.gravity)
+    return -pull / np.linalg.norm(pull) if pull.any() else np.eye(3)[1 if drawn.planar else 2]
 
 
 def ends(drawn: Drawing, body: str) -> list[Array]:
     """Different points of a body that joints hold, as drawn."""
+    return different(drawn, [joint.at for joint in drawn.joints if body in (joint.i, joint.j)
+                             and joint.type != "prismatic"])  # fmt: skip
+
+
+def points(drawn: Drawing, body: str) -> list[Array]:
+    """Those, and where lines act on the body."""
+    pairs = [(line.i, line.ends[0]) for line in drawn.lines]
+    pairs += [(line.j, line.ends[1]) for line in drawn.lines]
+    return different(drawn, [*ends(drawn, body), *(at for name, at in pairs if name == body)])
+
+
+def different(drawn: Drawing, places: list[Array]) -> list[Array]:
+    """The places without those that are there already."""
     found: list[Array] = []
-    for joint in drawn.joints:
-        near = [p for p in found if np.linalg.norm(p - joint.at) < 1e-6 * drawn.size]
-        if body in (joint.i, joint.j) and joint.type != "prismatic" and not near:
-            found.append(joint.at)
+    near = 1e-6 * drawn.size
+    for place in places:
+        if all(np.linalg.norm(p - place) >= near for p in found):
+            found.append(place)
     return found
 
 
@@ -84,6 +106,7 @@ def plane(drawn: Drawing) -> Array | None:
     normal = normal * np.sign(normal[np.abs(normal).argmax()])  # towards who looks
     slides = [joint.axis for joint in drawn.joints if joint.type == "prismatic"]
     heights = [joint.at @ normal for joint in drawn.joints]
+    heights += [end @ normal for line in drawn.lines for end in line.ends]
     level = np.ptp(heights) < 1e-6 * drawn.size if heights else True
     flat = all(abs(abs(axis @ normal) - 1.0) < 1e-9 for axis in hinges) and level
     flat = flat and all(abs(axis @ normal) < 1e-9 for axis in slides)
@@ -101,9 +124,21 @@ def layers(drawn: Drawing) -> dict[str, int]:
 
 
 def colours(drawn: Drawing) -> dict[str, str]:
-    """Body -> colour."""
-    names = [name for name in drawn.scenario.bodies if drawn.has(name)]
-    return {GROUND: SUPPORT} | {name: BODIES[k % len(BODIES)] for k, name in enumerate(names)}
+    """Body -> colour; equal bodies of a template have the same."""
+    known, found = kinds(drawn), {GROUND: SUPPORT}
+    order = list(dict.fromkeys(known.values()))
+    return found | {name: BODIES[order.index(kind) % len(BODIES)]
+                    for name, kind in known.items()}  # fmt: skip
+
+
+def kinds(drawn: Drawing) -> dict[str, str]:
+    """Body -> its name in the template it is an instance of, or its own."""
+    names = {name: name for name in drawn.scenario.bodies if drawn.has(name)}
+    for place, instance in drawn.scenario.instances.items():
+        for own in drawn.scenario.templates[instance.template].bodies:
+            if f"{place}_{own}" in names:
+                names[f"{place}_{own}"] = f"{instance.template}_{own}"
+    return names
 
 
 def pose(moved: Motion, body: str) -> tuple[Array, Array]:

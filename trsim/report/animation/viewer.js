@@ -25,16 +25,22 @@ const OPENING = 0.42; // rad, of the picture from below to above
 
 // --- who looks -----------------------------------------------------------------------------
 
-function camera({ outermost, margin, normal }) {
-  const front = normal ? unit(normal) : [0, 0, 1];
-  const up = Math.abs(front[1]) > 0.9 ? [0, 0, 1] : unit(add([0, 1, 0], front, -front[1]));
-  const most = (pick) => [0, 1, 2].map((c) => pick(...outermost.map((p) => p[c])));
+// A flat mechanism is seen along its normal and a little aside, one in space as the file says: then
+// the box whose middle is looked at stands as who looks does.
+function camera({ outermost, margin, normal, up: sky, back }) {
+  const front = unit(normal || add(back, sky, -dot(back, sky)));
+  const up = sky || (Math.abs(front[1]) > 0.9 ? [0, 0, 1]
+                                              : unit(add([0, 1, 0], front, -front[1])));
+  const right = cross(up, front);
+  const axes = normal ? [[1, 0, 0], [0, 1, 0], [0, 0, 1]] : [right, cross(back, right), back];
+  const most = (pick) => axes.map((axis) => pick(...outermost.map((p) => dot(p, axis))));
   const low = most(Math.min), high = most(Math.max);
-  const at = add(low, high).map((x) => x / 2);
+  const at = axes.reduce((sum, axis, k) => add(sum, axis, (low[k] + high[k]) / 2), [0, 0, 0]);
   const points = outermost.map((p) => add(p, at, -1));
-  const first = { yaw: normal ? 0.25 : 0.6, pitch: normal ? 0.16 : 0.3, zoom: 1, at };
+  const aside = normal ? { yaw: 0.25, pitch: 0.16 } : { yaw: 0, pitch: Math.asin(dot(back, up)) };
+  const first = { ...aside, zoom: 1, at };
   const size = Math.hypot(...add(high, low, -1)) / 2 + margin;
-  const look = { ...first, up, right: cross(up, front), front, points, margin, size };
+  const look = { ...first, up, right, front, points, margin, size };
   look.reset = () => Object.assign(look, first);
   return look;
 }
