@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError, Problems, ScenarioError
+from trsim.solve.modes import modes
+from trsim.solve.start import start
+from trsim.spec.load import loads
 
-from ..runs import run
+from ..runs import built, run
 from .bench import bench, check_action_is_reaction, check_gradient, check_power
 
 ENDS = "bodies: [left, right], points: [[0.3, 0, 0.1], [0.6, 0.1, 0]]"
@@ -25,7 +28,7 @@ def between(seed, *keys):
 def with_piston(seed, motion="velocity"):
     """All its states away from rest."""
     b = between(seed, MOTIONS[motion], "stiffness: 500, damping: 30", SUPPLY)
-    b.z[5:] = np.random.default_rng(seed).normal(size=b.z.size - 5)
+    b.z[5:] = 0.1 * np.random.default_rng(seed).normal(size=b.z.size - 5)
     return b
 
 
@@ -181,3 +184,75 @@ def test_two_rigid_ones_on_one_slide_are_refused():
     )  # fmt: skip
     with pytest.raises(ModelError, match="already fix"):
         run(text)
+
+
+WEIGHT = """
+bodies: {{m: {{mass: 10, inertia: 0.5, at: [0, 1]}}}}
+joints: {{s: {{type: prismatic, bodies: [ground, m], axis: [0, 1, 0]}}}}
+drives: {{a: {{type: actuator, bodies: [ground, m], points: [[0, 0], [0, 1]], {}}}}}
+gravity: [0, -9.81]
+initial: {{equilibrium: all}}
+solver: {{end: 0.2, tolerance: 1e-9}}
+"""
+SUPPLIED = "supply: {stiffness: 1e5, damping: 50, mass: 2}"
+
+
+@pytest.mark.parametrize(("supply", "springs"), [("", 1), (f", {SUPPLIED}", 2)])
+@pytest.mark.parametrize("motion", ["velocity: 0", "position: 0"])
+def test_an_equilibrium_stays_one(motion, supply, springs):
+    """The weight is held from the start, by springs that give way before it."""
+    there = run(WEIGHT.format(f"{motion}, stiffness: 1e5, damping: 50{supply}"))
+    assert there["a.force"][0] == pytest.approx(98.1, rel=1e-10)
+    assert there["a.force"] == pytest.approx(98.1, rel=1e-6)
+    assert there["a.stroke"] == pytest.approx(-springs * 98.1 / 1e5, rel=1e-6)
+    assert np.abs(there["m.acceleration"][0]).max() < 1e-9
+
+
+def test_a_drive_of_a_joint_holds_its_weight_as_well():
+    text = WEIGHT.format("velocity: 0, stiffness: 1e5").replace(
+        "type: actuator, bodies: [ground, m], points: [[0, 0], [0, 1]], velocity: 0, "
+        "stiffness: 1e5",
+        "joint: s, velocity: 0, compliance: {stiffness: 1e5, damping: 50}",
+    )
+    assert run(text)["a.force"] == pytest.approx(98.1, rel=1e-6)
+
+
+def test_a_start_beyond_the_stall_force_is_refused():
+    with pytest.raises(ModelError, match="reached its stall force before the run begins"):
+        run(WEIGHT.format("position: 0, stiffness: 1e5, stall: 50"))
+
+
+RELEASED = """
+sensors: {{x: {{joint: slide}}}}
+events: {{off: {{when: t, value: 0.3, do: {{release: [jack]}}}},
+          on: {{when: t, value: 0.5, do: {{set: {{jack: {{velocity: 0.02}}}}}}}}}}
+"""
+
+
+def test_a_supply_is_booked_when_its_actuator_lets_go_and_takes_hold():
+    keys = f"velocity: 0.02, stiffness: 1e5, damping: 50, {SUPPLY}"
+    there = run(PRESS.format(keys, 1) + RELEASED.format())
+    assert np.abs(there["energy.residual"]).max() < 1e-7
+    k = np.flatnonzero(there.t >= 0.5)[1]
+    assert abs(there["jack.force"][k]) < 50.0  # no shock: the piston is where its end is
+    assert there["jack.piston"][k] == pytest.approx(there["jack.stroke"][k], abs=1e-3)
+
+
+def test_a_line_has_a_length():
+    """Drawn in by 1 m/s a line of 0.5 m ends at 0.5 s; the run says whose it is."""
+    text = PRESS.format("velocity: -1, stiffness: 1e5, damping: 50", 1)
+    there = run(text.replace("stiffness: 4e4, damping: 400", "stiffness: 1"), fails=True)
+    assert "drives.jack" in there.outcome.reason
+    assert "no length" in there.outcome.reason
+    assert there.outcome.time == pytest.approx(0.5, abs=5e-3)
+
+
+def test_modes_know_the_piston():
+    """Mass - spring - piston - spring - ground: the two roots of their quadratic."""
+    text = PRESS.format("velocity: 0, stiffness: 1e5, supply: {stiffness: 2e5, mass: 3}", 1)
+    text = text.replace("stiffness: 4e4, damping: 400", "stiffness: 1e-3")
+    mechanism = built(text)
+    found = sorted(m.frequency for m in modes(mechanism, start(loads(text), mechanism, True)))
+    K, M = np.array([[1e5, -1e5], [-1e5, 3e5]]), np.diag([20.0, 3.0])
+    expected = np.sqrt(np.sort(np.linalg.eigvals(np.linalg.inv(M) @ K).real)) / (2 * np.pi)
+    assert found == pytest.approx(expected, rel=1e-5)

@@ -1,7 +1,7 @@
 """A model with the names that go with its numbers."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -96,3 +96,4 @@ class Mechanism:
     notes: tuple[str, ...]
     stages: "Stages"  # what user events make of it
     sections: tuple[Section, ...] = ()  # in the order of model.section
+    ahead: Mapping[int, float] = field(default_factory=dict)  # state -> how far from its coordinate

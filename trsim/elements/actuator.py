@@ -8,11 +8,12 @@
 
 f is the prescribed stroke or, for a prescribed speed, its integral from the stroke at the start (a
 state of the element; u and u' - f' are two more).  A line of two ball ends takes no moment, so the
-force on body j is P n, with n from end i to end j.  The kinetic energy of the piston stands in the
-book with the springs.  [Featherstone2008] for the rigid row:  l'' = n . d'' + (d'.d' - l'^2) / l.
+force on body j is P n, with n from end i to end j; where l_0 + u is no length it is no number.  The
+kinetic energy of the piston stands in the book with the springs.  Of the rigid one
+l'' = n . d'' + (d' . d' - l'^2) / l, with d from end i to end j.              [Featherstone2008]
 """
 
-from math import sqrt
+from math import nan, sqrt
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Gt
@@ -86,9 +87,11 @@ class Actuator(Spec):
         return self
 
     def at_rest(self):
-        """The same without dampers, which would push a body at rest along with the motion."""
-        supply = self.supply and self.supply.model_copy(update={"damping": 0.0})
-        return self.model_copy(update={"damping": 0.0, "supply": supply})
+        """The same as one spring without damper, which would push a body at rest along with it."""
+        k = self.stiffness
+        if self.supply is not None:
+            k = k * self.supply.stiffness / (k + self.supply.stiffness)
+        return self.model_copy(update={"stiffness": k, "damping": 0.0, "supply": None})
 
 
 LENGTH = 6  # par: l_0
@@ -119,6 +122,11 @@ def pack(name, spec, at):
     own = None if spec.supply is None else (*CHANNELS, *WITH_SUPPLY)
     con = (i, j, entry, states[0], 0, f, *states[1:])
     return Row(con, par, None, own, spec.stiffness is not None, states, limits)
+
+
+def piston_of(instance):
+    """The state that holds the place of the piston of an actuator with a supply; else -1."""
+    return instance.row.con[PLACE - 1] if instance.element.key == "actuator" else -1
 
 
 STALLED = "reached its stall force"
@@ -159,6 +167,8 @@ def state_of(t, scene, e):
     if con[e, PLACE] >= 0:
         u, u_dot = z[con[e, PLACE]], f_dot + z[con[e, SLIP]]
     s = con[e, 2]
+    if par[e, LENGTH] + u <= 0.0:
+        u = nan  # no line has such a length: the run ends here, and says whose it is
     P = -par[e, K] * (S[s, 0] - u) - par[e, C] * (S[s, 1] - u_dot)
     behind = -par[e, SUPPLY] * (u - f) - par[e, SUPPLY_DAMPING] * (u_dot - f_dot)
     if con[e, PLACE] < 0:
@@ -180,13 +190,15 @@ def force(t, scene, a, b):
             zd[con[e, PLACE]] = u_dot
             zd[con[e, SLIP]] = (behind - P) / par[e, MASS] - f_ddot
             zd[DAMPERS] -= par[e, SUPPLY_DAMPING] * slip * slip
+            zd[DRIVES] += behind * f_dot
         if par[e, K] > 0.0:
             stretch = S[con[e, 2], 1] - u_dot
             zd[DAMPERS] -= par[e, C] * stretch * stretch
             p_i, p_j, n, _, _ = line(X, V, con, par, e)
             push(F, con[e, 1], p_j, (P * n[0], P * n[1], P * n[2]))
             push(F, con[e, 0], p_i, (-P * n[0], -P * n[1], -P * n[2]))
-            zd[DRIVES] += behind * f_dot
+            if con[e, PLACE] < 0:
+                zd[DRIVES] += behind * f_dot
 
 
 @kernel
@@ -206,7 +218,7 @@ def gap(t, scene, a, b):
 def energy(t, scene, a, b):
     S, z, con, par, mem, E = scene.S, scene.z, scene.con, scene.par, scene.mem, scene.E
     for e in range(a, b):
-        if par[e, K] == 0.0:
+        if par[e, K] == 0.0 and con[e, PLACE] < 0:
             continue
         f, f_dot, _ = prescribed(t - mem[e, SINCE], z, scene.tab, con[e, STATE], con[e, MOTION])
         u = f

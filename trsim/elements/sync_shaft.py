@@ -10,7 +10,8 @@ between two pistons, which pulls who lags and holds who leads.  Of the ideal for
     (1 / eta_b - 1) |G|     where the piston moves the shaft, eta_b = 2 - 1 / eta      [Shigley2015]
 
 to friction, against the motion.  With eta <= 1/2 a piston cannot turn the shaft at all: the gear is
-self-locking, and a piston that leads is held like in a brake, by LOCK u', until it no longer does.
+self-locking.  A piston that leads is then held as by eta_b = LOCKED, a hundred times harder than by
+an ideal gear: next to nothing is left of its lead.
 
 Pistons are moved where their actuators have a `supply`.  Without one their motion is prescribed:
 then the shaft changes nothing, and its torque is only told.
@@ -72,23 +73,25 @@ class SyncShaft(Spec):
         return self
 
 
-K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST = range(6)  # par; of a self-locking gear LOSS_BACK is -1
+K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST = range(6)  # par
 MASSES = 6  # and on: of the pistons
 COUNT, STATIONS = 2, 3  # con: how many pistons, then of each its place and its slip in z, or -1
 SMOOTH = 1e-3  # m/s: friction turns round over such a speed
-LOCK, ONSET = 1e6, 1.0  # N*s/m; N from which the brake of a self-locking gear holds
+LOCKED = 0.01  # eta_b of a self-locking gear
 
 
 def pack(name, spec, at):
-    if len(spec.actuators) < 2 or len(set(spec.actuators)) < len(spec.actuators):
-        raise ScenarioError("joins two or more different actuators", "", ("actuators",))
+    if len(spec.actuators) < 2:
+        raise ScenarioError("joins two or more actuators", "", ("actuators",))
     stations, masses, frames = [], [], set()
     for k, one in enumerate(spec.actuators):
         found = at.packed("drives", one, ("actuators", k))
+        if one in spec.actuators[:k]:
+            raise ScenarioError(f"'{one}' stands there twice", "", ("actuators", k))
         if found.element.key != "actuator" or found.row.con[3] < 0:
             raise ScenarioError(
                 f"'{one}' is no actuator with a velocity",
-                "a shaft joins elements of `type: actuator`",
+                "a shaft joins elements of `type: actuator`, each driven by its `velocity`",
                 ("actuators", k),
             )
         _, _, _, place, _, _, piston, slip = found.row.con
@@ -97,14 +100,14 @@ def pack(name, spec, at):
         frames |= {*found.row.con[:2]}
     if not any(masses):
         at.notes.append(
-            "the speeds of its actuators are prescribed, so it changes nothing: its torque is told "
-            "(a `supply` lets a piston give way)"
+            "actuators: their speeds are prescribed, so the shaft changes nothing and "
+            "its torque is told (a `supply` lets a piston give way)"
         )
-    back = 2.0 - 1.0 / spec.efficiency
     locks = spec.self_locking or spec.efficiency <= 0.5
+    back = LOCKED if locks else max(2.0 - 1.0 / spec.efficiency, LOCKED)
     par = (
         spec.stiffness, spec.damping, spec.ratio, 1.0 - spec.efficiency,
-        -1.0 if locks else 1.0 / back - 1.0, spec.lost_at or 0.0, *masses,
+        1.0 / back - 1.0, spec.lost_at or 0.0, *masses,
     )  # fmt: skip
     n = len(spec.actuators)
     said = "synchronism was lost: the strokes of two neighbours differ too much"
@@ -157,9 +160,6 @@ def gear(scene, e, k):
     way = speed / sqrt(speed * speed + SMOOTH * SMOOTH)
     if ideal * speed > 0.0:
         return ideal, ideal - par[e, LOSS] * abs(ideal) * way, speed
-    if par[e, LOSS_BACK] < 0.0:
-        grip = ideal * ideal / (ideal * ideal + ONSET * ONSET)
-        return ideal, ideal - grip * LOCK * speed, speed
     return ideal, ideal - par[e, LOSS_BACK] * abs(ideal) * way, speed
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
+from trsim.elements.actuator import PLACE, SLIP, piston_of
 from trsim.elements.contract import SINCE
 from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, STATE, rates_at
 from trsim.elements.scene import Scene, carried
@@ -68,12 +69,12 @@ def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
     """Of a limit what it was, when, and the forces of the actuators then, where they are told."""
     if event.kind != "limit":
         return f"event '{event.name}' ended the run"
-    names = {i.name for i in mechanism.instances if i.element.key == "actuator"}
-    forces = [
-        f"{c.name} {b.out[c.start]:.4g} N"
-        for c in mechanism.columns
-        if c.name.removesuffix(".force") in names and c.name.endswith(".force")
-    ]
+    told = {c.name: b.out[c.start] for c in mechanism.columns}
+    forces = []
+    for instance in mechanism.instances:
+        if instance.element.key == "actuator":  # of a supply where there is one: that stalls
+            of = (f"{instance.name}.{word}" for word in ("supply_force", "force"))
+            forces += [f"{name} {told[name]:.4g} N" for name in of if name in told][:1]
     said = f"{event.when} {event.said} ({event.value:g} {event.unit}) at t = {t:.6g} s"
     return f"{said}: {', '.join(forces)}" if forces else said
 
@@ -140,11 +141,22 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
     if new >= 0:
         if before == LOOSE:
             r.y[first + new] = work.S[instance.row.con[ENTRY], 0]
+            take_along(work, model, r, e, instance)
         elif old < 0:
             prescribed = np.zeros(3)
             rates_at(work.tab, int(work.con[e, MOTION]), t - float(r.mem[e, SINCE]), prescribed)
             r.y[first + new] = prescribed[0]
     r.mem[e, SINCE] = t
+
+
+def take_along(work: Scene, model: Any, r: Record, e: int, instance: Any) -> None:
+    """The piston of an actuator that takes hold again is where its end is, and as fast."""
+    if piston_of(instance) < 0:
+        return
+    entry, first, prescribed = instance.row.con[ENTRY], work.n_q + work.n_v, np.zeros(3)
+    rates_at(model.tab, int(model.con[e, MOTION]), 0.0, prescribed)
+    r.y[first + model.con[e, PLACE]] = work.S[entry, 0]
+    r.y[first + model.con[e, SLIP]] = work.S[entry, 1] - prescribed[0]
 
 
 def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64]) -> None:

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
+from trsim.elements.actuator import piston_of
 from trsim.elements.contract import N_BOOK
+from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, K, rates_at
 from trsim.elements.scene import scene, workspace
 
 Array = NDArray[np.float64]
@@ -28,13 +30,41 @@ def remember(model: Any, y: Array) -> None:
     model.branch[:] = model.S[:, 0]
 
 
+def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float]:
+    """How far ahead of their coordinates drives that give way hold still in an equilibrium.
+
+    held, y: the mechanism as it was balanced, and its state there.  Of an actuator with a supply
+    that was one spring, of which its piston takes the part behind the second body.
+    """
+    model = held.model
+    w = workspace(model)
+    poses(w, y)
+    resting = {i.name: i.row for i in held.instances if i.section == "drives"}
+    found = {}
+    for instance in mechanism.instances:
+        row, rest = instance.row, resting.get(instance.name)
+        if instance.section != "drives" or not row.is_force or rest is None:
+            continue
+        f = np.zeros(3)
+        if rest.con[OWN_STATE] >= 0:
+            f[0] = y[model.n_q + model.n_v + rest.con[OWN_STATE]]
+        else:
+            rates_at(model.tab, rest.con[MOTION - 1], 0.0, f)
+        gap = float(f[0] - w.S[rest.con[ENTRY], 0])
+        if row.con[OWN_STATE] >= 0:
+            found[row.con[OWN_STATE]] = gap
+        if (piston := piston_of(instance)) >= 0:
+            found[piston] = gap * rest.par[K] / row.par[K]
+    return found
+
+
 def follow(mechanism: Mechanism, y: Array) -> Array:
-    """y with the states that start at a joint coordinate set to its value."""
+    """y with the states that start at a joint coordinate set to its value, or ahead of it."""
     model = mechanism.model
     y = y.copy()
     w = workspace(model)
     poses(w, y)
     for k, s in enumerate(mechanism.follows):
         if s >= 0:
-            y[model.n_q + model.n_v + N_BOOK + k] = w.S[s, 0]
+            y[model.n_q + model.n_v + N_BOOK + k] = w.S[s, 0] + mechanism.ahead.get(N_BOOK + k, 0.0)
     return y

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.elements.actuator import LENGTH
+from trsim.elements.prescribed import ENTRY
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.solve import record as rec
@@ -16,6 +18,7 @@ from trsim.solve.strained import ALMOST, NEARLY, collapsed
 
 Array = NDArray[np.float64]
 
+SHORT = 0.01  # of its length as drawn: an actuator that ends at nothing
 AHEAD = (1e-12, 1e-9, 1e-6, 1e-3)  # of the run: how far beyond a failure to look
 PLACES = ("F", "zd", "phi", "phi_t", "gamma")
 RANGE = "log or sqrt of something negative, 1/0, a table that ends"
@@ -67,11 +70,30 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     return ""
 
 
+def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
+    """Which actuator has next to no length left, in words; empty where none is so short."""
+    w = workspace(mechanism.model)
+    poses(w, y)
+    for instance in mechanism.instances:
+        if instance.element.key != "actuator":
+            continue
+        length, stroke = instance.row.par[LENGTH], float(w.S[instance.row.con[ENTRY], 0])
+        if length + stroke < SHORT * length:
+            place = scenario.place((instance.section, instance.name))
+            where = f" ({place.show()})" if place else ""
+            return (
+                f"{instance.section}.{instance.name}{where}: a stroke of {stroke:.4g} m leaves a "
+                f"line of {length:.4g} m no length; limit its motion"
+            )
+    return ""
+
+
 def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on from its record, in words; empty where nothing is found."""
     t = float(r.clock[rec.T])
     return (
         collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
         or told(scenario, mechanism, r)
+        or drawn_in(scenario, mechanism, r.y)
         or locked(mechanism, t, r.y)
     )

@@ -25,6 +25,7 @@ from trsim.assemble.equations import constraints, derivative, forces, gaps, pose
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
 from trsim.assemble.reduce import IN_PLANE, along_rates, in_solve_axes, jacobian, moves, world_rates
+from trsim.elements.actuator import piston_of
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
@@ -148,7 +149,12 @@ class Probe:
         self.work, self.y = work, begun.y
         self.n_q, self.n_v = work.n_q, work.n_v
         self.names = [name for name, f in mechanism.frames.items() if f > 0]
-        self.states = [N_BOOK + k for k, s in enumerate(mechanism.follows) if s < 0]
+        moving = {piston_of(instance) for instance in mechanism.instances}
+        self.states = [
+            N_BOOK + k
+            for k, s in enumerate(mechanism.follows)
+            if s < 0 or N_BOOK + k in moving  # all others are places that drives prescribe
+        ]
         self.own = [self.n_q + self.n_v + k for k in self.states]
         self.bars = bars_alone(mechanism, work) if mechanism.beams else None
         self.basis()

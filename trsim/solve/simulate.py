@@ -178,7 +178,8 @@ def compiled(
             reason = NO_STEPS_LEFT
             break
     status, text = ended or ending(reason, limit, setting, scenario, mechanism, work, r)
-    fired = {e.name: int(n) for e, n in zip(switches.events, r.watch[:, rec.TIMES], strict=True)}
+    times = zip(switches.events, r.watch[:, rec.TIMES].astype(int).tolist(), strict=True)
+    fired = {event.name: n for event, n in times if event.kind != "limit"}
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
                    r.peak[:, :4].copy(), r, begun, fired)  # fmt: skip
 

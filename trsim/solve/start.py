@@ -6,7 +6,7 @@ and the drives at speed - with bodies' velocities given, the nearest that the jo
 stops stay closed, and what is then still free of the named joints has zero rate.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian
+from trsim.assemble.switches import LIMITS
 from trsim.elements.contract import (
     BRANCH,
     CONTACT,
@@ -30,7 +31,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
-from trsim.solve.angles import follow, remember, with_scene
+from trsim.solve.angles import follow, remember, strained, with_scene
 from trsim.solve.bars import as_flexible, as_rigid
 from trsim.solve.blame import refuse_no_number
 from trsim.solve.softening import softened
@@ -61,7 +62,8 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     initial = scenario.initial
     check_names(scenario, initial)
     mechanism = with_scene(mechanism)
-    y, residual, angles = positions(scenario, mechanism, initial)
+    y, residual, angles, ahead = positions(scenario, mechanism, initial)
+    mechanism = replace(mechanism, ahead=ahead)
     model = mechanism.model
     for name, x in mechanism.coordinates.items():
         model.branch[x.entry] = angles.get(name, x.drawn)
@@ -75,6 +77,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
     check_finite(mechanism, y, mem)
+    check_limits(mechanism, y)
     length, speed, depth = units(model, y, mem, scenario)
     remember(mechanism.model, y)
     return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, depth)
@@ -142,12 +145,27 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
     raise ModelError("an acceleration is not a finite number at t = 0", "check masses and inertias")
 
 
+def check_limits(mechanism: Mechanism, y: Array) -> None:
+    """No element starts beyond what it can do: such a run would have ended before it began."""
+    w = workspace(mechanism.model)
+    poses(w, y)
+    gaps(w, 0.0)
+    for event in mechanism.stages.switches.events:
+        if event.kind == "limit" and w.gap[LIMITS - event.entry, 0] >= 0.0:
+            raise ModelError(
+                f"{event.said} before the run begins ({event.value:g} {event.unit})",
+                "is the limit meant, and does the start balance? see `initial: {equilibrium: ...}`",
+                (mechanism.instances[LIMITS - event.entry].section, event.when),
+            )
+
+
 def positions(
     scenario: Any, mechanism: Mechanism, initial: Any
-) -> tuple[Array, float, dict[str, float]]:
-    """q as drawn, at the given joint values, in equilibrium; the static force left, N; angles."""
+) -> tuple[Array, float, dict[str, float], dict[int, float]]:
+    """q as drawn, at the given joint values, in equilibrium; the static force left, N; angles; how
+    far states are ahead of the coordinates they follow."""
     if not initial.settles and not initial.values:
-        return mechanism.y0, 0.0, {}
+        return mechanism.y0, 0.0, {}, {}
     playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
     ideal = frozenset(playing - set(initial.equilibrium))
     drives = holding_drives(scenario, initial)
@@ -179,7 +197,8 @@ def positions(
         y, residual = bent(stiff, held, y, settle)
         remember(held.model, y)
     angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
-    return back(mechanism, held, y), residual, angles
+    ahead = strained(mechanism, held, y) if settle else {}
+    return back(mechanism, held, y), residual, angles, ahead
 
 
 def bent(stiff: Any, held: Any, y: Array, settle: bool) -> tuple[Array, float]:
