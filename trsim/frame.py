@@ -5,11 +5,20 @@ v_world =      x v_x + y v_y + z v_z          directions, velocities: free vecto
 """
 
 from math import atan2, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 Vector = tuple[float, float, float]
 
 FLAT = 1e-12  # 1 minus the cosine of a tilt that is none
+
+
+def across(a: Any, b: Any) -> Vector:
+    """a x b of numbers; `cross` of elements/frames.py is for compiled code, and slow to call."""
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )
 
 
 class Frame(NamedTuple):

@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, Switches, lock_name
-from trsim.elements.prescribed import OWN_STATE, C, K
+from trsim.elements.prescribed import OWN_MOTION, OWN_STATE, C, K
 from trsim.elements.scene import Model
 
 Rows = list[RowName]
 # the same in every stage
 OUTPUTS = ("wanted", "joint_out", "column_energy", "n_out", "section", "section_at")
-MOTION = 5  # of a drive's Row.con
 
 
 class Stages:
@@ -70,7 +69,7 @@ def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switc
     if to == LOOSE:
         par[K] = par[C] = 0.0
     else:
-        con[OWN_STATE], con[MOTION] = switches.motions[instance.name][to - 1]
+        con[OWN_STATE], con[OWN_MOTION] = switches.motions[instance.name][to - 1]
     return replace(instance, row=replace(instance.row, con=tuple(con), par=tuple(par)))
 
 

@@ -27,10 +27,8 @@ BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to
 ALWAYS = 2**62
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
 UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
-TIME, LIMITS = (
-    -1,
-    -2,
-)  # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
+# what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
+TIME, LIMITS = -1, -2
 SECTION = "events"  # of the instances of locks
 
 
@@ -58,9 +56,7 @@ class UserEvent:
             return f"{self.when} {self.said} ({self.value:g} {self.unit}): the run is {self.status}"
         way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
         often = "" if self.most == ALWAYS else f", {self.most} times" if self.most > 1 else ", once"
-        return (
-            f"{self.when} {way} {self.value:g} {self.unit or UNITS[self.kind]}{often}: {self.said}"
-        )
+        return f"{self.when} {way} {self.value:g} {UNITS[self.kind]}{often}: {self.said}"
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from trsim.elements.frames import arm, dot, helper, push, separation, spin, twis
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
+from trsim.frame import across
 
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
@@ -58,21 +59,12 @@ def axes(spec):
         if not any(getattr(spec, key)):
             raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
     x, y = direction(spec.x_axis), direction(spec.y_axis)
-    z = product(x, y)
+    z = across(x, y)
     if max(map(abs, z)) < 1e-6:
         what = "`y_axis` has the direction of `x_axis`"
         raise ScenarioError(what, "give the one across it, for example [0, 0, 1]", ("y_axis",))
     z = direction(z)
-    return x, product(z, x), z
-
-
-def product(a, b):
-    """a x b; `cross` is for compiled code, and Python's call of it would compile it anew."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
+    return x, across(z, x), z
 
 
 def pack(name, spec, at):

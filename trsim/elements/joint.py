@@ -8,6 +8,7 @@ par[21]                         joint angle as drawn
 
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
+from trsim.frame import across
 
 
 class Joint(Spec):
@@ -38,12 +39,7 @@ def perpendicular(axis, frame=None):
     u[(largest + 1) % 3] = 1.0
     along = sum(p * q for p, q in zip(u, a, strict=True))
     u = direction(p - along * q for p, q in zip(u, a, strict=True))
-    w = (
-        a[1] * u[2] - a[2] * u[1],
-        a[2] * u[0] - a[0] * u[2],
-        a[0] * u[1] - a[1] * u[0],
-    )
-    return u, w, a
+    return u, across(a, u), a
 
 
 def triads(i, j, axis, at, frame=None):

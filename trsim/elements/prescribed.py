@@ -13,7 +13,7 @@ from trsim.elements.frames import helper
 from trsim.elements.signatures import A1, f8, i8, void
 from trsim.laws.functions import motion
 
-ENTRY, OWN_STATE = 2, 3  # of Row.con
+ENTRY, OWN_STATE, OWN_MOTION = 2, 3, 5  # of Row.con
 STATE, ROTATES, MOTION = 4, 5, 6  # of con
 K, C, SIGN = 9, 10, 11  # of par
 

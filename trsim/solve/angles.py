@@ -10,7 +10,7 @@ from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.actuator import piston_of
 from trsim.elements.contract import N_BOOK
-from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, K, rates_at
+from trsim.elements.prescribed import ENTRY, OWN_MOTION, OWN_STATE, K, rates_at
 from trsim.elements.scene import scene, workspace
 
 Array = NDArray[np.float64]
@@ -49,7 +49,7 @@ def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float
         if rest.con[OWN_STATE] >= 0:
             f[0] = y[model.n_q + model.n_v + rest.con[OWN_STATE]]
         else:
-            rates_at(model.tab, rest.con[MOTION - 1], 0.0, f)
+            rates_at(model.tab, rest.con[OWN_MOTION], 0.0, f)
         gap = float(f[0] - w.S[rest.con[ENTRY], 0])
         if row.con[OWN_STATE] >= 0:
             found[row.con[OWN_STATE]] = gap

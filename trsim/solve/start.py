@@ -147,11 +147,14 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
 
 def check_limits(mechanism: Mechanism, y: Array) -> None:
     """No element starts beyond what it can do: such a run would have ended before it began."""
+    limits = [e for e in mechanism.stages.switches.events if e.kind == "limit"]
+    if not limits:
+        return
     w = workspace(mechanism.model)
     poses(w, y)
     gaps(w, 0.0)
-    for event in mechanism.stages.switches.events:
-        if event.kind == "limit" and w.gap[LIMITS - event.entry, 0] >= 0.0:
+    for event in limits:
+        if w.gap[LIMITS - event.entry, 0] >= 0.0:
             raise ModelError(
                 f"{event.said} before the run begins ({event.value:g} {event.unit})",
                 "is the limit meant, and does the start balance? see `initial: {equilibrium: ...}`",

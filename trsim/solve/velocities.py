@@ -81,8 +81,8 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     wishes += [(gradient, 0.0) for gradient in (bushings(ideal, y_ideal) if held else ())]
     if named:
         wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
-        wishes += [(coordinate_gradient(ideal, y_ideal, ideal.coordinates[n]), 0.0)
-                   for n in named if n in ideal.coordinates]  # fmt: skip
+        moving = [ideal.coordinates[n] for n in named if n in ideal.coordinates]
+        wishes += [(rate_of_entry(model, y_ideal, x.entry, (x.i, x.j)), 0.0) for x in moving]
     scale = weights(model)
     kept = independent(J * scale, [gradient * scale for gradient, _ in wishes])
     J = np.vstack([J, *(wishes[k][0] for k in kept)])
@@ -197,11 +197,6 @@ def with_velocities(model: Model, y: Array, v: Array) -> Array:
     y = y.copy()
     y[model.n_q : model.n_q + model.n_v] = in_solve_axes(w, v)
     return y
-
-
-def coordinate_gradient(mechanism: Mechanism, y: Array, x: Any) -> Array:
-    """Rate of a joint coordinate per unit of every world-axes rate."""
-    return rate_of_entry(mechanism.model, y, x.entry, (x.i, x.j))
 
 
 def rate_of_entry(model: Model, y: Array, s: int, frames: Iterable[int]) -> Array:

@@ -13,7 +13,7 @@ from pydantic import Field, WrapValidator, model_validator
 
 from trsim.errors import ScenarioError, described, known
 from trsim.fields import Spec, direction, point, vector
-from trsim.frame import Frame
+from trsim.frame import Frame, across
 
 SECTIONS = ("bodies", "joints", "drives", "sensors", "forces", "events")  # of a template
 PARALLEL = 1e-6  # sine of an angle
@@ -57,8 +57,7 @@ class Placement(Spec):
         """The frame; None where it is the world's."""
         x = direction(self.x_axis)
         y = direction(_across(x, direction(self.y_axis))[0])
-        z = (x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0])
-        found = Frame(self.at, (x[0], x[1], x[2]), (y[0], y[1], y[2]), z)
+        found = Frame(self.at, (x[0], x[1], x[2]), (y[0], y[1], y[2]), across(x, y))
         return None if found == WORLD else found
 
 
