@@ -31,7 +31,7 @@ from trsim.errors import ScenarioError, described, known
 from trsim.frame import Frame
 from trsim.numbers import number
 from trsim.references import renamed
-from trsim.units import check_dimension, quantity, unit
+from trsim.units import check_dimension, quantity, titled, unit
 
 
 class Unit:
@@ -145,6 +145,7 @@ class FunctionSpec:
     y: tuple[float, ...] = ()
     of: str = "t"  # the variable of a table: t or a sensor
     ends: Literal["hold", "extrapolate", "refuse"] = "hold"
+    units: tuple[str, str] = ("", "")  # of x and y as written; of a constant the second
 
     @property
     def names(self) -> set[str]:
@@ -157,6 +158,27 @@ class FunctionSpec:
 ENDS = ("hold", "extrapolate", "refuse")
 TABLE_KEYS = ("table", "of", "ends", "units")
 VARIABLES = ("s", "m", "rad")  # units of what a table may be a function of
+
+
+class Column:
+    """A column of a table: the unit all its numbers have, or else each its own of one kind."""
+
+    def __init__(self, text: str, allowed: tuple[str, ...]) -> None:
+        self.unit, self.allowed, self.whole = text, allowed, bool(text)
+        self.factor = float(unit(text)[0]) if text else 1.0
+
+    def number(self, item: Any, parameters: dict) -> float:
+        """The SI value of an entry.  Raises ScenarioError, also for a unit that does not fit."""
+        found = quantity(item, parameters) if isinstance(item, str) else None
+        if found and found[1]:
+            if self.whole:
+                what = f"{described(item)} has a unit, and so has its column: {self.unit}"
+                raise ScenarioError(what, "Write one of the two.")
+            self.unit = self.unit or found[1]
+            if unit(found[1])[1] != unit(self.unit)[1]:
+                what = f"a column has one kind of unit, not {self.unit} and {found[1]}"
+                raise ScenarioError(what)
+        return number(item, self.allowed, parameters) * self.factor
 
 
 class _FunctionUnit(Unit):
@@ -186,7 +208,10 @@ class _FunctionUnit(Unit):
         return FunctionSpec("constant", number(value, self.units, parameters))
 
     def _table(self, given: dict, parameters: dict, names: dict) -> FunctionSpec:
-        """{table: [[x, y], ...], of: stroke, ends: hold, units: [mm, N]}"""
+        """{table: [[x, y], ...], of: stroke, ends: hold, units: [mm, N]}
+
+        The units may also stand in a first row of titles, as in a file: ["s [mm]", "force [N]"].
+        """
         for key in given:
             if key not in TABLE_KEYS:
                 hint = known(key, TABLE_KEYS)
@@ -199,21 +224,29 @@ class _FunctionUnit(Unit):
         if ends not in ENDS:
             what = f"must be one of {', '.join(ENDS)}, got {described(ends)}"
             raise ScenarioError(what, path=("ends",))
-        scale = _at("units", self._scale, given.get("units"))
-        x, y = _at("table", self._columns, given["table"], scale, parameters)
-        return FunctionSpec("table", x=x, y=y, of=names.get(of, of), ends=ends)
+        rows, own, head = given["table"], given.get("units"), ()
+        if isinstance(rows, list) and rows and _is_head(rows[0]):
+            head, rows = rows[0], rows[1:]
+            own = _at("table", _at, 0, _of_titles, head, own)
+        columns = _at("table" if head else "units", self._own, own)
+        x, y, units = _at("table", self._columns, rows, columns, parameters)
+        of = names.get(of, of)
+        return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units)
 
-    def _scale(self, units: Any) -> tuple[float, float]:
-        """The factors of the two columns to SI."""
+    def _own(self, units: Any) -> list[Column]:
+        """The two columns with the units they have as a whole; without: each number its own."""
         if units is None:
-            return 1.0, 1.0
+            units = ["", ""]
         if not isinstance(units, list) or [type(text) for text in units] != [str, str]:
             raise ScenarioError("must be two units, [of x, of y]")
-        _at(0, check_dimension, units[0], VARIABLES)
-        _at(1, check_dimension, units[1], self.units)
-        return float(unit(units[0])[0]), float(unit(units[1])[0])
+        allowed = (VARIABLES, self.units)
+        for k, text in enumerate(units):
+            if text:
+                _at(k, check_dimension, text, allowed[k])
+        return [Column(*pair) for pair in zip(units, allowed, strict=True)]
 
-    def _columns(self, rows: Any, scale: tuple[float, float], parameters: dict) -> Any:
+    def _columns(self, rows: Any, columns: list[Column], parameters: dict) -> Any:
+        """x, y and their units as written."""
         if not isinstance(rows, list | tuple) or len(rows) < 2:
             raise ScenarioError(f"must be two or more rows [x, y], got {described(rows)}")
         last = -math.inf
@@ -223,13 +256,31 @@ class _FunctionUnit(Unit):
                 raise ScenarioError(f"a row is [x, y], got {described(row)}", path=(k,))
             if not all(isinstance(item, str | int | float) for item in row):
                 raise ScenarioError("a row is two numbers", path=(k,))
-            x = _at(k, number, row[0], VARIABLES, parameters) * scale[0]
-            y = _at(k, number, row[1], self.units, parameters) * scale[1]
+            pairs = zip(columns, row, strict=True)
+            x, y = (_at(k, column.number, item, parameters) for column, item in pairs)
             if x <= last:
                 raise ScenarioError(f"x must rise, got {x:g} after {last:g}", path=(k,))
             last = x
             points.append((x, y))
-        return tuple(zip(*points, strict=True))
+        return *zip(*points, strict=True), tuple(column.unit for column in columns)
+
+
+def _is_head(row: Any) -> bool:
+    """Whether a row of a table is one of titles: two texts, one of which ends with a bracket."""
+    if not isinstance(row, list) or [type(item) for item in row] != [str, str]:
+        return False
+    return any(text.rstrip().endswith("]") for text in row)
+
+
+def _of_titles(head: list[str], own: Any) -> Any:
+    """The units in a row of titles; `own`, the key `units`, must not say something else."""
+    found = [_at(k, titled, text)[1] for k, text in enumerate(head)]
+    others = own if isinstance(own, list) and len(own) == 2 else found
+    for k, (text, other) in enumerate(zip(found, others, strict=True)):
+        if text and other and text != other:
+            what = f"the title says {text}, `units` says {described(other)}"
+            raise ScenarioError(what, "Leave out `units` where titles tell.", (k,))
+    return [text or other for text, other in zip(found, others, strict=True)]
 
 
 def Function(*units: str) -> Any:

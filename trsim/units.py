@@ -88,6 +88,27 @@ KINDS = {
     "W": "a power",
 }
 
+# what others write -> ours; only for hints
+MEANT = {
+    "Nm": "N*m",
+    "Ns": "N*s",
+    "Nmm": "N*mm",
+    "sec": "s",
+    "second": "s",
+    "msec": "ms",
+    "usec": "us",
+    "degree": "deg",
+    "radian": "rad",
+    "meter": "m",
+    "metre": "m",
+    "newton": "N",
+    "inch": "in",
+    "kgm": "kg*m",
+    "lbs": "lb",
+    "kph": "km/h",
+    "hz": "Hz",
+}
+
 _WORD = re.compile(r"\s*(?:([A-Za-zµ°%]+[0-9]*)|([0-9]+(?:\.[0-9]+)?)|(\*\*|[*/^()-]))")
 _PLAIN = str.maketrans({"μ": "µ", "·": "*", "²": "^2", "³": "^3"})
 
@@ -139,7 +160,9 @@ def _power(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
     elif not word or not word[0].isalpha():
         raise ScenarioError(f"not a unit: {described(text)}", "Write it like N*m/rad or m/s^2.")
     else:
-        raise ScenarioError(f"unknown unit {described(word)}", known(word, [*BASE, *DERIVED]))
+        close = _meant(word)
+        hint = known(word, [*BASE, *DERIVED], close)
+        raise ScenarioError(f"unknown unit {described(word)}", hint)
     if words and words[0] in ("^", "**"):
         words.pop(0)
         sign = -1 if words and words[0] == "-" and words.pop(0) else 1
@@ -149,6 +172,32 @@ def _power(words: list[str], text: str) -> tuple[Fraction | float, Dimension]:
         factor = factor ** (int(n) if n.denominator == 1 else float(n))
         dimension = tuple(float(n * Fraction(d)) for d in dimension)
     return factor, dimension
+
+
+def _meant(word: str) -> str | None:
+    """What an unknown unit probably means, where the nearest by letters would mislead."""
+    plain = word.rstrip("0123456789")
+    if plain != word and plain in {**BASE, **DERIVED}:  # s2
+        return f"{plain}^{word.removeprefix(plain)}"
+    return MEANT.get(plain) or MEANT.get(plain.lower().removesuffix("s"))
+
+
+_TITLE = re.compile(r"(.*?)\s*(?:\[([^][]*)\]|\(([^()]*)\))\s*", re.DOTALL)
+
+
+def titled(text: str) -> tuple[str, str]:
+    """Name and unit of the title of a column: `force [kN]`, `force (kN)`; no unit: empty.
+
+    Raises ScenarioError for what is in brackets and no unit, or for brackets elsewhere.
+    """
+    found = _TITLE.fullmatch(text.strip())
+    name, inner = (found[1], (found[2] or found[3] or "").strip()) if found else (text.strip(), "")
+    if re.search(r"[][()]", name) or (found and not inner):
+        what = f"no title of a column: {described(text.strip())}"
+        raise ScenarioError(what, "A unit stands last, in brackets: `force [kN]`.")
+    if inner:
+        unit(inner)
+    return name, inner
 
 
 _NUMBER = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)(.*)", re.DOTALL)
@@ -220,3 +269,10 @@ def check_dimension(written: str, units: tuple[str, ...]) -> None:
     name = kind(dimension)
     what = f"wrong unit: {described(written)}{f' is {name}' if name else ''}"
     raise ScenarioError(f"{what}; {inside(units)}")
+
+
+def fits(written: str, wanted: str) -> bool:
+    """Whether a unit is one of the kind wanted; none is SI, and rad may be left out."""
+    if not written or unit(written)[1] == unit(wanted)[1]:
+        return True
+    return wanted == "rad" and not any(unit(written)[1])

@@ -12,7 +12,6 @@ A reference is a table of numbers: the column named as the channel compared agai
 else its first one; another the values.
 """
 
-import csv
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,8 +22,9 @@ from trsim.analyse.apart import APART, windows
 from trsim.analyse.growth import motions
 from trsim.analyse.window import scalar_channel
 from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
+from trsim.spec.table import Line, Table, lines, number
 from trsim.store.read import Run
-from trsim.units import quantity, unit
+from trsim.units import fits, quantity, titled, unit
 
 Array = NDArray[np.float64]
 
@@ -168,18 +168,13 @@ def reference(path: Path, column: str, against: str, si: tuple[str, str]) -> Cur
     Titles may carry a unit, `time [ms]`; numbers without one are SI.  The column is the one named
     so, or the second of two.  Raises FileError, UsageError.
     """
-    if (missing := unreadable(path)) is not None:
-        raise missing
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = [line for line in csv.reader(file) if line and not line[0].startswith("#")]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise FileError(f"{path} cannot be read as a table: {error}", file=str(path)) from None
-    if len(lines) < 3 or len(lines[0]) < 2:
+    table = _table(path)
+    titles = table.titles or table.rows.pop(0)
+    table = table._replace(titles=titles)
+    if len(table.rows) < 2 or len(titles.cells) < 2:
         what = f"{path} has no table of at least two columns and two rows"
         raise FileError(what, "The first line names the columns.", file=str(path))
-    titles = [_title(text) for text in lines[0]]
-    names = [name for name, _ in titles]
+    names = [_name(cell) for cell in titles.cells]
     if column not in names and len(names) > 2:
         raise UsageError(f"{path}: no column named '{column}'", known(column, names))
     over = against or "time"
@@ -190,38 +185,52 @@ def reference(path: Path, column: str, against: str, si: tuple[str, str]) -> Cur
         raise UsageError(what, f"Name one column '{over}' and another one '{column}'.")
     values = []
     for place, text in zip(places, si, strict=True):
-        numbers = np.array([_number(path, line, place) for line in lines[1:]])
-        values.append(numbers * _factor(path, titles[place][1], text))
+        numbers = np.array([_number(table, line, place) for line in table.rows])
+        values.append(numbers * _factor(table, place, text))
     order = np.argsort(values[0], kind="stable")
     return Curve(values[0][order], values[1][order])
 
 
-def _title(text: str) -> tuple[str, str]:
-    """The name and the unit of `name [unit]`."""
-    name, _, rest = text.strip().partition("[")
-    return name.strip(), rest.rstrip("] ")
-
-
-def _number(path: Path, line: list[str], place: int) -> float:
+def _table(path: Path) -> Table:
+    """The lines of a file."""
+    if (missing := unreadable(path)) is not None:
+        raise missing
     try:
-        found = float(line[place])
-    except (ValueError, IndexError):
-        found = np.nan
-    if not np.isfinite(found):
-        what = f"{path}: no number in column {place + 1} of the line {','.join(line)[:60]}"
-        raise FileError(what, "Every line has as many numbers as the first has names.",
-                        file=str(path))  # fmt: skip
+        table = lines(path.read_bytes().decode("utf-8-sig"), str(path))
+    except (OSError, UnicodeDecodeError) as error:
+        raise FileError(f"{path} cannot be read as a table: {error}", file=str(path)) from None
+    except ScenarioError as error:
+        raise FileError(error.what, error.hint, place=error.place, file=str(path)) from None
+    if table.titles is None and not table.rows:
+        raise FileError(f"{path} has no table", "The first line names the columns.", file=str(path))
+    return table
+
+
+def _name(cell: str) -> str:
+    """The name in a title; of a title that makes no sense all of it."""
+    try:
+        return titled(cell)[0]
+    except ScenarioError:
+        return cell.partition("[")[0].strip()
+
+
+def _number(table: Table, line: Line, place: int) -> float:
+    found = number(line.cells[place]) if place < len(line.cells) else None
+    if found is None:
+        what = f"{table.file}: no number in column {place + 1} of the line {line.text[:60]}"
+        hint = "Every line has as many numbers as the first has names."
+        raise FileError(what, hint, place=table.place(line, place), file=table.file)
     return found
 
 
-def _factor(path: Path, text: str, si: str) -> float:
-    """What numbers in a unit are multiplied by."""
-    if not text:
-        return 1.0
+def _factor(table: Table, place: int, si: str) -> float:
+    """What the numbers of a column are multiplied by."""
+    assert table.titles is not None  # noqa: S101
+    where = table.place(table.titles, place)
     try:
-        factor, dimension = unit(text)
-        if dimension == unit(si)[1]:
-            return float(factor)
+        text = table.title(place)[1]
     except ScenarioError as error:
-        raise UsageError(f"{path}: {error.what}", error.hint) from None
-    raise UsageError(f"{path}: '{text}' is no unit of what is in {si}", "")
+        raise UsageError(error.what, error.hint, place=where) from None
+    if not text or fits(text, si):
+        return float(unit(text)[0])
+    raise UsageError(f"{table.file}: '{text}' is no unit of what is in {si}", place=where)

@@ -154,7 +154,12 @@ def _of_shares(field: str, unit: str) -> Any:
 
 # --- of the file -----------------------------------------------------------------------------
 
-UNITS = {"time": "s", "peak_force": "N", "peak_time": "s", "integration_cpu": "s"}
+UNITS = {"time": "s", "peak_time": "s", "integration_cpu": "s"}
+UNITS |= {"energy_residual": "J", "work_of_projection": "J"}
+OF_CONTACTS = {
+    "peak_force": ("contact_force", "normal_force"),
+    "fastest_impact": ("penetration",),
+}
 
 
 def _kept(group: str) -> Any:
@@ -167,9 +172,19 @@ def _kept(group: str) -> Any:
             inner = inner[key]
         if not isinstance(inner, int | float):
             raise UsageError(f"{run.path}: '{path}' in its {group} is no number", FORM)
-        return float(inner), UNITS.get(key, "-")
+        return float(inner), _unit_of(run, path)
 
     return number
+
+
+def _unit_of(run: Run, path: str) -> str:
+    """The unit of a number of the summary or of the solver."""
+    first, _, rest = path.partition(".")
+    joint, _, key = rest.rpartition(".")
+    if first != "contacts" or key not in OF_CONTACTS or joint not in run.contacts:
+        return UNITS.get(path.rpartition(".")[2], "-")
+    own = run.contact_unit(joint, *OF_CONTACTS[key])
+    return own if key == "peak_force" else f"{own}/s"
 
 
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {

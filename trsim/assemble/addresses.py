@@ -14,7 +14,7 @@ from trsim.errors import ScenarioError, known
 from trsim.expressions import names
 from trsim.frame import Frame
 from trsim.laws import functions
-from trsim.units import unit
+from trsim.units import fits
 
 
 class JointCoordinate(NamedTuple):
@@ -29,6 +29,9 @@ class JointCoordinate(NamedTuple):
     axis_i: tuple[float, ...]  # its axis in body i
     axis: tuple[float, ...]  # and in world axes as drawn
     drawn: float  # value as drawn
+
+
+UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
 
 
 @dataclass
@@ -246,34 +249,49 @@ class Addresses:
                                 "contact_laws", ("contact",) if name else ())  # fmt: skip
         return laws[name]
 
-    def function(self, spec: Any, *path: str, time_only: bool = False) -> int:
-        """Store a function of t or of sensors in tab; its offset."""
+    def function(self, spec: Any, *path: str, time_only: bool = False, wanted: str = "") -> int:
+        """Store a function of t or of sensors in tab; its offset.
+
+        wanted: the unit of its values where the field allows several.
+        """
         offset = len(self.tab)
         if spec.kind == "constant":
             code = functions.constant(spec.value)
         elif spec.kind == "table":
             variable = -1 if spec.of == "t" else self.known_sensor(spec.of, time_only, path)
+            self.check_table(spec, wanted, *path)
             self.timed = self.timed or variable < 0
             self.notes += overshoot(spec, path)
             code = functions.table(spec.x, spec.y, variable, spec.ends)
         else:
             self.timed = self.timed or "t" in names(spec.node)
-            wanted = names(spec.node) - {"t", "pi"}
-            indices = {name: self.known_sensor(name, time_only, path) for name in wanted}
+            used = names(spec.node) - {"t", "pi"}
+            indices = {name: self.known_sensor(name, time_only, path) for name in used}
             code = functions.expression(spec.node, indices)
         self.tab.extend(code)
         return offset
+
+    def check_table(self, spec: Any, wanted: str, *path: str) -> None:
+        """Refuse units of a table's columns that are not those of its variable and its values."""
+        x, y = spec.units
+        if x:
+            found = UNITS["time" if spec.of == "t" else self.sensor_kind(spec.of)]
+            if not fits(x, found):
+                what = f"wrong unit: '{x}'; '{spec.of}' is in {found}"
+                raise ScenarioError(what, "", (*path, "table"))
+        if wanted and not fits(y, wanted):
+            what = f"wrong unit: '{y}'; this number is in {wanted}"
+            raise ScenarioError(what, "", (*path, "table"))
 
     def check_unit(self, kind: str, angle: str, stroke: str, *path: str) -> None:
         """Refuse a written unit that does not fit a joint that turns, or one that slides."""
         written = self.scenario.quantity(*path)
         wanted = angle if kind == "angle" else stroke
-        if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
+        if written is None or fits(written[1], wanted):
             return
-        if wanted == "rad" and not any(unit(written[1])[1]):
-            return
+        does = {"angle": "the joint turns", "stroke": "the joint slides"}
         raise ScenarioError(
-            f"wrong unit: '{written[1]}'; the joint {'turns' if kind == 'angle' else 'slides'}",
+            f"wrong unit: '{written[1]}'; {does.get(kind, 'a point meets a wall')}",
             f"this number is in {wanted}",
             path[2:],
         )

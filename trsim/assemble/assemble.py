@@ -79,7 +79,7 @@ def assemble(
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
-        model, columns = layout(scenario, model, instances, at, planar)
+        model, columns = layout(scenario, model, instances)
         model, shown = sections(scenario, model, instances, columns)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)

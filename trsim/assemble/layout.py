@@ -2,18 +2,15 @@
 
 from collections.abc import Iterable
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from trsim.assemble.mechanism import Column, Instance
 from trsim.assemble.outputs import energy_columns
-from trsim.elements.contract import FIRST_ROW, Channel
+from trsim.elements.contract import FIRST_ROW
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
-
-if TYPE_CHECKING:
-    from trsim.assemble.addresses import Addresses
 
 NOT_BY_DEFAULT = ("*.rotation",)
 
@@ -21,21 +18,6 @@ NOT_BY_DEFAULT = ("*.rotation",)
 def matches(name: str, patterns: tuple[str, ...]) -> bool:
     """Whether a channel is asked for: by name, by pattern, or by the name of its element."""
     return any(fnmatchcase(name, p) or name.startswith(p + ".") for p in patterns)
-
-
-def unit(instance: Instance, channel: Channel, at: "Addresses") -> str:
-    """The unit of a channel; some depend on whether a joint turns or slides."""
-    if channel.unit == channel.unit_on("rad") == channel.unit_on("m"):
-        return channel.unit
-    if instance.section == "sensors":
-        return channel.unit_on("rad" if at.sensor_kind(instance.name) == "angle" else "m")
-    spec = getattr(at.scenario, instance.section).get(instance.name)
-    if instance.element.key == "drive":  # also one made for the start of a run, or for a lock
-        *_, rotates, _ = instance.row.con
-        return channel.unit_on("rad" if rotates == 1 else "m")
-    x = at.coordinate(spec.joint) if spec and spec.joint else None
-    # no joint: a stop of a point on a wall
-    return channel.unit_on("rad" if x is not None and x.kind == "angle" else "m")
 
 
 def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
@@ -56,9 +38,7 @@ def points_of(scenario: Any) -> set[str]:
     return named | {channel[:-2] for channel in named if channel[-2:] in COMPONENTS}
 
 
-def layout(
-    scenario: Any, model: Model, instances: list[Instance], at: "Addresses", planar: bool
-) -> tuple[Model, list[Column]]:
+def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Model, list[Column]]:
     """The model with its output tables filled, and the columns."""
     patterns, shown = tuple(scenario.output.channels), points_of(scenario)
     columns: list[Column] = []
@@ -87,8 +67,7 @@ def layout(
         if names and (anyway or any(map(needed, names))):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
-                unit_of = unit(instance, channel, at)
-                add(name, unit_of, channel.meaning, channel.size, extra=not anyway)
+                add(name, channel.unit, channel.meaning, channel.size, extra=not anyway)
     for e, instance in enumerate(instances):
         names = [f"{instance.name}.{c.name}" for c in instance.element.reactions]
         if any(map(needed, names)):

@@ -55,8 +55,10 @@ class Instance:
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        own = self.row.channels
-        return self.element.channels if own is None else own
+        """Its channels, each in its own unit."""
+        found = self.element.channels if self.row.channels is None else self.row.channels
+        own = "rad" if self.row.turns else "m"
+        return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
 
 
 @dataclass(frozen=True)

@@ -15,18 +15,17 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from trsim import elements
-from trsim.assemble.addresses import Addresses
+from trsim.assemble.addresses import UNITS, Addresses
 from trsim.assemble.mechanism import Instance
 from trsim.elements.event import DIRECTIONS, Event
 from trsim.elements.prescribed import ENTRY, OWN_STATE
 from trsim.errors import ScenarioError, known
 from trsim.statuses import Ended
-from trsim.units import unit
+from trsim.units import fits
 
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
-UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
 # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
 TIME, LIMITS = -1, -2
 SECTION = "events"  # of the instances of locks
@@ -49,6 +48,12 @@ class UserEvent:
     when: str  # what is watched
     status: Ended = "done"  # of the run where it ends here
     unit: str = ""  # of the value, where the kind does not tell
+
+    @property
+    def rate(self) -> str:
+        """The unit of the rate of what is watched."""
+        own = UNITS.get(self.kind, self.unit)
+        return f"{own}/s" if own != "s" else "-"
 
     def told(self) -> str:
         """When it happens and what it does, in words."""
@@ -158,9 +163,7 @@ class _Packing:
     def check_value(self, name: str, when: str, wanted: str) -> None:
         """Refuse a written unit that does not fit what is watched."""
         written = self.scenario.quantity(SECTION, name, "value")
-        if written is None or not written[1] or unit(written[1])[1] == unit(wanted)[1]:
-            return
-        if wanted != "rad" or any(unit(written[1])[1]):
+        if written is not None and not fits(written[1], wanted):
             what = f"wrong unit: '{written[1]}'; '{when}' is in {wanted}"
             raise ScenarioError(what, "", (SECTION, name, "value"))
 
@@ -186,13 +189,14 @@ class _Packing:
             kind, entry = x.kind, x.entry
         word = "velocity" if by_velocity else "position"
         units = ("rad/s", "m/s") if by_velocity else ("rad", "m")
+        wanted = units[0 if kind == "angle" else 1]
         try:
             self.at.check_unit(kind, *units, *path, word)
         except ScenarioError as error:
             raise error.at(*path[:2]) from None
         given = motion.velocity if by_velocity else motion.position
         try:
-            offset = self.at.function(given, word, time_only=True)
+            offset = self.at.function(given, word, time_only=True, wanted=wanted)
         except ScenarioError as error:
             raise error.at(*path) from None
         state = self.state(drive, kind, entry) if by_velocity else -1

@@ -101,7 +101,7 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "unique": list(mechanism.unique),
         "not_unique": list(mechanism.not_unique),
         "release": released(scenario, mechanism),
-        "notes": [*mechanism.notes, *lint(scenario)],
+        "notes": [*mechanism.notes, *lint(scenario), *scenario.bare],
     }
 
 

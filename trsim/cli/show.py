@@ -90,9 +90,10 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
             f"{solver['energy_residual_relative']:.1e}"
         )
     for name, contact in data["summary"]["contacts"].items():
+        unit = run.contact_unit(name, "contact_force", "normal_force")
         out.append(
             f"  contact   {name}: {contact['impacts']} impacts, peak {contact['peak_force']:.5g} "
-            f"at {contact['peak_time']:.5g} s"
+            f"{unit} at {contact['peak_time']:.5g} s"
         )
     out += user_events(run, data["fired"])
     if "certificate" in data:

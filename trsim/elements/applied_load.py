@@ -52,7 +52,7 @@ def pack(name, spec, at):
     n = at.axes(frame, direction(spec.direction))
     is_torque = spec.force is None
     f = at.function(spec.torque if is_torque else spec.force, "torque" if is_torque else "force")
-    return Row((i, frame, f, int(is_torque)), (*at.local(i, place), *n))
+    return Row((i, frame, f, int(is_torque)), (*at.local(i, place), *n), turns=is_torque)
 
 
 @kernel
@@ -93,8 +93,8 @@ ELEMENT = Element(
     spec=AppliedLoad,
     pack=pack,
     channels=(
-        Channel("magnitude", "N", "the force or torque along its direction"),
-        Channel("load", "N", "its components, world axes", 3),
+        Channel("magnitude", "drive", "the force or torque along its direction"),
+        Channel("load", "drive", "its components, world axes", 3),
     ),
     kernels={"force": force, "measure": measure},
     example="""

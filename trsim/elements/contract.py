@@ -82,7 +82,7 @@ class Channel(NamedTuple):
     size: int = 1
 
     def unit_on(self, own: str) -> str:
-        """The unit where it depends on the joint, whose coordinate is in `own`: rad or m."""
+        """The unit where it depends on what it acts along, a coordinate in `own`: rad or m."""
         turning = {"drive": "N*m" if own == "rad" else "N"}
         return turning.get(self.unit, self.unit.replace("coordinate", own))
 
@@ -124,6 +124,7 @@ class Row:
     is_force: bool = False  # its constraint rows are never in force: a drive with compliance
     states: tuple[int, ...] = ()  # entries of z it reads or changes
     limits: tuple[Limit, ...] = ()
+    turns: bool = False  # it acts on an angle, or about an axis: so do units that depend on it
 
 
 def ends(row: Row) -> frozenset[int]:

@@ -89,7 +89,9 @@ def pack(name, spec, at):
     at.check_unit(x.kind, *rates, "drives", name, word)
     for key, turning, sliding in COMPLIANCE_UNITS:
         at.check_unit(x.kind, turning, sliding, "drives", name, "compliance", key)
-    f = at.function(spec.velocity if by_velocity else spec.position, word, time_only=True)
+    motion = spec.velocity if by_velocity else spec.position
+    wanted = rates[0 if x.kind == "angle" else 1]
+    f = at.function(motion, word, time_only=True, wanted=wanted)
     state = at.state(x.kind, follows=x.entry) if by_velocity else -1
     k = c = 0.0
     if spec.compliance is not None:
@@ -102,7 +104,7 @@ def pack(name, spec, at):
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
     con = (x.i, x.j, x.entry, state, int(x.kind == "angle"), f)
     par = (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign))
-    return Row(con, par, is_force=k > 0.0, states=(state,))
+    return Row(con, par, is_force=k > 0.0, states=(state,), turns=x.kind == "angle")
 
 
 @kernel

@@ -115,6 +115,8 @@ def pack(name, spec, at):
                 "name two different bodies",
                 ("point", "body"),
             )
+        for key, turning, sliding in UNITS:
+            at.check_unit("wall", turning, sliding, "forces", name, key)
         # on a flexible bar the wall belongs to the node that is nearest to it
         i = at.body(spec.wall.body, "wall", "body", near=spec.wall.at, off=1.0)
         j = at.body(spec.point.body, "point", "body", near=spec.point.at)
@@ -128,7 +130,7 @@ def pack(name, spec, at):
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
     par = (*x.s_i, *x.s_j, *x.axis_i, *law, low, high)
-    return Row((x.i, x.j, x.entry, kind), par, contact)
+    return Row((x.i, x.j, x.entry, kind), par, contact, turns=kind == ON_ANGLE)
 
 
 @helper

@@ -39,6 +39,7 @@ def pack(name, spec, at):
             source.drawn,
             spec.at_start,
         ),
+        turns=source.kind == "angle",
     )
 
 

@@ -22,6 +22,9 @@ QUANTITY = {
 }
 
 
+FORCES = ("contact_force", "normal_force")  # of a contact, the first there is
+
+
 def draw(runs: list[Shown], folder: Path) -> list[Path]:
     """All figures, as PNG."""
     with look():
@@ -183,30 +186,31 @@ def contact_force(runs: list[Shown], name: str) -> Any:
     there = [shown for shown in runs if name in shown.run.contacts]
     figure, axes = panels(len(there), height=2.9 if len(there) == 1 else 1.8,
                           sharex=True, sharey=True)  # fmt: skip
-    unit = there[0].display("N")[1]
+    si = there[0].run.contact_unit(name, *FORCES)
+    unit, word = there[0].display(si)[1], "torque" if si == "N*m" else "force"
     for a, shown in zip(axes[:, 0], there, strict=True):
         time, force = contact_history(shown, name)
         k = runs.index(shown)
-        force = shown.scaled(force, "N")
+        force = shown.scaled(force, si)
         a.plot(*thinned(shown.scaled(time, "s"), force), color=colour(k))
-        a.set_ylabel(f"contact force ({unit})" if len(there) < 3 else f"force ({unit})")
+        a.set_ylabel(f"contact {word} ({unit})" if len(there) < 3 else f"{word} ({unit})")
         a.margins(x=0.01, y=0.12)
         if shown.label:
             a.set_title(shown.label, loc="left")
     for a, shown in zip(axes[:, 0], there, strict=True):  # once the limits are known
-        channels = (f"{name}.contact_force", f"{name}.normal_force")
+        channels = tuple(f"{name}.{force}" for force in FORCES)
         found = [p for p in shown.run.peaks if p.channel in channels and p.extreme == "largest"]
         for peak in sorted(found, key=lambda p: channels.index(p.channel))[:1]:
             mark(a, shown, peak, runs.index(shown))
     axes[-1, 0].set_xlabel(runs[0].time_label)
     axes[0, 0].set_ylim(bottom=0.0)
     figure.align_ylabels()
-    titled(figure, runs, f"Contact force at {name}")
+    titled(figure, runs, f"Contact {word} at {name}")
     return figure
 
 
 def contact_history(shown: Shown, name: str) -> tuple[Array, Array]:
-    """Times and force (N) of a contact, from its steps and its events."""
+    """Times and force (N, N*m) of a contact, from its steps and its events."""
     steps, events = shown.run.steps(name), shown.run.events
     force = steps["contact_force" if "contact_force" in steps else "normal_force"]
     at = events.time[events.element == name]

@@ -184,7 +184,9 @@ class _Files:
                         value, self.folders.get(place.file, folder), (".csv", ".CSV")
                     )
                     shown = _beside(value, place)
-                    data[key] = rows(self.content(real, shown), shown)
+                    data[key], bare = rows(self.content(real, shown), shown)
+                    if bare:
+                        tree.bare[here] = f"{' and '.join(bare)} of {shown}"
                 except (ScenarioError, FileError) as error:
                     place = error.place or place
                     raise ScenarioError(error.what, error.hint, here, place) from None

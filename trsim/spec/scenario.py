@@ -245,6 +245,15 @@ class Scenario(Spec):
         names = {"t", *(scope.parameters if scope else self.parameters)}  # 1/t is none per tonne
         return quantity(raw, names) if isinstance(raw, str) else None
 
+    @property
+    def bare(self) -> tuple[str, ...]:
+        """What is said of the columns of CSV files that have no unit."""
+        return tuple(
+            f"{'.'.join(map(str, path))}: {columns} without a unit: read as SI; a title such as "
+            f"`force [kN]` tells it"
+            for path, columns in self._tree.bare.items()
+        )
+
     def written(self, path: tuple) -> tuple:
         """Where in the files the path of an entry is written: of an instance, in its template."""
         return self._unfolded.written(path)

@@ -50,6 +50,7 @@ class Tree:
     marks: dict[Path, Place] = field(default_factory=dict)
     keys: dict[Path, Place] = field(default_factory=dict)
     files: dict[str, str] = field(default_factory=dict)  # name -> sha256
+    bare: dict[Path, str] = field(default_factory=dict)  # tables -> columns without a unit
 
     def place(self, path: Path) -> Place | None:
         """Where a fault in the value at `path`, or in what holds it, is best shown."""

@@ -95,6 +95,13 @@ class Run:
         with opened(self.path) as file:
             return _table(file["steps"][joint])
 
+    def contact_unit(self, joint: str, *channels: str) -> str:
+        """The unit of the first of the channels that a contact has, force or speed."""
+        with opened(self.path) as file:
+            there = file["steps"][joint]
+            units = [str(there[c].attrs.get("units", "-")) for c in channels if c in there]
+        return units[0] if units else "-"
+
     @property
     def events(self) -> Events:
         with opened(self.path) as file:

@@ -37,11 +37,12 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
     names = (*(instance.name or "-" for instance in mechanism.instances), "solver")
     did = ("-",) * len(names) + tuple(event.said for event in user)
     names += tuple(event.name for event in user)
+    speed = speed_unit(mechanism)
     fields = [
         time_field,
         Field("kind", "", "what happened", 1, words=KINDS),
         Field("element", "", "where", 2, words=names),
-        Field("speed", "m/s", "rate of penetration; of the solver: largest eigenvalue, 1/s", 3),
+        Field("speed", speed, "rate of penetration; of the solver: largest eigenvalue, 1/s", 3),
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
     if user:
@@ -51,6 +52,14 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
             Field("work", "J", "done by a user event: change of kinetic and stored energy", 5),
         ]
     return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
+
+
+def speed_unit(mechanism: Any) -> str:
+    """The unit of the rates in the table of events; all of them where there are several."""
+    touching = (mechanism.instances[e] for e in mechanism.model.contact.tolist())
+    found = ["rad/s" if instance.row.turns else "m/s" for instance in touching]
+    found += [event.rate for event in mechanism.stages.switches.events]
+    return " or ".join(dict.fromkeys(found)) or "m/s"
 
 
 def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | None:
