@@ -17,12 +17,12 @@ from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Secti
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
 from trsim.assemble.pattern import Hubs, no_pattern, pattern
+from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
     check_space,
     choose_rows,
-    planarity,
     reactions,
 )
 from trsim.assemble.sections import sections
@@ -57,19 +57,23 @@ def assemble(
     drives: Mapping[str, Any] | None = None,
     coordinates: tuple[str, ...] = (),
     stiff: bool = False,
+    planar: bool | None = None,
 ) -> Mechanism:
     """Build the model.  Raises ScenarioError, ModelError.
 
     For the start of a run - ideal: clearance joints to take as ideal ones; drives: drives instead
     of the scenario's; coordinates: joints whose coordinate is needed though nobody asks for it;
-    stiff: flexible bars as rigid ones.
+    stiff: flexible bars as rigid ones; planar: whether the run is, found out unless given.
     """
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
     full = scene(build(scenario, at, instances, rows, 6))  # one workspace for all
     y6 = drawn(at, 6)
-    planar, assumed = planarity(scenario, full, y6, at.flat)
-    check_inertias(at, planar)
+    verdict = (
+        planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
+    )
+    planar = verdict.planar
+    check_inertias(at, planar, listed(verdict.reasons))
     if not planar:
         check_space(at, instances)
     kept, found = choose_rows(full, y6, instances, planar, rows)
@@ -90,7 +94,8 @@ def assemble(
         columns=tuple(columns),
         planar=planar,
         timed=at.timed,
-        planar_assumed=assumed,
+        planar_assumed=verdict.assumed,
+        spatial_because=verdict.because(),
         mobility=model.n_v - model.m,
         mobility_by_count=model.n_v - len(unique) - len(not_unique),
         redundant=tuple(names[f.row] for f in found if f.everywhere),
@@ -102,7 +107,7 @@ def assemble(
         coordinates=at.coordinates,
         frames=at.frames,
         beams=at.beams,
-        notes=(*notes(scenario, assumed), *at.notes),
+        notes=(*verdict.notes(), *notes(scenario), *at.notes),
         stages=stages(scenario, at, instances, model, planar),
         sections=shown,
     )
@@ -122,14 +127,9 @@ def stages(
     return Stages(at.switches, instances, first, built)
 
 
-def notes(scenario: Any, assumed: bool) -> tuple[str, ...]:
+def notes(scenario: Any) -> tuple[str, ...]:
     """What the user should know before the run."""
     said = []
-    if assumed:
-        said.append(
-            "planar motion assumed: nothing holds the bodies in their plane; "
-            "set `planar: false` for a spatial run"
-        )
     for name, law in scenario.contact_laws.items():
         if law.friction.law == "coulomb":
             said.append(

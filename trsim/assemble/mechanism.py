@@ -84,6 +84,7 @@ class Mechanism:
     planar: bool
     timed: bool  # a load or drive depends on time explicitly
     planar_assumed: bool  # nothing holds the bodies in their plane
+    spatial_because: tuple[str, ...]  # what reaches out of the plane, where nobody asked for space
     mobility: int  # degrees of freedom left, by rank near the drawn position; drives are rows
     mobility_by_count: int  # unknowns minus rows, as Gruebler counts them
     redundant: tuple[str, ...]  # rows dropped, "joint.axis"

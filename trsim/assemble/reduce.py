@@ -1,15 +1,13 @@
-"""What the scene does not need is not solved: planarity, redundant rows, mobility.
+"""What the scene does not need is not solved: redundant rows, mobility.
 
-Planarity is read off the numbers: a row whose derivatives against z', omega_x, omega_y vanish is in
-the plane; one whose derivatives against x', y', omega_z vanish is out of it.  Derivatives are
-against world-axes rates, six of each moving frame: see `world_rates`.  Rows are judged redundant by
-rank, at several consistent positions near the drawn one: what is dependent only at
-the drawn position (a dead centre, a parallelogram lying flat) is singular, not redundant, and kept.
+Derivatives of rows are against world-axes rates, six of each moving frame: see `world_rates`.  Rows
+are judged redundant by rank, at several consistent positions near the drawn one: what is dependent
+only at the drawn position (a dead centre, a parallelogram lying flat) is singular, not redundant,
+and kept.  Whether motion stays in a plane: planar.py.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,37 +213,3 @@ def distance(model: Model, y: Array, near: Array) -> float:
     apart = np.abs(w.X - before)
     apart[:, :3] /= model.size
     return float(np.max(apart))
-
-
-def is_planar(model: Model, y: Array, sample: Any) -> tuple[bool, bool]:
-    """(in one plane, held there by the joints): rows separate, loads stay in the plane.
-
-    sample(y) -> wrenches F (n, 6) of the force elements at a state.
-    """
-    rng = np.random.default_rng(1)
-    inside, n_v = moves(model, True), slice(model.n_q, model.n_q + model.n_v)
-    rigid = np.arange(6 * (model.n - 1)) < 6 * (model.n_r - 1)
-    tilted = False  # moments that turn bodies out of the plane, unless something holds them
-    for _ in range(2):
-        dx = np.zeros(inside.size)
-        # beams stay straight: their elastic forces would hide all others
-        dx[inside & rigid] = 0.05 * rng.normal(size=int((inside & rigid).sum()))
-        near = displaced(model, y, dx)
-        # in the plane the axes of the solve are the world's
-        near[n_v][inside] = rng.normal(size=int(inside.sum()))
-        J = jacobian(model, 0.0, near)[2]
-        within = np.abs(J[:, inside]).max(axis=1, initial=0.0)
-        outside = np.abs(J[:, ~inside]).max(axis=1, initial=0.0)
-        if np.any((within > 1e-9) & (outside > 1e-9 * np.maximum(1.0, model.size))):
-            return False, False
-        F = sample(near)[1:]
-        if np.abs(F[:, 2]).max(initial=0.0) > 1e-9 * max(1.0, np.abs(F).max(initial=0.0)):
-            return False, False
-        tilt = np.abs(F[:, 3:5]).max(initial=0.0)
-        tilted = tilted or tilt > 1e-9 * max(1.0, np.abs(F).max(initial=0.0))
-    outside_rows = jacobian(model, 0.0, y)[2][:, ~inside & rigid]
-    bodies = outside_rows.shape[1]
-    held = np.linalg.matrix_rank(outside_rows, tol=1e-8) == bodies if model.m else bodies == 0
-    if tilted and not held:
-        return False, False
-    return True, bool(held)

@@ -1,7 +1,6 @@
 """Which constraint rows are solved: those in the plane of a planar scene, no redundant ones."""
 
 from collections.abc import Collection
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +11,11 @@ from trsim.assemble.rank import unique_reactions
 from trsim.assemble.reduce import (
     Dependence,
     dependences,
-    is_planar,
     jacobian,
     moves,
     weights,
-    world_rates,
 )
-from trsim.elements.contract import PHASE, UNLOCATED
-from trsim.elements.scene import Model, scene
+from trsim.elements.scene import Model
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -101,44 +97,15 @@ def choose_rows(
     return [rows[k] for k in candidates if k not in dropped], found
 
 
-def planarity(scenario: Any, full: Model, y6: Array, flat: bool) -> tuple[bool, bool]:
-    """(planar, only assumed); flat: the z axes of all bodies are the world's."""
-    from trsim.assemble.equations import forces, poses
-
-    def sample(y: Array) -> Array:
-        w = scene(full)
-        w.mem[:, PHASE] = UNLOCATED
-        poses(w, y)
-        forces(w, 0.0)
-        return w.F.copy()
-
-    if scenario.planar is False or full.n == 1:
-        return False, False
-    if scenario.planar and not flat:
-        raise ModelError(
-            "`planar: true`, but the frame of an instance turns its bodies out of the x-y plane",
-            "turn it about z only or set `planar: false`",
-            ("planar",),
-        )
-    inside, held = is_planar(full, y6, sample)
-    inside = inside and flat and not np.any(world_rates(full, y6)[~moves(full, True)])
-    if scenario.planar and not inside:
-        raise ModelError(
-            "`planar: true`, but joints, loads or velocities leave the x-y plane",
-            "draw the mechanism in the x-y plane or set `planar: false`",
-            ("planar",),
-        )
-    return inside, inside and not held and scenario.planar is None
-
-
-def check_inertias(at: Addresses, planar: bool) -> None:
-    """A single inertia is about z: not enough in space."""
+def check_inertias(at: Addresses, planar: bool, because: str = "") -> None:
+    """A single inertia is about z: not enough in space.  because: why the scene is spatial."""
     if planar:
         return
     for name, spec in at.members.items():
         if spec.type == "rigid_body" and isinstance(spec.inertia, float):
             raise ModelError(
-                "one inertia (about z) is not enough in a scene that is not planar",
+                "one inertia (about z) is not enough in a scene that is not planar"
+                + (f": {because}" if because else ""),
                 "give three principal inertias, or six numbers with the products",
                 ("bodies", name, "inertia"),
             )

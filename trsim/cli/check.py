@@ -92,6 +92,7 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "events": {e.name: e.told() for e in mechanism.stages.switches.events},
         "planar": mechanism.planar,
         "planar_assumed": mechanism.planar_assumed,
+        "spatial_because": list(mechanism.spatial_because),
         "unknowns": int(model.n_v),
         "constraints": int(model.m),
         "mobility": int(mechanism.mobility),
@@ -169,6 +170,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         return words(f"{name} ({kind})" for name, kind in found[key].items())
 
     plane = "planar" + (" (assumed)" if found["planar_assumed"] else "")
+    space = ": ".join(["spatial", *filter(None, ["; ".join(found["spatial_because"])])])
     return [
         f"{found['file']}: {found['title']}" if found["title"] else found["file"],
         f"  bodies      {len(found['bodies'])}: {words(found['bodies'])}",
@@ -177,7 +179,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         f"  forces      {typed('forces')}",
         f"  contacts    {words(found['contacts'])}",
         *(f"  event       {name}: {told}" for name, told in found["events"].items()),
-        f"  motion      {plane if found['planar'] else 'spatial'}",
+        f"  motion      {plane if found['planar'] else space}",
         *mobility_lines(found),
         *start_lines(found["start"]),
         *scale_lines(found["scales"], found["mobility"]),

@@ -128,6 +128,8 @@ def ran(
         compiling_sparse(answer, scenario, mechanism)
         for note in () if twin else (*mechanism.notes, *lint(scenario)):
             answer.warn(source, note)
+        if mechanism.spatial_because and not twin:
+            answer.say(f"{source}: spatial motion: {shown(mechanism.spatial_because)}")
         running = simulate(scenario, mechanism, kept.state if kept else None)
         blocks = watched(running, answer, source, scenario.solver.end)
         called = shlex.join(["trsim", *sys.argv[1:]])
@@ -140,6 +142,12 @@ def ran(
     if Stop.number:
         raise KeyboardInterrupt
     return summary
+
+
+def shown(reasons: tuple[str, ...]) -> str:
+    """The first of some reasons, and how many more there are."""
+    more = f", and {len(reasons) - 1} more (see `trsim check`)" if len(reasons) > 1 else ""
+    return reasons[0] + more
 
 
 def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:

@@ -27,6 +27,7 @@ from trsim.elements.contract import (
     Channel,
     Element,
     Limit,
+    Reach,
     Row,
     kernel,
 )
@@ -267,11 +268,19 @@ WITH_SUPPLY = (
     Channel("supply_force", "N", "sign times the force of the supply on the piston"),
 )
 
+
+def reach(row):
+    i, j = row.con[:2]
+    p, q = row.par[:3], row.par[3:6]
+    return Reach(lines=((i, p, j, q),), places=((i, p, (i, j)),))
+
+
 ELEMENT = Element(
     key="actuator",
     section="drives",
     spec=Actuator,
     pack=pack,
+    reach=reach,
     rows=("length",),
     channels=CHANNELS,
     kernels={

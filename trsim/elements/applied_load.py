@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Row, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, kernel
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.laws.functions import value
@@ -87,11 +87,20 @@ def measure(t, scene, a, b):
             out[col[e] + 1 + c] = f * n[c]
 
 
+def reach(row):
+    i, frame, _, is_torque = row.con
+    way = ((frame, row.par[3:6]),)
+    if is_torque:
+        return Reach(torques=way)
+    return Reach(forces=way, places=((i, row.par[:3], (i,)),))
+
+
 ELEMENT = Element(
     key="applied_load",
     section="forces",
     spec=AppliedLoad,
     pack=pack,
+    reach=reach,
     channels=(
         Channel("magnitude", "drive", "the force or torque along its direction"),
         Channel("load", "drive", "its components, world axes", 3),

@@ -16,7 +16,7 @@ from typing import Annotated, ClassVar
 
 from annotated_types import Ge
 
-from trsim.elements.contract import DAMPERS, SPRINGS, Channel, Element, Row, kernel
+from trsim.elements.contract import DAMPERS, SPRINGS, Channel, Element, Reach, Row, kernel
 from trsim.elements.frames import arm, dot, helper, push, separation, spin, twist, velocity
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
@@ -169,11 +169,28 @@ def measure(t, scene, a, b):
             out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
 
 
+def reach(row):
+    """Its matrices of stiffness and damping; each acts in the plane where it couples no z to it."""
+    i, j = row.con[:2]
+    axes, k, c, k_r, c_r = (
+        row.par[n : n + m] for n, m in ((6, 9), (24, 3), (27, 3), (30, 3), (33, 3))
+    )
+    return Reach(
+        places=((i, row.par[:3], (i, j)),) if any(k + c) else (),
+        tensors=tuple(
+            (i, axes, law, turns)
+            for law, turns in ((k, False), (c, False), (k_r, True), (c_r, True))
+            if any(law)
+        ),
+    )
+
+
 ELEMENT = Element(
     key="bushing",
     section="forces",
     spec=Bushing,
     pack=pack,
+    reach=reach,
     channels=(
         Channel("force", "N", "on the second body at its point, world axes", 3),
         Channel("moment", "N*m", "on the second body, world axes", 3),

@@ -32,6 +32,7 @@ from trsim.elements.contract import (
     Channel,
     Contact,
     Element,
+    Reach,
     Row,
     kernel,
 )
@@ -342,11 +343,17 @@ def measure(t, scene, a, b):
             out[o + 10 + c] = -F_n * n[c] + F_t * tangent[c]
 
 
+def reach(row):
+    i, j = row.con[:2]
+    return Reach(hinges=((i, row.par[12:15]),), places=((i, row.par[:3], (i, j)),))
+
+
 ELEMENT = Element(
     key="clearance_joint",
     section="joints",
     spec=ClearanceJoint,
     pack=pack,
+    reach=reach,
     rows=("axial", "tilt 1", "tilt 2"),
     coordinate="angle",
     channels=(

@@ -127,6 +127,23 @@ class Row:
     turns: bool = False  # it acts on an angle, or about an axis: so do units that depend on it
 
 
+class Reach(NamedTuple):
+    """What an instance does that could leave the x-y plane; see assemble/planar.py.
+
+    Directions and points are (frame, three numbers in the axes of the frame, from its centre).
+    """
+
+    hinges: tuple = ()  # axes bodies turn about
+    slides: tuple = ()  # directions bodies slide along
+    forces: tuple = ()  # directions of forces
+    torques: tuple = ()  # axes of torques
+    lines: tuple = ()  # (i, point, j, point): a force between two points
+    places: tuple = ()  # (frame, point, frames): where a force acts, and on which bodies
+    tensors: tuple = ()  # (frame, three axes, three numbers, whether of turns): linear laws
+    shown: tuple = ()  # directions of what is read
+    tilts: bool = False  # lets bodies turn out of the plane, though its rows hold in it
+
+
 def ends(row: Row) -> frozenset[int]:
     """The first two columns of con: the frames that most elements join."""
     return frozenset(row.con[:2])
@@ -144,6 +161,7 @@ class Element:
     coordinate: str = ""  # what a joint, or a sensor without one, has: angle, stroke
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
+    reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     n_mem: int = 0
     n_state: int = 0  # entries of z an instance owns
     kernels: dict[str, Compiled] = field(default_factory=dict)

@@ -9,7 +9,7 @@ the stroke of a body on compliant rails.
 
 from typing import Annotated, ClassVar, Literal
 
-from trsim.elements.contract import Channel, Element, Row, kernel
+from trsim.elements.contract import Channel, Element, Reach, Row, kernel
 from trsim.elements.frames import arm, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
 from trsim.fields import Spec, Unit, point, vector
@@ -70,11 +70,16 @@ def measure(t, scene, a, b):
         out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, i, p_i, j, p_j, axis)
 
 
+def reach(row):
+    return Reach(shown=((row.con[0], row.par[6:9]),))
+
+
 ELEMENT = Element(
     key="displacement",
     section="sensors",
     spec=Displacement,
     pack=pack,
+    reach=reach,
     coordinate="stroke",
     channels=(
         Channel("", "m", "displacement along the axis"),

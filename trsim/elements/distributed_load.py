@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Row, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, kernel
 from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
@@ -112,11 +112,16 @@ def measure(t, scene, a, b):
             out[wanted[e] + 1 + c] = whole * p[c]
 
 
+def reach(row):
+    return Reach(forces=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),))
+
+
 ELEMENT = Element(
     key="distributed_load",
     section="forces",
     spec=DistributedLoad,
     pack=pack,
+    reach=reach,
     acts_on=acts_on,
     channels=(
         Channel("magnitude", "N/m", "force per length along its direction"),

@@ -3,7 +3,7 @@
 F = m g at the centre of mass,     E = -m g . r
 """
 
-from trsim.elements.contract import GRAVITY, Element, Row, kernel
+from trsim.elements.contract import GRAVITY, Element, Reach, Row, kernel
 from trsim.fields import Spec
 
 
@@ -41,11 +41,16 @@ def energy(t, scene, a, b):
         E[GRAVITY] -= par[e, 0] * X[i, 0] + par[e, 1] * X[i, 1] + par[e, 2] * X[i, 2]
 
 
+def reach(row):
+    return Reach(forces=((0, row.par),))
+
+
 ELEMENT = Element(
     key="gravity",
     section="",
     spec=Gravity,
     pack=pack,
+    reach=reach,
     kernels={"force": force, "energy": energy},
     example="""
 bodies:

@@ -23,6 +23,7 @@ from trsim.elements.contract import (
     Channel,
     Contact,
     Element,
+    Reach,
     Row,
     kernel,
 )
@@ -220,11 +221,19 @@ def measure(t, scene, a, b):
         out[o + 4] = f * n[2]
 
 
+def reach(row):
+    i, j, _, kind = row.con
+    if kind != ON_WALL:  # along the coordinate of a joint
+        return Reach()
+    return Reach(forces=((i, row.par[6:9]),), places=((j, row.par[3:6], (i, j)),))
+
+
 ELEMENT = Element(
     key="limit_stop",
     section="forces",
     spec=LimitStop,
     pack=pack,
+    reach=reach,
     channels=(
         Channel("normal_force", "drive", "contact force or torque; never negative"),
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),

@@ -9,7 +9,7 @@ The stroke is a_i . d, zero as drawn.  reaction acts on body j at its point.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.contract import Element, Reach, Row, kernel
 from trsim.elements.frames import along_row, arm, perpendicular_row, stroke
 from trsim.elements.joint import triads
 from trsim.fields import Spec, point, vector
@@ -73,11 +73,16 @@ def coordinate(t, scene, a, b):
         S[s, 0], S[s, 1] = stroke(X, V, i, p_i, j, p_j, axis)
 
 
+def reach(row):
+    return Reach(slides=((row.con[0], row.par[12:15]),))
+
+
 ELEMENT = Element(
     key="prismatic",
     section="joints",
     spec=Prismatic,
     pack=pack,
+    reach=reach,
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
     kernels={"constraint": constraint, "coordinate": coordinate},

@@ -11,7 +11,7 @@ body i's about a, unwrapped.  reaction is the force on body j at the pin, world 
 from math import atan2
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.contract import Element, Reach, Row, kernel
 from trsim.elements.frames import (
     arm,
     dot,
@@ -79,11 +79,16 @@ def coordinate(t, scene, a, b):
         S[s, 1] = dot(axis, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
 
 
+def reach(row):
+    return Reach(hinges=((row.con[0], row.par[12:15]),))
+
+
 ELEMENT = Element(
     key="revolute",
     section="joints",
     spec=Revolute,
     pack=pack,
+    reach=reach,
     rows=("x", "y", "z", "tilt 1", "tilt 2"),
     coordinate="angle",
     kernels={"constraint": constraint, "coordinate": coordinate},

@@ -16,6 +16,7 @@ from trsim.elements.contract import (
     SPRINGS,
     Channel,
     Element,
+    Reach,
     Row,
     kernel,
 )
@@ -87,11 +88,18 @@ def measure(t, scene, a, b):
         out[col[e] + 1] = length
 
 
+def reach(row):
+    i, j = row.con[:2]
+    p, q = row.par[:3], row.par[3:6]
+    return Reach(lines=((i, p, j, q),), places=((i, p, (i, j)),))
+
+
 ELEMENT = Element(
     key="spring_damper",
     section="forces",
     spec=SpringDamper,
     pack=pack,
+    reach=reach,
     channels=(
         Channel("force", "N", "tension"),
         Channel("length", "m", "distance of the two points"),

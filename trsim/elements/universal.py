@@ -9,7 +9,7 @@ mass.  reaction is the force on body j at the point, world axes; reaction_moment
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.contract import Element, Reach, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
 from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
@@ -71,11 +71,16 @@ def constraint(t, scene, a, b):
         perpendicular_row(scene, i, a_i, j, b_j, con[e, 6])
 
 
+def reach(row):
+    return Reach(tilts=True)
+
+
 ELEMENT = Element(
     key="universal",
     section="joints",
     spec=Universal,
     pack=pack,
+    reach=reach,
     rows=("x", "y", "z", "tilt"),
     kernels={"constraint": constraint},
     example="""

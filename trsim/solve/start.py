@@ -173,7 +173,7 @@ def positions(
     ideal = frozenset(playing - set(initial.equilibrium))
     drives = holding_drives(scenario, initial)
     try:
-        held = with_scene(assemble(scenario, ideal, drives, stiff=True))
+        held = with_scene(assemble(scenario, ideal, drives, stiff=True, planar=mechanism.planar))
     except ModelError as error:
         name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
         if name not in initial.values:
@@ -196,7 +196,7 @@ def positions(
         y, residual = approach(held, y, targets, settle, rigid)
     remember(held.model, y)
     if mechanism.beams:
-        stiff, held = held, with_scene(assemble(scenario, ideal, drives))
+        stiff, held = held, with_scene(assemble(scenario, ideal, drives, planar=mechanism.planar))
         y, residual = bent(stiff, held, y, settle)
         remember(held.model, y)
     angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
@@ -221,7 +221,7 @@ def by_ideal_joints(
     """
     try:
         drives = holding_drives(scenario, initial)
-        bare = with_scene(assemble(scenario, playing, drives, stiff=True))
+        bare = with_scene(assemble(scenario, playing, drives, stiff=True, planar=held.planar))
         y, _ = equilibrium(bare, follow(bare, carried(bare, bare)), rigid)
         targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
         y, _ = approach(bare, y, targets, True, rigid)

@@ -64,7 +64,7 @@ def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) ->
     with_coordinate = [n for n in named if elements.load(scenario.joints[n].type).coordinate]
     if not playing and not mechanism.beams and {*with_coordinate} <= {*mechanism.coordinates}:
         return mechanism
-    return assemble(scenario, playing, coordinates=named, stiff=True)
+    return assemble(scenario, playing, coordinates=named, stiff=True, planar=mechanism.planar)
 
 
 def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> Array:

@@ -209,6 +209,7 @@ class Checked(TypedDict):
     events             user event -> when it happens and what it does, in words
     planar             whether the motion stays in a plane
     planar_assumed     whether nothing but the start says so
+    spatial_because    what reaches out of the x-y plane; none where `planar: false` is given
     unknowns           velocities
     constraints        rows kept, drives included
     mobility           degrees of freedom by rank, drives counted as constraints
@@ -237,6 +238,7 @@ class Checked(TypedDict):
     events: dict[str, str]
     planar: bool
     planar_assumed: bool
+    spatial_because: list[str]
     unknowns: int
     constraints: int
     mobility: int
