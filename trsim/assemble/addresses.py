@@ -47,6 +47,7 @@ class Addresses:
     sensors: dict[str, int] = field(default_factory=dict)
     n_s: int = 0
     timed: bool = False  # something depends on t explicitly
+    sensed: bool = False  # or on a sensor
     notes: list[str] = field(default_factory=list)
     instances: dict[tuple[str, str], Any] = field(default_factory=dict)  # packed so far
     switches: Any = None  # of user events, once all elements are packed
@@ -261,11 +262,13 @@ class Addresses:
             variable = -1 if spec.of == "t" else self.known_sensor(spec.of, time_only, path)
             self.check_table(spec, wanted, *path)
             self.timed = self.timed or variable < 0
+            self.sensed = self.sensed or variable >= 0
             self.notes += overshoot(spec, path)
             code = functions.table(spec.x, spec.y, variable, spec.ends)
         else:
             self.timed = self.timed or "t" in names(spec.node)
             used = names(spec.node) - {"t", "pi"}
+            self.sensed = self.sensed or bool(used)
             indices = {name: self.known_sensor(name, time_only, path) for name in used}
             code = functions.expression(spec.node, indices)
         self.tab.extend(code)

@@ -93,7 +93,8 @@ def assemble(
         instances=tuple(instances),
         columns=tuple(columns),
         planar=planar,
-        timed=at.timed,
+        # what depends on a place that is driven depends on time
+        timed=at.timed or (at.sensed and bool(scenario.drives)),
         planar_assumed=verdict.assumed,
         spatial_because=verdict.because(),
         mobility=model.n_v - model.m,

@@ -44,6 +44,7 @@ from trsim.solve.record import (
     T,
 )
 from trsim.solve.watch import crossing, may_cross, take_sides
+from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
@@ -256,6 +257,7 @@ def accept(s, r, b, t1, projected, last):
             if c == s.column_energy + 1 + GRAVITY:  # counted from the origin, wherever that is
                 size = max(ORIGIN * size, r.peak[c, PEAK_MAX] - r.peak[c, PEAK_MIN])
             r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], size)
+        exchanged(s, r, b)
         residual = abs(b.out[s.n_out - 1])
         r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
     refine(s, r, b.out, t1)

@@ -7,9 +7,11 @@ stages, built only when asked for.    [HairerNorsettWanner1993]
 import numpy as np
 
 from trsim.assemble.equations import equation, evaluate
-from trsim.elements.contract import compiled
+from trsim.elements.contract import N_BOOK, compiled
+from trsim.elements.vectors import internal
 from trsim.solve import dop853_tableau as tableau
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
+from trsim.solve.works import first_work, works
 
 ORDER = 8
 STAGES = 16  # 12 of a step, the new point, 3 of the dense output
@@ -56,9 +58,27 @@ def step(scene, r, b, setting, t, h):
         error3 += (e3 * weight[c]) ** 2
     stage(K, y, h, 12, y1)
     bottom = error5 + 0.01 * error3
-    if bottom == 0.0:
-        return 0.0
-    return abs(h) * error5 / np.sqrt(bottom * max(counted, 1))
+    error = abs(h) * error5 / np.sqrt(bottom * max(counted, 1)) if bottom > 0.0 else 0.0
+    return max(error, of_works(scene, r, b, setting, h))
+
+
+@internal
+def of_works(scene, r, b, setting, h):
+    """The error of the works: the two estimates of the step itself, entry by entry."""
+    K, worst, size = b.K, 0.0, 0.0
+    for c in range(first_work(scene), first_work(scene) + N_BOOK):
+        e5 = e3 = moved = 0.0
+        for s in range(12):
+            e5 += E5[s] * K[s, c]
+            e3 += E3[s] * K[s, c]
+            moved += abs(K[s, c])
+        if moved == 0.0:
+            continue
+        bottom = e5 * e5 + 0.01 * e3 * e3
+        if bottom > 0.0:
+            worst = max(worst, abs(h) * e5 * e5 / np.sqrt(bottom))
+        size = max(size, abs(h) * moved / 12.0)
+    return works(r, setting, h, worst, size)
 
 
 @compiled(DENSE)

@@ -35,6 +35,7 @@ VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice
 CHANGED = 1e-3  # of a speed that was given
 OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
+WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
 GIVEN = 1e-2  # of it: more done by projection says so too
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
 AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
@@ -152,6 +153,13 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
         yield (
             f"the energy book does not close, by {100 * lost:.2g} % of the largest energy "
             "exchanged; tighten `tolerance`" + ("; does the velocity of a drive jump?" * driven)
+        )
+    off = numbers.get("work_error_relative", 0.0)
+    if outcome.record is not None and np.any(outcome.record.worked) and off > WORKS:
+        yield (
+            "steps are so long that the works of the energy book are wrong by about "
+            f"{100 * off:.2g} % of the largest energy exchanged, however well it closes: make `step` "
+            "smaller"
         )
     given = numbers.get("work_of_projection_relative", 0.0)
     if given > GIVEN and work > NOTHING * natural and outcome.status in WELL:

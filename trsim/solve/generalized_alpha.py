@@ -35,6 +35,7 @@ from trsim.solve.record import (
     OLD,
     PAST_H,
 )
+from trsim.solve.works import first_work, works
 
 ORDER = 2
 ESTIMATE = 3  # the error estimate falls with h^3
@@ -53,6 +54,7 @@ B1, NEW, SCRATCH, MOVE = 3, 4, 5, 6  # rows of K: b_1, f at the end, two of scra
 FILTERED, BEFORE = hermite.ROWS, hermite.ROWS + 1  # rows of `past`: b_0, f one step before
 MOST_ITERATIONS = 10
 KAPPA = 0.02  # of the error allowed: what Newton may leave
+ADDS = 5.0  # the errors of works as estimated are those made, and they add up
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
 HALVE = NO_STEP  # Newton failed: take about half the step
 
@@ -80,7 +82,7 @@ def step(s, r, b, setting, t, h):
             return np.inf
     else:
         return HALVE
-    error = estimate(s, r, b, h)
+    error = estimate(s, r, b, setting, h)
     r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
     return error
 
@@ -153,11 +155,6 @@ def newton(s, r, b, t, h):
             c = w_index(s, i)
             K[B1, c] += K[SCRATCH, i]
             moved += (h * GAMMA * K[SCRATCH, i] * weight[c]) ** 2
-        for k in range(N_BOOK):  # feeds nothing back: its equation is explicit
-            c = s.n_q + s.n_v + k
-            K[B1, c] = ((1.0 - A_F) * K[NEW, c] + A_F * r.yd[c] - A_M * r.past[FILTERED, c]) / (
-                1.0 - A_M
-            )
         moved = sqrt(moved / max(counted, 1))
         if not isfinite(moved):
             return -1
@@ -171,13 +168,16 @@ def newton(s, r, b, t, h):
         if moved == 0.0 or small or moved < 0.1 * kappa:
             r.clock[NEWTON_RATE] = rate if iteration > 0 else 0.0
             arrive(s, r, b, h)
+            for c in range(first_work(s), first_work(s) + N_BOOK):
+                # works feed nothing back: the trapezoidal rule, which no change of step disturbs
+                b.y1[c] = r.y[c] + 0.5 * h * (r.yd[c] + K[NEW, c])
             return 1
         before = moved
     return 0
 
 
 @internal
-def estimate(s, r, b, h):
+def estimate(s, r, b, setting, h):
     """Local error of order 3: h/12 of the second difference of the derivative.
 
     Without a step before, the first difference stands for it, which is cautious.
@@ -192,7 +192,15 @@ def estimate(s, r, b, h):
             if ratio > 0.0:
                 bend -= ratio * (r.yd[c] - r.past[BEFORE, c])
             total += (h / 12.0 * bend * weight[c]) ** 2
-    return max(sqrt(total / max(counted, 1)), 1e-10)
+    worst = size = 0.0
+    for c in range(first_work(s), first_work(s) + N_BOOK):
+        bend = K[NEW, c] - r.yd[c]
+        if ratio > 0.0:
+            bend -= ratio * (r.yd[c] - r.past[BEFORE, c])
+        worst = max(worst, abs(h / 12.0 * bend))
+        size = max(size, 0.5 * h * (abs(K[NEW, c]) + abs(r.yd[c])))
+    booked = works(r, setting, h, ADDS * worst, size)
+    return max(sqrt(total / max(counted, 1)), booked, 1e-10)
 
 
 @compiled(DENSE)

@@ -15,6 +15,7 @@ from trsim.instants import shortest_pulse
 from trsim.solve import record as rec
 from trsim.solve.record import Record
 from trsim.solve.start import Start
+from trsim.solve.works import LEAST, N_WORKED
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -181,8 +182,10 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         watch=np.zeros((len(model.watch), rec.N_WATCH)),
         stage=np.zeros(switches, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
+        worked=np.zeros((2, N_WORKED)),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
+    record.clock[rec.EXCHANGED] = LEAST * float(np.sum(model.mass)) * begun.speed**2
     return record
 
 
@@ -240,6 +243,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "start_force_residual": begun.residual,
         "energy_residual": float(r.clock[rec.LARGEST_RESIDUAL]),
         "energy_residual_relative": float(r.clock[rec.LARGEST_RESIDUAL]) / scale,
+        "work_error_relative": float(r.clock[rec.WORK_ERROR] / max(r.clock[rec.EXCHANGED], 1e-300)),
         "work_of_projection": float(r.clock[rec.WORK_PROJECTION]),
         "work_of_projection_relative": abs(float(r.clock[rec.WORK_PROJECTION])) / scale,
         "joints_open_relative": 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size,

@@ -42,6 +42,7 @@ from trsim.solve.record import (
     OLD,
     PAST_H,
 )
+from trsim.solve.works import first_work, works
 
 ORDER = 5
 ESTIMATE = 4  # the error estimate falls with h^4
@@ -84,7 +85,7 @@ def step(s, r, b, setting, t, h):
     n = r.y.size
     for c in range(n):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
-    error = estimate(s, r, b, t, h)
+    error = estimate(s, r, b, setting, t, h)
     # a shorter step from the same state, to an event or after a rejection, begins on this one
     collocation(b.K, r.y, b.y1, r.past)
     r.clock[PAST_H], r.count[HISTORY] = h, AHEAD
@@ -254,7 +255,7 @@ def corrected_pair(s, r, f, g, x, w, a, c):
 
 
 @internal
-def estimate(s, r, b, t, h):
+def estimate(s, r, b, setting, t, h):
     """Error of order 3: (GAMMA/h - J)^-1 (f(y) + sum E_i Z_i / h), filtered once more if large."""
     K, n, weight = b.K, r.y.size, b.weight
     e = K[F]
@@ -263,6 +264,7 @@ def estimate(s, r, b, t, h):
         K[F + 1, c] = e[c]
         e[c] += r.yd[c]
     corrected(s, r, e, K[DW], GAMMA / h)
+    booked = of_works(s, r, b, setting, h)
     error = norm(e, weight)
     if error >= 1.0 and (r.count[HISTORY] != BEHIND or r.count[AFTER_REJECTION] > 0):
         for c in range(n):
@@ -272,7 +274,18 @@ def estimate(s, r, b, t, h):
             e[c] += K[F + 1, c]
         corrected(s, r, e, K[DW], GAMMA / h)
         error = norm(e, weight)
-    return max(error, 1e-10)
+    return max(error, booked, 1e-10)
+
+
+@internal
+def of_works(s, r, b, setting, h):
+    """The error of the works, by the estimate in K[F]: no matrix has a part in it."""
+    worst = size = 0.0
+    for c in range(first_work(s), first_work(s) + N_BOOK):
+        worst = max(worst, abs(b.K[F, c]))
+        for i in range(3):
+            size = max(size, abs(b.K[Z + i, c]))
+    return works(r, setting, h, worst, size)
 
 
 @internal

@@ -47,6 +47,7 @@ from trsim.solve.radau import (
     collocation,
     guess,
     norm,
+    of_works,
 )
 from trsim.solve.radau_tableau import ALPHA, BETA, GAMMA, A, C, E
 from trsim.solve.record import (
@@ -108,7 +109,7 @@ def step(s, r, b, setting, t, h):
         work_of_drives(s, r, b, t, h)
     for c in range(r.y.size):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
-    error = estimate(s, r, b, t, h)
+    error = estimate(s, r, b, setting, t, h)
     quick = QUICK if b.made[TURNS] > 0.0 else QUICK_FIXED
     r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < quick else NO_JACOBIAN
     return error
@@ -225,11 +226,11 @@ def newton(s, r, b, setting, t, h, stabilised):
 
 
 @internal
-def estimate(s, r, b, t, h):
+def estimate(s, r, b, setting, t, h):
     """Error of order 3 as in radau.py: (GAMMA/h - J)^-1 of (f(y) + sum E_i Z_i / h), the real
     system; filtered once more if large."""
     K, n, weight, g = b.K, r.y.size, b.weight, GAMMA / h
-    e, error = K[F], 0.0
+    e, error, booked = K[F], 0.0, 0.0
     copy_to(e, r.yd)
     for c in range(n):
         K[F + 1, c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
@@ -240,12 +241,14 @@ def estimate(s, r, b, t, h):
         unconstrained(s, r, b, e, K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], g, 0.0)
         solved(s, r, b, e, K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], g, 0.0, 0.0)
         error = norm(e, weight)
+        if turn == 0:
+            booked = of_works(s, r, b, setting, h)
         if turn > 0 or error < 1.0 or (r.count[HISTORY] > 0 and r.count[AFTER_REJECTION] == 0):
             break
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
-    return max(error, 1e-10)
+    return max(error, booked, 1e-10)
 
 
 @compiled(DENSE)

@@ -25,8 +25,11 @@ from trsim.elements.scene import Model
     CONTRACTION,  # of the matrix at hand, as far as it was measured
     NEWTON_RATE,  # contraction of the last Newton iterations
     JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
+    EXCHANGED,  # J, largest work, or range of an energy, so far: the scale of works     works.py
+    WORK_TRIAL,  # J, error of the works in the last trial step, as estimated
+    WORK_ERROR,  # J, the sum of those accepted
     N_CLOCK,
-) = range(19)
+) = range(22)
 
 # count: integer state of the march
 (
@@ -116,6 +119,7 @@ class Record(Packed):
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
+    worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
 
 
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)

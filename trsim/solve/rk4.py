@@ -17,6 +17,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import compiled
 from trsim.solve import hermite
 from trsim.solve.calls import DENSE, INTERPOLATE, STEP
+from trsim.solve.works import told
 
 ORDER = 4
 STAGES = 5
@@ -36,6 +37,7 @@ def step(scene, r, b, setting, t, h):
         evaluate(scene, t + part, y1, K[s])
     for c in range(y.size):
         y1[c] = y[c] + h / 6.0 * (K[0, c] + 2.0 * K[1, c] + 2.0 * K[2, c] + K[3, c])
+    told(scene, r, b, t, h, 2)
     return 0.0
 
 

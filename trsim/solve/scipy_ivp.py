@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import derivative
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.contract import compiled
+from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.blame import why
@@ -38,6 +38,7 @@ from trsim.solve.outcome import (
 )
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
+from trsim.solve.works import ROUNDING
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -104,6 +105,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             break
         if outcome == SMOOTH_STEP:
             nudge(solver, r)
+            solver.atol[books(s)] = unit_of_works(r, setting)
             r.clock[rec.H] = solver.t - solver.t_old
         elif r.clock[rec.T] < setting[rec.T_END]:
             solver = restarted(scenario, s, r, b, setting)
@@ -138,6 +140,7 @@ def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) ->
     weigh(s, r, b, setting)
     outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
+    absolute[books(s)] = unit_of_works(r, setting)
 
     def right_hand_side(t: float, y: Array) -> Array:
         yd = np.empty_like(y)
@@ -150,6 +153,17 @@ def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) ->
     longest = min(setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
     return make(right_hand_side, t, r.y.copy(), setting[rec.T_END], first_step=first or None,
                 max_step=longest, rtol=RELATIVE, atol=absolute)  # fmt: skip
+
+
+def books(s: Scene) -> slice:
+    """The works in y."""
+    return slice(s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK)
+
+
+def unit_of_works(r: Record, setting: Array) -> float:
+    """The error allowed to a work, J; see works.py."""
+    allowed = setting[rec.TOLERANCE] * r.clock[rec.EXCHANGED]
+    return max(float(allowed), ROUNDING * float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
 
 
 def hand_over(solver: Any, b: Buffers) -> None:

@@ -45,6 +45,8 @@ class Statistics(TypedDict, total=False):
     start_force_residual      left by the equilibrium, N
     energy_residual           largest error of the energy book, J
     energy_residual_relative  the same over the largest energy exchanged
+    work_error_relative       of the works in the energy book, estimated step by step and summed,
+                              over the largest energy exchanged; 0 with a method of scipy
     work_of_projection        J
     work_of_projection_relative  its size over the largest energy exchanged
     joints_open_relative      largest open constraint over the mechanism's size, without projection
@@ -66,6 +68,7 @@ class Statistics(TypedDict, total=False):
     start_force_residual: Number
     energy_residual: Number
     energy_residual_relative: Number
+    work_error_relative: Number
     work_of_projection: Number
     work_of_projection_relative: Number
     joints_open_relative: Number
