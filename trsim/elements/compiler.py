@@ -7,7 +7,7 @@ be kept in a file (machine.py).
 
 import hashlib
 from functools import cache
-from types import FunctionType
+from types import CodeType, FunctionType
 from typing import Any, NamedTuple
 
 from llvmlite import ir
@@ -23,7 +23,7 @@ import trsim.elements.numba_quick  # noqa: F401
 from trsim.elements.packed import WORDS
 from trsim.elements.signatures import Kind, Signature
 from trsim.laws import inner
-from trsim.laws.pipeline import quick, refresh, translated
+from trsim.laws.pipeline import made_of, quick, refresh, translated
 
 NUMBERS = {"float64": types.float64, "int64": types.int64}
 
@@ -34,6 +34,7 @@ class Code(NamedTuple):
     symbol: str  # its name in the object file
     objects: bytes  # a relocatable object file
     needs: tuple[str, ...]  # functions of others it calls
+    made_of: frozenset[CodeType]  # functions of ours in it
 
 
 @cache
@@ -69,7 +70,7 @@ def machine_code(compiled: Any, signature: Signature) -> Code:
         module, objects = translated(result.library, symbol)
     functions = module.functions
     needs = [f.name for f in functions if f.is_declaration and not f.name.startswith("llvm.")]
-    return Code(symbol, objects, tuple(needs))
+    return Code(symbol, objects, tuple(needs), made_of(result.library))
 
 
 def type_of(value: Any) -> Any:

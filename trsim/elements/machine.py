@@ -96,6 +96,10 @@ class Compiled(Lazy):
         foreign = set(code.needs) - LIBRARY
         if foreign:
             raise RuntimeError(f"{self.file.stem} needs {sorted(foreign)} of others")
+        unseen = code.made_of - fingerprint.covered(self.python)
+        if unseen:  # an edit to one of them would not be noticed
+            names = sorted(one.co_qualname for one in unseen)
+            raise RuntimeError(f"the key of {self.file.stem} does not cover {names}")
         with suppress(OSError):  # a folder that cannot be written to: compiled again next time
             _write(self.file, code.symbol, code.objects)
         return code.symbol, code.objects

@@ -18,6 +18,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from types import CodeType
 from typing import Any
 
 import llvmlite.binding as llvm
@@ -51,6 +52,8 @@ llvm.set_option("trsim", "-unroll-runtime=false")  # the only way to say it, for
 
 class Library(JITCodeLibrary):
     """One function as it was written, and the libraries of those it calls."""
+
+    python: Any = None  # the function, where it is one of ours
 
     def add_ir_module(self, ir_module: Any) -> None:
         text = cgutils.normalize_ir_text(str(ir_module))
@@ -110,6 +113,7 @@ class OwnLibrary(LoweringPass):
 
     def run_pass(self, state: Any) -> bool:
         state.library = Library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library.python = state.func_id.func
         return False
 
 
@@ -129,6 +133,12 @@ class Pipeline(CompilerBase):
             manager.add_pass(step, step.__name__)
         manager.finalize()
         return [manager]
+
+
+def made_of(library: Library) -> frozenset[CodeType]:
+    """The code of our functions that a library consists of."""
+    ours = (getattr(one, "python", None) for one in (library, *_below(library)))
+    return frozenset(python.__code__ for python in ours if python is not None)
 
 
 def translated(library: Library, symbol: str) -> tuple[Any, bytes]:
