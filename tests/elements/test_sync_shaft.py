@@ -49,9 +49,9 @@ def test_prescribed_speeds_tell_the_torque_and_feel_nothing():
     assert there["shaft.torque_2"] == pytest.approx(-700 * 0.4 * 0.002 * there.t, abs=1e-12)
     assert there["shaft.difference"] == pytest.approx(0.002 * there.t, abs=1e-14)
     without = run(three((0.1, 0.102, 0.1), rigid, "stiffness: 0"))
-    # works of the shaft have a say in the steps: places are the same to rounding, 1e-16 m, with
-    # 1e6 N/m between them and a few hundred steps
-    np.testing.assert_allclose(there["b.force"], without["b.force"], rtol=0, atol=1e-7)
+    # works of the shaft have a say in the steps, so places agree to the tolerance: 1e-9 of about
+    # 0.1 m, with 1e6 N/m between them
+    np.testing.assert_allclose(there["b.force"], without["b.force"], rtol=0, atol=1e-4)
     assert np.abs(there["energy.residual"]).max() < 1e-9
 
 

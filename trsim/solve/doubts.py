@@ -158,8 +158,8 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     if outcome.record is not None and np.any(outcome.record.worked) and off > WORKS:
         yield (
             "steps are so long that the works of the energy book are wrong by about "
-            f"{100 * off:.2g} % of the largest energy exchanged, however well it closes: make `step` "
-            "smaller"
+            f"{100 * off:.2g} % of the largest energy exchanged, however well it closes: make "
+            "`step` smaller"
         )
     given = numbers.get("work_of_projection_relative", 0.0)
     if given > GIVEN and work > NOTHING * natural and outcome.status in WELL:
