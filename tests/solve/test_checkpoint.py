@@ -27,6 +27,11 @@ SECTIONS = (
     "plot: [B.eccentricity_x, rod.velocity.y]}, touch: {at_onset: B, plot: [stroke, crank_angle]}, "
     "beat: {every: 7 us, after: 3 us, plot: [stroke, stroke.rate]}}",
 )
+PULSES = (
+    "forces={kick: {type: applied_load, body: slider, direction: [1, 0], "
+    "force: 500*(sin(3e4*t) > 0.9)}}",
+    "drives.motor.velocity=abs(600 - 1e6*t)",
+)
 KINDS = [
     (),
     SECTIONS,
@@ -37,6 +42,7 @@ KINDS = [
     EVENTS,
     (*RK4, *EVENTS, "solver.end=1.2ms"),
     (*EVENTS, *SECTIONS),
+    PULSES,
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")
 TABLES = ("rows", "steps", "events", "recorded", "points")

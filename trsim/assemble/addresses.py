@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.assemble.features import Cornered, cornered
 from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
@@ -51,6 +52,8 @@ class Addresses:
     notes: list[str] = field(default_factory=list)
     instances: dict[tuple[str, str], Any] = field(default_factory=dict)  # packed so far
     switches: Any = None  # of user events, once all elements are packed
+    end: float | None = None  # s, of the run, where its functions are wanted with their corners
+    functions: list[Cornered] = field(default_factory=list)  # those that have some
 
     def __post_init__(self) -> None:
         rigid = {n: spec for n, spec in self.members.items() if spec.type != "ancf_cable"}
@@ -271,6 +274,11 @@ class Addresses:
             self.sensed = self.sensed or bool(used)
             indices = {name: self.known_sensor(name, time_only, path) for name in used}
             code = functions.expression(spec.node, indices)
+        if self.end is not None:
+            try:
+                self.functions += cornered(spec, code, offset, self.end)
+            except ScenarioError as error:
+                raise error.at(*path) from None
         self.tab.extend(code)
         return offset
 

@@ -11,6 +11,7 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
+from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
 from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
@@ -173,6 +174,7 @@ def pack(  # type: ignore[no-untyped-def]
     wanted.sort(key=lambda item: order.index(item[0]))
     kinds = {key: elements.load(key) for key, *_ in wanted}
     at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted}, bodies)
+    at.end = None if drives is not None or stiff else scenario.solver.end
     instances = []
     for key, section, name, spec in wanted:
         told = len(at.notes)
@@ -277,6 +279,7 @@ def build(
         column_energy=-1,
         n_out=0,
         **watched(at.switches, size),
+        **features(at, instances),
         section=np.zeros((0, 5), np.int64),
         section_at=np.zeros((0, 2)),
         size=size,

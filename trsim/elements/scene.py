@@ -92,6 +92,10 @@ class Model(Packed):
     watch_at: (
         A2  # (n_w, 2) the value that is crossed; how far it must be left before it counts again
     )
+    feature: I2  # (n_features, 6) functions with corners                   assemble/features.py
+    instant: A1  # when those are met that the time alone decides
+    held: I1  # (corners) where in tab it stands what each is held on
+    on_features: I1  # address of what holds functions on their pieces; 0 without such functions
     section: I2  # (n_sections, 5) Poincare sections              assemble/sections.py
     section_at: A2  # (n_sections, 2) s: before it no points; period, or 0
     jumps: i8  # entry of z with the work done at user events, or -1
@@ -164,7 +168,7 @@ def scene(model: Model) -> Scene:
     X[:, 2] = model.depth
     constants = {name: getattr(model, name) for name, _ in Model.kind.fields}
     return Scene(
-        **constants,
+        **{**constants, "tab": model.tab.copy()},  # scratch, and what functions are held on
         X=X,
         element=np.zeros((6, 12)),
         tangent=np.zeros((12 * elements, 12)),

@@ -1,14 +1,22 @@
 """A number that varies: a constant, an Akima table or an expression, in one flat array.
 
     constant     0, c
-    table        1, variable, n, then the table of `tables.akima_table`     variable -1: t, else
-                                                                            the sensor's index
-    expression   2, n_in, n_op, first slot, result slot, n_in sensors, n_op (code, a, b), slots
+    table        1, variable, n, held, then the table of `tables.akima_table`
+                                                      variable -1: t, else the sensor's index
+    expression   2, n_in, n_op, first slot, result slot, n_in sensors,
+                 n_op (code, a, b, watched, held), slots
 
 An expression is straight-line code over slots of three numbers (f, f', f''): t, the sensors
 read, one for each operation, which takes slots a and b, and the constants.  Equal parts are
 computed once.  All addresses count from the offset o of the function, so functions may be
 joined in any order.
+
+A function has corners: the points of its table, and operations with branches (operations.py).  At
+each of them `held` says on which piece the function is evaluated, drawn on beyond its ends, and
+`watched` whether the time alone decides when the corner is met (BY_TIME) or sensors too
+(BY_SENSORS).  FREE of both, a function is evaluated as it is written.
+
+    held of a table    FREE, BELOW its first point, k: between points k and k + 1, n: above
 
 The slots are scratch space of the evaluation inside `tab` itself, which spares an allocation
 per call: `tab` must be writable, and two threads must not evaluate the same array.  Processes may.
@@ -21,7 +29,9 @@ from trsim.laws.operations import (
     ADD,
     ATAN2,
     BINARY,
+    CORNERED,
     DIV,
+    FREE,
     MAX,
     MIN,
     MUL,
@@ -30,13 +40,18 @@ from trsim.laws.operations import (
     SMOOTHSTEP,
     SUB,
     UNARY,
+    branch_at,
     operation,
     operation_rates,
+    switching,
 )
-from trsim.laws.tables import akima, akima_table
+from trsim.laws.tables import akima, akima_table, held_cubic, interval_at
 
 CONSTANT, TABLE, EXPRESSION = 0, 1, 2
 HEAD = 5  # numbers before the sensors of an expression
+OF_TABLE, HELD_OF_TABLE = 4, 3  # numbers before the points of a table; among them what is held
+WIDTH, WATCHED, HELD = 5, 3, 4  # numbers of an operation; among them these
+UNWATCHED, BY_TIME, BY_SENSORS = 0, 1, 2
 
 
 def constant(c):
@@ -46,13 +61,13 @@ def constant(c):
 
 def table(x, y, variable=-1, ends="hold"):
     """An Akima table of t (variable -1) or of sensor number `variable`, as numbers for `tab`."""
-    return [float(TABLE), float(variable), float(len(x)), *akima_table(x, y, ends)]
+    return [float(TABLE), float(variable), float(len(x)), FREE, *akima_table(x, y, ends)]
 
 
 def _folded(code, a, b):
     """The value of an operation on constants; nan where it has none."""
     try:
-        f = operation.python(code, a, b)
+        f = operation.python(code, a, b, FREE)
         return math.nan if isinstance(f, complex) else float(f)
     except (ValueError, ArithmeticError):
         return math.nan
@@ -90,6 +105,18 @@ class _Code:
         if code == DIV and b[:2] == ("constant", 0.0):
             raise ValueError("the expression divides by zero")
         return self.steps.setdefault((code, a, b), ("step", len(self.steps)))
+
+    def watched(self):
+        """Of every operation whether it has corners, and what decides when they are met."""
+        sensed = set(self.inputs.values())
+        out = []
+        for (code, a, b), slot in self.steps.items():
+            by_sensors = a in sensed or b in sensed
+            if by_sensors:
+                sensed.add(slot)
+            cornered = code in CORNERED and (a != b or code >= NEG)
+            out.append((BY_SENSORS if by_sensors else BY_TIME) if cornered else UNWATCHED)
+        return out
 
     def slot(self, node):
         """The slot of a node of the tree, after writing whatever it needs."""
@@ -147,15 +174,15 @@ def expression(node, sensors):
     result = code.slot(node)
     if result[0] == "constant":
         return constant(result[1])
-    first = HEAD + len(code.inputs) + 3 * len(code.steps)
+    first = HEAD + len(code.inputs) + WIDTH * len(code.steps)
     place = {("t", 0): first}
     for slots in (code.inputs, code.steps, code.constants):
         for slot in slots.values():
             place[slot] = first + 3 * len(place)
     out = [EXPRESSION, len(code.inputs), len(code.steps), first, place[result]]
     out += [sensors[name] for name in code.inputs]
-    for op, a, b in code.steps:
-        out += [op, place[a], place[b]]
+    for (op, a, b), watched in zip(code.steps, code.watched(), strict=True):
+        out += [op, place[a], place[b], watched, FREE]
     for slot in place:
         out += [slot[1] if slot[0] == "constant" else 0.0, 0.0, 0.0]
     return [float(x) for x in out]
@@ -168,8 +195,9 @@ def run(tab, o):
     p = o + HEAD + n_in
     out = o + int(tab[o + 3]) + 3 * (1 + n_in)
     for _ in range(n_op):
-        tab[out] = operation(int(tab[p]), tab[o + int(tab[p + 1])], tab[o + int(tab[p + 2])])
-        p += 3
+        a, b = tab[o + int(tab[p + 1])], tab[o + int(tab[p + 2])]
+        tab[out] = operation(int(tab[p]), a, b, tab[p + HELD])
+        p += WIDTH
         out += 3
     return tab[o + int(tab[o + 4])]
 
@@ -183,12 +211,59 @@ def run_rates(tab, o):
     for _ in range(n_op):
         a, b = o + int(tab[p + 1]), o + int(tab[p + 2])
         tab[out], tab[out + 1], tab[out + 2] = operation_rates(
-            int(tab[p]), tab[a], tab[a + 1], tab[a + 2], tab[b], tab[b + 1], tab[b + 2]
-        )
-        p += 3
+            int(tab[p]), tab[a], tab[a + 1], tab[a + 2],
+            tab[b], tab[b + 1], tab[b + 2], tab[p + HELD],
+        )  # fmt: skip
+        p += WIDTH
         out += 3
     out = o + int(tab[o + 4])
     return tab[out], tab[out + 1], tab[out + 2]
+
+
+@law
+def looked_up(tab, o, x):
+    """Value and two derivatives of a table at x, on the piece it is held on."""
+    held, n = tab[o + HELD_OF_TABLE], int(tab[o + 2])
+    if held == FREE:
+        return akima(tab, o + OF_TABLE, n, x)
+    return held_cubic(tab, o + OF_TABLE, n, x, held)
+
+
+@law
+def inputs(tab, o, t, S):
+    """Put t and the sensors into their slots, as values."""
+    slot = o + int(tab[o + 3])
+    tab[slot] = t
+    for i in range(int(tab[o + 1])):
+        tab[slot + 3 * (i + 1)] = S[int(tab[o + HEAD + i]), 0]
+
+
+@law
+def hold(tab, o, t, S, which):
+    """Hold a function on the pieces it is on at t: those met by time, or those met by sensors.
+
+    Parameters
+    ----------
+    tab, o, t, S             as in `value`
+    which : int              BY_TIME or BY_SENSORS
+    """
+    if tab[o] == TABLE:
+        k = int(tab[o + 1])
+        if (which == BY_TIME) == (k < 0):
+            x = t if k < 0 else S[k, 0]
+            tab[o + HELD_OF_TABLE] = interval_at(tab, o + OF_TABLE, int(tab[o + 2]), x)
+    if tab[o] != EXPRESSION:
+        return
+    inputs(tab, o, t, S)
+    n_in, p = int(tab[o + 1]), o + HEAD + int(tab[o + 1])
+    out = o + int(tab[o + 3]) + 3 * (1 + n_in)
+    for _ in range(int(tab[o + 2])):
+        code, a, b = int(tab[p]), tab[o + int(tab[p + 1])], tab[o + int(tab[p + 2])]
+        if tab[p + WATCHED] == which:
+            tab[p + HELD] = branch_at(code, switching(code, a, b))
+        tab[out] = operation(code, a, b, tab[p + HELD])
+        p += WIDTH
+        out += 3
 
 
 @law
@@ -211,11 +286,8 @@ def value(tab, o, t, S):
         return tab[o + 1]
     if kind == TABLE:
         k = int(tab[o + 1])
-        return akima(tab, o + 3, int(tab[o + 2]), t if k < 0 else S[k, 0])[0]
-    slot = o + int(tab[o + 3])
-    tab[slot] = t
-    for i in range(int(tab[o + 1])):
-        tab[slot + 3 * (i + 1)] = S[int(tab[o + HEAD + i]), 0]
+        return looked_up(tab, o, t if k < 0 else S[k, 0])[0]
+    inputs(tab, o, t, S)
     return run(tab, o)
 
 
@@ -236,7 +308,7 @@ def value_and_rate(tab, o, t, S):
         return tab[o + 1], 0.0
     if kind == TABLE:
         k = int(tab[o + 1])
-        f, f_x, _ = akima(tab, o + 3, int(tab[o + 2]), t if k < 0 else S[k, 0])
+        f, f_x, _ = looked_up(tab, o, t if k < 0 else S[k, 0])
         return f, f_x if k < 0 else f_x * S[k, 1]
     slot = o + int(tab[o + 3])
     tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
@@ -264,7 +336,7 @@ def motion(tab, o, t):
     if kind == CONSTANT:
         return tab[o + 1], 0.0, 0.0
     if kind == TABLE and tab[o + 1] < 0.0:
-        return akima(tab, o + 3, int(tab[o + 2]), t)
+        return looked_up(tab, o, t)
     if kind == TABLE or tab[o + 1] > 0.0:
         return math.nan, math.nan, math.nan
     slot = o + int(tab[o + 3])

@@ -3,9 +3,16 @@
 Derivatives go forward through every operation, (a b)'' = a'' b + 2 a' b' + a b'' and so on.  At
 a corner of min, max, abs or a comparison they belong to the branch taken; a comparison is 1 or 0
 and does not vary.
+
+Operations with corners or jumps have branches, on which they are smooth.  One may be HELD on a
+branch: it is then drawn on beyond its ends, as a step needs it that ends at the corner.
+
+    u        a - b: comparisons, min, max      a: abs, atan2 (a of atan2(a, b))    a: smooth steps
+    branch   BELOW u < 0, ABOVE u > 0          of a smooth step BELOW u < 0, INSIDE, ABOVE u > 1
+    FREE     whatever a and b say
 """
 
-from math import atan2, cos, exp, log, sin, sqrt, tan
+from math import atan2, cos, exp, inf, log, pi, sin, sqrt, tan
 
 from trsim.laws import law
 from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
@@ -17,6 +24,76 @@ BINARY = {"+": ADD, "-": SUB, "*": MUL, "/": DIV, "**": POW}
 BINARY |= {"<": LT, "<=": LE, ">": GT, ">=": GE, "==": EQ, "!=": NE}
 UNARY = {"abs": ABS, "sqrt": SQRT, "sin": SIN, "cos": COS, "tan": TAN, "exp": EXP, "log": LOG}
 UNARY |= {"smoothstep": SMOOTHSTEP}
+
+CORNERED = frozenset({MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE, ABS, SMOOTHSTEP, QUINTIC})
+FREE, BELOW, INSIDE, ABOVE = 0.0, -1.0, 2.0, 1.0  # what such an operation is held on
+
+
+@law
+def switching(code, a, b):
+    """u of an operation with branches."""
+    return a if code == ATAN2 or code >= NEG else a - b
+
+
+@law
+def branch_at(code, u):
+    """The branch of an operation at u; at an end of it the one above."""
+    if code in (SMOOTHSTEP, QUINTIC):
+        return BELOW if u < 0.0 else INSIDE if u < 1.0 else ABOVE
+    return BELOW if u < 0.0 else ABOVE
+
+
+@law
+def branch_ends(code, held):
+    """Between which u a branch lies."""
+    if held == FREE:
+        return -inf, inf
+    if held == INSIDE:
+        return 0.0, 1.0
+    if held == BELOW:
+        return -inf, 0.0
+    return 1.0 if code in (SMOOTHSTEP, QUINTIC) else 0.0, inf
+
+
+@law
+def compared(code, u):
+    """1 or 0: a comparison by its u = a - b."""
+    if code == LT:
+        return 1.0 if u < 0.0 else 0.0
+    if code == LE:
+        return 1.0 if u <= 0.0 else 0.0
+    if code == GT:
+        return 1.0 if u > 0.0 else 0.0
+    if code == GE:
+        return 1.0 if u >= 0.0 else 0.0
+    if code == EQ:
+        return 1.0 if u == 0.0 else 0.0
+    return 1.0 if u != 0.0 else 0.0
+
+
+@law
+def held_angle(a, b, held):
+    """atan2 drawn on across its cut, a = 0 where b < 0."""
+    f = atan2(a, b)
+    if b < 0.0 and held == ABOVE and a < 0.0:
+        return f + 2.0 * pi
+    if b < 0.0 and held == BELOW and a >= 0.0:
+        return f - 2.0 * pi
+    return f
+
+
+@law
+def held_single(code, a, held):
+    """abs, or a smooth step, on a branch: value, first and second derivative in a."""
+    if code == ABS:
+        return held * a, held, 0.0
+    if held != INSIDE:
+        return 0.0 if held == BELOW else 1.0, 0.0, 0.0
+    if code == SMOOTHSTEP:
+        return a * a * (3.0 - 2.0 * a), 6.0 * a * (1.0 - a), 6.0 - 12.0 * a
+    y = a * (1.0 - a)
+    f = a * a * a * (10.0 + a * (6.0 * a - 15.0))
+    return f, 30.0 * y * y, 60.0 * y * (1.0 - 2.0 * a)
 
 
 @law
@@ -44,8 +121,8 @@ def single(code, a):
 
 
 @law
-def operation(code, a, b):
-    """Value of an operation; operations on one number ignore b."""
+def operation(code, a, b, held):
+    """Value of an operation, on the branch it is held on; operations on one number ignore b."""
     if code == ADD:
         return a + b
     if code == SUB:
@@ -57,24 +134,14 @@ def operation(code, a, b):
     if code == POW:
         return a**b
     if code == MIN:
-        return b if b < a else a
+        return b if (b < a if held == FREE else held > 0.0) else a
     if code == MAX:
-        return b if b > a else a
+        return b if (b > a if held == FREE else held < 0.0) else a
     if code == ATAN2:
-        return atan2(a, b)
+        return held_angle(a, b, held)
     if code >= NEG:
-        return single(code, a)
-    if code == LT:
-        return 1.0 if a < b else 0.0
-    if code == LE:
-        return 1.0 if a <= b else 0.0
-    if code == GT:
-        return 1.0 if a > b else 0.0
-    if code == GE:
-        return 1.0 if a >= b else 0.0
-    if code == EQ:
-        return 1.0 if a == b else 0.0
-    return 1.0 if a != b else 0.0
+        return single(code, a) if held == FREE else held_single(code, a, held)[0]
+    return compared(code, a - b if held == FREE else held)
 
 
 @law
@@ -127,8 +194,8 @@ def power_rates(a, a1, a2, b, b1, b2):
 
 
 @law
-def operation_rates(code, a, a1, a2, b, b1, b2):
-    """An operation on (a, a', a'') and (b, b', b'')."""
+def operation_rates(code, a, a1, a2, b, b1, b2, held):
+    """An operation on (a, a', a'') and (b, b', b''), on the branch it is held on."""
     if code == ADD:
         return a + b, a1 + b1, a2 + b2
     if code == SUB:
@@ -142,14 +209,14 @@ def operation_rates(code, a, a1, a2, b, b1, b2):
     if code == POW:
         return power_rates(a, a1, a2, b, b1, b2)
     if code == MIN:
-        return (b, b1, b2) if b < a else (a, a1, a2)
+        return (b, b1, b2) if (b < a if held == FREE else held > 0.0) else (a, a1, a2)
     if code == MAX:
-        return (b, b1, b2) if b > a else (a, a1, a2)
+        return (b, b1, b2) if (b > a if held == FREE else held < 0.0) else (a, a1, a2)
     if code == ATAN2:
         r, r1 = a * a + b * b, 2.0 * (a * a1 + b * b1)
         f1 = (b * a1 - a * b1) / r
-        return atan2(a, b), f1, (b * a2 - a * b2 - f1 * r1) / r
+        return held_angle(a, b, held), f1, (b * a2 - a * b2 - f1 * r1) / r
     if code >= NEG:
-        f, f_a, f_aa = single_rates(code, a)
+        f, f_a, f_aa = single_rates(code, a) if held == FREE else held_single(code, a, held)
         return chain(f, f_a, f_aa, a1, a2)
-    return operation(code, a, b), 0.0, 0.0
+    return operation(code, a, b, held), 0.0, 0.0

@@ -194,20 +194,70 @@ def akima(tab, o, n, x):
     -------
     (float, float, float)    f, f', f''; the end points belong to the table
     """
-    low, high = o + 1, o + n
-    first, last = tab[low], tab[high]
-    while high - low > 1:
-        mid = (low + high) // 2
-        if x < tab[mid]:
-            high = mid
-        else:
-            low = mid
-    p = o + 1 + n + 4 * (low - o - 1)
-    a, b, c, d = tab[p], tab[p + 1], tab[p + 2], tab[p + 3]
-    s = min(max(x, first), last) - tab[low]
-    f, f_x = a + s * (b + s * (c + s * d)), b + s * (2.0 * c + s * 3.0 * d)
+    k = interval(tab, o, n, x)
+    first, last = tab[o + 1], tab[o + n]
+    s = min(max(x, first), last) - tab[o + k]
+    f, f_x, f_xx = cubic(tab, o, n, k, s)
     if x < first:
         return outside(f, f_x, x - first, tab[o])
     if x > last:
         return outside(f, f_x, x - last, tab[o])
+    return f, f_x, f_xx
+
+
+@law
+def interval(tab, o, n, x):
+    """Between which points x lies: 1 for the first and the second; beyond the ends the nearest."""
+    low, high = 1, n
+    while high - low > 1:
+        mid = (low + high) // 2
+        if x < tab[o + mid]:
+            high = mid
+        else:
+            low = mid
+    return low
+
+
+@law
+def cubic(tab, o, n, k, s):
+    """Value and two derivatives of the k-th cubic, at a distance s from its first point."""
+    p = o + 1 + n + 4 * (k - 1)
+    a, b, c, d = tab[p], tab[p + 1], tab[p + 2], tab[p + 3]
+    f, f_x = a + s * (b + s * (c + s * d)), b + s * (2.0 * c + s * 3.0 * d)
     return f, f_x, 2.0 * c + 6.0 * s * d
+
+
+@law
+def interval_at(tab, o, n, x):
+    """The piece of the table x is on: -1 below its first point, k as in `interval`, n above.
+
+    The last point belongs to what comes after it, but where a table refuses what lies outside.
+    """
+    if x < tab[o + 1]:
+        return -1.0
+    last = tab[o + n]
+    if x > last or (x == last and tab[o] != 2.0):
+        return float(n)
+    return float(interval(tab, o, n, x))
+
+
+@law
+def interval_ends(tab, o, n, held):
+    """Between which x such a piece lies."""
+    if held < 0.0:
+        return -math.inf, tab[o + 1]
+    k = int(held)
+    return tab[o + k], math.inf if k == n else tab[o + k + 1]
+
+
+@law
+def held_cubic(tab, o, n, x, held):
+    """Value and two derivatives of such a piece, drawn on beyond its ends."""
+    if held < 0.0:
+        f, f_x, _ = cubic(tab, o, n, 1, 0.0)
+        return outside(f, f_x, x - tab[o + 1], tab[o])
+    k = int(held)
+    if k == n:
+        f, f_x, _ = cubic(tab, o, n, n - 1, tab[o + n] - tab[o + n - 1])
+        return outside(f, f_x, x - tab[o + n], tab[o])
+    return cubic(tab, o, n, k, x - tab[o + k])

@@ -12,6 +12,7 @@ from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_sections, call_step
 from trsim.solve.events import any_suspicious, first_event, settled
+from trsim.solve.features import call_meet
 from trsim.solve.land import land
 from trsim.solve.norm import grow
 from trsim.solve.peaks import near_peak, peaks_inside, refine
@@ -47,12 +48,13 @@ from trsim.solve.watch import crossing, may_cross, take_sides
 from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
-SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = 0, 1, 2, 3
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT = 0, 1, 2, 3, 4
 # a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
 # of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
-# and the address of what locates points of sections, or 0
+# and the addresses of what locates points of sections, and of what goes on behind corners of
+# functions, or 0
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, METHOD_WIDTH = 7, 8
+SECTIONS_AT, MEET_AT, METHOD_WIDTH = 7, 8, 9
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
@@ -68,8 +70,9 @@ def complete(s, r, b, setting, method, h, built):
     """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
 
     built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
-    step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch) or
-    WORTHLESS (values not finite; nothing was changed).
+    step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch),
+    AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
+    (values not finite; nothing was changed).
     """
     last, t = method[LAST_AT], r.clock[T]
     t1 = reached(setting, t + h)
@@ -121,9 +124,12 @@ def complete(s, r, b, setting, method, h, built):
         r.count[JACOBIAN] = r.count[NEXT_JACOBIAN]
     if setting[LOCATE] == 0.0:
         latch(s, r)
+    outcome = SMOOTH_STEP
     if event:
-        return WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
-    return SMOOTH_STEP
+        outcome = WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
+    if method[MEET_AT] > 0 and call_meet(method[MEET_AT], s, r, b, t, t1) > 0 and not event:
+        outcome = AT_INSTANT
+    return outcome
 
 
 @internal

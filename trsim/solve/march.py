@@ -18,7 +18,6 @@ from trsim.solve.complete import (
     ESTIMATE_AT,
     IMPLICIT_AT,
     SMALLEST,
-    SMOOTH_STEP,
     STEP_AT,
     WITH_CORNER,
     WITH_EVENT,
@@ -26,6 +25,7 @@ from trsim.solve.complete import (
     call_complete,
     complete,
 )
+from trsim.solve.features import next_instant
 from trsim.solve.norm import units, weights
 from trsim.solve.phases import evaluate_all
 from trsim.solve.record import (
@@ -76,15 +76,16 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
-def method_table(method, sections=0):
+def method_table(method, sections=0, meet=0):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
-    so does `sections`, the address of what locates points, 0 where nobody asks for any.
+    so do `sections`, the address of what locates points, and `meet`, of what goes on behind the
+    corners of functions; 0 where there are none.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT))
-    return (*called, complete.address(), *about, sections)
+    return (*called, complete.address(), *about, sections, meet)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
@@ -106,7 +107,7 @@ def march(s, r, b, setting, methods, most):
         t, method = r.clock[T], methods[r.count[METHOD]]
         if method[STEP_AT] == 0:
             return LOAD
-        h = next_step(r, b, setting)
+        h = next_step(s, r, b, setting)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
             return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
         if crawls(r, setting, h):
@@ -135,7 +136,8 @@ def march(s, r, b, setting, methods, most):
         accepted += 1
         if too_fast(s, r):
             return TOO_FAST
-        control(r, setting, method, h, error, outcome != SMOOTH_STEP)
+        cut = outcome in (WITH_EVENT, WITH_CORNER)
+        control(r, setting, method, h, error, cut)
         if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:
             shorten(r, setting, h)
         if methods.shape[0] > 1:
@@ -177,12 +179,13 @@ def full(s, r, b):
 
 
 @internal
-def next_step(r, b, setting):
+def next_step(s, r, b, setting):
     """The step to try: as controlled, not beyond the end, the last two evened out.
 
-    It never spans more output times than the buffer has room for.
+    It never spans more output times than the buffer has room for, and ends where the time meets a
+    corner of a function.
     """
-    left = setting[T_END] - r.clock[T]
+    left = next_instant(s, r.clock[T], setting[T_END]) - r.clock[T]
     h = min(r.clock[H], setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
     if setting[FIXED_STEP] > 0.0:
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]

@@ -1,6 +1,6 @@
 """What a run needs around its march, whatever makes the steps: settings, record, outcome."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,8 +10,6 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION, Scene
 from trsim.errors import ScenarioError
-from trsim.fields import FunctionSpec
-from trsim.instants import shortest_pulse
 from trsim.solve import record as rec
 from trsim.solve.record import Record
 from trsim.solve.start import Start
@@ -54,7 +52,6 @@ CRAWLS = (
 )
 SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
-SHORTEST = 1e-6  # of a run: a pulse shorter than that may be passed over
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
@@ -85,10 +82,8 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
     s[rec.H_MAX] = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:
-        # a pulse between two stages of a long step would not be seen at all
+        # what is smooth and short between two stages of a long step would not be seen at all
         s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
-        pulse = max(shortest_pulse(timed(scenario), solver.end), SHORTEST * solver.end)
-        s[rec.H_MAX] = min(s[rec.H_MAX], pulse)
     s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
     if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
         raise ScenarioError(
@@ -117,6 +112,15 @@ def locator(mechanism: Mechanism) -> int:
     return int(sections.address())
 
 
+def meets(mechanism: Mechanism) -> int:
+    """The address of what goes on behind corners of functions; 0 where there are none."""
+    if len(mechanism.model.feature) == 0:
+        return 0
+    from trsim.solve.features import meet
+
+    return int(meet.address())
+
+
 def most_points(mechanism: Mechanism, setting: Array) -> int:
     """How many points of sections one step may add; a step spans a buffer of rows at most.
 
@@ -135,12 +139,6 @@ def most_points(mechanism: Mechanism, setting: Array) -> int:
             )
         most += int(own)
     return most
-
-
-def timed(scenario: Any) -> Iterator[FunctionSpec]:
-    """What drives and loads are told as functions."""
-    for spec in (*scenario.drives.values(), *scenario.forces.values()):
-        yield from (value for _, value in spec if isinstance(value, FunctionSpec))
 
 
 def first_step(scenario: Any, record: Record) -> float:
@@ -180,6 +178,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         pivot=np.zeros((2, n_w), np.int64),
         past=np.zeros((past_rows, begun.y.size)),
         watch=np.zeros((len(model.watch), rec.N_WATCH)),
+        held=np.zeros(len(model.held)),
         stage=np.zeros(switches, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
         worked=np.zeros((2, N_WORKED)),

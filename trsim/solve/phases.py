@@ -3,6 +3,7 @@
 import numpy as np
 
 from trsim.assemble.equations import corners, evaluate, gaps, poses
+from trsim.assemble.features import call_hold
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import (
     BRANCH,
@@ -18,8 +19,10 @@ from trsim.elements.contract import (
 from trsim.elements.packed import A1
 from trsim.elements.signatures import void
 from trsim.elements.vectors import internal
+from trsim.laws.functions import BY_TIME
 from trsim.solve.corners import look
 from trsim.solve.events import NONE, SAME, flip, hertz_step
+from trsim.solve.features import keep
 from trsim.solve.peaks import extreme
 from trsim.solve.record import (
     BUFFERS,
@@ -145,6 +148,10 @@ def latch(s, r):
 def evaluate_all(s, r, setting, t):
     """What the record holds besides the state, at its state: y', gaps, angles, branches of laws."""
     evaluate(s, t, r.y, r.yd)
+    if s.feature.shape[0] > 0:
+        call_hold(s.on_features[0], s, t, BY_TIME)
+        keep(s, r)
+        evaluate(s, t, r.y, r.yd)
     gaps(s, t)
     for c in range(s.contact.size):
         r.gap[c, 0] = s.gap[s.contact[c], 0]

@@ -117,6 +117,7 @@ class Record(Packed):
     pivot: I2  # (2, n_w)
     past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
+    held: A1  # (corners) what functions are held on                            features.py
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py

@@ -22,6 +22,7 @@ from trsim.solve import record as rec
 from trsim.solve.blame import why
 from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
+from trsim.solve.features import next_time
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
 from trsim.solve.outcome import (
@@ -30,6 +31,7 @@ from trsim.solve.outcome import (
     emptied,
     first_step,
     locator,
+    meets,
     most_points,
     new_record,
     runaway,
@@ -80,7 +82,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         points=most_points(mechanism, setting),
     )  # fmt: skip
     called = (0, 0, interpolate.address(), complete.address())
-    method = np.array((*called, LAST, 1, 0, locator(mechanism)), np.int64)
+    about = (locator(mechanism), meets(mechanism))
+    method = np.array((*called, LAST, 1, 0, *about), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)
@@ -149,9 +152,10 @@ def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) ->
 
     make = getattr(scipy.integrate, scenario.solver.method.split(":", 1)[1])
     t = float(r.clock[rec.T])
-    first = min(float(r.clock[rec.H]), setting[rec.T_END] - t)
+    until = next_time(s, t, setting[rec.T_END])
+    first = min(float(r.clock[rec.H]), until - t)
     longest = min(setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
-    return make(right_hand_side, t, r.y.copy(), setting[rec.T_END], first_step=first or None,
+    return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
                 max_step=longest, rtol=RELATIVE, atol=absolute)  # fmt: skip
 
 

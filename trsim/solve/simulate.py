@@ -16,6 +16,7 @@ from trsim.solve.act import act
 from trsim.solve.blame import why
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
+from trsim.solve.features import put_back as put_back_held
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.outcome import (
     CRAWLS,
@@ -24,6 +25,7 @@ from trsim.solve.outcome import (
     emptied,
     first_step,
     locator,
+    meets,
     most_points,
     new_record,
     runaway,
@@ -139,14 +141,15 @@ def compiled(
         r = sparse.record(r, scenario, mechanism, dense_rows)
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
-    points = locator(mechanism)
-    methods[0] = method_table(used[0], points)
+    called = locator(mechanism), meets(mechanism)
+    methods[0] = method_table(used[0], *called)
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
         if np.any(r.stage):
             work = carried(work, mechanism.stages.model(r.stage))
             b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
+        put_back_held(work, r)
     else:
         begin(work, r, b, setting)
         r.clock[rec.H] = first_step(scenario, r)
@@ -168,7 +171,7 @@ def compiled(
             ended = ("failed", text) if text else None
         cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
-            methods[:] = [method_table(method, points) for method in used]
+            methods[:] = [method_table(method, *called) for method in used]
             clock0 = time.process_time() - cpu
         block = emptied(r, b, recorded)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block

@@ -116,7 +116,7 @@ class SolverSpec(Spec):
     stabilisation  how joints are kept closed
     baumgarte      rates of that stabilisation
     first_step     found out unless given
-    max_step       largest step; a pulse shorter than a 200th of the run needs it
+    max_step       largest step; what is smooth and shorter than a 200th of the run needs it
     max_steps      the run fails after as many
     locate_events  end steps exactly where contacts open or close; rk4 does so only if told
     force          go on where a fixed step is known to be too large
