@@ -27,6 +27,7 @@ from trsim.solve.record import (
     RECORD,
     WORK_PROJECTION,
 )
+from trsim.solve.works import LONG
 
 MEET = types.int64(SCENE, RECORD, BUFFERS, f8, f8)
 call_meet = caller(MEET)
@@ -82,6 +83,7 @@ def other_side(s, r, t1):
         r.peak[c, PEAK_T1] = t1  # no parabola across it
     r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
     r.clock[PAST_ERROR] = 0.0
+    r.worked[0, LONG] = 0.0
 
 
 @internal
