@@ -109,6 +109,11 @@ forces:
   w: {type: limit_stop, point: {body: rod, at: [1, 0, 0]}, stiffness: 5000, damping: 3, ramp: 1e-4,
       wall: {body: ground, at: [1, -0.2, 0], normal: [0, 1, 0]}}
 """,
+    "springs above and below": HINGED + DOWN + """
+forces:
+  a: {type: spring_damper, bodies: [ground, rod], points: [[1, 1, 1], [1, 0, 0]], stiffness: 30}
+  b: {type: spring_damper, bodies: [ground, rod], points: [[1, 1, -1], [1, 0, 0]], stiffness: 30}
+""",
     "a drive": HINGED + "drives: {m: {joint: hinge, position: 3*t**2}}\n" + DOWN,
 }  # fmt: skip
 END = "\nsolver: {end: 0.5, tolerance: 1e-10}\noutput: {every: 0.05}\n"

@@ -90,10 +90,11 @@ def planarity(
     """
     if scenario.planar is False or full.n == 1:
         return Planarity(False)
-    reasons = [*of_bodies(at), *of_beams(at), *of_elements(at, instances, full.size)]
+    pushed = list(of_loads(full, y6))
+    reasons = [*of_bodies(at), *of_beams(at)]
+    reasons += of_elements(at, instances, full.size, bool(pushed))
     reasons += of_rows(full, y6, rows)
-    if not reasons:  # what no element has told
-        reasons += of_loads(full, y6)
+    reasons = reasons or pushed  # of what no element has told
     # what must hold is looked at around the drawing as well
     states = (y6, *(in_plane_states(full, y6) if reasons else ()))
     held = is_held(full, states, lasting(instances, at, rows))
@@ -154,15 +155,21 @@ def of_beams(at: Addresses) -> Iterator[Out]:
             yield Out(f"bodies.{name}", "is a bar that rises out of the plane", MOVES)
 
 
-def of_elements(at: Addresses, instances: list[Instance], size: float) -> Iterator[Out]:
-    """What the elements say they could do."""
+def of_elements(
+    at: Addresses, instances: list[Instance], size: float, pushed: bool
+) -> Iterator[Out]:
+    """What the elements say they could do.
+
+    pushed: whether their forces together leave the plane; springs above and below may balance.
+    """
     for instance in instances:
         if instance.element.reach is None:
             continue
+        reach = instance.element.reach(instance.row)
+        if reach.always and not pushed:
+            continue
         whose = f"{instance.section}.{instance.name}" if instance.section else "gravity"
-        yield from dict.fromkeys(
-            Out(whose, *found) for found in reaching(at, instance.element.reach(instance.row), size)
-        )
+        yield from dict.fromkeys(Out(whose, *found) for found in reaching(at, reach, size))
 
 
 def reaching(at: Addresses, reach: Any, size: float) -> Iterator[tuple[str, str]]:

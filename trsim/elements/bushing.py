@@ -177,6 +177,7 @@ def reach(row):
     )
     return Reach(
         places=((i, row.par[:3], (i, j)),) if any(k + c) else (),
+        always=True,
         tensors=tuple(
             (i, axes, law, turns)
             for law, turns in ((k, False), (c, False), (k_r, True), (c_r, True))

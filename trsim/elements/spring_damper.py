@@ -91,7 +91,7 @@ def measure(t, scene, a, b):
 def reach(row):
     i, j = row.con[:2]
     p, q = row.par[:3], row.par[3:6]
-    return Reach(lines=((i, p, j, q),), places=((i, p, (i, j)),))
+    return Reach(lines=((i, p, j, q),), places=((i, p, (i, j)),), always=True)
 
 
 ELEMENT = Element(
