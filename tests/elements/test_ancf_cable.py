@@ -179,8 +179,9 @@ def test_a_torque_along_a_bar_in_space():
     error = refused(text)
     assert error.exit_code == 4 and "about itself" in error.what
     assert error.path == ("forces", "f", "direction") and error.place.line == 17
-    (note,) = assemble(loads(text.replace("frame: rod", "frame: world"))).notes
-    assert "100% of this torque points along 'rod'" in note
+    for frame, direction, part in (("world", "[1, 0, 0]", ""), ("world", "[1, 4, 3]", "0.2 of it")):
+        error = refused(text.replace("frame: rod", f"frame: {frame}"), ("[1, 0, 0]", direction))
+        assert error.exit_code == 4 and "about itself" in error.what and part in error.what
     across = text.replace("[1, 0, 0]", "[0, 1, 0]")
     assert not assemble(loads(across)).notes
 

@@ -43,6 +43,7 @@ from trsim.assemble.tables import (
     turns,
     watched,
 )
+from trsim.assemble.torsion import check_torsion
 from trsim.elements.contract import (
     N_BOOK,
 )
@@ -77,6 +78,8 @@ def assemble(
     check_inertias(at, planar, listed(verdict.reasons))
     if not planar:
         check_space(at, instances)
+        if at.beams and drives is None and not ideal:  # of a start the run has said so
+            check_torsion(full, y6, at, instances, rows)
     kept, found = choose_rows(full, y6, instances, planar, rows)
     d = 3 if planar else 6
     model = build(scenario, at, instances, kept, d, hubs(full, y6, rows, kept, planar, spans(at)))

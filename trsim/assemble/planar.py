@@ -90,11 +90,7 @@ def planarity(
     """
     if scenario.planar is False or full.n == 1:
         return Planarity(False)
-    pushed = list(of_loads(full, y6))
-    reasons = [*of_bodies(at), *of_beams(at)]
-    reasons += of_elements(at, instances, full.size, bool(pushed))
-    reasons += of_rows(full, y6, rows)
-    reasons = reasons or pushed  # of what no element has told
+    reasons = reaching_out(full, y6, at, instances, rows)
     # what must hold is looked at around the drawing as well
     states = (y6, *(in_plane_states(full, y6) if reasons else ()))
     held = is_held(full, states, lasting(instances, at, rows))
@@ -111,6 +107,17 @@ def planarity(
     if reasons and scenario.planar is None and all_known(at):
         return Planarity(False, reasons=tuple(reasons))
     return Planarity(True, not held and scenario.planar is None, tuple(reasons))
+
+
+def reaching_out(
+    full: Model, y6: Array, at: Addresses, instances: list[Instance], rows: list[RowName]
+) -> list[Out]:
+    """All that reaches out of the x-y plane."""
+    pushed = list(of_loads(full, y6))
+    reasons = [*of_bodies(at), *of_beams(at)]
+    reasons += of_elements(at, instances, full.size, bool(pushed))
+    reasons += of_rows(full, y6, rows)
+    return reasons or pushed  # of what no element has told
 
 
 def all_known(at: Addresses) -> bool:

@@ -20,7 +20,8 @@ from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
 
-ALONG, PARTLY = 1.0 - 1e-9, 0.1  # cosines of a torque against the tangent of a flexible bar
+# cosines against the tangent of a flexible bar: of what points along it, and of a part that counts
+ALONG, PARTLY = 1.0 - 1e-9, 1e-6
 
 
 def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowName]:
@@ -136,7 +137,7 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
 
 
 def loads(at: Addresses, instances: list[Instance]) -> None:
-    """A torque along a flexible bar in space, which turns nothing: refused, or told."""
+    """A torque along a flexible bar in space, which turns nothing."""
     for instance in instances:
         if instance.element.key != "applied_load":
             continue
@@ -144,18 +145,13 @@ def loads(at: Addresses, instances: list[Instance]) -> None:
         if not is_torque or not at.is_node(node):
             continue
         along = at.rotation[frame] @ np.array(instance.row.par[3:6]) @ at.rotation[node][:, 0]
-        turns = at.owners[frame] == at.owners[node]
-        if turns and abs(along) > ALONG:
-            raise ModelError(
-                f"turns '{at.owners[node]}' about itself, and in space that has no torsion",
-                "let it act on a rigid body at the end of the bar, or give it another direction",
-                ("forces", instance.name, "direction"),
-            )
         if abs(along) > PARTLY:
-            at.notes.append(
-                f"forces.{instance.name}: {abs(along):.0%} of this torque points along "
-                f"'{at.owners[node]}' as drawn; a flexible bar in space has no torsion, so that "
-                "part turns nothing"
+            part = "" if abs(along) > ALONG else f"with {abs(along):.2g} of it "
+            raise ModelError(
+                f"turns '{at.owners[node]}' {part}about itself, and in space that has no torsion",
+                "give the torque a direction across the bar, make the bar rigid "
+                "(`flexible: false`), or draw the mechanism in the x-y plane",
+                ("forces", instance.name, "direction"),
             )
 
 
@@ -200,6 +196,7 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
         if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:
             raise ModelError(
                 "welds two flexible bars at an angle, and in space these have no torsion",
-                "weld both to a rigid body between them, or draw the mechanism in the x-y plane",
+                "join them by `spherical`, make them rigid (`flexible: false`), or draw the mechanism "
+                "in the x-y plane",
                 ("joints", instance.name),
             )

@@ -13,7 +13,7 @@ SHOWN = 4  # names of a list
 
 def skipped(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """Sentences "what: why"."""
-    parts = (_rows, _contacts, _stabilisation, _start, _channels, _points, _keys)
+    parts = (_rows, _bars, _contacts, _stabilisation, _start, _channels, _points, _keys)
     return tuple(text for part in parts for text in part(scenario, mechanism))
 
 
@@ -36,6 +36,17 @@ def _rows(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
         )
     if model.m == 0:
         yield "constraints: no joint or drive has a row in the solve, so nothing is factorised"
+
+
+def _bars(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """What the elements of flexible bars leave out."""
+    if not mechanism.beams:
+        return
+    twist = "" if mechanism.planar else ", and what would need it is refused"
+    yield (
+        f"torsion and shear of {listed(mechanism.beams)}: elements of flexible bars stretch and "
+        f"bend, and do not twist{twist}; rotary inertia of their sections is left out too"
+    )
 
 
 def _contacts(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
