@@ -196,7 +196,7 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
         if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:
             raise ModelError(
                 "welds two flexible bars at an angle, and in space these have no torsion",
-                "join them by `spherical`, make them rigid (`flexible: false`), or draw the mechanism "
-                "in the x-y plane",
+                "join them by `spherical`, make them rigid (`flexible: false`), or draw the "
+                "mechanism in the x-y plane",
                 ("joints", instance.name),
             )
