@@ -1,6 +1,6 @@
 """Scenario -> Model: pack the elements, drop what the scene does not need, lay out the outputs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -22,8 +22,10 @@ from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
+    check_shaky,
     check_space,
     choose_rows,
+    dropped,
     reactions,
 )
 from trsim.assemble.sections import sections
@@ -42,6 +44,7 @@ from trsim.assemble.tables import (
     tables,
     turns,
     watched,
+    watched_rows,
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.elements.contract import (
@@ -81,8 +84,11 @@ def assemble(
         if at.beams and drives is None and not ideal:  # of a start the run has said so
             check_torsion(full, y6, at, instances, rows)
     kept, found = choose_rows(full, y6, instances, planar, rows)
+    if drives is None and not ideal:  # of a start clearances may be left out
+        check_shaky(full, y6, instances, planar, rows, found)
     d = 3 if planar else 6
-    model = build(scenario, at, instances, kept, d, hubs(full, y6, rows, kept, planar, spans(at)))
+    own = hubs(full, y6, rows, kept, planar, spans(at))
+    model = build(scenario, at, instances, kept, d, own, dropped(rows, found))
     y0 = drawn(at, d)
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
@@ -125,9 +131,9 @@ def stages(
 
     def built(instances: list[Instance], rows: list[RowName]) -> tuple[Model, list[RowName]]:
         full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
-        kept, _ = choose_rows(full, y6, instances, planar, rows)
-        own = hubs(full, y6, rows, kept, planar, spans(at))
-        return build(scenario, at, instances, kept, 3 if planar else 6, own), kept
+        kept, found = choose_rows(full, y6, instances, planar, rows)
+        own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
+        return build(scenario, at, instances, kept, 3 if planar else 6, own, left), kept
 
     return Stages(at.switches, instances, first, built)
 
@@ -219,13 +225,15 @@ def build(
     rows: list[RowName],
     d: int,
     hubs: Hubs | None = None,
+    redundant: Sequence[RowName] = (),
 ) -> Model:
     """The arrays of a model with the given constraint rows, without outputs.
 
     hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
+    redundant: rows that are looked at only.
     """
     n, N = len(at.frames), max(len(instances), 1)
-    con, par = tables(instances, rows)
+    con, par = tables(instances, [*rows, *redundant])
     mass, inertia, mass_inverse, inertia_inverse = masses(at, d)
     solver = scenario.solver
     size = extent(at)
@@ -262,6 +270,7 @@ def build(
         **turns(at, d),
         **kernels(instances),
         **(no_pattern(frames, n) if hubs is None else pattern(frames, n, spans(at), hubs)),
+        **watched_rows(instances, rows, redundant, size),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
         on_beams=np.array(addresses(at.beams), np.int64),

@@ -39,13 +39,14 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     w = workspace(model)
     poses(w, y)
     constraints(w, t)
-    J = np.zeros((model.m, model.n, 6))
-    for end, block in ((0, w.J[:, :6]), (1, w.J[:, 6:])):
-        J[np.arange(model.m), model.row_frame[:, end]] = block
+    m = model.m
+    J = np.zeros((m, model.n, 6))
+    for end, block in ((0, w.J[:m, :6]), (1, w.J[:m, 6:])):
+        J[np.arange(m), model.row_frame[:, end]] = block
     return (
-        w.phi.copy(),
-        w.phi_t.copy(),
-        against_rates(w, J[:, 1:].reshape(model.m, 6 * (model.n - 1))),
+        w.phi[:m].copy(),
+        w.phi_t[:m].copy(),
+        against_rates(w, J[:, 1:].reshape(m, 6 * (model.n - 1))),
     )
 
 
@@ -163,14 +164,18 @@ def dependences(model: Model, y: Array, keep: NDArray[np.bool_], order: list[int
     here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
     if not here:
         return []
-    always = None
+    always, others = None, [k for k in order if k not in here]
+    as_drawn = True  # whether the rows chosen at the drawn position are as many, and hold, nearby
     for near in nearby(model, y, keep, geometric):
         J = jacobian(model, 0.0, near)[2][:, keep]
         there = dependent_rows(J, scale, order, NEARLY)
         if len(there) > len(here):  # no rank is lower there: these rows are nearly parallel
             there = dependent_rows(J, scale, order)
         always = there if always is None else always & there
-    if always is None:
+        as_drawn = as_drawn and len(there) == len(here)
+        as_drawn = as_drawn and not dependent_rows(J, scale, others, NEARLY)
+    if always is None or as_drawn:
+        # of two rows either of which may go, the one that goes leaves rows that hold as drawn too
         always = here
     return [Dependence(k, k in always) for k in sorted(here | always)]
 

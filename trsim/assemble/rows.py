@@ -15,6 +15,7 @@ from trsim.assemble.reduce import (
     moves,
     weights,
 )
+from trsim.assemble.shaky import shaky
 from trsim.elements.scene import Model
 from trsim.errors import ModelError
 
@@ -94,8 +95,36 @@ def choose_rows(
                 "two drives on one degree of freedom? remove one, or give it compliance",
                 ("drives", name),
             )
-    dropped = {f.row for f in found if f.everywhere}
-    return [rows[k] for k in candidates if k not in dropped], found
+    redundant = {f.row for f in found if f.everywhere}
+    return [rows[k] for k in candidates if k not in redundant], found
+
+
+def check_shaky(
+    full: Model, y6: Array, instances: list[Instance], planar: bool, rows: list[RowName],
+    found: list[Dependence],
+) -> None:  # fmt: skip
+    """Refuse joints that are proved to allow motions to first order only."""
+    if not found:
+        return
+    inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], planar)).tolist()
+    geometric = [k for k in inside if instances[rows[k].instance].section == "joints"]
+    told = shaky(full, y6, rows, geometric, {f.row for f in found if f.everywhere}, planar)
+    if told is None:
+        return
+    names = dict.fromkeys(rows[k].element for k in told.rows)
+    can = "none of them goes on" if told.at_most == 0 else f"only {told.at_most} of them go on"
+    raise ModelError(
+        f"as drawn {', '.join(names)} allow {told.first_order} motions, but to first order only: "
+        f"{can}, as two bars stretched on one line cannot swing (a shaky mechanism)",
+        "draw it as it moves, give a joint a clearance or a bar that stretches, or leave out what "
+        "cannot move",
+        ("joints", next(iter(names))),
+    )
+
+
+def dropped(rows: list[RowName], found: list[Dependence]) -> list[RowName]:
+    """The rows that are not solved, as others hold what they do."""
+    return [rows[f.row] for f in found if f.everywhere]
 
 
 def check_inertias(at: Addresses, planar: bool, because: str = "") -> None:

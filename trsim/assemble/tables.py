@@ -1,5 +1,6 @@
 """The arrays of a model, one function for each group of them."""
 
+from collections.abc import Sequence
 from math import sqrt
 from typing import Any
 
@@ -12,6 +13,7 @@ from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
+from trsim.elements.prescribed import ROTATES
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -37,6 +39,25 @@ def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.i
     for e, p in enumerate(pars):
         par[e, : len(p)] = p
     return con, par
+
+
+def watched_rows(
+    instances: list[Instance], rows: Sequence[RowName], redundant: Sequence[RowName], size: float
+) -> dict[str, Any]:
+    """The rows that are only looked at, and what makes the opening of every row relative."""
+    named = [(*row.frames, row.instance, row.index) for row in redundant]
+    turning = [turns_by(instances[row.instance], row.index) for row in (*rows, *redundant)]
+    return {
+        "redundant": np.array(named, np.int64).reshape(-1, 4),
+        "row_unit": np.where(turning, 1.0, size) if turning else np.zeros(0),
+    }
+
+
+def turns_by(instance: Instance, index: int) -> bool:
+    """Whether a row of an element is an angle, as drives and locks of hinges are."""
+    if instance.element.key == "drive":
+        return instance.row.con[ROTATES - 1] == 1
+    return instance.element.rows[index].startswith(("tilt", "turn"))
 
 
 def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:

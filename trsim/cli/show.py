@@ -102,7 +102,7 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
         first, *rest = of_certificate(data["certificate"])
         out += [f"  accuracy  {first}", *(f"            {text}" for text in rest)]
     if data["redundant"]:
-        out.append(f"  redundant {redundancy(data)}")
+        out.append(f"  redundant {redundancy(data)}{opening(data)}")
     out += [f"  warning   {text}" for text in data["warnings"]]
     out.append(f"  phase     {', '.join(data['phase']) or '-'}")
     sections = [section(run, name, told) for name, told in data["dispersion"].items()]
@@ -111,6 +111,12 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
     width = max((len(name) for name in run.names), default=0)
     out += [f"    {name:<{width}}  {run.units[name]}{mark(name, data)}" for name in run.names]
     return out
+
+
+def opening(data: dict[str, Any]) -> str:
+    """How far the rows left out as redundant were open; nothing for files that do not know."""
+    worst = data["solver"].get("redundant_open_relative")
+    return "" if worst is None else f"; open by at most {worst:.1e} of the mechanism's size or rad"
 
 
 def dispersions(run: Any) -> dict[str, dict[str, Any]]:

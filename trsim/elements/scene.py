@@ -67,6 +67,8 @@ class Model(Packed):
     stiffness: I2
     measure: I2
     row_frame: I2  # (m, 2) frames i and j of a row                        assemble/pattern.py
+    redundant: I2  # (n_d, 4) rows left out of the solve: frames i and j, row e, which of its rows
+    row_unit: A1  # (m+n_d) what makes the opening of a row relative: size, or 1 rad
     frame_start: I1  # (n+1) slots of a frame: one per row that touches it, the ground has none
     slot_row: I1  # (slots) its row
     slot_column: I1  # (slots) its first column of J: 0 for frame i, 6 for frame j
@@ -124,11 +126,12 @@ class Scene(Model):
     zd: A1  # (n_z) their rates
     mem: A2  # (N, n_mem) what elements remember; part of the record of a run
     F: A2  # (n, 6) force, moment about the centre of mass, world axes
-    phi: A1  # (m)
-    phi_t: A1  # (m)
-    J: A2  # (m, 12) against the twists of frames i and j
-    gamma: A1  # (m)
-    lam: A1  # (m) multipliers
+    # of the m rows of the solve, then of the redundant ones, which are only looked at
+    phi: A1  # (m+n_d)
+    phi_t: A1  # (m+n_d)
+    J: A2  # (m+n_d, 12) against the twists of frames i and j
+    gamma: A1  # (m+n_d)
+    lam: A1  # (m+n_d) multipliers; 0 of the redundant
     B: A2  # (slots, 6) rows of J in the axes of the solve
     W: A2  # (slots, 6) M^-1 B^T
     value: A1  # (places) S = J M^-1 J^T, then its factors
@@ -162,6 +165,7 @@ def scene(model: Model) -> Scene:
     from trsim.elements.contract import N_MEM
 
     n, m, n_x, slots = model.n, model.m, len(model.column_start) - 1, len(model.slot_row)
+    rows = m + len(model.redundant)
     elements = int(np.sum(model.beam[:, 1] - 1))
     X = np.zeros((n, 12))
     X[:, [3, 7, 11]] = 1.0
@@ -183,11 +187,11 @@ def scene(model: Model) -> Scene:
         zd=np.zeros(model.n_z),
         mem=np.zeros((len(model.con), N_MEM)),
         F=np.zeros((n, 6)),
-        phi=np.zeros(m),
-        phi_t=np.zeros(m),
-        J=np.zeros((m, 12)),
-        gamma=np.zeros(m),
-        lam=np.zeros(m),
+        phi=np.zeros(rows),
+        phi_t=np.zeros(rows),
+        J=np.zeros((rows, 12)),
+        gamma=np.zeros(rows),
+        lam=np.zeros(rows),
         B=np.zeros((slots, 6)),
         W=np.zeros((slots, 6)),
         value=np.zeros(len(model.row)),

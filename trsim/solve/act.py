@@ -176,7 +176,7 @@ def project(mechanism: Any, work: Scene, r: Record) -> None:
     for k in range(8):
         worst = project_positions(work, t, r.y)
         if k == 0 and worst > TORN * min(work.size, 1.0):
-            row = mechanism.stages.rows(r.stage)[int(np.argmax(np.abs(work.phi)))]
+            row = mechanism.stages.rows(r.stage)[int(np.argmax(np.abs(work.phi[: work.m])))]
             raise ModelError(
                 f"{row} would jump by {worst:.3g}; a position that is set begins where the joint is"
             )

@@ -27,7 +27,11 @@ INTERPOLATE = types.void(A2, A1, f8, A1)
 #                                 method t h t1 work of projection, built, event
 SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, f8, f8, f8, f8, i8, i8)
 
+# what looks at redundant rows, for runs that may have some  scene record buffers setting t y
+LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1)
+
 call_step = caller(STEP)
 call_dense = caller(DENSE)
 call_interpolate = caller(INTERPOLATE)
 call_sections = caller(SECTIONS)
+call_look = caller(LOOK)

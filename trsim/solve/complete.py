@@ -10,7 +10,14 @@ from trsim.elements.calls import caller
 from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
-from trsim.solve.calls import NO_STEP, call_dense, call_interpolate, call_sections, call_step
+from trsim.solve.calls import (
+    NO_STEP,
+    call_dense,
+    call_interpolate,
+    call_look,
+    call_sections,
+    call_step,
+)
 from trsim.solve.events import any_suspicious, first_event, settled
 from trsim.solve.features import call_meet
 from trsim.solve.land import land
@@ -31,6 +38,7 @@ from trsim.solve.record import (
     LOCATE,
     NEXT_JACOBIAN,
     NEXT_ROW,
+    OPENED,
     PAST_H,
     PEAK_MAX,
     PEAK_MIN,
@@ -51,10 +59,10 @@ from trsim.solve.works import exchanged
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT = 0, 1, 2, 3, 4
 # a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
 # of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
-# and the addresses of what locates points of sections, and of what goes on behind corners of
-# functions, or 0
+# and the addresses of what locates points of sections, of what goes on behind corners of functions
+# and of what looks at redundant rows, or 0
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, MEET_AT, METHOD_WIDTH = 7, 8, 9
+SECTIONS_AT, MEET_AT, LOOK_AT, METHOD_WIDTH = 7, 8, 9, 10
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
@@ -101,13 +109,15 @@ def complete(s, r, b, setting, method, h, built):
             evaluate(s, t1, b.y1, b.K[last])
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     copy_to(b.out, s.out)
+    if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1) > 0:
+        evaluate(s, t1, b.y1, b.K[last])
     near = near_peak(s, r, b, t1, t1 - t, last)
     inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
     if built == 0 and (near or inside or method[IMPLICIT_AT] > 0):
         build(s, r, b, method, t, h)
         built = 1
     if near or due(r, setting, t1):
-        if not rows_until(s, r, b, setting, method[INTERPOLATE_AT], t, h, t1, projected):
+        if not rows_until(s, r, b, setting, method, t, h, t1, projected):
             return WORTHLESS
         if near:
             peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
@@ -204,7 +214,7 @@ def due(r, setting, t1):
 
 
 @internal
-def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
+def rows_until(s, r, b, setting, method, t, h, t1, projected):
     """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
 
     Returns False, and writes none of them, where a value is not finite.
@@ -220,13 +230,15 @@ def rows_until(s, r, b, setting, interpolate, t, h, t1, projected):
             copy_to(row[1:], b.out)
         else:
             theta = (t_o - t) / h
-            call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+            call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
             evaluate(s, t_o, b.y2, b.K[1])
             done = r.clock[WORK_PROJECTION] + theta * projected
             measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
             copy_to(row[1:], s.out)
+            if method[LOOK_AT] > 0:
+                call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2)
         if not all_finite(row):
-            r.count[ROWS], r.count[NEXT_ROW] = rows, next_row
+            r.count[ROWS], r.count[NEXT_ROW], r.count[OPENED] = rows, next_row, 0
             return False
         r.count[ROWS] += 1
         r.count[NEXT_ROW] += 1

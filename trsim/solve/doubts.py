@@ -6,6 +6,7 @@ contacts   pressed in by more than their law is made for: a half width of the co
 bars       strained by more than a linear law holds                          solve/strained.py
 waves      of bars that steps were too long to follow: no fault, but to be known
 energy     the book of the run does not close
+rows       that were left out as redundant are open, though not so far that the run ended
 """
 
 from collections.abc import Iterator
@@ -18,8 +19,10 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import world_rates
 from trsim.elements.contract import STORED
+from trsim.elements.scene import PROJECTION
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
+from trsim.solve.openings import apart
 from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
 from trsim.solve.record import T
@@ -52,6 +55,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_waves(mechanism, outcome),
         *of_books(mechanism, outcome),
+        *of_rows(mechanism, outcome),
     )
 
 
@@ -169,8 +173,16 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
             "coarse"
         )
     apart = numbers.get("joints_open_relative", 0.0)
-    if apart > OPEN:
+    if apart > OPEN and mechanism.model.stabilisation != PROJECTION:
         yield (
             f"joints were open by up to {apart:.2g} of the mechanism's size; "
             "`stabilisation: projection` closes them"
         )
+
+
+def of_rows(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """Redundant rows that were open by more than the accuracy asked for."""
+    if outcome.record is None or outcome.status not in WELL:
+        return
+    if text := apart(mechanism, outcome.record):
+        yield text

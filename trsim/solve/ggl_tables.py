@@ -166,7 +166,7 @@ def state_rows(mechanism: Mechanism, model: Model) -> list[tuple[int, int]]:
     for e, instance in enumerate(mechanism.instances):
         if instance.section in ("drives", "events"):
             row, state = int(model.con[e, 3]), int(model.con[e, STATE])
-            if row >= 0 and state >= 0:
+            if 0 <= row < model.m and state >= 0:
                 found.append((row, model.n_v + state - N_BOOK))
     return found
 

@@ -161,7 +161,7 @@ class Probe:
         self.ways = self.directions(mechanism)
         self.scales(begun)
         derivative(work, 0.0, self.y, np.zeros_like(self.y))
-        self.lam = work.lam.copy()
+        self.lam = work.lam[: work.m].copy()
 
     def basis(self) -> None:
         """Z, M Z and the M-weighted pseudoinverse of J; in world axes and those of the solve."""
@@ -242,7 +242,8 @@ class Probe:
         constraints(work, 0.0)
         forces(work, 0.0)
         wrenches = work.F.copy()
-        for end, part in enumerate((work.J[:, :6], work.J[:, 6:])):
+        J = work.J[: work.m]
+        for end, part in enumerate((J[:, :6], J[:, 6:])):
             np.subtract.at(wrenches, work.row_frame[:, end], self.lam[:, None] * part)
         F = along_rates(work, wrenches)
         if self.bars:
@@ -260,9 +261,8 @@ class Probe:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
         work = self.work
         i, j = work.row_frame[:, 0], work.row_frame[:, 1]
-        return np.asarray(
-            np.sum(work.J[:, :6] * work.V[i] + work.J[:, 6:] * work.V[j], axis=1) + work.phi_t
-        )
+        J, phi_t = work.J[: work.m], work.phi_t[: work.m]
+        return np.asarray(np.sum(J[:, :6] * work.V[i] + J[:, 6:] * work.V[j], axis=1) + phi_t)
 
     def turning(self) -> Array:
         """Z^T M (omega x) Z: a body that spins carries its small rotations along."""

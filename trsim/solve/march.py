@@ -53,6 +53,8 @@ from trsim.solve.record import (
     NOT_FINITE,
     OLD,
     OLD_H,
+    OPEN,
+    OPENED,
     PAST_ERROR,
     PAUSE,
     PEAK_MAX,
@@ -76,16 +78,16 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
-def method_table(method, sections=0, meet=0):
+def method_table(method, sections=0, meet=0, look=0):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
-    so do `sections`, the address of what locates points, and `meet`, of what goes on behind the
-    corners of functions; 0 where there are none.
+    so do `sections`, the address of what locates points, `meet`, of what goes on behind the
+    corners of functions, and `look`, of what looks at redundant rows; 0 where there are none.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT))
-    return (*called, complete.address(), *about, sections, meet)
+    return (*called, complete.address(), *about, sections, meet, look)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
@@ -95,7 +97,8 @@ def march(s, r, b, setting, methods, most):
 
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
-    Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST or CRAWL.
+    Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN or
+    CRAWL.
     """
     accepted = tried = 0
     while r.clock[T] < setting[T_END]:
@@ -136,6 +139,8 @@ def march(s, r, b, setting, methods, most):
         accepted += 1
         if too_fast(s, r):
             return TOO_FAST
+        if r.count[OPENED] > 0:
+            return OPEN
         cut = outcome in (WITH_EVENT, WITH_CORNER)
         control(r, setting, method, h, error, cut)
         if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:

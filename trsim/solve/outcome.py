@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.contract import N_BOOK
-from trsim.elements.scene import PROJECTION, Scene
+from trsim.elements.contract import DRIVES, N_BOOK
+from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
+from trsim.solve.openings import held_to
 from trsim.solve.record import Record
 from trsim.solve.start import Start
 from trsim.solve.works import LEAST, N_WORKED
@@ -55,6 +56,7 @@ LOOKS = 200  # of a run, at least: steps while something depends on time explici
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
+AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 MOST_ROWS = 10_000  # output rows one fixed step may span
 
 
@@ -97,6 +99,7 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
             "`every` is the time between two rows; at most 1e9 rows are written",
             ("output", "every"),
         )
+    s[rec.HELD_TO] = held_to(solver.tolerance)
     located = adaptive if solver.locate_events is None else solver.locate_events
     s[rec.CHOOSES] = float(solver.method == "auto")
     s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
@@ -223,8 +226,10 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
 
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
     """Counts, residuals and the energy book's error."""
-    scale = max(float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
+    scale = max(float(r.clock[rec.LARGEST_ENERGY]), of_what_is_locked(r, work, begun), 1e-300)
+    redundant = float(r.clock[rec.WORST_OPEN])
     held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
+    unprojected = 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size
     return {
         "steps": int(r.count[rec.STEPS]),
         "rejected_steps": int(r.count[rec.REJECTED]),
@@ -245,6 +250,24 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "work_error_relative": float(r.clock[rec.WORK_ERROR] / max(r.clock[rec.EXCHANGED], 1e-300)),
         "work_of_projection": float(r.clock[rec.WORK_PROJECTION]),
         "work_of_projection_relative": abs(float(r.clock[rec.WORK_PROJECTION])) / scale,
-        "joints_open_relative": 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size,
+        "joints_open_relative": max(redundant, unprojected),
+        "redundant_open_relative": redundant,
+        "redundant_open_rate": float(r.clock[rec.WORST_OPEN_RATE]),
         "integration_cpu": cpu,
     }
+
+
+def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
+    """An energy that goes with the forces on what cannot move, J; 0 where something can.
+
+    Where nothing moves no energy is exchanged, and rounding is all that a book could be held to.
+    """
+    if work.n_v > work.m or work.column_energy < 0:
+        return 0.0
+    kinetic, drives = work.column_energy, work.column_energy + 1 + N_STORED + DRIVES
+    force = np.abs(work.F[:, :3]).max(initial=0.0)
+    force = max(force, np.abs(work.lam[:, None] * work.J[:, :3]).max(initial=0.0))
+    natural = float(force * work.size + np.sum(work.mass) * begun.speed**2)
+    driven = np.any(r.peak[drives, [rec.PEAK_MAX, rec.PEAK_MIN]])
+    still = r.peak[kinetic, rec.PEAK_MAX] <= AT_REST * natural
+    return natural if still and not driven else 0.0

@@ -28,8 +28,12 @@ from trsim.elements.scene import Model
     EXCHANGED,  # J, largest work, or range of an energy, so far: the scale of works     works.py
     WORK_TRIAL,  # J, error of the works in the last trial step, as estimated
     WORK_ERROR,  # J, the sum of those accepted
+    WORST_OPEN,  # of the mechanism's size or rad, largest opening of a redundant row  openings.py
+    WORST_OPEN_RATE,  # the same per second
+    APART,  # the same of rows that are open by more than the rest is
+    APART_T,  # s, when
     N_CLOCK,
-) = range(22)
+) = range(26)
 
 # count: integer state of the march
 (
@@ -56,8 +60,11 @@ from trsim.elements.scene import Model
     CRAWLED,  # trial steps in a row that were vanishingly short
     FIRED,  # user events at the end of the last step, not yet acted on
     POINT_ROWS,
+    OPENED,  # 1: a redundant row is open beyond its bound
+    OPEN_ROW,  # element row e and row of it that APART is of
+    OPEN_INDEX,
     N_COUNT,
-) = range(24)
+) = range(27)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -71,8 +78,9 @@ NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
     FIXED_STEP,  # s, 0 where the method controls its step
     LOCATE,  # 1: contact onset and separation are located
     CHOOSES,  # 1: between two methods, by the fastest motion
+    HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
     N_SETTINGS,
-) = range(8)
+) = range(9)
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
@@ -81,6 +89,7 @@ CRAWL = 8  # so many steps so short that the end will not be reached
 TOO_FAST = 7  # a body is faster than FASTEST
 CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
+OPEN = 10  # a row that was dropped as redundant is not
 ACT = 9  # a user event happened: the caller does what it says
 
 # columns of the event buffer

@@ -25,6 +25,7 @@ from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
 from trsim.solve.features import next_time
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
+from trsim.solve.openings import looked_at, opened
 from trsim.solve.outcome import (
     CRAWLS,
     Outcome,
@@ -82,7 +83,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         points=most_points(mechanism, setting),
     )  # fmt: skip
     called = (0, 0, interpolate.address(), complete.address())
-    about = (locator(mechanism), meets(mechanism))
+    about = (locator(mechanism), meets(mechanism), looked_at(mechanism))
     method = np.array((*called, LAST, 1, 0, *about), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
@@ -100,6 +101,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         outcome = complete(s, r, b, setting, method, solver.t - solver.t_old, 1)
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
+            break
+        if r.count[rec.OPENED]:
+            status, reason = "failed", opened(scenario, mechanism, r)
             break
         crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
         reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
@@ -121,7 +125,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
-        reason = why(scenario, mechanism, r) or reason
+        reason = reason if r.count[rec.OPENED] else why(scenario, mechanism, r) or reason
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
 
 

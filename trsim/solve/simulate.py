@@ -18,6 +18,7 @@ from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.complete import METHOD_WIDTH
 from trsim.solve.features import put_back as put_back_held
 from trsim.solve.march import begin, march, method_table
+from trsim.solve.openings import looked_at, opened
 from trsim.solve.outcome import (
     CRAWLS,
     Block,
@@ -141,7 +142,7 @@ def compiled(
         r = sparse.record(r, scenario, mechanism, dense_rows)
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
-    called = locator(mechanism), meets(mechanism)
+    called = locator(mechanism), meets(mechanism), looked_at(mechanism)
     methods[0] = method_table(used[0], *called)
     clock0 = time.process_time()
     if checkpoint:
@@ -195,6 +196,8 @@ def ending(
     if reason == rec.DONE:
         text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
         return ("failed", text) if text else ("done", "")
+    if reason == rec.OPEN:
+        return "failed", opened(scenario, mechanism, r)
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:

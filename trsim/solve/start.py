@@ -34,6 +34,7 @@ from trsim.errors import ModelError
 from trsim.solve.angles import follow, remember, strained, with_scene
 from trsim.solve.bars import as_flexible, as_rigid
 from trsim.solve.blame import refuse_no_number
+from trsim.solve.openings import check_closed
 from trsim.solve.softening import softened
 from trsim.solve.statics import equilibrium
 from trsim.solve.velocities import velocities
@@ -74,6 +75,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     if left > 1e-9 * model.size:
         raise not_closed(scenario, mechanism, np.abs(jacobian(model, 0.0, y)[0]))
     check_values(mechanism, initial, y)
+    check_closed(mechanism, y, scenario.solver.tolerance)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
     check_finite(mechanism, y, mem)

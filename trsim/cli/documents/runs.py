@@ -49,7 +49,11 @@ class Statistics(TypedDict, total=False):
                               over the largest energy exchanged; 0 with a method of scipy
     work_of_projection        J
     work_of_projection_relative  its size over the largest energy exchanged
-    joints_open_relative      largest open constraint over the mechanism's size, without projection
+    joints_open_relative      largest open constraint over the mechanism's size: without projection
+                              any, with it of the rows left out as redundant
+    redundant_open_relative   largest opening of rows left out as redundant, over the mechanism's
+                              size, of angles in rad
+    redundant_open_rate       the same of their rates, 1/s
     """
 
     steps: int
@@ -72,6 +76,8 @@ class Statistics(TypedDict, total=False):
     work_of_projection: Number
     work_of_projection_relative: Number
     joints_open_relative: Number
+    redundant_open_relative: Number
+    redundant_open_rate: Number
 
 
 class RunStatistics(Statistics, total=False):
