@@ -1,9 +1,9 @@
 """Compiling in two processes, each function by one of them.
 
 The solver and its equations call each other by address, so they are compiled independently: on two
-processors a first run takes little more than half the time.  `python -m trsim.elements.ahead
-MODULE...` compiles the functions of some modules that nobody else is at, and leaves their machine
-code in the cache.  It ends with the process that began it.
+processors a first run takes little more than half the time.  This module, run with names of modules
+on its command line (child.py), compiles those of their functions that nobody else is at, and leaves
+their machine code in the cache.  It ends with the process that began it.
 """
 
 import fcntl
@@ -16,6 +16,8 @@ from importlib import import_module
 from pathlib import Path
 from threading import Thread
 
+from trsim import child
+
 _at_work: list[subprocess.Popen] = []  # kept: the other end of their standard input
 
 
@@ -23,7 +25,7 @@ def begin(*modules: str) -> None:
     """Start compiling modules, where there is a second processor for it."""
     if len(os.sched_getaffinity(0)) < 2:
         return
-    command = [sys.executable, "-m", "trsim.elements.ahead", *modules]
+    command = child.command("trsim.elements.ahead", *modules)
     quiet = subprocess.DEVNULL
     _at_work.append(
         subprocess.Popen(  # noqa: S603
@@ -78,6 +80,7 @@ def main() -> None:
         for value in vars(module).values():
             if isinstance(value, Compiled) and value.python.__module__ == module.__name__:
                 value.keep()
+    os._exit(0)  # the thread holds standard input, which Python would wait for in vain
 
 
 if __name__ == "__main__":

@@ -5,6 +5,10 @@ the wrappers that let Python call them: their machine code needs nothing but the
 be kept in a file (machine.py).
 """
 
+import trsim.laws.numba_quick  # noqa: F401 - before numba
+
+# isort: split
+
 import hashlib
 from functools import cache
 from types import CodeType, FunctionType
@@ -19,7 +23,6 @@ from numba.core.typing.templates import AttributeTemplate
 from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, register_model
 from numba.np.arrayobj import populate_array
 
-import trsim.elements.numba_quick  # noqa: F401
 from trsim.elements.packed import WORDS
 from trsim.elements.signatures import Kind, Signature
 from trsim.laws import inner

@@ -30,9 +30,8 @@ LOAD_METHOD = opmap.get("LOAD_METHOD", LOAD_ATTR)  # until Python 3.11
 ATTRIBUTE_SHIFT = 0 if "LOAD_METHOD" in opmap else 1  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
 COMPILER = (
-    "elements/compiler.py", "elements/fingerprint.py", "elements/machine.py",
-    "elements/numba_quick.py", "elements/packed.py", "elements/signatures.py", "laws/__init__.py",
-    "laws/pipeline.py",
+    "elements/compiler.py", "elements/fingerprint.py", "elements/packed.py",
+    "elements/signatures.py", "laws/__init__.py", "laws/numba_quick.py", "laws/pipeline.py",
 )  # fmt: skip
 # told by their names: they belong to Python, numpy or numba, whose versions are in every key
 OF_OTHERS = frozenset({"builtins", "cmath", "math", "operator", "numpy", "numba"})

@@ -15,6 +15,9 @@ UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Py
 
 def inner(python: Callable) -> Any:
     """numba's of a function that only compiled code calls."""
+    import trsim.laws.numba_quick  # noqa: F401 - before numba
+
+    # isort: split
     from numba import njit
 
     from trsim.laws.pipeline import Pipeline
@@ -33,6 +36,9 @@ class Lazy:
     @cached_property
     def dispatcher(self) -> Any:
         """For Python to call."""
+        import trsim.laws.numba_quick  # noqa: F401 - before numba
+
+        # isort: split
         from numba import njit
 
         return njit(**COMPILED)(self.python)

@@ -18,6 +18,7 @@ from typing import Any
 
 import h5py
 
+from trsim import child
 from trsim.errors import FileError, unreadable
 from trsim.store import describe, points
 from trsim.store.content import content_hash
@@ -58,7 +59,7 @@ def recover(part: Path, target: Path, patience: float = PATIENCE) -> dict[str, A
 def _copied(part: Path, unfinished: Path, final: Path, patience: float) -> dict[str, Any]:
     """What another process found and copied."""
     limit = patience + part.stat().st_size / PACE
-    command = [sys.executable, "-m", "trsim.store.recover", str(part), str(unfinished)]
+    command = child.command("trsim.store.recover", str(part), str(unfinished))
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit)  # noqa: S603
     except subprocess.TimeoutExpired:

@@ -18,6 +18,7 @@ from typing import Any, BinaryIO
 import h5py
 import numpy as np
 
+from trsim import child
 from trsim.errors import FileError
 from trsim.store.checkpoint import ANEW, Checkpoint
 from trsim.store.describe import cause
@@ -61,7 +62,7 @@ def _taken(rows: BinaryIO, like: h5py.Dataset, n: int) -> Any:
 def sender(part: Path, wanted: list[tuple[str, int]]) -> Iterator[BinaryIO]:
     """The bytes of the first rows of some datasets, one after the other, from another process."""
     limit = PATIENCE + part.stat().st_size / PACE
-    command = [sys.executable, "-m", "trsim.store.resume", str(part)]
+    command = child.command("trsim.store.resume", str(part))
     pipe = subprocess.PIPE
     process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe)  # noqa: S603
     assert process.stdin and process.stdout and process.stderr  # noqa: S101

@@ -7,11 +7,11 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 from typing import Any, NamedTuple
 
+from trsim import child
 from trsim.sweep.worker import JOB, MEMORY
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -92,13 +92,7 @@ class Slot:
         """The process, made unless it is there."""
         if self.process is None or self.process.poll() is not None:
             self.close()
-            command = [
-                sys.executable,
-                "-m",
-                "trsim.sweep.worker",
-                str(self.limits.memory),
-                self.job,
-            ]
+            command = child.command("trsim.sweep.worker", str(self.limits.memory), self.job)
             environment = {**os.environ, **dict.fromkeys(ONE_THREAD, "1")}
             self.said = tempfile.TemporaryFile()  # noqa: SIM115 - closed with the process
             self.process = subprocess.Popen(  # noqa: S603

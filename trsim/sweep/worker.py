@@ -1,4 +1,4 @@
-"""A process that runs cases, one after the other: `python -m trsim.sweep.worker`.
+"""A process that runs cases, one after the other; begun by slot.py.
 
 Tasks come as lines of JSON on standard input; for each it answers {"begun": true} once results
 arrive, and then how the case ended.  It ends with the process that began it, and takes no signal
