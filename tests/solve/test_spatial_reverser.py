@@ -207,7 +207,10 @@ def test_shaft_between_prescribed_speeds_only_tells_its_torque():
     assert np.interp(2.26e-3, r["shaft_1_3.difference"], expected) == pytest.approx(0.90, abs=0.005)
     for name in without.place:
         if not name.startswith("energy."):
-            assert np.array_equal(r[name], without[name]), name
+            # works of the shaft have a say in the steps: the same to the tolerance, which rails
+            # and lines enlarge to a hundred times that in accelerations
+            scale = np.abs(without[name]).max()
+            assert np.abs(r[name] - without[name]).max() <= 1e-4 * max(scale, 1.0), name
 
 
 def test_shaft_takes_its_share_of_the_difference():
