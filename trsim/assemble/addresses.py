@@ -54,6 +54,7 @@ class Addresses:
     switches: Any = None  # of user events, once all elements are packed
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
+    jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
         rigid = {n: spec for n, spec in self.members.items() if spec.type != "ancf_cable"}

@@ -13,6 +13,7 @@ from trsim.assemble.band import band_tables
 from trsim.assemble.equations import derivative
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
+from trsim.assemble.jumps import find_jumps, steep
 from trsim.assemble.layout import layout
 from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
 from trsim.assemble.members import members
@@ -199,6 +200,10 @@ def pack(  # type: ignore[no-untyped-def]
         line = f"{place.show()}: " if place else ""
         at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
     at.switches = switches(scenario, at, instances) if drives is None else Switches()
+    if at.end is not None:
+        at.jumped = find_jumps(at, instances, extent(at))
+    if at.jumped and at.switches.jumps < 0:
+        at.switches = replace(at.switches, jumps=at.state(0.0))
     for name in coordinates:
         if at.elements["joints", name].coordinate:
             at.coordinate(name)
@@ -292,6 +297,7 @@ def build(
         n_out=0,
         **watched(at.switches, size),
         **features(at, instances),
+        steep=steep(at, instances),
         section=np.zeros((0, 5), np.int64),
         section_at=np.zeros((0, 2)),
         size=size,

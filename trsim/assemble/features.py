@@ -1,8 +1,10 @@
 """Functions with corners: where they are, when the time alone meets them, and what holds them.
 
     feature   0 offset in tab, 1 row of the drive whose time counts, or -1, 2 first of its instants,
-              3 behind the last, 4 first of its entries of `held`, 5 whether sensors meet corners
+              3 behind the last, 4 first of its entries of `held`, 5 whether sensors meet corners,
+              6 state of z with the rate of a piston against the motion of its supply, or -1
     instant   0, then the instants of a function in rising order, then the end of the run
+    jump      by how much the place and the rate of a motion jump there        jumps.py
     held      places in tab of what each corner is held on (laws/functions.py)
 
 A function that is held on the pieces it is on is smooth: a step never sees a corner, and ends
@@ -13,9 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.assemble.jumps import NOBODY, driven
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, SINCE, compiled
-from trsim.elements.prescribed import MOTION, OWN_MOTION
+from trsim.elements.prescribed import MOTION
 from trsim.elements.signatures import f8, i8, void
 from trsim.elements.vectors import internal
 from trsim.instants import distinct, instants
@@ -31,7 +34,8 @@ from trsim.laws.functions import (
     hold,
 )
 
-OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, SENSED = range(6)
+OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, SENSED, PISTON, N_FEATURE = range(8)
+PLACE_JUMP, RATE_JUMP = range(2)  # columns of `jump`
 SAME = 0.5e-12  # of the run: an instant so near has been reached
 
 
@@ -62,21 +66,22 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
 
 def features(at: Any, instances: list[Any]) -> dict[str, Any]:
     """The tables of a model; empty where no function has corners."""
-    drives = {i.name: e for e, i in enumerate(instances) if i.section == "drives"}
-    own = {i.row.con[OWN_MOTION]: drives[i.name] for i in instances if i.section == "drives"}
-    for name, motions in at.switches.motions.items() if at.switches else ():
-        own |= {offset: drives[name] for _, offset in motions}
+    own = driven(at, instances) if at.functions else {}
     rows: list[tuple[int, ...]] = []
     times: list[float] = []
+    jumps: list[Any] = [np.zeros((0, 2))]
     held: list[int] = []
     for f in at.functions:
         first = len(times)
         times += [0.0, *f.instants, f.end]
-        rows.append((f.offset, own.get(f.offset, -1), first, len(times), len(held), int(f.sensed)))
+        drive = own.get(f.offset, NOBODY)
+        jumps.append(at.jumped.get(f.offset, np.zeros((len(times) - first, 2))))
+        rows.append((f.offset, drive.e, first, len(times), len(held), int(f.sensed), drive.slip))
         held += f.held
     return {
-        "feature": np.array(rows, np.int64).reshape(-1, 6),
+        "feature": np.array(rows, np.int64).reshape(-1, N_FEATURE),
         "instant": np.array(times, float),
+        "jump": np.vstack(jumps),
         "held": np.array(held, np.int64),
         "on_features": np.array([hold_all.address()] if rows else [0], np.int64),
     }

@@ -94,8 +94,10 @@ class Model(Packed):
     watch_at: (
         A2  # (n_w, 2) the value that is crossed; how far it must be left before it counts again
     )
-    feature: I2  # (n_features, 6) functions with corners                   assemble/features.py
+    feature: I2  # (n_features, 7) functions with corners                   assemble/features.py
+    jump: A2  # (n_instants, 2) of the place and the rate of a motion there       jumps.py
     instant: A1  # when those are met that the time alone decides
+    steep: i8  # how many motions of drives may be steep between their corners
     held: I1  # (corners) where in tab it stands what each is held on
     on_features: I1  # address of what holds functions on their pieces; 0 without such functions
     section: I2  # (n_sections, 5) Poincare sections              assemble/sections.py

@@ -50,7 +50,7 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> A
         r.watch[k, rec.JUST_NOW] = 0.0
         line = b.events[r.count[rec.EVENT_ROWS]]
         line[:] = (t, rec.USER, len(mechanism.instances) + 1 + k,
-                   r.gap[len(work.contact) + k, 1], np.nan, 0.0)  # fmt: skip
+                   r.gap[len(work.contact) + k, 1], np.nan, 0.0, 0.0)  # fmt: skip
         r.count[rec.EVENT_ROWS] += 1
         if event.record:
             recorded.append(np.array([t, k, *b.out[: work.n_out]]))

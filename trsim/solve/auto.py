@@ -18,6 +18,7 @@ from trsim.solve import dop853_tableau
 from trsim.solve.displacements import active
 from trsim.solve.record import (
     EVENT_ANGLE,
+    EVENT_IMPULSE,
     EVENT_KIND,
     EVENT_ROW,
     EVENT_ROWS,
@@ -91,7 +92,7 @@ def change(s, r, b, method, load):
     line[EVENT_TIME], line[EVENT_ROW] = r.clock[T], s.con.shape[0]
     line[EVENT_KIND] = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
     line[EVENT_SPEED] = load / r.clock[H] if r.clock[H] > 0.0 else 0.0
-    line[EVENT_ANGLE], line[EVENT_WORK] = load, 0.0
+    line[EVENT_ANGLE], line[EVENT_WORK], line[EVENT_IMPULSE] = load, 0.0, 0.0
 
 
 @internal

@@ -30,6 +30,7 @@ from trsim.solve.record import (
     DENSE_BUILT,
     ENERGY_0,
     EVERY,
+    FIXED_STEP,
     HISTORY,
     JACOBIAN,
     LARGEST_ENERGY,
@@ -38,6 +39,8 @@ from trsim.solve.record import (
     LOCATE,
     NEXT_JACOBIAN,
     NEXT_ROW,
+    OFF,
+    OFF_RATE,
     OPENED,
     PAST_H,
     PEAK_MAX,
@@ -45,18 +48,21 @@ from trsim.solve.record import (
     RECORD,
     ROWS,
     SAME_TIME,
+    SPEED,
     STEP_ROWS,
     STEPS,
     T_END,
     TOLERANCE,
     WORK_PROJECTION,
+    WORST_PHI,
+    WORST_PHI_DOT,
     T,
 )
 from trsim.solve.watch import crossing, may_cross, take_sides
 from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
-SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT = 0, 1, 2, 3, 4
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED = 0, 1, 2, 3, 4, 5
 # a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
 # of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
 # and the addresses of what locates points of sections, of what goes on behind corners of functions
@@ -65,6 +71,8 @@ STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_A
 SECTIONS_AT, MEET_AT, LOOK_AT, METHOD_WIDTH = 7, 8, 9, 10
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
+FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
+BRIEF = 1e-9  # of a run: no shorter step is asked for
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 
@@ -80,13 +88,18 @@ def complete(s, r, b, setting, method, h, built):
     built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
     step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch),
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
-    (values not finite; nothing was changed).
+    (values not finite; nothing was changed) or STRAYED (so long that a motion was passed over; the
+    same).
     """
     last, t = method[LAST_AT], r.clock[T]
     t1 = reached(setting, t + h)
+    worst, worst_rate = r.clock[WORST_PHI], r.clock[WORST_PHI_DOT]
     projected = land(s, r, b, t1, b.y1, b.K[last])
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
+    if s.steep > 0 and strayed(s, r, setting, h):
+        r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+        return STRAYED
     event = False
     if (setting[LOCATE] > 0.0 or s.watch.shape[0] > 0) and to_search(s, r, b, h):
         if built == 0:
@@ -140,6 +153,18 @@ def complete(s, r, b, setting, method, h, built):
     if method[MEET_AT] > 0 and call_meet(method[MEET_AT], s, r, b, t, t1) > 0 and not event:
         outcome = AT_INSTANT
     return outcome
+
+
+@internal
+def strayed(s, r, setting, h):
+    """Whether a smooth prescribed motion went on between the stages of a step as none of them saw:
+    its end is far from the constraints."""
+    if setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
+        return False
+    far = FAR * setting[TOLERANCE]
+    return r.clock[OFF] > far * s.size or r.clock[OFF_RATE] > far * max(
+        r.clock[SPEED], s.size / setting[T_END]
+    )
 
 
 @internal

@@ -25,7 +25,7 @@ from trsim.solve.bars import places
 from trsim.solve.openings import apart
 from trsim.solve.outcome import Outcome
 from trsim.solve.projected import given_velocities, projected
-from trsim.solve.record import T
+from trsim.solve.record import JOLTS, Record, T
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
 from trsim.solve.strained import of_bars
@@ -43,6 +43,7 @@ GIVEN = 1e-2  # of it: more done by projection says so too
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
 AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
 PASSED = 2.0  # periods of the fastest wave in a mean step
+TOLD = 3  # jumps of velocities, one by one
 OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
 
 
@@ -146,6 +147,20 @@ def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
             )
 
 
+def of_jumps(mechanism: Mechanism, r: Record) -> Iterator[str]:
+    """Rates of drives that jumped, with the impulses they meant."""
+    many = int(r.count[JOLTS])
+    for t, e, rate, impulse, work in r.jolt[: min(many, TOLD)].tolist():
+        instance = mechanism.instances[int(e)]
+        turn, of = ("rad/s", "N*m*s") if instance.row.turns else ("m/s", "N*s")
+        yield (
+            f"drives.{instance.name}: its velocity jumps by {rate:.4g} {turn} at t = {t:.6g} s: an "
+            f"impulse of {impulse:.4g} {of}, which does {work:.4g} J (energy.work.events)"
+        )
+    if many > TOLD:
+        yield f"velocities of drives jump {many - TOLD} times more: see the table of events"
+
+
 def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """An open energy book, work of the projection, open joints; nothing of what is at rest."""
     numbers = outcome.statistics
@@ -165,6 +180,8 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
             f"{100 * off:.2g} % of the largest energy exchanged, however well it closes: make "
             "`step` smaller"
         )
+    if outcome.record is not None:
+        yield from of_jumps(mechanism, outcome.record)
     given = numbers.get("work_of_projection_relative", 0.0)
     if given > GIVEN and work > NOTHING * natural and outcome.status in WELL:
         yield (

@@ -8,7 +8,7 @@ from trsim.assemble.projection import normalise, project_positions, project_velo
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import PROJECTION
 from trsim.elements.vectors import internal
-from trsim.solve.record import WORST_PHI, WORST_PHI_DOT
+from trsim.solve.record import OFF, OFF_RATE, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
@@ -42,9 +42,10 @@ def land(s, r, b, t, y, yd):
             y[0] = nan
         else:
             r.clock[WORST_PHI] = max(r.clock[WORST_PHI], first)
+        r.clock[OFF] = first
         T0 = kinetic(s, y)
         poses(s, y)
-        worst = project_velocities(s, y)
+        worst = r.clock[OFF_RATE] = project_velocities(s, y)
         r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
         done += kinetic(s, y) - T0
     flush(y)

@@ -19,6 +19,7 @@ from trsim.solve.complete import (
     IMPLICIT_AT,
     SMALLEST,
     STEP_AT,
+    STRAYED,
     WITH_CORNER,
     WITH_EVENT,
     WORTHLESS,
@@ -47,6 +48,7 @@ from trsim.solve.record import (
     FULL,
     H_MAX,
     JACOBIAN,
+    LEAPT,
     LOAD,
     METHOD,
     NEXT_ROW,
@@ -69,6 +71,7 @@ from trsim.solve.record import (
     STEP_TOO_SMALL,
     T_END,
     TOO_FAST,
+    TORN,
     H,
     T,
 )
@@ -97,8 +100,8 @@ def march(s, r, b, setting, methods, most):
 
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
-    Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN or
-    CRAWL.
+    Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN,
+    CRAWL or LEAPT.
     """
     accepted = tried = 0
     while r.clock[T] < setting[T_END]:
@@ -136,7 +139,14 @@ def march(s, r, b, setting, methods, most):
             r.count[AFTER_REJECTION] = 2
             r.clock[H] = 0.1 * h
             continue
+        if outcome == STRAYED:
+            r.count[REJECTED] += 1
+            r.count[AFTER_REJECTION] = 1
+            r.clock[H] = 0.3 * h
+            continue
         accepted += 1
+        if r.count[TORN] > 0:
+            return LEAPT
         if too_fast(s, r):
             return TOO_FAST
         if r.count[OPENED] > 0:
@@ -178,7 +188,7 @@ def full(s, r, b):
     return (
         r.count[ROWS] > b.rows.shape[0] // 2
         or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
-        or r.count[EVENT_ROWS] + contacts + watched >= b.events.shape[0]
+        or r.count[EVENT_ROWS] + contacts + watched + s.feature.shape[0] >= b.events.shape[0]
         or r.count[POINT_ROWS] > b.points.shape[0] // 2
     )
 

@@ -184,6 +184,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         held=np.zeros(len(model.held)),
         stage=np.zeros(switches, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
+        jolt=np.zeros((rec.JOLTS_KEPT, 5)),
         worked=np.zeros((2, N_WORKED)),
     )
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
@@ -221,6 +222,18 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
     return (
         f"'{body}' is faster than {rec.FASTEST:.0e} m/s or rad/s: does a load run away, "
         "is a stiffness or a damping negative?"
+    )
+
+
+def leapt(mechanism: Mechanism, r: Record) -> str:
+    """Which drive would have taken the mechanism to another place in no time."""
+    instance = mechanism.instances[int(r.count[rec.TORN]) - 1]
+    unit = "rad" if instance.row.turns else "m"
+    by, t = r.clock[rec.TORN_BY], r.clock[rec.T]
+    return (
+        f"drives.{instance.name}: the prescribed position jumps by {by:.6g} {unit} at t = {t:.9g} "
+        "s, which no mechanism can follow: let it go there in a time of its own, as "
+        "`step5(t, t0, x0, t1, x1)` does, or give the drive a compliance"
     )
 
 

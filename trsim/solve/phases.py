@@ -29,6 +29,7 @@ from trsim.solve.record import (
     CORNERS,
     ENERGY_0,
     EVENT_ANGLE,
+    EVENT_IMPULSE,
     EVENT_KIND,
     EVENT_ROW,
     EVENT_ROWS,
@@ -93,7 +94,8 @@ def change_phases(s, r, b, setting, t1):
         line = b.events[r.count[EVENT_ROWS]]
         r.count[EVENT_ROWS] += 1
         onset = r.mem[e, PHASE] == CONTACT
-        line[EVENT_TIME], line[EVENT_ROW], line[EVENT_WORK] = t1, e, 0.0
+        line[EVENT_TIME], line[EVENT_ROW] = t1, e
+        line[EVENT_WORK] = line[EVENT_IMPULSE] = 0.0
         line[EVENT_KIND] = ONSET if onset else SEPARATION
         line[EVENT_SPEED] = r.gap[c, 1]
         line[EVENT_ANGLE] = np.nan  # a stop has no angle

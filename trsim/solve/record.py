@@ -32,8 +32,11 @@ from trsim.elements.scene import Model
     WORST_OPEN_RATE,  # the same per second
     APART,  # the same of rows that are open by more than the rest is
     APART_T,  # s, when
+    TORN_BY,  # m or rad
+    OFF,  # m or rad, largest constraint residual at the end of the last trial step
+    OFF_RATE,
     N_CLOCK,
-) = range(26)
+) = range(29)
 
 # count: integer state of the march
 (
@@ -63,8 +66,10 @@ from trsim.elements.scene import Model
     OPENED,  # 1: a redundant row is open beyond its bound
     OPEN_ROW,  # element row e and row of it that APART is of
     OPEN_INDEX,
+    JOLTS,  # jumps of the rate of a rigid drive
+    TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
     N_COUNT,
-) = range(27)
+) = range(29)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -90,17 +95,23 @@ TOO_FAST = 7  # a body is faster than FASTEST
 CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
 OPEN = 10  # a row that was dropped as redundant is not
+LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
+JOLTS_KEPT = 8
+
 # columns of the event buffer
-EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, N_EVENT = range(7)
-ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER = 1.0, 2.0, 3.0, 4.0, 5.0
+(
+    EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
+) = range(8)  # fmt: skip
+ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
 EVENT_NAMES = {
     ONSET: "onset",
     SEPARATION: "separation",
     TO_IMPLICIT: "to implicit",
     TO_EXPLICIT: "to explicit",
     USER: "user",
+    JOLT: "jump",
 }
 
 
@@ -129,6 +140,7 @@ class Record(Packed):
     held: A1  # (corners) what functions are held on                            features.py
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
+    jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
 
 

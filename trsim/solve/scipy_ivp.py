@@ -21,7 +21,7 @@ from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.blame import why
 from trsim.solve.calls import INTERPOLATE
-from trsim.solve.complete import SMOOTH_STEP, WORTHLESS, complete
+from trsim.solve.complete import SMOOTH_STEP, STRAYED, WORTHLESS, complete
 from trsim.solve.features import next_time
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
@@ -31,6 +31,7 @@ from trsim.solve.outcome import (
     Outcome,
     emptied,
     first_step,
+    leapt,
     locator,
     meets,
     most_points,
@@ -102,8 +103,15 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break
+        if outcome == STRAYED:
+            r.clock[rec.H] = 0.3 * (solver.t - solver.t_old)
+            solver = restarted(scenario, s, r, b, setting, float(r.clock[rec.H]))
+            continue
         if r.count[rec.OPENED]:
             status, reason = "failed", opened(scenario, mechanism, r)
+            break
+        if r.count[rec.TORN]:
+            status, reason = "failed", leapt(mechanism, r)
             break
         crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
         reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
@@ -125,7 +133,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
-        reason = reason if r.count[rec.OPENED] else why(scenario, mechanism, r) or reason
+        known = r.count[rec.OPENED] or r.count[rec.TORN]
+        reason = reason if known else why(scenario, mechanism, r) or reason
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
 
 
@@ -140,7 +149,9 @@ def stopped(solver: Any) -> str:
     return f"scipy stopped: {message}" if solver.status == "failed" else ""
 
 
-def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) -> Any:
+def restarted(
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, most: float = np.inf
+) -> Any:
     """A scipy solver at the state of the record, with the error units in force there."""
     import scipy.integrate
 
@@ -158,7 +169,7 @@ def restarted(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) ->
     t = float(r.clock[rec.T])
     until = next_time(s, t, setting[rec.T_END])
     first = min(float(r.clock[rec.H]), until - t)
-    longest = min(setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
+    longest = min(most, setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
     return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
                 max_step=longest, rtol=RELATIVE, atol=absolute)  # fmt: skip
 

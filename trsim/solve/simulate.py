@@ -25,6 +25,7 @@ from trsim.solve.outcome import (
     Outcome,
     emptied,
     first_step,
+    leapt,
     locator,
     meets,
     most_points,
@@ -198,6 +199,8 @@ def ending(
         return ("failed", text) if text else ("done", "")
     if reason == rec.OPEN:
         return "failed", opened(scenario, mechanism, r)
+    if reason == rec.LEAPT:
+        return "failed", leapt(mechanism, r)
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:

@@ -3,14 +3,15 @@
 from typing import Any
 
 import h5py
+import numpy as np
 
 from trsim.store.grow import Field, Growing
 
-EVENT_COLUMNS = 6  # of a line of events, see solve/record.py
+EVENT_COLUMNS = 7  # of a line of events, see solve/record.py
 EXPECTED = 256  # rows of the tables whose length nobody knows
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
 # of events, by number
-KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user")
+KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user", "jump")
 
 
 def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
@@ -47,11 +48,18 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
     ]
     if user:
         file["events"].attrs["user"] = [event.name for event in user]
-        fields += [
-            Field("did", "", "what a user event did", 2, words=did),
-            Field("work", "J", "done by a user event: change of kinetic and stored energy", 5),
-        ]
+        fields.append(Field("did", "", "what a user event did", 2, words=did))
+    if user or mechanism.stages.switches.jumps >= 0:
+        fields.append(Field("work", "J", "done by it: change of kinetic and stored energy", 5))
+    if np.any(mechanism.model.jump):
+        fields.append(Field("impulse", impulse_unit(mechanism), "of a drive whose rate jumps", 6))
     return Growing(file["events"], fields, EVENT_COLUMNS, EXPECTED)
+
+
+def impulse_unit(mechanism: Any) -> str:
+    """The unit of the impulses of drives; both where there are both."""
+    drives = [i for i in mechanism.instances if i.section == "drives"]
+    return " or ".join(dict.fromkeys("N*m*s" if i.row.turns else "N*s" for i in drives))
 
 
 def speed_unit(mechanism: Any) -> str:
@@ -59,6 +67,10 @@ def speed_unit(mechanism: Any) -> str:
     touching = (mechanism.instances[e] for e in mechanism.model.contact.tolist())
     found = ["rad/s" if instance.row.turns else "m/s" for instance in touching]
     found += [event.rate for event in mechanism.stages.switches.events]
+    if np.any(mechanism.model.jump):
+        found += [
+            "rad/s" if i.row.turns else "m/s" for i in mechanism.instances if i.section == "drives"
+        ]
     return " or ".join(dict.fromkeys(found)) or "m/s"
 
 
