@@ -32,6 +32,7 @@ def compiling(answer: Answer, method: str = "") -> None:
 
         # the largest first; the first process comes to the rest before it needs an implicit method
         later = ["complete", *reversed(COMPILED[method]), "march"]
+    see_own(answer)
     if needed.file.exists():
         return
     see_kept(answer)
@@ -60,12 +61,27 @@ def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
         ahead.begin("trsim.solve.radau_ggl")
 
 
+def see_own(answer: Answer) -> None:
+    """Say so where machine code would come from a folder that others may write in."""
+    from trsim.elements.kept import refused
+
+    why = refused()
+    if why:
+        answer.warn(
+            "machine code", f"nothing is loaded from the cache: {why}; this command compiles in a "
+            "folder of its own.  Let the cache folder be yours alone (mode 700), or name another "
+            "one by XDG_CACHE_HOME"
+        )  # fmt: skip
+
+
 def see_kept(answer: Answer) -> None:
     """Say so where what is compiled cannot be kept for the next run."""
-    from trsim.elements.machine import folder
-    from trsim.store.target import see_writable
+    from trsim.elements.kept import folder, make
+    from trsim.store.target import see_writable, told
 
     try:
+        with told(folder()):
+            make(folder())
         see_writable(folder())
     except FileError as error:
         answer.say(

@@ -245,8 +245,9 @@ def ran(
 def warming(answer: Answer, planned: Any) -> bool:
     """Whether nothing was compiled on this machine yet; says so, and begins with it."""
     from trsim.assemble.equations import derivative
-    from trsim.cli.progress import compiling
+    from trsim.cli.progress import compiling, see_own
 
+    see_own(answer)
     if derivative.file.exists():
         return False
     compiling(answer, planned.scenario(planned.cases[0]).solver.method)

@@ -17,6 +17,7 @@ from pathlib import Path
 from threading import Thread
 
 from trsim import child
+from trsim.elements import kept
 
 _at_work: list[subprocess.Popen] = []  # kept: the other end of their standard input
 
@@ -42,8 +43,8 @@ def turn(lock: Path, key: str, wait: bool = True) -> Iterator[bool]:
     locked everybody compiles for himself.
     """
     try:
-        lock.parent.mkdir(parents=True, exist_ok=True)
-        handle = os.open(lock, os.O_RDWR | os.O_CREAT, 0o600)
+        kept.make(lock.parent)
+        handle = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
     except OSError:
         yield True
         return

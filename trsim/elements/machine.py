@@ -1,10 +1,10 @@
 """Compiled functions, called by address, their machine code kept between runs.
 
 A function is compiled when it is first needed and never again: its machine code is kept in the
-user's cache folder under a key made of its bytecode, of that of everything it calls, of the types
-it works on, of the compiler and of the processor.  Loading it takes LLVM's loader and half a
-millisecond; numba, with half a second of imports, is not touched.  Whatever is edited gets another
-key, so nothing old is ever run.
+user's cache folder (kept.py) under a key made of its bytecode, of that of everything it reaches, of
+the types it works on, of the compiler and of the processor (fingerprint.py).  Loading it takes
+LLVM's loader and half a millisecond; numba, with half a second of imports, is not touched.
+Whatever is edited gets another key, so nothing old is ever run.
 
 Every call, from Python or from other machine code, is numba's own calling convention,
 
@@ -15,14 +15,14 @@ with an array as (0, 0, size, 8, data, shape, strides).
 
 import ctypes
 import hashlib
-import os
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
-from trsim.elements import ahead, fingerprint
+from trsim.elements import ahead, fingerprint, kept
+from trsim.elements.kept import folder
 from trsim.elements.signatures import Kind, Signature
 from trsim.errors import FileError
 from trsim.laws import Lazy
@@ -37,15 +37,9 @@ LETTERS = {"float64": "d", "int64": "lq"}  # numpy's, of types eight bytes long
 ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
 
 
-def folder() -> Path:
-    """Where machine code is kept."""
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return home / "trsim" / "code"
-
-
 def lock() -> Path:
     """The file that tells who is compiling what (ahead.py)."""
-    return folder().with_name("lock")
+    return folder() / "lock"
 
 
 class Compiled(Lazy):
@@ -76,11 +70,11 @@ class Compiled(Lazy):
     @cached_property
     def entry(self) -> int:
         """Where the machine code starts."""
-        kept = _read(self.file)
-        if kept is None:
+        code = _read(self.file)
+        if code is None:
             with ahead.turn(lock(), self.key):  # another process may be compiling it
-                kept = _read(self.file) or self._compiled()
-        return _loaded(*kept)
+                code = _read(self.file) or self._compiled()
+        return _loaded(*code)
 
     def keep(self) -> None:
         """Have the machine code in the cache, unless another process is at it."""
@@ -101,7 +95,8 @@ class Compiled(Lazy):
             names = sorted(one.co_qualname for one in unseen)
             raise RuntimeError(f"the key of {self.file.stem} does not cover {names}")
         with suppress(OSError):  # a folder that cannot be written to: compiled again next time
-            _write(self.file, code.symbol, code.objects)
+            name = code.symbol.encode()
+            kept.store(self.file, [_digest(name, code.objects), b"\n", name, b"\n", code.objects])
         return code.symbol, code.objects
 
     def address(self) -> int:
@@ -175,26 +170,14 @@ def _array(value: Any, kind: Kind) -> tuple[int, ...]:
 
 
 def _read(path: Path) -> tuple[str, bytes] | None:
-    """Symbol and object file; None where there is none, or a damaged one."""
+    """Symbol and object file; None where there is none, a damaged one or not one of the user's."""
     try:
-        digest, symbol, objects = path.read_bytes().split(b"\n", 2)
+        digest, symbol, objects = kept.content(path).split(b"\n", 2)
     except (OSError, ValueError):
         return None
     if _digest(symbol, objects) != digest:
         return None
     return symbol.decode(), objects
-
-
-def _write(path: Path, symbol: str, objects: bytes) -> None:
-    """Keep machine code; readers see all of it or nothing."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{os.getpid()}")
-    name = symbol.encode()
-    try:
-        part.write_bytes(b"\n".join([_digest(name, objects), name, objects]))
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _digest(symbol: bytes, objects: bytes) -> bytes:
