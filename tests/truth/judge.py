@@ -1,0 +1,294 @@
+"""A scene run by trsim, and the verdict on what it says.
+
+wrong: ended well, with a number off by more than
+
+    bound = min(HALF, max(100 tolerance, 10 stated error)) growth
+
+of its scale; growth is by how much more than EASY times a small change of the start has grown by
+then (1 at least), by the reference itself.  Nothing is judged where the bound is above HALF by its
+growth: beyond the horizon of prediction.  Times of rows may be off by what their places may.
+Missed crossings are wrong where they are deeper than 10 tolerances.
+"""
+
+import re
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+from trsim.assemble.assemble import assemble
+from trsim.errors import TrsimError
+from trsim.solve.doubts import doubts
+from trsim.solve.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
+from trsim.solve.simulate import simulate
+from trsim.spec.load import loads
+
+from .reference import Channel, Crossing, Truth, scales, size
+from .scene import Event, Limit, Scene, Section, Wall
+
+EASY, HALF = 20.0, 0.5
+TIMES, STATED, DEPTH = 100.0, 10.0, 10.0
+SURE = 3.0  # times how far the reference is sure, beside its bound
+RIGHT, WRONG, REFUSED, TOLD = "right", "WRONG", "refused", "told"
+UNJUDGED, CRASH = "unjudged", "CRASH"
+BROKEN = "BROKEN"  # the generator itself
+LEAST = 1e-9  # bound of what is closed to rounding
+
+
+@dataclass
+class Verdict:
+    family: str
+    seed: int
+    verdict: str
+    method: str
+    tolerance: float
+    ratio: float = 0.0  # worst error over its bound
+    what: str = ""  # where that is
+    why: str = ""
+    exit: int = 0
+    warnings: list[str] = field(default_factory=list)
+    grazing: int = 0
+    truth: str = ""
+    by: str = "engine"
+    reach: float = 1.0  # share of the rows that could be judged
+    cpu: tuple[float, float] = (0.0, 0.0)  # of the reference, of trsim
+
+    def line(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+@dataclass
+class Ran:
+    """What trsim gave: an exit code, and its results where there are any."""
+
+    exit: int
+    reason: str = ""
+    t: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    rows: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
+    place: dict[str, slice] = field(default_factory=dict)
+    events: np.ndarray = field(default_factory=lambda: np.zeros((0, 6)))
+    points: np.ndarray = field(default_factory=lambda: np.zeros((0, 4)))
+    statistics: dict[str, float] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+    sections: list[str] = field(default_factory=list)
+    user: dict[str, np.ndarray] = field(default_factory=dict)  # times of user events
+    status: str = ""
+    time: float = 0.0
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.rows[:, self.place[name]]
+
+
+def ran(text: str) -> Ran:
+    """The scene through the functions the command calls."""
+    try:
+        scenario = loads(text, ())
+        mechanism = assemble(scenario)
+        march = simulate(scenario, mechanism)
+        blocks: list[tuple[np.ndarray, ...]] = []
+        while True:
+            try:
+                block = next(march)
+            except StopIteration as stop:
+                outcome = stop.value
+                break
+            blocks.append(tuple(x.copy() for x in (block.rows, block.events, block.points)))
+        said = [*mechanism.notes, *doubts(scenario, mechanism, outcome)]
+    except TrsimError as error:
+        first = error.problems[0] if error.problems else error
+        return Ran(getattr(first, "exit_code", error.exit_code), first.what)
+    except Exception as error:  # what no command may end with
+        return Ran(1, f"{type(error).__name__}: {error}")
+    rows, events, points = (np.vstack(x) for x in zip(*blocks, strict=True))
+    place = {c.name: slice(1 + c.start, 1 + c.start + c.size) for c in mechanism.columns}
+    return Ran(
+        5 if outcome.status == "failed" else 0, outcome.reason, rows[:, 0], rows, place, events,
+        points, outcome.statistics, said, [x.name for x in mechanism.sections],
+        {
+            event.name: events[events[:, EVENT_ROW] == len(mechanism.instances) + 1 + k, EVENT_TIME]
+            for k, event in enumerate(mechanism.stages.switches.events)
+        },
+        str(outcome.status), outcome.time,
+    )  # fmt: skip
+
+
+def stated(r: Ran) -> float:
+    """The relative error a run says it has."""
+    told = [r.statistics.get("energy_residual_relative", 0.0)]
+    for text in r.warnings:
+        if "energy book does not close" in text:
+            told += [float(x) / 100 for x in re.findall(r"by ([0-9.e+-]+) %", text)]
+    return max(told)
+
+
+def accuracy(scene: Scene, w: float) -> float:
+    """The tolerance of a run; of rk4 what its step makes of the fastest turn."""
+    if scene.step is None:
+        return scene.tolerance
+    return max(1e-8, (scene.step * w) ** 4)
+
+
+def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
+    """The verdict, written into v."""
+    v.exit, v.warnings = r.exit, r.warnings
+    if r.exit in (3, 4, 5):
+        v.verdict, v.why = REFUSED, r.reason
+        return v
+    if r.exit:
+        v.verdict, v.why = CRASH, r.reason
+        return v
+    tolerance = v.tolerance
+    least = max(TIMES * tolerance, STATED * stated(r), LEAST)
+    easy = np.maximum(1.0, t.growth / EASY)
+    bound = np.minimum(HALF, least) * easy + SURE * t.sure
+    use = (bound <= HALF) | (easy == 1.0) & (t.sure < 0.01)
+    use[:1] = True
+    use = np.logical_and.accumulate(use)
+    v.reach = float(np.mean(use))
+    v.truth = f"{t.steps} steps, sure to {t.sure[use][-1]:.1e}, growth {t.growth[use][-1]:.3g}"
+    worst: list[tuple[float, str]] = [(0.0, "")]
+    top = scales(t)
+    k = np.arange(len(t.times))[use]
+    missing = [i for i in k if not len(near(r, t.times[i] * scene.unit((0, 0, 1))))]
+    if missing:
+        worst.append((np.inf, f"no row at {t.times[missing[0]]:.6g} (ended at {r.time:.6g})"))
+    k = np.array([i for i in k if i not in missing], int)
+    at = np.array([near(r, t.times[i] * scene.unit((0, 0, 1)))[0] for i in k], int)
+    for name, c in t.channels.items():
+        if name in r.place and len(k):
+            worst.append(compared(scene, t, r, name, c, top, bound, k, at))
+    crossings(scene, t, r, tolerance, bound, use, top, worst)
+    v.ratio, v.what = max(worst, key=lambda x: x[0] if x[0] == x[0] else np.inf)
+    v.grazing = len(t.grazing)
+    if not v.ratio <= 1.0:
+        v.verdict = WRONG
+    elif v.reach < 0.1:
+        v.verdict = UNJUDGED
+    return v
+
+
+def near(r: Ran, time: float) -> np.ndarray:
+    return np.flatnonzero(np.abs(r.t - time) <= 1e-9 * max(time, r.time, 1e-300))
+
+
+def compared(
+    scene: Scene, t: Truth, r: Ran, name: str, c: Channel, top: dict[str, float],
+    bound: np.ndarray, k: np.ndarray, at: np.ndarray,
+) -> tuple[float, str]:  # fmt: skip
+    """The worst of a channel over its bound, and where."""
+    unit = scene.unit(c.dims)  # type: ignore[arg-type]
+    got = r[name][at] / unit
+    Q = scene.turned
+    if c.vector:
+        got = got @ Q  # Q^T of each
+        if c.dims == (1, 0, 0) and name.endswith(".position"):
+            got = got - scene.moved
+    elif c.kind == "matrix":
+        got = np.einsum("ji,njk,kl->nil", Q, got.reshape(-1, 3, 3), Q).reshape(-1, 9)
+    want, *about = (x[name].values[k] for x in (t.channels, t.early, t.late))
+    soft = np.maximum(np.abs(about[0] - want), np.abs(about[1] - want))
+    allowed = bound[k, None] * top[c.kind] + np.where(np.isfinite(soft), soft, 0.0)
+    error = np.abs(got - want)
+    ratio = np.where(np.isfinite(got), error / np.maximum(allowed, 1e-300), np.inf)
+    ratio = np.where(np.isfinite(want), ratio, 0.0)
+    i, j = np.unravel_index(np.argmax(ratio), ratio.shape)
+    where = f"{name}[{j}] at {t.times[k[i]]:.6g}: {got[i, j]:.8g} for {want[i, j]:.8g}"
+    return float(ratio[i, j]), where
+
+
+def crossings(
+    scene: Scene, t: Truth, r: Ran, tolerance: float, bound: np.ndarray, use: np.ndarray,
+    top: dict[str, float], worst: list[tuple[float, str]],
+) -> None:  # fmt: skip
+    """Events, points of sections and touches: as many, and when."""
+    until = t.times[use][-1] if not use.all() else scene.end
+    if t.ended is not None and use.all():
+        until = t.ended * (1 + 1e-9)
+    T = scene.unit((0, 0, 1))
+    for what in (*scene.events, *scene.sections):
+        if isinstance(what, Section) and what.when is None:
+            continue
+        sense = {"up": 1, "down": -1, "both": 0}[what.crosses]
+        want = [c for c in t.crossings if c.name == what.name and sense in (0, c.sense)]
+        want = [c for c in want if c.time >= getattr(what, "after", 0.0)]
+        if isinstance(what, Event):
+            if what.times is not None:
+                want = want[: what.times]
+            got = r.user[what.name] / T
+        else:
+            rows = r.points[r.points[:, 1] == r.sections.index(what.name)]
+            got = rows[:, 0] / T
+        scale = (
+            1.0 if what.when == "t" or scene.of_sensor(what.when or "t") == (0, 0, 0) else t.size
+        )
+        if isinstance(what, Section) and what.rate:
+            scale = top["spin"] if scale == 1.0 else top["speed"]
+        matched(what.name, want, got, until, tolerance, bound, t, scale, worst)
+    names = {f.name for f in scene.forces if isinstance(f, (Wall, Limit))}
+    names |= {j.name for j in scene.joints if j.clearance is not None}
+    if names:
+        want = [c for c in t.crossings if c.name in names and c.sense > 0]
+        got = r.events[r.events[:, EVENT_KIND] == ONSET, EVENT_TIME] / T
+        if not scene.method.startswith("scipy") and scene.method != "rk4":
+            matched("touch", want, got, until, tolerance, bound, t, t.size, worst)
+
+
+def matched(
+    name: str, want: list[Crossing], got: np.ndarray, until: float, tolerance: float,
+    bound: np.ndarray, t: Truth, scale: float, worst: list[tuple[float, str]],
+) -> None:  # fmt: skip
+    """Each crossing with the nearest one found; what is left over on either side."""
+    free = list(np.sort(got))
+    slack = until - 1e-12
+    for c in want:
+        b = float(np.interp(c.time, t.times, bound))
+        if c.time > slack:
+            break
+        # a place wrong by the bound is a time wrong by that over the rate
+        within = b * (scale / max(abs(c.rate), 1e-12)) + 1e-9 * t.times[-1]
+        if c.time + within > slack:
+            continue
+        k = min(range(len(free)), key=lambda i: abs(free[i] - c.time), default=None)
+        off = abs(free[k] - c.time) if k is not None else np.inf
+        apart = min((abs(x.time - c.time) for x in want if x is not c), default=t.times[-1])
+        if k is not None and off <= max(within, 0.3 * apart):
+            free.pop(k)
+            worst.append((off / within, f"{name}: at {c.time - off:.9g} for {c.time:.9g}"))
+            continue
+        limit = scale * max(DEPTH * tolerance, b / TIMES * DEPTH)
+        worst.append(
+            (
+                c.depth / limit,
+                f"{name}: crossing at {c.time:.6g} missed ({len(got)} found, {len(want)} are), "
+                f"{c.depth:.3g} deep",
+            )
+        )
+    for time in free:
+        if time > slack:
+            continue
+        b = float(np.interp(time, t.times, bound))
+        if all(abs(time - x.time) > 0.02 * t.times[-1] for x in want) and not t.grazing:
+            worst.append((10.0, f"{name}: found at {time:.6g}, where there is none"))
+
+
+def rigid(scene: Scene, r: Ran, v: Verdict) -> Verdict:
+    """Of a scene that cannot move: refused with reason, or at rest with its joints closed."""
+    v.exit, v.warnings = r.exit, r.warnings
+    if r.exit in (4, 5):
+        v.verdict, v.why = TOLD, r.reason
+        return v
+    if r.exit:
+        v.verdict, v.why = (REFUSED if r.exit == 3 else CRASH), r.reason
+        return v
+    L = scene.unit((1, 0, 0)) * size(scene)
+    worst = (0.0, "")
+    for body in scene.bodies:
+        x = r[f"{body.name}.position"]
+        off = float(np.abs(x - x[0]).max()) / L
+        worst = max(
+            worst, (off / max(1e-3, TIMES * v.tolerance), f"{body.name} moves by {off:.3g}")
+        )
+    v.ratio, v.what = worst
+    if not v.ratio <= 1.0:
+        v.verdict = WRONG
+    return v

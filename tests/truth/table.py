@@ -1,0 +1,102 @@
+"""The table of a release run: what was drawn, what was wrong, what was refused and why."""
+
+import re
+from collections import Counter, defaultdict
+from pathlib import Path
+from typing import Any
+
+from .judge import BROKEN, CRASH, REFUSED, RIGHT, TOLD, UNJUDGED, WRONG
+from .ledger import ROOT, known
+
+DOC = ROOT / "docs" / "truth.md"
+HEAD = """# Truth: scenes drawn by the thousand
+
+`make truth` draws scenes of every family, runs each through trsim, and judges it in a way that
+shares nothing with trsim's assembly or events: a small integrator of rigid bodies in maximal
+coordinates kept in `tests/truth` (quaternions, dense Cholesky factors, order 8, tolerance 1e-12,
+steps of at most a fiftieth of a turn, every crossing located by making the step again), or one
+angle where that is singular. Flexible bars are judged by a tight run of another method. The truth
+is found in units near one and in the axes of the drawing; what trsim reads has lengths, masses and
+times scaled by 1e-3 to 1e3 and is turned to any direction. Methods, tolerances (1e-2 to 1e-10),
+numbers of rows and speeds are drawn too.
+
+Wrong: ended `done` with a place, turn, velocity, acceleration, reaction, drive torque, load or work
+off by more than max(100 tolerance, 10 stated error) of the largest of its kind in the scene, or a
+crossing (event, touch, point of a section) missed that goes deeper than 10 tolerances of the size.
+The bound grows with what a small change of the start grows by, divided by 20; where it passes one
+half, the horizon of prediction is passed and nothing more is judged. Of rk4, whose step is chosen,
+the tolerance is 1e-6 at 200 steps a turn. What is refused is counted: a scene that is valid is to
+run. `told` are scenes that have no motion, and were refused as they must be.
+
+`python -m tests.truth FAMILY SEED --show` prints a scene and its judgement; `python -m tests.truth
+--table` writes this page.
+"""
+
+
+def reason(text: str) -> str:
+    """Without the numbers and names of one scene."""
+    text = re.sub(r"'[^']*'", "NAME", text)
+    return re.sub(r"[-+]?[0-9]+([.][0-9]+)?(e[-+]?[0-9]+)?", "N", text)[:110]
+
+
+def table(lines: list[dict[str, Any]]) -> str:
+    by: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for line in lines:
+        by[line["family"]].append(line)
+    words = (RIGHT, TOLD, REFUSED, UNJUDGED, WRONG, CRASH)
+    rows = [f"| family | drawn | {' | '.join(words)} | grazing | worst ratio of the right |"]
+    rows.append("|---" * (len(words) + 4) + "|")
+    total: Counter[str] = Counter()
+    for family, of in by.items():
+        count = Counter(line["verdict"] for line in of)
+        total += count
+        worst = max((line["ratio"] for line in of if line["verdict"] == RIGHT), default=0.0)
+        grazing = sum(1 for line in of if line["grazing"])
+        cells = " | ".join(str(count[w]) for w in words)
+        rows.append(f"| {family} | {len(of)} | {cells} | {grazing} | {worst:.2g} |")
+    cells = " | ".join(str(total[w]) for w in words)
+    rows.append(f"| all | {len(lines)} | {cells} | | |")
+    return "\n".join(rows)
+
+
+def listed(lines: list[dict[str, Any]], verdicts: tuple[str, ...]) -> str:
+    rows = []
+    for line in lines:
+        if line["verdict"] in verdicts:
+            what = line["what"] or line["why"]
+            text = f"* `{line['family']} {line['seed']}`, {line['method']}, tolerance "
+            rows.append(f"{text}{line['tolerance']:.0e}: {line['verdict']}, {what[:160]}")
+    return "\n".join(rows) or "None."
+
+
+def reasons(lines: list[dict[str, Any]], verdicts: tuple[str, ...]) -> str:
+    count: Counter[str] = Counter()
+    for line in lines:
+        if line["verdict"] in verdicts:
+            count[f"{line['verdict']}, {line['family']}: {reason(line['why'])}"] += 1
+    return "\n".join(f"* {n}: {text}" for text, n in count.most_common()) or "None."
+
+
+def write(file: Path) -> Path:
+    """The page of one ledger."""
+    lines = list(known(file).values())
+    own = sum(1 for line in lines if line["by"] != "tight")
+    parts = [
+        HEAD,
+        f"Run: {len(lines)} scenes with the seeds of commit `{file.stem}`, {own} of them judged"
+        " without trsim's assembly and events.\n",
+        table(lines),
+        "\n## By method\n",
+        table([line | {"family": line["method"]} for line in lines]),
+        "\n## Wrong\n",
+        listed(lines, (WRONG, CRASH, BROKEN)),
+        "\n## Refused, and why\n",
+        reasons(lines, (REFUSED,)),
+        "\n## Scenes without motion, and what was said\n",
+        reasons(lines, (TOLD,)),
+        "\n## Not judged\n\nThe reference itself could not tell, or the horizon is at the start.\n",
+        reasons(lines, (UNJUDGED,)),
+        "",
+    ]
+    DOC.write_text("\n".join(parts))
+    return DOC

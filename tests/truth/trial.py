@@ -1,0 +1,85 @@
+"""One scene: made from its family and seed alone, run, judged."""
+
+import time
+import zlib
+
+import numpy as np
+
+from .families import ENGINE, FAMILIES, INVALID, RIGID, Drawn
+from .judge import (
+    BROKEN,
+    CRASH,
+    LEAST,
+    RIGHT,
+    TIMES,
+    TOLD,
+    UNJUDGED,
+    WRONG,
+    Verdict,
+    judged,
+    ran,
+    rigid,
+)
+from .reference import Truth, Unfit, truth
+
+
+def made(family: str, seed: int) -> Drawn:
+    """The scene of a seed."""
+    rng = np.random.default_rng([zlib.crc32(family.encode()), seed])
+    drawn = FAMILIES[family](rng)
+    drawn.scene.note = f"{family} {seed}"
+    return drawn
+
+
+def true(drawn: Drawn, tolerance: float) -> Truth:
+    """What is true of it."""
+    if drawn.truth is not None:
+        t: Truth = drawn.truth(drawn.scene)
+    else:
+        t = truth(drawn.scene, min(0.1, max(TIMES * tolerance, LEAST)))
+    if not drawn.forces:
+        names = {j.name for j in drawn.scene.joints}
+        t.channels = {
+            x: c for x, c in t.channels.items()
+            if x.rsplit(".", 1)[0] not in names or "reaction" not in x
+        }  # fmt: skip
+    return t
+
+
+def verdict(family: str, seed: int) -> Verdict:
+    """Of one scene."""
+    drawn = made(family, seed)
+    s = drawn.scene
+    v = Verdict(family, seed, RIGHT, s.method, s.tolerance, by=drawn.by)
+    begun = time.process_time()
+    t = None
+    if drawn.by == ENGINE:
+        try:
+            t = true(drawn, v.tolerance)
+        except Unfit as error:
+            v.verdict, v.why = UNJUDGED, str(error)
+    middle = time.process_time()
+    r = ran(s.text())
+    v.cpu = (middle - begun, time.process_time() - middle)
+    if drawn.by == INVALID:
+        v.exit, v.why = r.exit, r.reason
+        v.verdict = TOLD if r.exit in (3, 4, 5) else WRONG if r.exit == 0 else CRASH
+        v.what = "ended well, where no motion is true" if r.exit == 0 else ""
+        v.ratio = 1e3 if r.exit == 0 else 0.0
+        return v
+    if drawn.by == RIGID:
+        return rigid(s, r, v)
+    if t is None:
+        if r.exit not in (0, 3, 4, 5):
+            v.verdict, v.why = CRASH, r.reason
+        return v
+    return judged(s, t, r, v)
+
+
+def cautious(family: str, seed: int) -> Verdict:
+    """The same; a generator that fails is a crash too, of its own."""
+    try:
+        return verdict(family, seed)
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        return Verdict(family, seed, BROKEN, "", 0.0, why=what)
