@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper tolerances test release-check lint bench stress clean
+.PHONY: demo paper tolerances test release-check lint bench stress truth clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -54,6 +54,11 @@ stress: .venv/developer
 .venv/developer: .venv/bin/python pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable ".[dev]"
 	touch $@ .venv/installed
+
+# scenes drawn with the commit's hash, each judged independently; goes on where it was ended
+truth: .venv/developer
+	$(BIN)/python -m tests.truth
+	$(BIN)/python -m tests.truth --table
 
 clean:
 	rm -rf .venv build dist *.egg-info

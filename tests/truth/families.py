@@ -261,7 +261,8 @@ def redundant(rng: Any) -> Drawn:
             at = rng.uniform(-0.5, 0.5, 3)
             s.joints.append(Joint(f"g{k}", "prismatic", "ground", "table", at, a))
         s.sensors.append(Sensor("x", "g0"))
-        s.forces.append(Spring("s", "ground", "table", np.array([1, 1, 1.0]), rng.uniform(-0.2, 0.2, 3),
+        near = rng.uniform(-0.2, 0.2, 3)
+        s.forces.append(Spring("s", "ground", "table", np.ones(3), near,
                                decades(rng, 5, 50)))  # fmt: skip
         s = consistent(s, rng, 0.0, 1.0)
     gravity(rng, s)
@@ -417,9 +418,9 @@ def stops(rng: Any) -> Drawn:
         k = decades(rng, 1e3, 1e5)
         low = between(rng, 0.0, 0.45)
         for a in (-0.5, 0.5):
-            s.forces.append(Wall(f"w{a:+}"[0:2] + "a", "ground", "bar", low * Y, Y + a * X, Y.copy(), k,
+            name = "left" if a < 0 else "right"
+            s.forces.append(Wall(name, "ground", "bar", low * Y, Y + a * X, Y.copy(), k,
                                  between(rng, 0, 10), 1e-3))  # fmt: skip
-        s.forces[0].name, s.forces[1].name = "left", "right"
         s.end = between(rng, 0.3, 0.7)
         fast = np.sqrt(k) * 2 + w
     elif kind == "pendulum":
@@ -901,7 +902,8 @@ def actuators(rng: Any) -> Drawn:
                 kk[0] = 0.0
             cc = rng.uniform(0, 1, 3) * (kk > 0)
             R = rotation(rng)
-            s.forces.append(Bushing(f"m{k}", "ground", "engine", rng.uniform(-0.6, 0.6, 3), R, kk, cc,
+            at = rng.uniform(-0.6, 0.6, 3)
+            s.forces.append(Bushing(f"m{k}", "ground", "engine", at, R, kk, cc,
                                     rng.uniform(5, 50, 3), rng.uniform(0, 0.3, 3)))  # fmt: skip
         consistent(s, rng, 1.5, 0.5)
         s.end = between(rng, 0.5, 1.5)
