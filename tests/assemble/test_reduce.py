@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from trsim.assemble.reduce import SAMPLES, jacobian, moves, nearby
+from trsim.assemble.reduce import jacobian, moves
+from trsim.assemble.redundant import SAMPLES, nearby
 from trsim.errors import ModelError
 from trsim.spec.load import load
 

@@ -6,7 +6,8 @@ import pytest
 from trsim.assemble import release as releases
 from trsim.assemble.assemble import assemble, build, pack
 from trsim.assemble.rank import unique_reactions
-from trsim.assemble.reduce import dependences, jacobian, moves, weights
+from trsim.assemble.reduce import jacobian, moves, weights
+from trsim.assemble.redundant import dependences
 from trsim.assemble.release import release
 from trsim.assemble.rows import all_rows
 from trsim.assemble.tables import drawn

@@ -1,37 +1,20 @@
-"""What the scene does not need is not solved: redundant rows, mobility.
+"""What the scene does not need is not solved: rows against the rates of all that moves.
 
-Derivatives of rows are against world-axes rates, six of each moving frame: see `world_rates`.  Rows
-are judged redundant by rank, at several consistent positions near the drawn one: what is dependent
-only at the drawn position (a dead centre, a parallelogram lying flat) is singular, not redundant,
-and kept.  Whether motion stays in a plane: planar.py.
+Derivatives of rows are against world-axes rates, six of each moving frame: see `world_rates`.
+Which rows are redundant: redundant.py.  Whether motion stays in a plane: planar.py.
 """
-
-from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.projection import move_all
-from trsim.assemble.rank import DEPENDENT, dependent_rows
 from trsim.elements.scene import Model, Scene, workspace
 
 Array = NDArray[np.float64]
 
 IN_PLANE = [0, 1, 5]  # of the six world-axes rates of a rigid body
 NODE_IN_PLANE = [0, 1, 3, 4]  # and of a node of a beam, see `world_rates`
-NEARLY = 1e-6  # the same at nearby positions, where an error of the drawing has grown
-SAMPLES = 4
-SPREAD = 0.03  # of the mechanism's size and rad: how far positions are perturbed
-
-
-@dataclass(frozen=True)
-class Dependence:
-    """One dependent row."""
-
-    row: int
-    everywhere: bool  # at all nearby positions: redundant; only as drawn: singular
 
 
 def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
@@ -48,6 +31,17 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
         w.phi_t[:m].copy(),
         against_rates(w, J[:, 1:].reshape(m, 6 * (model.n - 1))),
     )
+
+
+def all_rows(work: Scene, y: Array) -> Array:
+    """J against the world-axes rates, of the rows of the solve and of the redundant ones."""
+    poses(work, y)
+    constraints(work, 0.0)
+    frames = np.vstack([work.row_frame, work.redundant[:, :2]])
+    J = np.zeros((len(frames), work.n, 6))
+    for end, block in ((0, work.J[:, :6]), (1, work.J[:, 6:])):
+        J[np.arange(len(frames)), frames[:, end]] = block
+    return against_rates(work, J[:, 1:].reshape(len(frames), 6 * (work.n - 1)))
 
 
 def moves(model: Model, planar: bool) -> NDArray[np.bool_]:
@@ -151,70 +145,3 @@ def closest(
     phi = jacobian(model, t, y)[0]
     phi = phi if active is None else phi[active]
     return y, float(np.max(np.abs(phi), initial=0.0))
-
-
-def dependences(model: Model, y: Array, keep: NDArray[np.bool_], order: list[int],
-                geometric: list[int]) -> list[Dependence]:  # fmt: skip
-    """Dependent rows as drawn, and whether they stay so at nearby consistent positions.
-
-    keep: world-axes rates that there are; order: priority of the rows; geometric: the rows
-    positions must keep to when perturbed (all but the drives).
-    """
-    scale = weights(model)[keep]
-    here = dependent_rows(jacobian(model, 0.0, y)[2][:, keep], scale, order)
-    if not here:
-        return []
-    always, others = None, [k for k in order if k not in here]
-    as_drawn = True  # whether the rows chosen at the drawn position are as many, and hold, nearby
-    for near in nearby(model, y, keep, geometric):
-        J = jacobian(model, 0.0, near)[2][:, keep]
-        there = dependent_rows(J, scale, order, NEARLY)
-        if len(there) > len(here):  # no rank is lower there: these rows are nearly parallel
-            there = dependent_rows(J, scale, order)
-        always = there if always is None else always & there
-        as_drawn = as_drawn and len(there) == len(here)
-        as_drawn = as_drawn and not dependent_rows(J, scale, others, NEARLY)
-    if always is None or as_drawn:
-        # of two rows either of which may go, the one that goes leaves rows that hold as drawn too
-        always = here
-    return [Dependence(k, k in always) for k in sorted(here | always)]
-
-
-def nearby(
-    model: Model, y: Array, keep: NDArray[np.bool_], geometric: list[int]
-) -> Iterator[Array]:
-    """Consistent positions around y, SPREAD away in the world-axes rates `keep`.
-
-    geometric: the rows positions keep to.  At most SAMPLES; always the same ones.  They are reached
-    along motions the rows allow: from elsewhere Newton follows the nearly dependent directions of
-    redundant rows far away, to where these rows happen to be independent.  Where such a motion ends
-    at once (a dead centre, nothing moves) they are reached from anywhere.
-    """
-    rng = np.random.default_rng(0)
-    rows = np.array(geometric, np.int64)
-    scale = weights(model)[keep]
-    J = jacobian(model, 0.0, y)[2][rows][:, keep]
-    size = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)[keep]
-    for _ in range(SAMPLES):
-        way = SPREAD * rng.normal(size=size.size) * size
-        free = way - scale * np.linalg.lstsq(J * scale, J @ way, rcond=DEPENDENT)[0]
-        far = np.max(np.abs(free / size))
-        for step in (free * (SPREAD / max(far, 1e-3 * SPREAD)), way):
-            dx = np.zeros(keep.size)
-            dx[keep] = step
-            near, left = closest(model, 0.0, displaced(model, y, dx), rows, keep)
-            moved = distance(model, y, near)
-            if left <= 1e-9 * model.size and (moved > 0.1 * SPREAD or step is way):
-                yield near
-                break
-
-
-def distance(model: Model, y: Array, near: Array) -> float:
-    """How far one position is from another: of the mechanism's size, or in the axes of a body."""
-    w = workspace(model)
-    poses(w, y)
-    before = w.X.copy()
-    poses(w, near)
-    apart = np.abs(w.X - before)
-    apart[:, :3] /= model.size
-    return float(np.max(apart))

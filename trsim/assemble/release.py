@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from trsim.assemble.assemble import build, pack
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
-from trsim.assemble.reduce import jacobian, moves, nearby, weights
+from trsim.assemble.reduce import jacobian, moves, weights
+from trsim.assemble.redundant import nearby
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
 from trsim.elements.scene import scene

@@ -9,12 +9,11 @@ from trsim.assemble.addresses import Addresses
 from trsim.assemble.mechanism import Instance, RowName
 from trsim.assemble.rank import unique_reactions
 from trsim.assemble.reduce import (
-    Dependence,
-    dependences,
     jacobian,
     moves,
     weights,
 )
+from trsim.assemble.redundant import Dependence, dependences
 from trsim.assemble.shaky import shaky
 from trsim.elements.scene import Model
 from trsim.errors import ModelError

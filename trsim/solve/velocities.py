@@ -11,8 +11,9 @@ from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.onward import Branches
 from trsim.assemble.projection import project_velocities
-from trsim.assemble.reduce import in_solve_axes, jacobian, weights, world_rates
+from trsim.assemble.reduce import all_rows, in_solve_axes, jacobian, weights, world_rates
 from trsim.elements.bushing import ROTATIONAL, STIFFNESS
 from trsim.elements.prescribed import rates_at
 from trsim.elements.scene import Model, scene, workspace
@@ -96,7 +97,11 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
             f"no velocities at t = 0 satisfy the joints and drives (off by {left:.3g})",
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
-    return np.asarray(v)
+    if ideal.beams or not len(J):
+        return np.asarray(v)
+    rows = list(range(model.m + len(model.redundant)))
+    branches = Branches(model, y_ideal, all_rows(model, y_ideal), rows, J[model.m :])
+    return branches.onward(np.asarray(v))
 
 
 def independent(J: Array, wishes: list[Array]) -> list[int]:
