@@ -243,7 +243,7 @@ def test_a_sound_bar_is_not_mentioned():
         (("20 mm", "2 m"), "thicker (2e+03 mm) than long (1e+03 mm)"),
         (("elements: 4", "elements: 1"), "rod.elements: one element bends as one cubic"),
         (("elements: 4", "elements: 60"), "shorter (16.7 mm) than thick (20 mm)"),
-        (("20 mm}", "5 mm}\n    curvature: paper"), "(membrane locking); take 8 or more"),
+        (("20 mm}", "5 mm}\n    stretching: full"), "stretching: `full` locks: an element with"),
         (("207 GPa", "1 MPa"), "under its own weight the bar bends within 0.069"),
     ],
 )

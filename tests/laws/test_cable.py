@@ -3,15 +3,7 @@
 import numpy as np
 import pytest
 
-from trsim.laws.cable import (
-    ENGINEERING,
-    EXACT,
-    GERSTMAYR,
-    GREEN,
-    PAPER,
-    add_force,
-    energies,
-)
+from trsim.laws.cable import EXACT, GERSTMAYR, PAPER, add_force, energies
 from trsim.laws.cable_section import (
     mass,
     position,
@@ -20,11 +12,13 @@ from trsim.laws.cable_section import (
     tangent,
     uniform_shares,
 )
+from trsim.laws.cable_stretch import ASSUMED, ENGINEERING, FULL, GREEN
 from trsim.laws.cable_tangent import add_damping, add_stiffness
 
 L, EA, EI, BETA = 0.1, 40.0, 0.1, 1e-3  # m, N, N*m^2, s
 STRAINS, CURVATURES = (GREEN, ENGINEERING), (EXACT, GERSTMAYR, PAPER)
-FORMS = [(s, c) for s in STRAINS for c in CURVATURES]
+FORMS = [(s, c, w) for s in STRAINS for c in CURVATURES for w in (ASSUMED, FULL)]
+LOBATTO = (0.0, 0.5 - 0.05**0.5, 0.5 + 0.05**0.5, 1.0)  # x / l
 each_form = pytest.mark.parametrize("form", FORMS, ids=str)
 
 
@@ -46,13 +40,13 @@ def force(e, v, form, beta=0.0):
 
 def stiffness(e, form):
     K = np.zeros((12, 12))
-    add_stiffness(e, L, EA, EI, *form, np.zeros((3, 12)), K)
+    add_stiffness(e, L, EA, EI, *form, np.zeros((4, 12)), K)
     return K
 
 
 def damping(e, form):
     C = np.zeros((12, 12))
-    add_damping(e, L, EA, EI, BETA, *form, np.zeros((3, 12)), C)
+    add_damping(e, L, EA, EI, BETA, *form, np.zeros((4, 12)), C)
     return C
 
 
@@ -124,7 +118,7 @@ def test_rigid_velocities_are_not_damped(form, rng):
 
 def rates(e, v, form, xi, h=1e-6):
     """Rates of axial force and moment at xi, by differences."""
-    ahead, behind = (stress(e + s * v, L, EA, EI, *form, xi) for s in (h, -h))
+    ahead, behind = (stress(e + s * v, L, EA, EI, *form[:2], xi) for s in (h, -h))
     return (np.array(ahead) - behind) / (2 * h)
 
 
@@ -132,9 +126,20 @@ def dissipation(e, v, form):
     """beta int EA eps'^2 + EI kappa'^2 dx, W."""
     power = 0.0
     for which, points, k in ((0, 5, EA), (1, 3, EI)):
-        for x, w in zip(*np.polynomial.legendre.leggauss(points), strict=True):
-            power += 0.5 * w * L * rates(e, v, form, (x + 1) / 2)[which] ** 2 / k
+        xi, weights = np.polynomial.legendre.leggauss(points)
+        xi, weights = (xi + 1) / 2, weights / 2
+        rate = np.array([rates(e, v, form, x)[which] for x in xi])
+        if which == 0 and form[2] == ASSUMED:
+            rate = assumed(*(rates(e, v, form, x)[0] for x in LOBATTO), xi)
+        power += L * weights @ rate**2 / k
     return BETA * power
+
+
+def assumed(a, b, c, d, xi):
+    """The parabola with a and d at its ends and the mean of Lobatto's four values."""
+    mean = (a + 5 * b + 5 * c + d) / 12
+    middle = (6 * mean - a - d) / 4
+    return np.polyval(np.polyfit([0, 0.5, 1], [a, middle, d], 2), xi)
 
 
 @each_form

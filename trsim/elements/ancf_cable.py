@@ -22,8 +22,9 @@ from trsim.elements.frames import cross, dot, helper
 from trsim.elements.vectors import clear_table
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
-from trsim.laws import cable
+from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
+from trsim.laws.cable_stretch import STRAINS, STRETCHINGS
 from trsim.laws.cable_tangent import add_damping, add_stiffness
 
 
@@ -65,7 +66,7 @@ class AncfCable(Cable):
 
 
 # con: where; par: how much
-FIRST, NODES, STRAIN, CURVATURE, ELEMENT_0 = 0, 1, 2, 3, 4
+FIRST, NODES, STRAIN, CURVATURE, STRETCHING, ELEMENT_0 = 0, 1, 2, 3, 4, 5
 LENGTH, STIFFNESS, BENDING, BETA, MASS, FIELD = 0, 1, 2, 3, 4, 5
 BAR, AT_NODE = 18, 5  # columns of a bar, and of each of its nodes
 E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
@@ -79,8 +80,9 @@ def pack(name, spec, at):
         (
             beam.first,
             beam.nodes,
-            cable.STRAINS[spec.strain],
-            cable.CURVATURES[spec.curvature],
+            STRAINS[spec.strain],
+            CURVATURES[spec.curvature],
+            STRETCHINGS[spec.stretching],
             beam.element,
         ),
         (beam.length, E * area, E * moment, spec.damping, spec.per_length, *field),
@@ -133,9 +135,10 @@ def force(t, scene, a, b):
         l, mass = par[e, LENGTH], par[e, MASS]
         for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
             gathered(scene, i)
-            cable.add_force(
+            add_force(
                 element[E_NOW], element[E_RATE], l, par[e, STIFFNESS], par[e, BENDING],
-                par[e, BETA], con[e, STRAIN], con[e, CURVATURE], element[E_FORCE],
+                par[e, BETA], con[e, STRAIN], con[e, CURVATURE], con[e, STRETCHING],
+                element[E_FORCE],
             )  # fmt: skip
             s1, s2, s3, s4 = uniform_shares(l)
             for c in range(3):
@@ -156,9 +159,9 @@ def damping_power(scene, par, con, e):
     for k in range(12):
         power += element[E_FORCE, k] * element[E_RATE, k]
         element[E_FORCE, k] = 0.0
-    cable.add_force(
+    add_force(
         element[E_NOW], element[E_RATE], par[e, LENGTH], par[e, STIFFNESS], par[e, BENDING],
-        0.0, con[e, STRAIN], con[e, CURVATURE], element[E_FORCE],
+        0.0, con[e, STRAIN], con[e, CURVATURE], con[e, STRETCHING], element[E_FORCE],
     )  # fmt: skip
     for k in range(12):
         power -= element[E_FORCE, k] * element[E_RATE, k]
@@ -177,13 +180,13 @@ def stiffness(t, scene, a, b):
             clear_table(K)
             add_stiffness(
                 element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                con[e, CURVATURE], element[ROOM:], K,
+                con[e, CURVATURE], con[e, STRETCHING], element[ROOM:], K,
             )  # fmt: skip
             if beta > 0.0:
                 clear_table(C)
                 add_damping(
                     element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], beta, con[e, STRAIN],
-                    con[e, CURVATURE], element[ROOM:], C,
+                    con[e, CURVATURE], con[e, STRETCHING], element[ROOM:], C,
                 )  # fmt: skip
 
 
@@ -194,9 +197,9 @@ def energy(t, scene, a, b):
         l, mass = par[e, LENGTH], par[e, MASS]
         for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
             gathered(scene, i)
-            stretching, bending = cable.energies(
+            stretching, bending = energies(
                 element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                con[e, CURVATURE],
+                con[e, CURVATURE], con[e, STRETCHING],
             )  # fmt: skip
             E[SPRINGS] += stretching + bending
             for c in range(3):
@@ -229,9 +232,10 @@ def measure(t, scene, a, b):
             for c in range(3):
                 out[o + c] += moment(x, l, c) / whole
                 out[o + 3 + c] += moment(v, l, c) / whole
-            stretching, bending = cable.energies(
-                x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE]
-            )
+            stretching, bending = energies(
+                x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE],
+                con[e, STRETCHING],
+            )  # fmt: skip
             out[o + 16] += stretching + bending
             out[o + 17] += stretching
             for n in range(2):

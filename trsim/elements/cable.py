@@ -73,6 +73,8 @@ class Cable(Spec):
     mass            of the whole bar, instead of a density
     strain          green: (r'.r' - 1)/2; engineering: |r'| - 1
     curvature       exact: |r' x r''|/|r'|^3; gerstmayr: |r' x r''|/|r'|^2; paper: |r''|
+    stretching      assumed: a parabola with the strain at both nodes and the mean of an element;
+                    full: the strain everywhere, which makes slender bars too stiff
     damping         beta of a material of Kelvin and Voigt: stress = E (strain + beta strain rate)
     """
 
@@ -86,6 +88,7 @@ class Cable(Spec):
     mass: Annotated[float, Gt(0), Unit("kg")] | None = None
     strain: Literal["green", "engineering"] = "green"
     curvature: Literal["exact", "gerstmayr", "paper"] = "exact"
+    stretching: Literal["assumed", "full"] = "assumed"
     damping: Annotated[float, Ge(0), Unit("s")] = 0.0
 
     @model_validator(mode="after")

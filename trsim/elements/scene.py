@@ -114,7 +114,7 @@ class Model(Packed):
 class Scene(Model):
     """A model and the workspace of its equations; holds the last evaluation."""
 
-    element: A2  # (6, 12) coordinates, rates and forces of one element of a beam; room
+    element: A2  # (7, 12) coordinates, rates and forces of one element of a beam; room
     tangent: A2  # (12 n_elements, 12) its stiffness against places and slopes
     viscous: A2  # (12 n_elements, 12) its damping against their rates
     G: A2  # (n, 6) slope of a node, and its rate; world axes
@@ -176,7 +176,7 @@ def scene(model: Model) -> Scene:
     return Scene(
         **{**constants, "tab": model.tab.copy()},  # scratch, and what functions are held on
         X=X,
-        element=np.zeros((6, 12)),
+        element=np.zeros((7, 12)),
         tangent=np.zeros((12 * elements, 12)),
         viscous=np.zeros((12 * elements, 12)),
         G=np.zeros((n, 6)),

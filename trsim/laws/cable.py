@@ -4,8 +4,7 @@
     U     = 1/2 int EA eps^2 + EI kappa^2 dx             0 <= x <= l
     F     = -dU/de - damping                             [BerzeriShabana2000] [Gerstmayr2008]
 
-    strain     engineering   eps = |r'| - 1
-               green         eps = (r'.r' - 1) / 2
+    strain     eps as in laws/cable_stretch.py, from three places of the element
     curvature  exact         kappa = |r' x r''| / |r'|^3
                gerstmayr     kappa = |r' x r''| / |r'|^2, per undeformed length
                paper         kappa = |r''|, a constant matrix K_t
@@ -31,22 +30,17 @@ straight place no curvature has a direction, and every one that grows is resiste
 with k' = a^(-q/2) (r'' - b/a r')' across the tangent.  The blend makes the force differentiable.
 """
 
-from math import sqrt
-
 from trsim.laws import law
+from trsim.laws.cable_stretch import pulled, squared, stretching_energy
 
-GREEN, ENGINEERING = 0, 1
 EXACT, GERSTMAYR, PAPER = 0, 1, 2
-STRAINS = {"green": GREEN, "engineering": ENGINEERING}  # the words of a scenario
 CURVATURES = {"exact": EXACT, "gerstmayr": GERSTMAYR, "paper": PAPER}
 
 STRAIGHT = 1e-6  # rad, bend of an element below which it counts as straight, for damping alone
 
-# Gauss points -+n and the middle with their weights: five for the stretch, three for the bend
-FAR, FAR_WEIGHT = 0.453089922969332, 0.11846344252809454
-NEAR, NEAR_WEIGHT = 0.26923465505284155, 0.23931433524968324
+# three Gauss points -+n and the middle, with their weights
 BENDING, BENDING_WEIGHT = 0.3872983346207417, 5.0 / 18.0
-MIDDLE_OF_5, MIDDLE_OF_3 = 64.0 / 225.0, 4.0 / 9.0
+MIDDLE_OF_3 = 4.0 / 9.0
 
 
 @law
@@ -93,26 +87,11 @@ def products(P, R):
 
 
 @law
-def squared(p, n):
-    """a = r'.r' at n from `products`."""
-    return p[0] + n * (2.0 * p[1] + n * (p[2] + n * (2.0 * p[3] + n * p[4])))
-
-
-@law
 def invariants(p, n, u):
     """a = r'.r', b = r'.r'', c = r''.r'' at n from `products`; u = 1 / l."""
     b = p[1] + n * (p[2] + n * (3.0 * p[3] + n * 2.0 * p[4]))
     c = p[5] + 4.0 * n * (p[3] + n * p[4])
     return squared(p, n), u * b, u * u * c
-
-
-@law
-def stretch(a, strain):
-    """Axial strain eps of a = r'.r', and 2 d eps / da."""
-    if strain == GREEN:
-        return 0.5 * (a - 1.0), 1.0
-    s = sqrt(a)
-    return s - 1.0, 1.0 / s
 
 
 @law
@@ -129,36 +108,6 @@ def bend(a, b, c, curvature):
         q = 2.0
         weight = y * y
     return weight * across, 0.5 * weight * (s * s - q * across * y), -weight * s, 0.5 * weight
-
-
-@law
-def tension(p, p_dot, n, EA, beta, strain):
-    """Axial force over |r'| (green: the axial force) at n, N."""
-    eps, turn = stretch(squared(p, n), strain)
-    if beta > 0.0:
-        eps += beta * turn * squared(p_dot, n)
-    return EA * eps * turn
-
-
-@law
-def pulled(p, p_dot, l, EA, beta, strain):
-    """What the stretch adds to M: m00, m01, m02, m11, m12, m22, N*m."""
-    EAl = EA * l
-    middle = MIDDLE_OF_5 * tension(p, p_dot, 0.0, EAl, beta, strain)
-    i, j = FAR_WEIGHT * EAl, NEAR_WEIGHT * EAl
-    f0, f1 = tension(p, p_dot, -FAR, i, beta, strain), tension(p, p_dot, FAR, i, beta, strain)
-    n0, n1 = tension(p, p_dot, -NEAR, j, beta, strain), tension(p, p_dot, NEAR, j, beta, strain)
-    even_f, even_n = FAR * FAR * (f0 + f1), NEAR * NEAR * (n0 + n1)
-    odd_f, odd_n = FAR * (f1 - f0), NEAR * (n1 - n0)
-    m02 = even_f + even_n
-    return (
-        middle + (f0 + f1) + (n0 + n1),
-        odd_f + odd_n,
-        m02,
-        m02,
-        FAR * FAR * odd_f + NEAR * NEAR * odd_n,
-        FAR * FAR * even_f + NEAR * NEAR * even_n,
-    )
 
 
 @law
@@ -246,7 +195,7 @@ def add_straight_damping(P, P_dot, n, l, EI_beta, curvature, F):
 
 
 @law
-def add_force(e, v, l, EA, EI, beta, strain, curvature, F):
+def add_force(e, v, l, EA, EI, beta, strain, curvature, stretching, F):
     """F += elastic and damping force of one element.
 
     Parameters
@@ -258,11 +207,12 @@ def add_force(e, v, l, EA, EI, beta, strain, curvature, F):
     beta : float         damping / stiffness, s; a straight bar's damping ratio is beta omega / 2
     strain : int         GREEN or ENGINEERING
     curvature : int      EXACT, GERSTMAYR or PAPER
+    stretching : int     ASSUMED or FULL
     F : (12,)            generalised force, N and N*m, added to
 
     Notes
     -----
-    Five Gauss points for the stretch, three for the bend.  Where r' vanishes F is not finite.
+    Three Gauss points for the bend.  Where r' vanishes F is not finite.
     """
     P = parabola(e, l)
     p = p_dot = products(P, P)
@@ -273,7 +223,8 @@ def add_force(e, v, l, EA, EI, beta, strain, curvature, F):
         add_straight_damping(P, P_dot, -BENDING, l, side, curvature, F)
         add_straight_damping(P, P_dot, 0.0, l, middle, curvature, F)
         add_straight_damping(P, P_dot, BENDING, l, side, curvature, F)
-    x, y = pulled(p, p_dot, l, EA, beta, strain), bent(p, p_dot, l, EI, beta, curvature)
+    x = pulled(p, p_dot, l, EA, beta, strain, stretching)
+    y = bent(p, p_dot, l, EI, beta, curvature)
     m00, m01, m02 = x[0] + y[0], x[1] + y[1], x[2] + y[2]
     m11, m12, m22 = x[3] + y[3], x[4] + y[4], x[5] + y[5]
     G = mixed((m00, m01, m02), P), mixed((m01, m11, m12), P), mixed((m02, m12, m22), P)
@@ -281,19 +232,14 @@ def add_force(e, v, l, EA, EI, beta, strain, curvature, F):
 
 
 @law
-def energies(e, l, EA, EI, strain, curvature):
+def energies(e, l, EA, EI, strain, curvature, stretching):
     """Energy of the stretch and of the bend, J.  Parameters as in `add_force`."""
     P = parabola(e, l)
     p = products(P, P)
-    stretched = MIDDLE_OF_5 * stretch(squared(p, 0.0), strain)[0] ** 2
-    for n in (-FAR, FAR):
-        stretched += FAR_WEIGHT * stretch(squared(p, n), strain)[0] ** 2
-    for n in (-NEAR, NEAR):
-        stretched += NEAR_WEIGHT * stretch(squared(p, n), strain)[0] ** 2
     u = 1.0 / l
     a, b, c = invariants(p, 0.0, u)
     flexed = MIDDLE_OF_3 * bend(a, b, c, curvature)[0]
     for n in (-BENDING, BENDING):
         a, b, c = invariants(p, n, u)
         flexed += BENDING_WEIGHT * bend(a, b, c, curvature)[0]
-    return 0.5 * EA * l * stretched, 0.5 * EI * l * flexed
+    return stretching_energy(p, l, EA, strain, stretching), 0.5 * EI * l * flexed

@@ -9,7 +9,8 @@ The mass matrix is constant: there are no terms of velocity.
 from math import sqrt
 
 from trsim.laws import law
-from trsim.laws.cable import bend, dot, mixed, parabola, stretch
+from trsim.laws.cable import bend, dot, mixed, parabola
+from trsim.laws.cable_stretch import stretch
 
 
 @law
@@ -61,7 +62,8 @@ def tangent(e, l, xi):
 def stress(e, l, EA, EI, strain, curvature, xi):
     """Axial force EA eps, N, positive in tension, and moment EI kappa >= 0, N*m, at xi.
 
-    Parameters as in `cable.add_force`; damping is not counted.
+    Parameters as in `cable.add_force`; damping is not counted.  The strain is that of the place:
+    at the ends and in the middle of an element also the assumed one.
     """
     P, u, n = parabola(e, l), 1.0 / l, xi - 0.5
     r1, r2 = mixed((1.0, n, n * n), P), mixed((0.0, u, 2.0 * n * u), P)

@@ -3,6 +3,8 @@
     K = d2U/de2 = sum over points of  W_ij g_i g_j^T + W_i H_i,     i, j of a, b, c
     C = -dF/de'
 
+    assumed stretch:  K = sum U_ij eps_i' eps_j'^T + U_i eps_i'',     i, j of Lobatto's four points
+
 with a = r'.r', b = r'.r'', c = r''.r'', their gradients g_i and constant second derivatives H_i in
 the twelve coordinates, and W the energy at the point.  Both matrices are symmetric, C is positive
 semidefinite.  What the damping force gains when e changes at fixed rates is not in either.
@@ -12,95 +14,26 @@ from trsim.laws import law
 from trsim.laws.cable import (
     BENDING,
     BENDING_WEIGHT,
-    ENGINEERING,
     EXACT,
-    FAR,
-    FAR_WEIGHT,
     MIDDLE_OF_3,
-    MIDDLE_OF_5,
-    NEAR,
-    NEAR_WEIGHT,
     PAPER,
     STRAIGHT,
     bend,
     dot,
     mixed,
     parabola,
+)
+from trsim.laws.cable_matrices import add_form, add_square, add_units, bends, fill, slopes
+from trsim.laws.cable_stretch import (
+    ENGINEERING,
+    FULL,
+    INNER,
+    INSIDE,
+    OUTER,
+    forces,
+    gauss,
     stretch,
 )
-
-
-@law
-def slopes(n, u):
-    """Coefficients of r_a, r_xa, r_b, r_xb in r' at n = x / l - 1/2; u = 1 / l."""
-    chord = u * (1.5 - 6.0 * n * n)
-    return -chord, n * (3.0 * n - 1.0) - 0.25, chord, n * (3.0 * n + 1.0) - 0.25
-
-
-@law
-def bends(n, u):
-    """Coefficients of r_a, r_xa, r_b, r_xb in r'' at n = x / l - 1/2; u = 1 / l."""
-    chord = -12.0 * n * u * u
-    return -chord, u * (6.0 * n - 1.0), chord, u * (6.0 * n + 1.0)
-
-
-@law
-def place(row, k, x, y, v, w):
-    """row[3 k ... 3 k + 2] <- x v + y w."""
-    row[3 * k] = x * v[0] + y * w[0]
-    row[3 * k + 1] = x * v[1] + y * w[1]
-    row[3 * k + 2] = x * v[2] + y * w[2]
-
-
-@law
-def fill(row, c, v, d, w):
-    """row (12,) <- c_k v + d_k w for the four nodes k."""
-    place(row, 0, c[0], d[0], v, w)
-    place(row, 1, c[1], d[1], v, w)
-    place(row, 2, c[2], d[2], v, w)
-    place(row, 3, c[3], d[3], v, w)
-
-
-@law
-def add_square(M, h, x):
-    """M += h x x^T."""
-    for i in range(12):
-        for j in range(12):
-            M[i, j] += h * (x[i] * x[j])
-
-
-@law
-def add_form(M, aa, ab, ac, bb, G):
-    """M += aa a a^T + ab (a b^T + b a^T) + ac (a c^T + c a^T) + bb b b^T, a, b, c the rows of G."""
-    a, b, c = G[0], G[1], G[2]
-    for i in range(12):
-        x, y, z = a[i], b[i], c[i]
-        for j in range(12):
-            M[i, j] += (
-                aa * (x * a[j])
-                + ab * (x * b[j] + y * a[j])
-                + ac * (x * c[j] + z * a[j])
-                + bb * (y * b[j])
-            )
-
-
-@law
-def add_units(M, h, c, d):
-    """M += h (c_k d_m + d_k c_m) times a unit matrix in each of the blocks k, m of nodes."""
-    add_unit_row(M, 0, h, c[0], d[0], c, d)
-    add_unit_row(M, 3, h, c[1], d[1], c, d)
-    add_unit_row(M, 6, h, c[2], d[2], c, d)
-    add_unit_row(M, 9, h, c[3], d[3], c, d)
-
-
-@law
-def add_unit_row(M, row, h, x, y, c, d):
-    """The three rows of one node in `add_units`."""
-    for i in range(3):
-        M[row + i, i] += h * (x * d[0] + y * c[0])
-        M[row + i, i + 3] += h * (x * d[1] + y * c[1])
-        M[row + i, i + 6] += h * (x * d[2] + y * c[2])
-        M[row + i, i + 9] += h * (x * d[3] + y * c[3])
 
 
 @law
@@ -134,6 +67,54 @@ def add_axial(n, P, l, EA, strain, G, K):
 
 
 @law
+def elongation(n, P, l, strain, row):
+    """row <- 2 d eps / de at n; eps, and 2 d eps / da there."""
+    r1 = mixed((1.0, n, n * n), P)
+    eps, turn = stretch(dot(r1, r1), strain)
+    c = slopes(n, 1.0 / l)
+    s = mixed((turn, 0.0, 0.0), (r1, r1, r1))
+    fill(row, c, s, c, s)
+    return eps, turn
+
+
+@law
+def add_second(n, l, f, turn, strain, row, K):
+    """K += f d2 eps / de2 at n; row: 2 d eps / de."""
+    c = slopes(n, 1.0 / l)
+    add_units(K, 0.5 * f * turn, c, c)
+    if strain == ENGINEERING:
+        add_square(K, -0.25 * f * turn, row)
+
+
+@law
+def add_products(EAl, G, K):
+    """K += EA l times the second derivatives of U / (EA l) in the strains with gradients G / 2."""
+    for i in range(12):
+        a, b, c, d = G[0, i], G[1, i], G[2, i], G[3, i]
+        m = OUTER * (a + d) + INNER * (b + c)
+        G[0, i], G[1, i], G[2, i] = m, d - a, 0.5 * (a + d) - m
+    add_square(K, EAl / 4.0, G[0])
+    add_square(K, EAl / 48.0, G[1])
+    add_square(K, EAl / 20.0, G[2])
+
+
+@law
+def add_assumed(P, l, EA, strain, G, K):
+    """K += stiffness of the assumed stretch."""
+    a, turn_a = elongation(-0.5, P, l, strain, G[0])
+    b, turn_b = elongation(-INSIDE, P, l, strain, G[1])
+    c, turn_c = elongation(INSIDE, P, l, strain, G[2])
+    d, turn_d = elongation(0.5, P, l, strain, G[3])
+    f_a, f, f_d = forces(a, b, c, d)
+    EAl = EA * l
+    add_second(-0.5, l, EAl * f_a, turn_a, strain, G[0], K)
+    add_second(-INSIDE, l, EAl * f, turn_b, strain, G[1], K)
+    add_second(INSIDE, l, EAl * f, turn_c, strain, G[2], K)
+    add_second(0.5, l, EAl * f_d, turn_d, strain, G[3], K)
+    add_products(EAl, G, K)
+
+
+@law
 def add_bending(n, P, l, EI, curvature, G, K):
     """K += stiffness of the bend at n; EI with the weight of the point."""
     u = 1.0 / l
@@ -153,21 +134,22 @@ def add_bending(n, P, l, EI, curvature, G, K):
 
 
 @law
-def add_stiffness(e, l, EA, EI, strain, curvature, G, K):
+def add_stiffness(e, l, EA, EI, strain, curvature, stretching, G, K):
     """K += d2U/de2 of one element, (12, 12), symmetric.
 
     Parameters
     ----------
-    e, l, EA, EI, strain, curvature    as in `cable.add_force`
-    G : (3, 12)                        workspace
-    K : (12, 12)                       added to
+    e, l, EA, EI, strain, curvature, stretching    as in `cable.add_force`
+    G : (4, 12)                                    workspace
+    K : (12, 12)                                   added to
     """
     P = parabola(e, l)
-    add_axial(-FAR, P, l, FAR_WEIGHT * l * EA, strain, G, K)
-    add_axial(-NEAR, P, l, NEAR_WEIGHT * l * EA, strain, G, K)
-    add_axial(0.0, P, l, MIDDLE_OF_5 * l * EA, strain, G, K)
-    add_axial(NEAR, P, l, NEAR_WEIGHT * l * EA, strain, G, K)
-    add_axial(FAR, P, l, FAR_WEIGHT * l * EA, strain, G, K)
+    if stretching == FULL:
+        for k in range(5):
+            n, weight = gauss(k)
+            add_axial(n, P, l, weight * l * EA, strain, G, K)
+    else:
+        add_assumed(P, l, EA, strain, G, K)
     add_bending(-BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
     add_bending(0.0, P, l, MIDDLE_OF_3 * l * EI, curvature, G, K)
     add_bending(BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
@@ -181,6 +163,16 @@ def add_axial_damping(n, P, l, EA_beta, strain, G, C):
     _, turn = stretch(dot(r1, r1), strain)
     fill(G[0], c, r1, c, r1)
     add_square(C, 0.25 * EA_beta * turn * turn, G[0])
+
+
+@law
+def add_assumed_damping(P, l, EA_beta, strain, G, C):
+    """C += damping of the assumed stretch."""
+    elongation(-0.5, P, l, strain, G[0])
+    elongation(-INSIDE, P, l, strain, G[1])
+    elongation(INSIDE, P, l, strain, G[2])
+    elongation(0.5, P, l, strain, G[3])
+    add_products(EA_beta * l, G, C)
 
 
 @law
@@ -210,22 +202,23 @@ def add_bending_damping(n, P, l, EI_beta, curvature, G, C):
 
 
 @law
-def add_damping(e, l, EA, EI, beta, strain, curvature, G, C):
+def add_damping(e, l, EA, EI, beta, strain, curvature, stretching, G, C):
     """C += -dF/de' of one element, (12, 12), symmetric.
 
     Parameters
     ----------
-    e, l, EA, EI, beta, strain, curvature    as in `cable.add_force`
-    G : (3, 12)                              workspace
-    C : (12, 12)                             added to
+    e, l, EA, EI, beta, strain, curvature, stretching    as in `cable.add_force`
+    G : (4, 12)                                          workspace
+    C : (12, 12)                                         added to
     """
     P = parabola(e, l)
-    x, y = beta * l * EA, beta * l * EI
-    add_axial_damping(-FAR, P, l, FAR_WEIGHT * x, strain, G, C)
-    add_axial_damping(-NEAR, P, l, NEAR_WEIGHT * x, strain, G, C)
-    add_axial_damping(0.0, P, l, MIDDLE_OF_5 * x, strain, G, C)
-    add_axial_damping(NEAR, P, l, NEAR_WEIGHT * x, strain, G, C)
-    add_axial_damping(FAR, P, l, FAR_WEIGHT * x, strain, G, C)
+    y = beta * l * EI
+    if stretching == FULL:
+        for k in range(5):
+            n, weight = gauss(k)
+            add_axial_damping(n, P, l, weight * l * beta * EA, strain, G, C)
+    else:
+        add_assumed_damping(P, l, beta * EA, strain, G, C)
     add_bending_damping(-BENDING, P, l, BENDING_WEIGHT * y, curvature, G, C)
     add_bending_damping(0.0, P, l, MIDDLE_OF_3 * y, curvature, G, C)
     add_bending_damping(BENDING, P, l, BENDING_WEIGHT * y, curvature, G, C)

@@ -4,7 +4,7 @@ moduli, densities   those of no solid
 slenderness         L/h below 8: shear, left out, adds 3 (h/L)^2 to the deflection
 elements            one; shorter than thick; more than anybody needs; longer than twice the length
                     (EI/(rho A g))^(1/3) over which a bar bends under its own weight
-locking             EA L^2/EI above 3e5 and few elements: stretching spoils bending
+locking             `stretching: full` and EA l^2/EI of an element above 100: it resists bending
 """
 
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ SOFTEST = 1e4  # Pa: foam, gel
 STUBBY = 8.0  # length over thickness
 SHEAR = 3.12  # 12 E I/(5/6 G A L^2) is this times (h/L)^2 at E/G = 2.6
 MANY = 100  # elements
-FEW, LOCKS = 8, 3e5  # elements; EA L^2/EI
+LOCKS = 100.0  # EA l^2/EI of an element with all of its stretch: elastica are twice as wrong
 LIMP = 2.0  # length of an element over that of bending under its own weight
 DIFFERENT = 0.1  # mass or inertia of a bar against what its rigid body says
 
@@ -139,11 +139,12 @@ def _elements(bar: Bar, gravity: float) -> Iterator[str]:
             f"bends within {bends:.2g} m (EI/(rho A g))^(1/3): "
             + (f"take {wanted} or more" if wanted <= MOST_ELEMENTS else "check section and modulus")
         )
-    elif n < FEW and area * bar.length**2 / moment > LOCKS:
+    elif bar.spec.stretching == "full" and area * (bar.length / n) ** 2 / moment > LOCKS:
         yield (
-            f"{where}: EA L^2/EI = {area * bar.length**2 / moment:.1e}: with {n} elements "
-            "stretching spoils large bending by about 1e-4 to 5e-4 of the length (membrane "
-            f"locking); take {FEW} or more"
+            f"{bar.where}.stretching: `full` locks: an element with EA l^2/EI = "
+            f"{area * (bar.length / n) ** 2 / moment:.1e} cannot bend far without being stretched, "
+            "and large deflections come out 1 % to 10 % too small with few elements; `assumed`, "
+            "the default, does not"
         )
 
 
