@@ -27,7 +27,9 @@ from .draw import (
     pick,
     rotation,
 )
+from .one import Carried, OneAngle
 from .scene import (
+    Bar,
     Body,
     Bushing,
     Drive,
@@ -926,3 +928,192 @@ def actuators(rng: Any) -> Drawn:
         rate = 80.0
     gravity(rng, s)
     return Drawn(dressed(rng, s, rate))
+
+
+def carried(s: Scene, name: str, m: float, p: np.ndarray, q: np.ndarray) -> float:
+    """A link from p to q with its centre in the middle; its inertia about z."""
+    I = bar_inertia(m, q - p, 0.15)
+    s.bodies.append(Body(name, m, I, 0.5 * (p + q)))
+    return float(I[2, 2])
+
+
+def parallelogram(rng: Any, begin: float) -> tuple[Scene, list[Carried]]:
+    """Two to four cranks of one length under a coupler; flat at 0 and pi."""
+    s, of = Scene(end=1.0, flat=True), []
+    r = between(rng, 0.3, 0.8)
+    at = np.cumsum(rng.uniform(0.4, 0.9, int(rng.integers(2, 5))))[:, None] * X
+    if rng.random() < 0.3 and len(at) == 2:
+        at[1] = at[0] + r * X  # a rhombus
+    e = r * np.array([np.cos(begin), np.sin(begin), 0])
+    m = decades(rng, 0.3, 2)
+    I = carried(s, "coupler", m, at[0] + e, at[-1] + e)
+    of.append(Carried("coupler", m, I, 0.5 * (at[0] + at[-1]), r * X, r * Y, 0.0))
+    for k, p in enumerate(at):
+        m = decades(rng, 0.3, 2)
+        I = carried(s, f"c{k}", m, p, p + e)
+        of.append(Carried(f"c{k}", m, I, p, 0.5 * r * X, 0.5 * r * Y, 1.0))
+        hinge(s, f"O{k}", "ground", f"c{k}", p)
+        hinge(s, f"A{k}", f"c{k}", "coupler", p + e)
+    return s, of
+
+
+def isosceles(rng: Any, begin: float) -> tuple[Scene, list[Carried]]:
+    """A slider-crank with rod and crank of one length: singular where both are upright."""
+    s, r = Scene(end=1.0, flat=True), between(rng, 0.3, 0.8)
+    c, d = np.cos(begin), np.sin(begin)
+    A, B = r * np.array([c, d, 0]), np.array([2 * r * c, 0, 0])
+    m = rng.uniform(0.3, 2, 3)
+    none = np.zeros(3)
+    I = carried(s, "crank", m[0], none, A), carried(s, "rod", m[1], A, B)
+    of = [
+        Carried("crank", m[0], I[0], none, 0.5 * r * X, 0.5 * r * Y, 1.0),
+        Carried("rod", m[1], I[1], none, 1.5 * r * X, 0.5 * r * Y, -1.0),
+        Carried("slider", m[2], 0.02, none, 2 * r * X, none, 0.0),
+    ]
+    s.bodies.append(Body("slider", m[2], 0.02 * np.eye(3), B))
+    hinge(s, "O0", "ground", "crank", none)
+    hinge(s, "A", "crank", "rod", A)
+    hinge(s, "B", "rod", "slider", B)
+    s.joints.append(Joint("guide", "prismatic", "ground", "slider", B, X))
+    return s, of
+
+
+@family
+def singular(rng: Any) -> Drawn:
+    """Through and from places where rows depend on one another; chains that start straight."""
+    kind = pick(rng, "flat", "flat", "through", "isosceles", "straight")
+    w = between(rng, 2, 10)
+    if kind == "straight":
+        n = int(rng.integers(2, 5))
+        d = direction(rng)
+        s = chain(rng, n, False, lambda k: pick(rng, "spherical", "revolute", "universal"))
+        at = np.zeros(3)
+        for b, j in zip(s.bodies, s.joints, strict=True):
+            l = between(rng, 0.3, 0.8)
+            b.at, j.at = at + 0.5 * l * d, at
+            b.inertia = bar_inertia(b.mass, l * d, 0.15)
+            at = at + l * d
+        s.sensors = []
+        gravity(rng, s)
+        if rng.random() < 0.5:
+            s.gravity = -9.81 * d * pick(rng, 1, -1)
+        consistent(s, rng, between(rng, 0.5, 4))
+        s.end = between(rng, 0.6, 1.5)
+        return Drawn(dressed(rng, s, 25.0))
+    begin = 0.0 if kind == "flat" else between(rng, 0.2, 1.3)
+    s, of = (isosceles if kind == "isosceles" else parallelogram)(rng, begin)
+    gravity(rng, s, between(rng, 0, 6))
+    s.sensors.append(Sensor("angle", "O0"))
+    one = OneAngle(of, (begin, pick(rng, -1, 1) * w), s.gravity, driven=bool(rng.random() < 0.3))
+    if rng.random() < 0.3 and not one.driven:
+        one.spring = decades(rng, 0.1, 3)
+        s.forces.append(Torsion("spring", "O0", one.spring))
+    if one.driven:
+        law = Fn("sine", (0.0, 0.0, 1.0, 0.0, one.begin[1]))
+        s.drives.append(Drive("motor", "O0", law, bool(rng.random() < 0.5)))
+    s.end = between(rng, 3, 10) / w
+    s.bodies = [
+        replace(b, velocity=x.slope(begin) * one.begin[1], spin=x.k * one.begin[1] * Z)
+        for b, x in zip(s.bodies, of, strict=True)
+    ]
+    d = Drawn(dressed(rng, s, 10 + 4 * w), by=ONE, truth=one.truth)
+    return d
+
+
+@family
+def taut(rng: Any) -> Drawn:
+    """Movable to first order only, or nearly so."""
+    kind = pick(rng, "two", "three", "crank", "nearly", "truss")
+    s = Scene(end=between(rng, 0.5, 2), flat=True)
+    gravity(rng, s)
+    if kind in ("two", "three"):
+        n = 2 if kind == "two" else 3
+        d = about(Z, between(rng, 0, 6.28)) @ X
+        at = [np.zeros(3)]
+        for _ in range(n):
+            at.append(at[-1] + between(rng, 0.3, 1) * d)
+    elif kind == "nearly":  # a chain of three, a little longer than its span
+        eps = decades(rng, 1e-3, 5e-2)
+        s.flat = True
+        a, b = rng.uniform(0.3, 1, 2)
+        sag = between(rng, 0.2, 0.6) * np.sqrt(eps)
+        at = [np.zeros(3), np.array([a, sag, 0]), np.array([a + b, 1.4 * sag, 0])]
+        at.append(np.array([a + b + between(rng, 0.3, 1), 0, 0]))
+        n = 3
+    elif kind == "truss":  # two bars at an angle: a rigid triangle
+        h = decades(rng, 1e-3, 1.0)
+        at = [np.zeros(3), np.array([between(rng, 0.3, 1), h, 0]), np.array([1.3, 0, 0])]
+        n = 2
+    else:  # a parallelogram with a third crank of another length
+        r, th = between(rng, 0.4, 0.8), between(rng, 0.5, 2.5)
+        e = r * np.array([np.cos(th), np.sin(th), 0])
+        at = np.cumsum(rng.uniform(0.3, 0.8, 3))[:, None] * X
+        carried(s, "coupler", 1.0, at[0] + e, at[2] + e)
+        for k in range(3):
+            f = 1.0 if k < 2 else pick(rng, between(rng, 0.4, 0.8), between(rng, 1.2, 1.6))
+            foot = at[k] + e - f * e
+            carried(s, f"c{k}", 1.0, foot, at[k] + e)
+            hinge(s, f"O{k}", "ground", f"c{k}", foot)
+            hinge(s, f"A{k}", f"c{k}", "coupler", at[k] + e)
+    if kind != "crank":
+        for k in range(n):
+            link(s, rng, f"b{k}", at[k], at[k + 1])
+        for k in range(n + 1):
+            i = "ground" if k == 0 else f"b{k - 1}"
+            hinge(s, f"j{k}", i, f"b{k}" if k < n else "ground", at[k])
+    by = RIGID
+    if kind in ("nearly", "truss"):
+        by = ENGINE
+        if kind == "nearly":
+            s.sensors.append(Sensor("x", "j0"))
+            consistent(s, rng, 0.3)
+    d = Drawn(dressed(rng, s, 60.0, tight=-9.0), by=by)
+    d.forces = in_plane(s)
+    return d
+
+
+@family
+def bars(rng: Any) -> Drawn:
+    """Flexible bars: against a tight run of another method on the same mesh."""
+    kind = pick(rng, "pendulum", "cantilever", "tip", "crank", "space", "twist")
+    flat = kind not in ("space", "twist")
+    s = Scene(end=between(rng, 0.2, 0.6), flat=flat)
+    gravity(rng, s)
+    d = np.array([np.cos(a := between(rng, 0, 6.28)), np.sin(a), 0]) if flat else direction(rng)
+    wave = decades(rng, 20, 150)  # m/s of waves along it
+    density, thick = between(rng, 500, 3000), between(rng, 0.02, 0.08)
+    bar = Bar("bar", np.zeros(3), d, int(rng.integers(2, 6)), density * wave**2, density, thick)
+    s.bodies.append(bar)  # type: ignore[arg-type]
+    mass = density * np.pi / 4 * thick**2
+    if kind in ("cantilever", "tip", "twist"):
+        s.joints.append(Joint("root", "fixed", "ground", "bar", np.zeros(3)))
+    elif kind == "space":
+        s.joints.append(Joint("root", "spherical", "ground", "bar", np.zeros(3)))
+    else:
+        hinge(s, "root", "ground", "bar", np.zeros(3), sensor=True)
+    if kind in ("tip", "twist"):
+        m = mass * between(rng, 0.3, 2)
+        centre = d * 1.1 if kind == "tip" else d + 0.2 * np.cross(d, direction(rng))
+        s.bodies.append(Body("disc", m, m * 0.02 * np.eye(3), centre))
+        s.joints.append(Joint("weld", "fixed", "bar", "disc", d.copy()))
+    if kind == "crank":
+        m = mass
+        s.bodies.append(Body("block", m, m * 0.02 * np.eye(3), d.copy()))
+        hinge(s, "pin", "bar", "block", d)
+        way = d / np.linalg.norm(d)
+        s.joints.append(Joint("guide", "prismatic", "ground", "block", d.copy(), np.cross(Z, way)))
+        s.joints = [j for j in s.joints if j.name != "root"]
+        s.sensors = [Sensor("x", "guide")]
+        q = -0.5 * d
+        s.forces.append(Spring("spring", "ground", "bar", q, np.zeros(3), mass * 200.0))
+    if rng.random() < 0.5:
+        f = Fn("sine", (0.0, mass * 5, between(rng, 5, 20), 0.0, 0.0))
+        side = np.cross(Z, d) if flat else direction(rng)
+        s.forces.append(Load("push", "bar", side, f, at=d.copy()))
+    stiff = 8 * bar.elements * wave
+    names = ("auto", "dop853", "radau", "generalized_alpha", "scipy:RK45")
+    s = dressed(rng, s, stiff, methods=names, tight=-7.0, loose=-3.0)
+    if kind != "twist" and not (flat and not in_plane(s)):
+        return Drawn(s, by=TIGHT_RUN)
+    # in space a weld to a body would hold the twist, and a hinge too: such bars have none
+    return Drawn(s, by=INVALID if kind in ("twist", "pendulum", "crank") else TIGHT_RUN)

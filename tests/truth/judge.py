@@ -271,6 +271,36 @@ def matched(
             worst.append((10.0, f"{name}: found at {time:.6g}, where there is none"))
 
 
+def against(scene: Scene, r: Ran, tight: Ran, v: Verdict) -> Verdict:
+    """Of a run beside a tight one: all channels but accelerations, each over the largest of it."""
+    v.exit, v.warnings = r.exit, r.warnings
+    if r.exit in (3, 4, 5):
+        v.verdict, v.why = REFUSED, r.reason
+        return v
+    if r.exit:
+        v.verdict, v.why = CRASH, r.reason
+        return v
+    if tight.exit or tight.rows.shape != r.rows.shape:
+        v.verdict, v.why = UNJUDGED, f"the tight run: exit {tight.exit}, {tight.reason}"
+        return v
+    bound = min(HALF, max(TIMES * v.tolerance, STATED * stated(r), LEAST))
+    L, T = size(scene) * scene.unit((1, 0, 0)), scene.unit((0, 0, 1))
+    worst = (0.0, "")
+    for name, place in r.place.items():
+        last = name.rsplit(".", 1)[-1]
+        least = {"position": L, "tip": L, "middle": L, "velocity": L / (T * scene.end)}.get(last)
+        if least is None and name not in {x.name for x in scene.sensors}:
+            continue
+        want, got = tight.rows[:, place], r.rows[:, place]
+        top = max(float(np.abs(want - want[0]).max()), least or 1.0)
+        error = float(np.abs(got - want).max()) / top
+        worst = max(worst, (error / bound, f"{name}: off by {error:.3g} of {top:.3g}"))
+    v.ratio, v.what = worst
+    if not v.ratio <= 1.0:
+        v.verdict = WRONG
+    return v
+
+
 def rigid(scene: Scene, r: Ran, v: Verdict) -> Verdict:
     """Of a scene that cannot move: refused with reason, or at rest with its joints closed."""
     v.exit, v.warnings = r.exit, r.warnings

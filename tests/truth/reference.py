@@ -14,6 +14,7 @@ from .scene import (
     MOMENT,
     NONE,
     SPEED,
+    Bar,
     Bushing,
     Drive,
     Event,
@@ -417,6 +418,7 @@ class Truth:
     steps: int = 0
     size: float = 1.0
     mass: float = 0.0  # of the lightest body
+    gravity: float = 0.0
 
 
 def begun(b: Builder, m: e.Arrays, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -647,7 +649,8 @@ def truth(scene: Scene, bound: float) -> Truth:
     """What is true of a scene, at its rows and, by what `bound` means in time, before and after."""
     rows = np.arange(scene.rows + 1) * scene.end / scene.rows
     other = Course(scene, rows, LOOSE, turn=0.19)
-    rough = Truth(rows, other.channels(), [], [], size=size(scene), mass=lightest(scene))
+    g = float(np.linalg.norm(scene.gravity))
+    rough = Truth(rows, other.channels(), [], [], size=size(scene), mass=lightest(scene), gravity=g)
     top = scales(rough)
     dt = min(0.3 * scene.end / scene.rows, bound * min(scene.end, rough.size / top["speed"]))
     dt = max(dt, 1e-9 * scene.end)
@@ -666,7 +669,7 @@ def truth(scene: Scene, bound: float) -> Truth:
     kept = rows if main.ended is None else rows[rows <= main.ended]
     t = Truth(kept, picked(kept), [], main.grazing, main.ended, steps=main.steps)
     t.early, t.late = picked(np.clip(kept - dt, 0, None)), picked(kept + dt)
-    t.size, t.mass = rough.size, rough.mass
+    t.size, t.mass, t.gravity = rough.size, rough.mass, g
     t.sure, t.growth = spread(t, other, 1.0), spread(t, apart, APART)
     t.crossings = list(listed(scene, main))
     return t
@@ -674,10 +677,13 @@ def truth(scene: Scene, bound: float) -> Truth:
 
 def size(scene: Scene) -> float:
     """Of the mechanism: the longest distance of two of its points, or how far its mass reaches."""
-    points = [b.at for b in scene.bodies] + [j.at for j in scene.joints]
+    bars = [b for b in scene.bodies if isinstance(b, Bar)]
+    bodies = [b for b in scene.bodies if not isinstance(b, Bar)]
+    points = [b.at for b in bodies] + [j.at for j in scene.joints]
+    points += [p for b in bars for p in (b.start, b.end)]
     at = np.array(points, float)
     far = float(np.linalg.norm(at[:, None] - at[None], axis=2).max())
-    reach = max(float(np.sqrt(np.trace(b.inertia) / 2 / b.mass)) for b in scene.bodies)
+    reach = max(float(np.sqrt(np.trace(b.inertia) / 2 / b.mass)) for b in bodies) if bodies else 0.0
     return max(far, reach)
 
 
@@ -710,8 +716,10 @@ def scales(t: Truth) -> dict[str, float]:
         if c.kind == "place" and c.vector:
             value = float(np.nanmax(np.abs(c.values - c.values[0]), initial=0.0))
         top[c.kind] = max(top.get(c.kind, 0.0), value)
-    size, mass = t.size, t.mass
+    size, mass, g = t.size, t.mass, t.gravity
     v = max(top.get("speed", 0.0), top.get("spin", 0.0) * size, 1e-9)
+    if v < 1e-6 * np.sqrt(g * size):  # at rest: what is next to nothing beside a fall
+        v = float(np.sqrt(g * size))
     gain = max(top.get("gain", 0.0), top.get("twist", 0.0) * size, v * v / size)
     force = max(top.get("force", 0.0), top.get("moment", 0.0) / size, mass * gain)
     return {
@@ -724,7 +732,7 @@ def scales(t: Truth) -> dict[str, float]:
         "twist": max(top.get("twist", 0.0), gain / size),
         "force": force,
         "moment": force * size,
-        "energy": max(top.get("energy", 0.0), 1e-12 * mass * v * v),
+        "energy": max(top.get("energy", 0.0), 1e-2 * mass * max(v * v, g * size)),
     }
 
 

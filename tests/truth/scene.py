@@ -99,6 +99,19 @@ class Body:
 
 
 @dataclass
+class Bar:
+    """A flexible bar, round."""
+
+    name: str
+    start: np.ndarray
+    end: np.ndarray
+    elements: int
+    E: float
+    density: float
+    diameter: float
+
+
+@dataclass
 class Joint:
     name: str
     type: str
@@ -356,12 +369,26 @@ class Writer:
             timed = key in ("max_step", "first_step")
             solver[key] = self.n(value, 0, 0, 1) if timed else value
         d["solver"] = solver
-        d["output"] = {"every": self.n(s.end, 0, 0, 1) / s.rows, "channels": ["*", "*.rotation"]}
+        turns = ["*.rotation"] if any(isinstance(b, Body) for b in s.bodies) else []
+        d["output"] = {"every": self.n(s.end, 0, 0, 1) / s.rows, "channels": ["*", *turns]}
         for key, value in s.extra.items():
             d[key] = {**d[key], **value} if isinstance(d.get(key), dict) else value
         return d
 
-    def body(self, b: Body) -> dict[str, Any]:
+    def bar(self, b: Bar) -> dict[str, Any]:
+        return {
+            "type": "ancf_cable",
+            "start": self.point(b.start),
+            "end": self.point(b.end),
+            "elements": b.elements,
+            "section": {"diameter": self.n(b.diameter, *LENGTH)},
+            "youngs_modulus": self.n(b.E, -1, 1, -2),
+            "density": self.n(b.density, -3, 1, 0),
+        }
+
+    def body(self, b: Any) -> dict[str, Any]:
+        if isinstance(b, Bar):
+            return self.bar(b)
         I = self.s.turned @ b.inertia @ self.s.turned.T * self.s.unit((2, 1, 0))
         six = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
         straight = max(abs(c) for c in six[3:]) < 1e-15 * max(six[:3])
