@@ -2,10 +2,10 @@
 
 wrong: ended well, with a number off by more than
 
-    bound = min(HALF, max(100 tolerance, 10 stated error)) growth
+    bound = min(WHOLE, max(100 tolerance, 10 stated error)) growth
 
 of its scale; growth is by how much more than EASY times a small change of the start has grown by
-then (1 at least), by the reference itself.  Nothing is judged where the bound is above HALF by its
+then (1 at least), by the reference itself.  Nothing is judged where the bound is above WHOLE by its
 growth: beyond the horizon of prediction.  Times of rows may be off by what their places may.
 Missed crossings are wrong where they are deeper than 10 tolerances.
 """
@@ -23,10 +23,10 @@ from trsim.solve.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
 from trsim.solve.simulate import simulate
 from trsim.spec.load import loads
 
-from .reference import Channel, Crossing, Truth, scales, size
+from .reference import Channel, Crossing, Truth, size
 from .scene import Event, Limit, Scene, Section, Wall
 
-EASY, HALF = 20.0, 0.5
+EASY, WHOLE = 20.0, 1.0
 TIMES, STATED, DEPTH = 100.0, 10.0, 10.0
 SURE = 3.0  # times how far the reference is sure, beside its bound
 RIGHT, WRONG, REFUSED, TOLD = "right", "WRONG", "refused", "told"
@@ -139,15 +139,22 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
         return v
     tolerance = v.tolerance
     least = max(TIMES * tolerance, STATED * stated(r), LEAST)
+    if STATED * stated(r) >= WHOLE:
+        v.verdict, v.why = UNJUDGED, f"says of itself that it is off by {stated(r):.1g}"
+        return v
     easy = np.maximum(1.0, t.growth / EASY)
-    bound = np.minimum(HALF, least) * easy + SURE * t.sure
-    use = (bound <= HALF) | (easy == 1.0) & (t.sure < 0.01)
+    bound = np.minimum(WHOLE, least) * easy + SURE * t.sure
+    use = (bound <= WHOLE) | (easy == 1.0) & (t.sure < 0.01)
     use[:1] = True
     use = np.logical_and.accumulate(use)
     v.reach = float(np.mean(use))
     v.truth = f"{t.steps} steps, sure to {t.sure[use][-1]:.1e}, growth {t.growth[use][-1]:.3g}"
     worst: list[tuple[float, str]] = [(0.0, "")]
-    top = scales(t)
+    top = t.top
+    if t.ended is not None and use.all():
+        off = abs(r.time / scene.unit((0, 0, 1)) - t.ended)
+        allowed = float(bound[-1]) * t.size / top["speed"] + 1e-9 * scene.end
+        worst.append((off / allowed, f"ended at {r.time:.6g}, {off:.3g} from {t.ended:.6g}"))
     k = np.arange(len(t.times))[use]
     missing = [i for i in k if not len(near(r, t.times[i] * scene.unit((0, 0, 1))))]
     if missing:
@@ -185,9 +192,11 @@ def compared(
             got = got - scene.moved
     elif c.kind == "matrix":
         got = np.einsum("ji,njk,kl->nil", Q, got.reshape(-1, 3, 3), Q).reshape(-1, 9)
-    want, *about = (x[name].values[k] for x in (t.channels, t.early, t.late))
-    soft = np.maximum(np.abs(about[0] - want), np.abs(about[1] - want))
-    allowed = bound[k, None] * top[c.kind] + np.where(np.isfinite(soft), soft, 0.0)
+    want = c.values[k]
+    soft = np.zeros_like(want)
+    for one in t.about:
+        soft = np.fmax(soft, np.abs(one[name].values[k] - want))
+    allowed = bound[k, None] * top[c.kind] + soft
     error = np.abs(got - want)
     ratio = np.where(np.isfinite(got), error / np.maximum(allowed, 1e-300), np.inf)
     ratio = np.where(np.isfinite(want), ratio, 0.0)
@@ -267,7 +276,7 @@ def matched(
         if time > slack:
             continue
         b = float(np.interp(time, t.times, bound))
-        if all(abs(time - x.time) > 0.02 * t.times[-1] for x in want) and not t.grazing:
+        if all(abs(time - x.time) > 0.02 * t.end for x in want) and not t.grazing:
             worst.append((10.0, f"{name}: found at {time:.6g}, where there is none"))
 
 
@@ -283,7 +292,7 @@ def against(scene: Scene, r: Ran, tight: Ran, v: Verdict) -> Verdict:
     if tight.exit or tight.rows.shape != r.rows.shape:
         v.verdict, v.why = UNJUDGED, f"the tight run: exit {tight.exit}, {tight.reason}"
         return v
-    bound = min(HALF, max(TIMES * v.tolerance, STATED * stated(r), LEAST))
+    bound = min(WHOLE, max(TIMES * v.tolerance, STATED * stated(r), LEAST))
     L, T = size(scene) * scene.unit((1, 0, 0)), scene.unit((0, 0, 1))
     worst = (0.0, "")
     for name, place in r.place.items():

@@ -103,8 +103,8 @@ class OneAngle:
     def truth(self, s: Scene) -> Truth:
         rows = np.arange(s.rows + 1) * s.end / s.rows
         y = self.run(rows, 1e-12)
-        t = Truth(rows, self.channels(s, y), [], [], size=size(s), mass=lightest(s), steps=0)
-        top = scales(t)
+        t = Truth(rows, self.channels(s, y), [], [], size=size(s), mass=lightest(s), end=s.end)
+        top = t.top = scales(t)
         away = np.zeros(len(rows))
         sure = np.zeros(len(rows))
         for other, out, by in (
@@ -116,5 +116,4 @@ class OneAngle:
                     d = np.abs(c.values - t.channels[name].values).max(axis=1) / top[c.kind] / by
                     np.maximum(out, d, out=out)
         t.growth, t.sure = np.maximum.accumulate(away), np.maximum.accumulate(sure)
-        t.early = t.late = t.channels
         return t

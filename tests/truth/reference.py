@@ -35,6 +35,7 @@ KINDS = {
     "box": e.BOX, "tent": e.TENT, "bell": e.BELL, "table": e.TABLE, "pulses": e.PULSES,
 }  # fmt: skip
 TIGHT, LOOSE = 1e-12, 3e-11
+PARTS = (1.0, 0.4, 0.12)  # of the time a row may be off by
 APART = 1e-7  # perturbation of the second run
 MARGIN = 1e-3  # of 1: nearer turning points are told as grazing
 
@@ -413,12 +414,13 @@ class Truth:
     ended: float | None = None
     sure: np.ndarray = field(default_factory=lambda: np.zeros(0))  # at each row, of the scales
     growth: np.ndarray = field(default_factory=lambda: np.ones(0))  # of a small change at the start
-    early: dict[str, Channel] = field(default_factory=dict)
-    late: dict[str, Channel] = field(default_factory=dict)
+    about: list[dict[str, Channel]] = field(default_factory=list)  # a little before and after
     steps: int = 0
     size: float = 1.0
     mass: float = 0.0  # of the lightest body
     gravity: float = 0.0
+    end: float = 1.0
+    top: dict[str, float] = field(default_factory=dict)  # of each kind of channel, see scales
 
 
 def begun(b: Builder, m: e.Arrays, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -654,7 +656,9 @@ def truth(scene: Scene, bound: float) -> Truth:
     top = scales(rough)
     dt = min(0.3 * scene.end / scene.rows, bound * min(scene.end, rough.size / top["speed"]))
     dt = max(dt, 1e-9 * scene.end)
-    times = np.unique(np.concatenate([rows, np.clip(rows - dt, 0, None), rows[:-1] + dt]))
+    shifts = [sign * part * dt for part in PARTS for sign in (-1, 1)]
+    every = [np.clip(rows + x, 0, scene.end) for x in shifts]
+    times = np.unique(np.concatenate([rows, *every]))
     main = Course(scene, times, TIGHT)
     apart = Course(
         scene, rows, LOOSE, apart=APART, speeds=np.repeat([top["speed"], top["spin"]], 3)
@@ -668,8 +672,9 @@ def truth(scene: Scene, bound: float) -> Truth:
 
     kept = rows if main.ended is None else rows[rows <= main.ended]
     t = Truth(kept, picked(kept), [], main.grazing, main.ended, steps=main.steps)
-    t.early, t.late = picked(np.clip(kept - dt, 0, None)), picked(kept + dt)
-    t.size, t.mass, t.gravity = rough.size, rough.mass, g
+    t.about = [picked(np.clip(kept + x, 0, scene.end)) for x in shifts]
+    t.size, t.mass, t.gravity, t.end = rough.size, rough.mass, g, scene.end
+    t.top = scales(replace(t, channels=all_of))
     t.sure, t.growth = spread(t, other, 1.0), spread(t, apart, APART)
     t.crossings = list(listed(scene, main))
     return t
@@ -694,7 +699,7 @@ def lightest(scene: Scene) -> float:
 def spread(t: Truth, other: Course, by: float) -> np.ndarray:
     """How far another run is from the truth at every row so far, over scales, over `by`."""
     channels = other.channels()
-    sizes = scales(t)
+    sizes = t.top
     n = len(t.times)
     worst = np.zeros(n)
     for name, c in t.channels.items():

@@ -12,6 +12,7 @@ from .judge import (
     CRASH,
     LEAST,
     RIGHT,
+    STATED,
     TIMES,
     TOLD,
     UNJUDGED,
@@ -21,6 +22,7 @@ from .judge import (
     judged,
     ran,
     rigid,
+    stated,
 )
 from .reference import Truth, Unfit, truth
 from .scene import Scene
@@ -34,12 +36,12 @@ def made(family: str, seed: int) -> Drawn:
     return drawn
 
 
-def true(drawn: Drawn, tolerance: float) -> Truth:
-    """What is true of it."""
+def true(drawn: Drawn, bound: float) -> Truth:
+    """What is true of it, to be compared to a bound."""
     if drawn.truth is not None:
         t: Truth = drawn.truth(drawn.scene)
     else:
-        t = truth(drawn.scene, min(0.1, max(TIMES * tolerance, LEAST)))
+        t = truth(drawn.scene, min(0.1, bound))
     if not drawn.forces:
         names = {j.name for j in drawn.scene.joints}
         t.channels = {
@@ -55,15 +57,15 @@ def verdict(family: str, seed: int) -> Verdict:
     s = drawn.scene
     v = Verdict(family, seed, RIGHT, s.method, s.tolerance, by=drawn.by)
     begun = time.process_time()
+    r = ran(s.text())
+    middle = time.process_time()
     t = None
     if drawn.by in (ENGINE, ONE):
         try:
-            t = true(drawn, v.tolerance)
+            t = true(drawn, max(TIMES * v.tolerance, STATED * stated(r), LEAST))
         except Unfit as error:
             v.verdict, v.why = UNJUDGED, str(error)
-    middle = time.process_time()
-    r = ran(s.text())
-    v.cpu = (middle - begun, time.process_time() - middle)
+    v.cpu = (time.process_time() - middle, middle - begun)
     if drawn.by == INVALID:
         v.exit, v.why = r.exit, r.reason
         v.verdict = TOLD if r.exit in (3, 4, 5) else WRONG if r.exit == 0 else CRASH
@@ -72,7 +74,7 @@ def verdict(family: str, seed: int) -> Verdict:
         return v
     if drawn.by == TIGHT_RUN:
         tight = ran(tighter(s).text()) if r.exit == 0 else r
-        v.cpu = (time.process_time() - begun - v.cpu[1], v.cpu[1])
+        v.cpu = (time.process_time() - middle, middle - begun)
         return against(s, r, tight, v)
     if drawn.by == RIGID:
         return rigid(s, r, v)
