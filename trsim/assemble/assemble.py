@@ -48,6 +48,7 @@ from trsim.assemble.tables import (
     watched_rows,
 )
 from trsim.assemble.torsion import check_torsion
+from trsim.assemble.travel import travels
 from trsim.elements.contract import (
     N_BOOK,
 )
@@ -298,6 +299,7 @@ def build(
         **watched(at.switches, size),
         **features(at, instances),
         steep=steep(at, instances),
+        **travels(instances, contacts, at.switches),
         section=np.zeros((0, 5), np.int64),
         section_at=np.zeros((0, 2)),
         size=size,

@@ -157,7 +157,7 @@ def pack(name, spec, at):
         *friction,
     )
     contact = Contact(light, exponent, spec.clearance, law.slowest_impact)
-    return Row((i, j, -1, state, code), par, contact, states=(state,))
+    return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
 
 
 @kernel

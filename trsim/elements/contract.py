@@ -125,6 +125,8 @@ class Row:
     states: tuple[int, ...] = ()  # entries of z it reads or changes
     limits: tuple[Limit, ...] = ()
     turns: bool = False  # it acts on an angle, or about an axis: so do units that depend on it
+    travel: str = ""  # what its gap or its coordinate is: angle, stroke, distance; solve/spread.py
+    kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
 
 
 class Reach(NamedTuple):

@@ -38,7 +38,7 @@ def pack(name, spec, at):
     axis = perpendicular(spec.axis)[2]
     places = (*at.local(i, spec.at), *at.local(j, spec.at))
     par = (*places, *at.axes(i, axis), float(spec.sign), spec.at_start)
-    return Row((i, j, at.sensor(name)), par)
+    return Row((i, j, at.sensor(name)), par, travel="stroke")
 
 
 @kernel

@@ -123,7 +123,7 @@ def pack(name, spec, at):
         j = at.body(spec.point.body, "point", "body", near=spec.point.at)
         n = at.axes(i, direction(spec.wall.normal))
         places = (*at.local(i, spec.wall.at), *at.local(j, spec.point.at))
-        return Row((i, j, -1, ON_WALL), (*places, *n, *law, 0.0, 0.0), contact)
+        return Row((i, j, -1, ON_WALL), (*places, *n, *law, 0.0, 0.0), contact, travel="stroke")
     x = at.coordinate(spec.joint)
     for key, turning, sliding in UNITS:
         at.check_unit(x.kind, turning, sliding, "forces", name, key)
@@ -131,7 +131,8 @@ def pack(name, spec, at):
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
     par = (*x.s_i, *x.s_j, *x.axis_i, *law, low, high)
-    return Row((x.i, x.j, x.entry, kind), par, contact, turns=kind == ON_ANGLE)
+    con, turns = (x.i, x.j, x.entry, kind), kind == ON_ANGLE
+    return Row(con, par, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 
 
 @helper

@@ -40,6 +40,7 @@ def pack(name, spec, at):
             spec.at_start,
         ),
         turns=source.kind == "angle",
+        travel=source.kind,
     )
 
 

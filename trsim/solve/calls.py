@@ -29,9 +29,21 @@ SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, f8, f8, f8, f8, i8, i8)
 
 # what looks at redundant rows, for runs that may have some  scene record buffers setting t y
 LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1)
+# what finds the first event of a step, for runs that can have some       scene  record  buffers
+#                                        setting method t h built
+SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
+
+# a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
+# of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
+# the addresses of what locates points of sections, of what goes on behind corners of functions, of
+# what looks at redundant rows and of what finds events, or 0; how many rows of K hold derivatives
+# at the stages of a step whose dense output is dear, or 0; the degree of that output
+STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
+SECTIONS_AT, MEET_AT, LOOK_AT, SEARCH_AT, STAGES_AT, DEGREE_AT, METHOD_WIDTH = range(7, 14)
 
 call_step = caller(STEP)
 call_dense = caller(DENSE)
 call_interpolate = caller(INTERPOLATE)
 call_sections = caller(SECTIONS)
 call_look = caller(LOOK)
+call_search = caller(SEARCH)

@@ -11,14 +11,23 @@ from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import (
+    DENSE_AT,
+    IMPLICIT_AT,
+    INTERPOLATE_AT,
+    LAST_AT,
+    LOOK_AT,
+    MEET_AT,
     NO_STEP,
-    call_dense,
+    SEARCH_AT,
+    SECTIONS_AT,
+    STEP_AT,
     call_interpolate,
     call_look,
+    call_search,
     call_sections,
     call_step,
 )
-from trsim.solve.events import any_suspicious, first_event, settled
+from trsim.solve.dense_output import build
 from trsim.solve.features import call_meet
 from trsim.solve.land import land
 from trsim.solve.norm import grow
@@ -58,17 +67,11 @@ from trsim.solve.record import (
     WORST_PHI_DOT,
     T,
 )
-from trsim.solve.watch import crossing, may_cross, take_sides
+from trsim.solve.watch import take_sides
 from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED = 0, 1, 2, 3, 4, 5
-# a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
-# of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
-# and the addresses of what locates points of sections, of what goes on behind corners of functions
-# and of what looks at redundant rows, or 0
-STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, MEET_AT, LOOK_AT, METHOD_WIDTH = 7, 8, 9, 10
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
@@ -101,13 +104,12 @@ def complete(s, r, b, setting, method, h, built):
         r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
         return STRAYED
     event = False
-    if (setting[LOCATE] > 0.0 or s.watch.shape[0] > 0) and to_search(s, r, b, h):
-        if built == 0:
-            build(s, r, b, method, t, h)
-            built = 1
-        theta = earliest(s, r, b, t, h, method[INTERPOLATE_AT])
+    if method[SEARCH_AT] > 0:
+        before = r.count[DENSE_BUILT]
+        theta = call_search(method[SEARCH_AT], s, r, b, setting, method, t, h, built)
+        built = 1 if r.count[DENSE_BUILT] > before else built
         event = theta <= 1.0
-        if event and theta < 1.0:
+        if theta < 1.0:
             shorter = exact(s, r, b, setting, method, t, h, theta)
             if shorter > 0.0:
                 h, built = shorter, 0
@@ -117,9 +119,6 @@ def complete(s, r, b, setting, method, h, built):
                 copy_to(b.y1, b.y2)
                 t1 = reached(setting, t + theta * h)
             projected = land(s, r, b, t1, b.y1, b.K[last])
-        else:
-            # the search left other poses in the workspace
-            evaluate(s, t1, b.y1, b.K[last])
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     copy_to(b.out, s.out)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1) > 0:
@@ -127,7 +126,7 @@ def complete(s, r, b, setting, method, h, built):
     near = near_peak(s, r, b, t1, t1 - t, last)
     inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
     if built == 0 and (near or inside or method[IMPLICIT_AT] > 0):
-        build(s, r, b, method, t, h)
+        build(s, r, b, method[DENSE_AT], t, h)
         built = 1
     if near or due(r, setting, t1):
         if not rows_until(s, r, b, setting, method, t, h, t1, projected):
@@ -172,33 +171,6 @@ def reached(setting, t):
     """t, or the end of the run where no step would be left before it."""
     left = setting[T_END] - t
     return t if left > 2.0 * SMALLEST * 2.2e-16 * setting[T_END] else setting[T_END]
-
-
-@internal
-def to_search(s, r, b, h):
-    """Whether something may happen inside the step."""
-    for k in range(s.watch.shape[0]):
-        if may_cross(s, r, b, k, h):
-            return True
-    return any_suspicious(s, r, b, h)
-
-
-@internal
-def earliest(s, r, b, t, h, interpolate):
-    """Fill b.root for contacts and user events; the first, corners of laws included."""
-    first = first_event(s, r, b, t, h, interpolate)
-    for k in range(s.watch.shape[0]):
-        root = crossing(s, r, b, t, h, k, interpolate)
-        b.root[s.contact.size + k] = root
-        first = min(first, root)
-    return settled(s, r, b, t, h, first, interpolate)
-
-
-@internal
-def build(s, r, b, method, t, h):
-    """The dense output of the step, into b.P."""
-    call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
-    r.count[DENSE_BUILT] += 1
 
 
 @internal

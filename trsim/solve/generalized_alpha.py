@@ -42,6 +42,7 @@ ESTIMATE = 3  # the error estimate falls with h^3
 STAGES = 7
 LAST = 2
 DENSE_ROWS = hermite.ROWS + 2
+DENSE_DEGREE = 3
 ADAPTIVE, IMPLICIT = True, True
 
 RADIUS = 0.8

@@ -12,13 +12,9 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
 from trsim.solve.auto import choose
-from trsim.solve.calls import call_step
+from trsim.solve.calls import COMPLETE_AT, ESTIMATE_AT, IMPLICIT_AT, STEP_AT, call_step
 from trsim.solve.complete import (
-    COMPLETE_AT,
-    ESTIMATE_AT,
-    IMPLICIT_AT,
     SMALLEST,
-    STEP_AT,
     STRAYED,
     WITH_CORNER,
     WITH_EVENT,
@@ -81,16 +77,18 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
-def method_table(method, sections=0, meet=0, look=0):
+def method_table(method, sections=0, meet=0, look=0, search=0):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
     so do `sections`, the address of what locates points, `meet`, of what goes on behind the
-    corners of functions, and `look`, of what looks at redundant rows; 0 where there are none.
+    corners of functions, `look`, of what looks at redundant rows, and `search`, of what finds
+    events; 0 where there are none.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
-    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT))
-    return (*called, complete.address(), *about, sections, meet, look)
+    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look, search)
+    stages = getattr(method, "DEAR", 0)
+    return (*called, complete.address(), *about, stages, method.DENSE_DEGREE)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))

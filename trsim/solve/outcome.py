@@ -124,6 +124,15 @@ def meets(mechanism: Mechanism) -> int:
     return int(meet.address())
 
 
+def searcher(mechanism: Mechanism, setting: Array) -> int:
+    """The address of what finds events inside a step; 0 where there can be none."""
+    if setting[rec.LOCATE] == 0.0 and not len(mechanism.model.watch):
+        return 0
+    from trsim.solve.search import search  # compiled where it is needed
+
+    return int(search.address())
+
+
 def most_points(mechanism: Mechanism, setting: Array) -> int:
     """How many points of sections one step may add; a step spans a buffer of rows at most.
 

@@ -49,6 +49,7 @@ ESTIMATE = 4  # the error estimate falls with h^4
 STAGES = 14
 LAST = 2
 DENSE_ROWS = 4
+DENSE_DEGREE = 3
 ADAPTIVE, IMPLICIT = True, True
 
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch

@@ -77,6 +77,7 @@ QUICK_FIXED, KAPPA_FIXED = 0.06, 0.03
 UNKNOWN = 1e-2  # error of a first step, as a part of that allowed
 KEPT = radau.DENSE_ROWS  # rows of the dense output from which on lam of the stages is kept
 DENSE_ROWS = KEPT + 3
+DENSE_DEGREE = 3
 
 #                   scene  record  buffers  setting t h
 STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, A1, f8, f8)

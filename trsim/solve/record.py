@@ -68,8 +68,10 @@ from trsim.elements.scene import Model
     OPEN_INDEX,
     JOLTS,  # jumps of the rate of a rigid drive
     TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
+    UNPROVED,  # parts of steps in which the search for events gave up
+    DEGREE,  # of the polynomials in `net`
     N_COUNT,
-) = range(29)
+) = range(31)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -174,6 +176,8 @@ class Buffers(Packed):
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
+    net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
+    curve: A2  # (14, 9) those of two frames on a part of it
 
 
 RECORD, BUFFERS = Record.kind, Buffers.kind
@@ -205,6 +209,8 @@ def fresh_buffers(
         root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
+        net=np.zeros((9, model.n_q if contacts + watched else 0)),
+        curve=np.zeros((14, 9)),
     )
 
 

@@ -23,6 +23,7 @@ ORDER = 4
 STAGES = 5
 LAST = 4
 DENSE_ROWS = hermite.ROWS
+DENSE_DEGREE = 3
 ESTIMATE = 4  # of no use: the step is fixed
 ADAPTIVE, IMPLICIT = False, False
 

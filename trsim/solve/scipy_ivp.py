@@ -37,6 +37,7 @@ from trsim.solve.outcome import (
     most_points,
     new_record,
     runaway,
+    searcher,
     settings,
     statistics,
 )
@@ -85,7 +86,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     )  # fmt: skip
     called = (0, 0, interpolate.address(), complete.address())
     about = (locator(mechanism), meets(mechanism), looked_at(mechanism))
-    method = np.array((*called, LAST, 1, 0, *about), np.int64)
+    found_by = (searcher(mechanism, setting), 0, NODES.size - 1)
+    method = np.array((*called, LAST, 1, 0, *about, *found_by), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)

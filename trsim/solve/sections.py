@@ -34,8 +34,14 @@ from trsim.assemble.sections import (
 )
 from trsim.elements.contract import FLIGHT, PHASE, compiled
 from trsim.elements.vectors import internal
-from trsim.solve.calls import SECTIONS, call_dense, call_interpolate
-from trsim.solve.complete import DENSE_AT, INTERPOLATE_AT, LAST_AT
+from trsim.solve.calls import (
+    DENSE_AT,
+    INTERPOLATE_AT,
+    LAST_AT,
+    SECTIONS,
+    call_dense,
+    call_interpolate,
+)
 from trsim.solve.events import NONE, SAME
 from trsim.solve.illinois import between, narrowed
 from trsim.solve.record import (

@@ -14,8 +14,8 @@ from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
 from trsim.solve.blame import why
+from trsim.solve.calls import METHOD_WIDTH
 from trsim.solve.checkpoint import State, begun_at, put_back, state
-from trsim.solve.complete import METHOD_WIDTH
 from trsim.solve.features import put_back as put_back_held
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.openings import looked_at, opened
@@ -31,6 +31,7 @@ from trsim.solve.outcome import (
     most_points,
     new_record,
     runaway,
+    searcher,
     settings,
     statistics,
 )
@@ -144,6 +145,7 @@ def compiled(
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
     called = locator(mechanism), meets(mechanism), looked_at(mechanism)
+    called = (*called, searcher(mechanism, setting))
     methods[0] = method_table(used[0], *called)
     clock0 = time.process_time()
     if checkpoint:

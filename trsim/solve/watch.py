@@ -11,14 +11,16 @@ In the tables of gaps and of roots the watched sensors follow the contacts.
 
 from trsim.assemble.equations import call_one
 from trsim.assemble.switches import LIMITS
+from trsim.assemble.travel import CLOCK
 from trsim.elements.vectors import internal
-from trsim.solve.events import NONE, SAME, bracketed_root, inside, turning_value
+from trsim.solve.events import NONE, SAME, fall, inside, leaves, stays
 from trsim.solve.record import EVENTS, FIRED, JUST_NOW, SIDE, TIMES
+from trsim.solve.spread import spread_at_stages
 
 BELOW, AT, ABOVE = -1.0, 0.0, 1.0
 ENTRY, DIRECTION, MOST = range(3)  # columns of s.watch
 VALUE, BAND = range(2)  # of s.watch_at
-HALVINGS = 60  # of a step, in the search for a point that has left the value
+PASSED = 1000  # crossings in the other direction that one step may have
 
 
 @internal
@@ -62,56 +64,68 @@ def starting_side(r, c, k):
 
 
 @internal
-def may_cross(s, r, b, k, h):
-    """Whether the step must be searched for event k: g is on the other side, or turned inside."""
+def may_cross(s, r, b, k, h, stages):
+    """Whether the step must be searched for event k, as far as is known without looking."""
     c = s.contact.size + k
     if r.watch[k, TIMES] >= s.watch[k, MOST]:
         return False
-    side, g1 = starting_side(r, c, k), b.gap1[c, 0]
-    if side * g1 < 0.0 or (g1 == 0.0 and side * b.gap1[c, 1] < 0.0):
-        return r.watch[k, SIDE] != AT or abs(g1) > s.watch_at[k, BAND]
-    g0, r0, r1 = -side * r.gap[c, 0], -side * r.gap[c, 1], -side * b.gap1[c, 1]
-    return r0 > 0.0 > r1 and turning_value(g0, r0, -side * g1, r1, h) > 0.0
+    side, band = starting_side(r, c, k), s.watch_at[k, BAND]
+    f0, r0, f1, r1 = (
+        side * r.gap[c, 0],
+        side * r.gap[c, 1],
+        side * b.gap1[c, 0],
+        side * b.gap1[c, 1],
+    )
+    if f1 < 0.0 or (f1 == 0.0 and r1 < 0.0):
+        return r.watch[k, SIDE] != AT or -f1 > band
+    if s.travel[c, 0] == CLOCK:
+        return False
+    if stages == 0:
+        return True
+    L, M = spread_at_stages(s, r, b, c, side, h)
+    return not stays(f0 + band, r0, f1 + band, r1, L, M, h, s.kink[c])
 
 
 @internal
-def crossing(s, r, b, t, h, k, interpolate):
-    """Where event k first happens in the step, as theta in (0, 1]; NONE if it does not."""
-    if not may_cross(s, r, b, k, h):
-        return NONE
-    c, P, y, scratch = s.contact.size + k, b.P, r.y, b.y2
-    side, want = starting_side(r, c, k), s.watch[k, DIRECTION]
-    low, high, away = 0.0, 1.0, want == 0 or want == -side
-    g1, r1 = b.gap1[c, 0], b.gap1[c, 1]
-    if side * g1 > 0.0 or (g1 == 0.0 and side * r1 >= 0.0):
-        # turned inside: through the value and back, or not as far
-        turn = bracketed_root(s, P, y, t, h, c, scratch, interpolate, 0.0, 1.0, 1, r1 > 0.0)
-        reached = inside(s, P, y, t, h, turn, c, scratch, interpolate)[0]
-        if side * reached >= -s.watch_at[k, BAND]:
-            return NONE
-        if not away:
-            return bracketed_root(s, P, y, t, h, c, scratch, interpolate, turn, 1.0, 0, side > 0.0)
-        high = turn
-    if not away:
-        return NONE
-    if g1 == 0.0:
-        return 1.0
-    if side * r.gap[c, 0] <= 0.0:
-        low = left_value(s, r, b, t, h, c, side, high, interpolate)
-        if low == 0.0:
-            return NONE if r.watch[k, SIDE] == AT else SAME
-    return bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, high, 0, side < 0.0)
+def crossing(s, r, b, setting, t, h, k, end, interpolate):
+    """Where event k first happens in the step, as theta in (0, end]; NONE if it does not.
 
-
-@internal
-def left_value(s, r, b, t, h, c, side, high, interpolate):
-    """A place of a step that begins at the value where g lies on its side; 0 if there is none."""
-    part = high
-    for _ in range(HALVINGS):
-        part *= 0.5
-        if side * inside(s, b.P, r.y, t, h, part, c, b.y2, interpolate)[0] > 0.0:
-            return part
-    return 0.0
+    A crossing in the direction that is not asked for is passed, and the next one looked for.
+    """
+    if r.watch[k, TIMES] >= s.watch[k, MOST]:
+        return NONE
+    c, want, band = s.contact.size + k, s.watch[k, DIRECTION], s.watch_at[k, BAND]
+    side, low = starting_side(r, c, k), 0.0
+    g, rate = r.gap[c, 0], r.gap[c, 1]
+    for passed in range(PASSED):
+        if side * g <= 0.0:
+            at = r.watch[k, SIDE] == AT or passed > 0
+            left = -1.0
+            if at or side * rate >= 0.0:
+                left = leaves(s, r, b, setting, t, h, c, side, band if at else 0.0, low, side * g,
+                              side * rate, end, interpolate)  # fmt: skip
+            if left < 0.0:
+                # on the value, or inside its band, and on to the other side
+                ahead, _ = inside(s, b.P, r.y, t, h, end, c, b.y2, interpolate)
+                if at or (side * rate >= 0.0 and side * ahead >= -band):
+                    return NONE
+                if want == 0 or want == -side:
+                    return SAME
+                side, g = -side, 0.0
+                continue
+            low = left
+            g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        if low >= end:
+            break
+        root = fall(s, r, b, setting, t, h, c, side, band, low, side * g, side * rate, end,
+                    interpolate)  # fmt: skip
+        if root > end or want == 0 or want == -side:
+            return root
+        side, low = -side, root
+        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        if side * g > 0.0:
+            g = 0.0  # on the value, whatever rounding says
+    return NONE
 
 
 @internal

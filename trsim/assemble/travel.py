@@ -1,0 +1,43 @@
+"""What kind of quantity each gap and each watched value is, so that its way in a step is bounded.
+
+Rows follow those of the tables of gaps: contacts, then user events.
+"""
+
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from trsim.assemble.mechanism import Instance
+from trsim.assemble.switches import LIMITS, TIME, Switches
+
+# UNKNOWN: what depends on more than places has no bound; CLOCK: the time
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE = range(5)
+KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE}
+
+
+def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:
+    """travel and kink of the model.
+
+    travel  (n_contacts + n_w, 2) the kind, and the instance whose frames and points it lies between
+    kink    (n_contacts + n_w) |gap| from which on it may be on another branch
+    """
+    owner = {i.name: e for e, i in enumerate(instances) if i.section == "sensors"}
+    found = [of_instance(instances, e) for e in contacts]
+    for event in switches.events:
+        if event.entry == TIME:
+            found.append((CLOCK, -1, inf))
+        elif event.entry <= LIMITS:
+            found.append((UNKNOWN, LIMITS - event.entry, inf))
+        else:
+            found.append(of_instance(instances, owner[event.when]))
+    return {
+        "travel": np.array([row[:2] for row in found], np.int64).reshape(-1, 2),
+        "kink": np.array([row[2] for row in found], float),
+    }
+
+
+def of_instance(instances: list[Instance], e: int) -> tuple[int, int, float]:
+    """Kind, instance and kink of the gap or coordinate of an instance."""
+    row = instances[e].row
+    return KINDS[row.travel], e, row.kink
