@@ -154,8 +154,8 @@ def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate)
 def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate):
     """A place behind `low`, where f is about zero, at which it is above `beyond`; -1 for none."""
     at, rate = low, r0
-    for _ in range(2):
-        if rate > 0.0:
+    for trial in range(2):
+        if rate > 0.0 or trial == 0:
             reach, M = end, inf
             for _ in range(HALVINGS):
                 _, M = spread(s, r, b, c, sign, at, reach, h)
@@ -166,11 +166,13 @@ def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolat
             place = min(reach, at + rate / (M * h)) if M > 0.0 else reach
             if M < 0.0:
                 place = at + PART**2 * (end - at)
+            place = max(place, at + FINEST * (end - at))
             for _ in range(HALVINGS):
                 g, _ = inside(s, b.P, r.y, t, h, place, c, b.y2, interpolate)
                 if sign * g > beyond:
                     return place
-                if beyond == 0.0 or place >= end:
+                # no deeper than rounding has it, it is still on its way
+                if place >= end or sign * g < -max(8.0 * abs(f0), ROUNDING * s.size):
                     break
                 place = min(end, at + 2.0 * (place - at))
         if at > low or f0 >= 0.0:
@@ -191,8 +193,6 @@ def change(s, r, b, setting, t, h, c, end, interpolate):
     low, f0, r0 = 0.0, sign * r.gap[c, 0], sign * r.gap[c, 1]
     if f0 <= 0.0:
         # it begins on the event just handled, and first moves away
-        if r0 <= 0.0:
-            return 0.0
         low = leaves(s, r, b, setting, t, h, c, sign, 0.0, 0.0, f0, r0, end, interpolate)
         if low < 0.0:
             return 0.0
@@ -212,7 +212,7 @@ def may_change(s, r, b, h, c, stages):
     sign = -1.0 if phase == FLIGHT else 1.0
     f0, r0 = sign * r.gap[c, 0], sign * r.gap[c, 1]
     f1, r1 = sign * b.gap1[c, 0], sign * b.gap1[c, 1]
-    if f1 <= 0.0 or stages == 0 or (f0 <= 0.0 and r0 <= 0.0):
+    if f1 <= 0.0 or stages == 0:
         return True
     L, M = spread_at_stages(s, r, b, c, sign, h)
     return not stays(max(f0, 0.0), r0, f1, r1, L, M, h, s.kink[c])
