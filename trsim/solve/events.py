@@ -151,6 +151,12 @@ def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate)
 
 
 @internal
+def noise(s, f0):
+    """How far below zero a gap is that has just been brought to it and left at f0."""
+    return max(8.0 * abs(f0), ROUNDING * s.size)
+
+
+@internal
 def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate):
     """A place behind `low`, where f is about zero, at which it is above `beyond`; -1 for none."""
     at, rate = low, r0
@@ -172,7 +178,7 @@ def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolat
                 if sign * g > beyond:
                     return place
                 # no deeper than rounding has it, it is still on its way
-                if place >= end or sign * g < -max(8.0 * abs(f0), ROUNDING * s.size):
+                if place >= end or sign * g < -noise(s, f0):
                     break
                 place = min(end, at + 2.0 * (place - at))
         if at > low or f0 >= 0.0:
@@ -195,7 +201,9 @@ def change(s, r, b, setting, t, h, c, end, interpolate):
         # it begins on the event just handled, and first moves away
         low = leaves(s, r, b, setting, t, h, c, sign, 0.0, 0.0, f0, r0, end, interpolate)
         if low < 0.0:
-            return 0.0
+            # a step that other events make short may end while it is still on its way
+            g, _ = inside(s, b.P, r.y, t, h, end, c, b.y2, interpolate)
+            return NONE if r0 > 0.0 and sign * g >= -noise(s, f0) else 0.0
         g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
         f0, r0 = sign * g, sign * rate
     if low >= end:

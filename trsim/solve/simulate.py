@@ -144,8 +144,8 @@ def compiled(
         r = sparse.record(r, scenario, mechanism, dense_rows)
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
-    called = locator(mechanism), meets(mechanism), looked_at(mechanism)
-    called = (*called, searcher(mechanism, setting))
+    found_by = looked_at(mechanism), searcher(mechanism, setting)
+    called = (locator(mechanism), meets(mechanism), *found_by)
     methods[0] = method_table(used[0], *called)
     clock0 = time.process_time()
     if checkpoint:
