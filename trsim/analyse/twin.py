@@ -21,15 +21,17 @@ def twin_setting(
 ) -> Setting:  # fmt: skip
     """The other method, at a tolerance as much tighter as rounding allows.
 
-    Below some tolerance a method sees nothing but the rounding of the accelerations: its steps
-    become many times more, and no better.  Short trials find it.  Raises what `simulate` raises.
+    Below some tolerance a method sees nothing but the rounding of its steps: they become many times
+    more, or are held to the rounding instead (solve/rounding.py), and no better.  Short trials find
+    it.  Raises what `simulate` raises.
     """
     method = OTHER.get(scenario.solver.method, "auto")
     tolerance = found = scenario.solver.tolerance
-    steps = trial(scenario, mechanism, method, tolerance, look)
+    steps, _ = trial(scenario, mechanism, method, tolerance, look)
     for decades in DECADES:
         tighter = max(tolerance / 10.0**decades, TIGHTEST)
-        if trial(scenario, mechanism, method, tighter, look) <= ROUNDING**decades * steps:
+        more, rounded = trial(scenario, mechanism, method, tighter, look)
+        if not rounded and more <= ROUNDING**decades * steps:
             found = tighter
             break
     return Setting(method, float(f"{found:.6g}"))  # without the last digits of divisions
@@ -37,12 +39,12 @@ def twin_setting(
 
 def trial(
     scenario: Any, mechanism: Any, method: str, tolerance: float, look: Callable[[], None]
-) -> int:
-    """Steps of the beginning of a run."""
+) -> tuple[int, bool]:
+    """Steps of the beginning of a run, and whether rounding was more than some were allowed."""
     end = SHARE * scenario.solver.end
     short = changed(scenario, "solver", method=method, tolerance=tolerance, step=None, end=end)
     outcome = marched(changed(short, "output", every=end), mechanism, look)[1]
-    return int(outcome.statistics["steps"])
+    return int(outcome.statistics["steps"]), "rounding_of_tolerance" in outcome.statistics
 
 
 def overrides(scenario: Any, setting: Setting) -> tuple[str, ...]:

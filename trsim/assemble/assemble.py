@@ -44,6 +44,7 @@ from trsim.assemble.tables import (
     norm,
     tables,
     turns,
+    unequal,
     watched,
     watched_rows,
 )
@@ -263,6 +264,7 @@ def build(
         v_node=v_node,
         n_z=n_z,
         m=len(rows),
+        unequal=int(unequal(at, mass, inertia, d)),
         mass=mass,
         inertia=inertia,
         mass_inverse=mass_inverse,

@@ -13,14 +13,14 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 
 from math import cos, nan, sin
 
-from trsim.assemble.linear import contradictory, factorise, independent, solve
+from trsim.assemble.linear import POOR, contradictory, factorise, independent, solve
 from trsim.assemble.on_beams import FREE, KINETIC, POSES, PULL, RATES, RIGHT, call_beams
 from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
 from trsim.elements.calls import call_kernel, caller
 from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.elements.scene import BAUMGARTE
 from trsim.elements.signatures import A1, f8, float64, void
-from trsim.elements.vectors import clear, clear_table
+from trsim.elements.vectors import clear, clear_table, copy_to
 from trsim.elements.vectors import internal as equation
 
 #                        scene  t   y   y'
@@ -47,9 +47,11 @@ def derivative(s, t, y, yd):
         if contradictory(s, s.x) and masses_too_unequal(s):
             s.status[3] += 1
             s.x[0] = nan
+        copy_to(s.lam, s.x)
+        if s.status[0] == POOR and s.unequal > 0 and s.n_r == s.n:
+            once_more(s)
         power = 0.0
         for k in range(s.m):
-            s.lam[k] = s.x[k]
             # a moving constraint is a drive: the power it gives to the mechanism
             power += s.lam[k] * s.phi_t[k]
         s.zd[DRIVES] += power
@@ -207,17 +209,32 @@ def right_hand_side(s):
 
 
 @equation
+def once_more(s):
+    """Take what x does off the accelerations, and solve for what is left of the rows.
+
+    Where inertias are very unequal x has too few digits for the small ones: its last bit turns them
+    by much.  What is left has digits of its own.  x is then that alone, lam all of it.
+    """
+    for f in range(1, s.n_r):
+        pull(s, f, s.x)
+    right_hand_side(s)
+    solve(s, s.x)
+    for k in range(s.m):
+        s.lam[k] += s.x[k]
+
+
+@equation
 def accelerations(s, y, yd):
-    """V' = M^-1 (F - J^T lam) into yd and, in world axes, into A; q' into yd."""
+    """V' = M^-1 (F - J^T x) into yd and, in world axes, into A; q' into yd."""
     X, A, a = s.X, s.A, s.free
     for k in range(s.n_z):
         yd[s.n_q + s.n_v + k] = s.zd[k]
     if s.n_r < s.n:
-        call_beams(s.on_beams[PULL], s, s.lam, yd, 0)
+        call_beams(s.on_beams[PULL], s, s.x, yd, 0)
         call_beams(s.on_beams[RATES], s, y, yd, 0)
     if s.d == 3:
         for f in range(1, s.n_r):
-            pull(s, f, s.lam)
+            pull(s, f, s.x)
             q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
             for c in range(3):
                 yd[q + c] = y[v + c]
@@ -225,7 +242,7 @@ def accelerations(s, y, yd):
             A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
         return
     for f in range(1, s.n_r):
-        pull(s, f, s.lam)
+        pull(s, f, s.x)
         q, v = 7 * (f - 1), s.n_q + 6 * (f - 1)
         for c in range(3):
             yd[q + c] = y[v + c]

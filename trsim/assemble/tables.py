@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 
 LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
 STATE_SCALES = {"angle": scales.ANGLE, "stroke": scales.LENGTH, "speed": scales.SPEED}
+UNEQUAL = 1e5  # with all else of one size S = J M^-1 J^T loses as many digits
 SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
 
 
@@ -117,6 +118,19 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
         else:  # only for the look at the rows before planarity is known
             inertia_inverse[f, [0, 4, 8]] = 1.0 / inertia[f, 8]
     return mass, inertia, mass_inverse, inertia_inverse
+
+
+def unequal(at: Addresses, mass: Array, inertia: Array, d: int) -> bool:
+    """Whether a body is far lighter than others, or far easier to turn than it is to move by its
+    arms or to turn about another axis."""
+    n = at.n_rigid
+    if n < 2:
+        return False
+    moments = inertia[1:n, 8:] if d == 3 else np.linalg.eigvalsh(inertia[1:n].reshape(-1, 3, 3))
+    swung = mass[1:n] * np.array(levers(at, 0.0)[1:n]) ** 2
+    least = np.maximum(moments[:, 0], 1e-300)
+    turned = np.maximum(moments[:, -1], swung) / least
+    return max(mass[1:n].max() / mass[1:n].min(), turned.max()) > UNEQUAL
 
 
 def check_radius(name: str, mass: float, inertia: Array) -> None:

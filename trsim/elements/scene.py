@@ -38,6 +38,7 @@ class Model(Packed):
     v_node: i8  # and in v
     n_z: i8
     m: i8  # constraint rows in the solve
+    unequal: i8  # 1: masses or moments of inertia are so unequal that multipliers are too coarse
     n_s: i8  # entries of S
     n_out: i8  # output columns
     size: f8  # m, the mechanism's

@@ -5,6 +5,7 @@ contacts   pressed in by more than their law is made for: a half width of the co
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                          solve/strained.py
 waves      of bars that steps were too long to follow: no fault, but to be known
+rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
 energy     the book of the run does not close
 rows       that were left out as redundant are open, though not so far that the run ended
 """
@@ -23,9 +24,9 @@ from trsim.elements.scene import PROJECTION
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
 from trsim.solve.openings import apart
-from trsim.solve.outcome import Outcome
+from trsim.solve.outcome import Outcome, whose
 from trsim.solve.projected import given_velocities, projected
-from trsim.solve.record import JOLTS, Record, T
+from trsim.solve.record import JOLTS, ROUNDED_AT, ROUNDED_BY, Record, T
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
 from trsim.solve.strained import of_bars
@@ -55,6 +56,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_waves(mechanism, outcome),
+        *of_rounding(scenario, mechanism, outcome),
         *of_books(mechanism, outcome),
         *of_rows(mechanism, outcome),
     )
@@ -161,6 +163,22 @@ def of_jumps(mechanism: Mechanism, r: Record) -> Iterator[str]:
         yield f"velocities of drives jump {many - TOLD} times more: see the table of events"
 
 
+def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """A tolerance below what the arithmetic can tell."""
+    rounded = outcome.statistics.get("rounding_of_tolerance", 0.0)
+    if rounded <= 1.0 or outcome.record is None:
+        return
+    what = whose(mechanism, int(outcome.record.clock[ROUNDED_AT]))
+    much, inside = outcome.record.clock[ROUNDED_BY], f" in {what}" if what else ""
+    yield (
+        f"solver.tolerance: rounding makes up to {much:.2g} (SI) of a step{inside}, {rounded:.2g} "
+        f"times what {scenario.solver.tolerance:g} allows; such steps were held to the rounding "
+        "instead, since shorter ones are no better.  A larger tolerance costs less and loses "
+        "nothing there; masses, inertias or stiffnesses far apart and places far from the origin "
+        "are what makes it large"
+    )
+
+
 def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """An open energy book, work of the projection, open joints; nothing of what is at rest."""
     numbers = outcome.statistics
@@ -168,10 +186,12 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     work = abs(numbers.get("work_of_projection", 0.0))
     lost = numbers.get("energy_residual_relative", 0.0)
     if lost > LOST:
+        hidden = "rounding_of_tolerance" in numbers
+        remedy = "rounding has its part in it" if hidden else "tighten `tolerance`"
         driven = any(instance.section == "drives" for instance in mechanism.instances)
         yield (
             f"the energy book does not close, by {100 * lost:.2g} % of the largest energy "
-            "exchanged; tighten `tolerance`" + ("; does the velocity of a drive jump?" * driven)
+            f"exchanged; {remedy}" + ("; does the velocity of a drive jump?" * driven)
         )
     off = numbers.get("work_error_relative", 0.0)
     if outcome.record is not None and np.any(outcome.record.worked) and off > WORKS:

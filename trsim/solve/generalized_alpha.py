@@ -133,7 +133,7 @@ def newton(s, r, b, t, h):
     for c in range(y.size):
         if weight[c] > 0.0:
             counted += 1
-            floor = max(floor, 2.0e-15 * abs(y[c]) * weight[c])
+            floor = max(floor, (2.0e-15 * abs(y[c]) + h * r.noise[c]) * weight[c])
     kappa = max(KAPPA, floor)
     before, rate = 0.0, 1.0
     for iteration in range(MOST_ITERATIONS):

@@ -14,6 +14,7 @@ from trsim.solve.auto import ITERATIONS, grown, sown
 from trsim.solve.displacements import active, displace, first_of, place_of, w_index, width_of
 from trsim.solve.ggl_equations import across, add_product, pull, unweighed
 from trsim.solve.jacobian import PART
+from trsim.solve.norm import weight_of
 from trsim.solve.record import FRESH, JACOBIAN, JACOBIANS, TOLERANCE
 
 
@@ -36,16 +37,16 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
         if b.group[first] < s.n_v:
             copy_to(trial, r.y)
             for q in range(first, end):
-                displace(s, trial, b.group[q], step_of_place(s, b, tolerance, b.group[q]))
+                displace(s, trial, b.group[q], step_of_place(s, r, tolerance, b.group[q]))
             pull(s, t, trial, lam, b.pull)
             for q in range(first, end):
                 k = b.group[q]
-                divide(b, r.at_place, k, step_of_place(s, b, tolerance, k))
+                divide(b, r.at_place, k, step_of_place(s, r, tolerance, k))
             turning(s, r, b, g, part_of(s, b.group[first]), tolerance)
         copy_to(trial, r.y)
         for q in range(first, end):
             i = w_index(s, b.group[q])
-            trial[i] += step_of_rate(b, tolerance, i)
+            trial[i] += step_of_rate(s, r, tolerance, i)
         pull(s, t, trial, lam, b.pull)
         for q in range(first, end):
             k = b.group[q]
@@ -94,20 +95,21 @@ def turning(s, r, b, g, a, tolerance):
             for p in range(s.frame_start[f], s.frame_start[f + 1]):
                 j = s.slot_row[p]
                 change = velocity_residual(s, j) - b.rate0[j]
-                r.at_turn[p, a] = change / step_of_place(s, b, tolerance, k)
+                r.at_turn[p, a] = change / step_of_place(s, r, tolerance, k)
 
 
 @internal
-def step_of_place(s, b, tolerance, k):
+def step_of_place(s, r, tolerance, k):
     """Step of the k-th displacement: a part of the unit of its velocity's partner."""
     turns = s.d == 6 and k < s.v_node and k % 6 > 2
     half = 2.0 if turns else 1.0  # half a turn vector makes a quaternion
-    return PART * half / (b.weight[place_of(s, k)] * tolerance)
+    return PART * half / (weight_of(s, r, tolerance, place_of(s, k)) * tolerance)
 
 
 @internal
-def step_of_rate(b, tolerance, i):
-    return PART / (b.weight[i] * tolerance) if b.weight[i] > 0.0 else PART
+def step_of_rate(s, r, tolerance, i):
+    weight = weight_of(s, r, tolerance, i)
+    return PART / (weight * tolerance) if weight > 0.0 else PART
 
 
 @internal

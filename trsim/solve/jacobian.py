@@ -13,6 +13,7 @@ smallest penetration that matters.
 from trsim.assemble.equations import evaluate
 from trsim.elements.vectors import copy_to, internal
 from trsim.solve.displacements import active, displace, frame_of, place_of, w_index
+from trsim.solve.norm import weight_of
 from trsim.solve.record import (
     FRESH,
     JACOBIAN,
@@ -44,7 +45,7 @@ def jacobian(s, r, b, setting, t, trial, rates):
     places = r.count[JACOBIAN] != NO_RATES
     for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed
-        unit = 1.0 / (b.weight[place_of(s, k)] * tolerance)
+        unit = 1.0 / (weight_of(s, r, tolerance, place_of(s, k)) * tolerance)
         if s.d == 6 and k < s.v_node and k % 6 > 2:
             unit *= 2.0  # half a turn vector makes a quaternion
         copy_to(trial, r.y)
@@ -57,7 +58,8 @@ def jacobian(s, r, b, setting, t, trial, rates):
         if not places and r.stale[frame_of(s, k)] == 0:
             continue
         i = w_index(s, k)
-        unit = 1.0 / (b.weight[i] * tolerance) if b.weight[i] > 0.0 else 1.0
+        weight = weight_of(s, r, tolerance, i)
+        unit = 1.0 / (weight * tolerance) if weight > 0.0 else 1.0
         copy_to(trial, r.y)
         trial[i] += PART * unit
         part = trial[i] - r.y[i]

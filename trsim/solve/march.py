@@ -12,8 +12,17 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
 from trsim.solve.auto import choose
+<<<<<<< HEAD
 from trsim.solve.calls import COMPLETE_AT, ESTIMATE_AT, IMPLICIT_AT, STEP_AT, call_step
 from trsim.solve.complete import (
+=======
+from trsim.solve.calls import NO_STEP, call_step
+from trsim.solve.complete import (
+    COMPLETE_AT,
+    ESTIMATE_AT,
+    IMPLICIT_AT,
+    ROUNDING_AT,
+>>>>>>> 2b88aca (Steps that rounding keeps from getting better are held to the rounding, with a word; very unequal inertias are solved for exactly)
     SMALLEST,
     STRAYED,
     WITH_CORNER,
@@ -71,6 +80,7 @@ from trsim.solve.record import (
     H,
     T,
 )
+from trsim.solve.rounding import blunted, call_look_closer, look_closer, remember, to_look
 from trsim.solve.watch import take_sides
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
@@ -81,6 +91,7 @@ def method_table(method, sections=0, meet=0, look=0, search=0):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
+<<<<<<< HEAD
     so do `sections`, the address of what locates points, `meet`, of what goes on behind the
     corners of functions, `look`, of what looks at redundant rows, and `search`, of what finds
     events; 0 where there are none.
@@ -89,6 +100,15 @@ def method_table(method, sections=0, meet=0, look=0, search=0):
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look, search)
     stages = getattr(method, "DEAR", 0)
     return (*called, complete.address(), *about, stages, method.DENSE_DEGREE)
+=======
+    so do `look_closer`, and `sections`, the address of what locates points, `meet`, of what goes on
+    behind the corners of functions, and `look`, of what looks at redundant rows; 0 where there
+    are none.
+    """
+    called = (method.step.address(), method.dense.address(), method.interpolate.address())
+    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT))
+    return (*called, complete.address(), *about, sections, meet, look, look_closer.address())
+>>>>>>> 2b88aca (Steps that rounding keeps from getting better are held to the rounding, with a word; very unequal inertias are solved for exactly)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
@@ -117,12 +137,15 @@ def march(s, r, b, setting, methods, most):
         if crawls(r, setting, h):
             return CRAWL
         weights(s, r, b, setting)
+        blunted(s, r, b, h)
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
+            if error < NO_STEP and to_look(r, h):
+                call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             r.count[AFTER_REJECTION] = 1 if isfinite(error) else 2
             if setting[FIXED_STEP] > 0.0:
                 return NOT_FINITE
@@ -143,6 +166,7 @@ def march(s, r, b, setting, methods, most):
             r.clock[H] = 0.3 * h
             continue
         accepted += 1
+        remember(s, r, setting, h)
         if r.count[TORN] > 0:
             return LEAPT
         if too_fast(s, r):

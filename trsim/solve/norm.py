@@ -24,21 +24,26 @@ def weights(s, r, b, setting):
     Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
     the origin; rotations by that length over the body's arm; velocities by the matching speed.
     """
-    length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
     for c in range(b.weight.size):
-        kind, scale = s.scale_kind[c], s.scale[c]
-        if kind == LENGTH_SCALE:
-            b.weight[c] = 1.0 / (tolerance * length)
-        elif kind == ANGLE:
-            b.weight[c] = scale / (tolerance * length)
-        elif kind == SPEED_SCALE:
-            b.weight[c] = 1.0 / (tolerance * speed)
-        elif kind == RATE:
-            b.weight[c] = scale / (tolerance * speed)
-        elif kind == MAGNITUDE:
-            b.weight[c] = 1.0 / (tolerance * scale)
-        else:
-            b.weight[c] = 0.0
+        b.weight[c] = weight_of(s, r, setting[TOLERANCE], c)
+
+
+@internal
+def weight_of(s, r, tolerance, c):
+    """The same of one entry."""
+    length, speed = r.clock[LENGTH], r.clock[SPEED]
+    kind, scale = s.scale_kind[c], s.scale[c]
+    if kind == LENGTH_SCALE:
+        return 1.0 / (tolerance * length)
+    if kind == ANGLE:
+        return scale / (tolerance * length)
+    if kind == SPEED_SCALE:
+        return 1.0 / (tolerance * speed)
+    if kind == RATE:
+        return scale / (tolerance * speed)
+    if kind == MAGNITUDE:
+        return 1.0 / (tolerance * scale)
+    return 0.0
 
 
 @internal

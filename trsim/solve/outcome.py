@@ -51,6 +51,7 @@ CRAWLS = (
     "thousands of steps in a row were shorter than 1e-11 of the run, which would need 1e11 of "
     "them: a force that grows without bound, or a tolerance below the rounding of the state"
 )
+SPEEDS = ("the velocity", "the angular velocity")
 SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
@@ -174,6 +175,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
     record = Record(
         y=begun.y.copy(),
         yd=np.zeros_like(begun.y),
+        noise=np.zeros_like(begun.y),
         mem=model.mem,
         branch=model.branch,
         gap=np.zeros((len(model.contact) + len(model.watch), 2)),
@@ -224,12 +226,9 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
     speeds = np.abs(r.y[model.n_q : model.n_q + model.n_v])
     if not np.max(speeds, initial=0.0) > rec.FASTEST:
         return ""
-    k = int(np.argmax(speeds))
-    own, node = divmod(k, model.d), divmod(k - model.v_node, model.d_node)
-    frame = 1 + own[0] if k < model.v_node else model.n_r + node[0]
-    body = next(name for name, f in mechanism.frames.items() if f == frame)
+    body = whose(mechanism, model.n_q + int(np.argmax(speeds))).split(" of ")[1]
     return (
-        f"'{body}' is faster than {rec.FASTEST:.0e} m/s or rad/s: does a load run away, "
+        f"{body} is faster than {rec.FASTEST:.0e} m/s or rad/s: does a load run away, "
         "is a stiffness or a damping negative?"
     )
 
@@ -244,6 +243,20 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
         "s, which no mechanism can follow: let it go there in a time of its own, as "
         "`step5(t, t0, x0, t1, x1)` does, or give the drive a compliance"
     )
+
+
+def whose(mechanism: Mechanism, c: int) -> str:
+    """What entry c of y tells of which body, or node of a bar; nothing for states of elements."""
+    model, k = mechanism.model, c
+    d, bars, kinds = 3 if model.d == 3 else 7, model.q_node, ("the place", "the attitude")
+    if c >= model.n_q:
+        k, d, bars, kinds = c - model.n_q, model.d, model.v_node, SPEEDS
+    if c >= model.n_q + model.n_v:
+        return ""
+    turns = k < bars and k % d >= (2 if model.d == 3 else 3)
+    frame = 1 + k // d if k < bars else model.n_r + (k - bars) // model.d_node
+    body = next(name for name, f in mechanism.frames.items() if f == frame)
+    return f"{kinds[turns]} of '{body}'"
 
 
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
@@ -275,8 +288,15 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "joints_open_relative": max(redundant, unprojected),
         "redundant_open_relative": redundant,
         "redundant_open_rate": float(r.clock[rec.WORST_OPEN_RATE]),
+        **rounding(r),
         "integration_cpu": cpu,
     }
+
+
+def rounding(r: Record) -> dict[str, float]:
+    """What rounding made of a step, of what the tolerance allows; where it was more."""
+    rounded = float(r.clock[rec.ROUNDED])
+    return {"rounding_of_tolerance": rounded} if rounded > 1.0 else {}
 
 
 def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:

@@ -42,6 +42,7 @@ from trsim.solve.record import (
     OLD,
     PAST_H,
 )
+from trsim.solve.rounding import jitter, noted, to_look
 from trsim.solve.works import first_work, works
 
 ORDER = 5
@@ -80,9 +81,9 @@ def step(s, r, b, setting, t, h):
         if converged < 0 and r.count[JACOBIAN] == FRESH:
             return np.inf
         if corner:  # the step is too long for the new branch, more often than its matrix too old
-            return HALVE
+            return hidden(s, r, b, setting, t, h)
     else:
-        return HALVE
+        return hidden(s, r, b, setting, t, h)
     n = r.y.size
     for c in range(n):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
@@ -93,6 +94,16 @@ def step(s, r, b, setting, t, h):
     # where the state moves on its matrix is good for as long as Newton is quick
     r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
     return error
+
+
+@internal
+def hidden(s, r, b, setting, t, h):
+    """HALVE: Newton failed.  If it is rounding that it could not go below, it is not asked to."""
+    if to_look(r, h) and r.clock[FACTORED_H] == h:
+        jitter(s, r, b, setting, t, b.K[F], b.K[F + 1])
+        corrected(s, r, b.K[F], b.K[DW], GAMMA / h)
+        noted(s, r, setting, b.K[F], h)
+    return HALVE
 
 
 @internal
@@ -156,7 +167,7 @@ def newton(s, r, b, t, h):
     for k in range(n):
         if weight[k] > 0.0:
             counted += 1
-            floor = max(floor, 2.0e-15 * abs(r.y[k]) * weight[k])
+            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
     kappa = max(KAPPA, floor)
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
     expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8

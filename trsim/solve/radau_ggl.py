@@ -179,7 +179,7 @@ def newton(s, r, b, setting, t, h, stabilised):
     for k in range(n):
         if weight[k] > 0.0:
             counted += 1
-            floor = max(floor, 2.0e-15 * abs(r.y[k]) * weight[k])
+            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
     strict = stabilised and b.made[TURNS] > 0.0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make

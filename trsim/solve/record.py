@@ -35,8 +35,14 @@ from trsim.elements.scene import Model
     TORN_BY,  # m or rad
     OFF,  # m or rad, largest constraint residual at the end of the last trial step
     OFF_RATE,
+    NOISY,  # 1/s, rounding of steps in units of the tolerance              rounding.py
+    NOISY_AT,  # the entry of y that has it
+    ROUNDED,  # largest rounding of an accepted step in these units, and the entry that had it
+    ROUNDED_AT,
+    ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
+    LONGEST,  # s, the longest step since then, see LOOKED
     N_CLOCK,
-) = range(29)
+) = range(35)
 
 # count: integer state of the march
 (
@@ -70,8 +76,10 @@ from trsim.elements.scene import Model
     TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
     UNPROVED,  # parts of steps in which the search for events gave up
     DEGREE,  # of the polynomials in `net`
+    LOOKED,  # steps when rounding was looked at last    rounding.py
+    FAILED,  # and how many trials were rejected then
     N_COUNT,
-) = range(31)
+) = range(33)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -122,6 +130,7 @@ class Record(Packed):
 
     y: A1  # (n_y)
     yd: A1  # (n_y) derivative at y, the first stage of the next step
+    noise: A1  # (n_y) what rounding makes of y in steps, per second              rounding.py
     mem: A2  # (N, n_mem) the scene's own
     branch: A1  # (n_s) turn every angle is on; the scene's own
     gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
@@ -169,6 +178,7 @@ class Buffers(Packed):
     y1: A1
     y2: A1
     weight: A1
+    rough: A2  # (3, n_y) a state and the end of a step from it, while it is made again
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts + n_w, 2)
     corner1: A1  # (n_contacts)
@@ -202,6 +212,7 @@ def fresh_buffers(
         y1=np.zeros(n_y),
         y2=np.zeros(n_y),
         weight=np.zeros(n_y),
+        rough=np.zeros((3, n_y)),
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts + watched, 2)),
         corner1=np.zeros(contacts),

@@ -64,7 +64,8 @@ REASONS = {
     "the stiffest contact, or the mechanism jams",
     CONTRADICTORY: "no position or acceleration meets all constraints here: a mechanism that jams, "
     "or masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
-    rec.STEP_TOO_SMALL: "the step size fell below the resolution of time",
+    rec.STEP_TOO_SMALL: "the step size fell below the resolution of time: a force that grows "
+    "without bound, or jumps",
     rec.CRAWL: CRAWLS,
     rec.NOT_FINITE: "a force or an acceleration is not finite",
     rec.CHATTER: "contacts open and close without time passing (chatter)",

@@ -83,9 +83,12 @@ class Statistics(TypedDict, total=False):
 class RunStatistics(Statistics, total=False):
     """What the solver did, and how long it took.
 
-    integration_cpu  s
+    integration_cpu        s
+    rounding_of_tolerance  what rounding made of a step at most, in units of what the tolerance
+                           allows; only where that was more than 1
     """
 
+    rounding_of_tolerance: Number
     integration_cpu: Number
 
 
