@@ -39,7 +39,8 @@ SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
 # what looks at redundant rows and of what finds events, or 0; how many rows of K hold derivatives
 # at the stages of a step whose dense output is dear, or 0; the degree of that output
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, MEET_AT, LOOK_AT, SEARCH_AT, STAGES_AT, DEGREE_AT, METHOD_WIDTH = range(7, 14)
+SECTIONS_AT, MEET_AT, LOOK_AT, SEARCH_AT, STAGES_AT, DEGREE_AT, ROUNDING_AT = range(7, 14)
+METHOD_WIDTH = 14
 
 call_step = caller(STEP)
 call_dense = caller(DENSE)

@@ -72,15 +72,6 @@ from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED = 0, 1, 2, 3, 4, 5
-<<<<<<< HEAD
-=======
-# a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
-# of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
-# and the addresses of what locates points of sections, of what goes on behind corners of functions
-# and of what looks at redundant rows, or 0
-STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, METHOD_WIDTH = 7, 8, 9, 10, 11
->>>>>>> 2b88aca (Steps that rounding keeps from getting better are held to the rounding, with a word; very unequal inertias are solved for exactly)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave

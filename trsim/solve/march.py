@@ -12,17 +12,16 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
 from trsim.solve.auto import choose
-<<<<<<< HEAD
-from trsim.solve.calls import COMPLETE_AT, ESTIMATE_AT, IMPLICIT_AT, STEP_AT, call_step
-from trsim.solve.complete import (
-=======
-from trsim.solve.calls import NO_STEP, call_step
-from trsim.solve.complete import (
+from trsim.solve.calls import (
     COMPLETE_AT,
     ESTIMATE_AT,
     IMPLICIT_AT,
+    NO_STEP,
     ROUNDING_AT,
->>>>>>> 2b88aca (Steps that rounding keeps from getting better are held to the rounding, with a word; very unequal inertias are solved for exactly)
+    STEP_AT,
+    call_step,
+)
+from trsim.solve.complete import (
     SMALLEST,
     STRAYED,
     WITH_CORNER,
@@ -91,24 +90,15 @@ def method_table(method, sections=0, meet=0, look=0, search=0):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
-<<<<<<< HEAD
-    so do `sections`, the address of what locates points, `meet`, of what goes on behind the
-    corners of functions, `look`, of what looks at redundant rows, and `search`, of what finds
-    events; 0 where there are none.
+    so do `look_closer`, and `sections`, the address of what locates points, `meet`, of what goes on
+    behind the corners of functions, `look`, of what looks at redundant rows, and `search`, of what
+    finds events; 0 where there are none.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look, search)
     stages = getattr(method, "DEAR", 0)
-    return (*called, complete.address(), *about, stages, method.DENSE_DEGREE)
-=======
-    so do `look_closer`, and `sections`, the address of what locates points, `meet`, of what goes on
-    behind the corners of functions, and `look`, of what looks at redundant rows; 0 where there
-    are none.
-    """
-    called = (method.step.address(), method.dense.address(), method.interpolate.address())
-    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT))
-    return (*called, complete.address(), *about, sections, meet, look, look_closer.address())
->>>>>>> 2b88aca (Steps that rounding keeps from getting better are held to the rounding, with a word; very unequal inertias are solved for exactly)
+    closer = look_closer.address()
+    return (*called, complete.address(), *about, stages, method.DENSE_DEGREE, closer)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
