@@ -179,7 +179,8 @@ def drawn(at: Addresses, d: int) -> Array:
 
 def turns(at: Addresses, d: int) -> dict[str, Any]:
     """Planar joint angles: (entry of S, i, j, sign of the axis), for their branch, and what each
-    is when the axes of its bodies are parallel: not 0 between a body of an instance and others."""
+    is when the axes of its bodies are parallel: not 0 between a body of an instance and others;
+    and the entries of all other angles, which are known up to full turns."""
     found = [
         (x, 1 if x.axis[2] > 0 else -1)
         for x in (at.coordinates.values() if d == 3 else ())
@@ -191,7 +192,13 @@ def turns(at: Addresses, d: int) -> dict[str, Any]:
         0.0 if alike[x.i] and alike[x.j] else x.drawn - sign * (at.about_z[x.j] - at.about_z[x.i])
         for x, sign in found
     ]
-    return {"turn": np.array(rows, np.int64).reshape(-1, 4), "parallel": np.array(parallel, float)}
+    unwrapped = {x.entry for x, _ in found}
+    wound = [x.entry for x in at.coordinates.values() if x.kind == "angle"]
+    return {
+        "turn": np.array(rows, np.int64).reshape(-1, 4),
+        "parallel": np.array(parallel, float),
+        "wound": np.array([e for e in wound if e not in unwrapped], np.int64),
+    }
 
 
 def extent(at: Addresses) -> float:

@@ -98,6 +98,7 @@ class Model(Packed):
     feature: I2  # (n_features, 7) functions with corners                   assemble/features.py
     jump: A2  # (n_instants, 2) of the place and the rate of a motion there       jumps.py
     instant: A1  # when those are met that the time alone decides
+    wound: I1  # entries of S known up to full turns: angles not of bodies in the plane
     steep: i8  # how many motions of drives may be steep between their corners
     held: I1  # (corners) where in tab it stands what each is held on
     on_features: I1  # address of what holds functions on their pieces; 0 without such functions

@@ -36,10 +36,11 @@ SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
 # a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
 # of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
 # the addresses of what locates points of sections, of what goes on behind corners of functions, of
-# what looks at redundant rows and of what finds events, or 0; how many rows of K hold derivatives
-# at the stages of a step whose dense output is dear, or 0; the degree of that output
+# what looks at redundant rows, of what looks at rounding and of what finds events, or 0; how many
+# rows of K hold derivatives at the stages of a step whose dense output is dear, or 0; the degree of
+# that output
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, MEET_AT, LOOK_AT, SEARCH_AT, STAGES_AT, DEGREE_AT, ROUNDING_AT = range(7, 14)
+SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, STAGES_AT, DEGREE_AT = range(7, 14)
 METHOD_WIDTH = 14
 
 call_step = caller(STEP)

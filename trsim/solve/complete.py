@@ -67,11 +67,12 @@ from trsim.solve.record import (
     WORST_PHI_DOT,
     T,
 )
+from trsim.solve.turns import too_far
 from trsim.solve.watch import take_sides
 from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
-SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED = 0, 1, 2, 3, 4, 5
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED, WOUND = range(7)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
@@ -103,6 +104,9 @@ def complete(s, r, b, setting, method, h, built):
     if s.steep > 0 and strayed(s, r, setting, h):
         r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
         return STRAYED
+    if s.wound.size > 0 and too_far(s, r, b, h):
+        r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+        return WOUND
     event = False
     if method[SEARCH_AT] > 0:
         before = r.count[DENSE_BUILT]
@@ -255,6 +259,7 @@ def accept(s, r, b, t1, projected, last):
     copy_table(r.gap, b.gap1)
     copy_to(r.corner, b.corner1)
     copy_to(r.branch, b.branch1)
+    copy_to(r.turning, b.turning1)
     r.count[STEPS] += 1
     for c in range(s.contact.size):
         e = s.contact[c]

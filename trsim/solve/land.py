@@ -66,7 +66,7 @@ def land(s, r, b, t, y, yd):
             b.gap1[c, 1] = s.gap[s.contact[c], 1]
     watch(s, t, b.gap1)
     for k in range(s.n_s):
-        b.branch1[k] = s.S[k, 0]
+        b.branch1[k], b.turning1[k] = s.S[k, 0], s.S[k, 1]
     return done
 
 

@@ -27,6 +27,7 @@ from trsim.solve.complete import (
     WITH_CORNER,
     WITH_EVENT,
     WORTHLESS,
+    WOUND,
     call_complete,
     complete,
 )
@@ -76,10 +77,12 @@ from trsim.solve.record import (
     T_END,
     TOO_FAST,
     TORN,
+    WINDS,
     H,
     T,
 )
 from trsim.solve.rounding import blunted, call_look_closer, look_closer, remember, to_look
+from trsim.solve.turns import longest_turn
 from trsim.solve.watch import take_sides
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
@@ -95,10 +98,10 @@ def method_table(method, sections=0, meet=0, look=0, search=0):
     finds events; 0 where there are none.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
-    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look, search)
+    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look)
     stages = getattr(method, "DEAR", 0)
-    closer = look_closer.address()
-    return (*called, complete.address(), *about, stages, method.DENSE_DEGREE, closer)
+    found = (look_closer.address(), search, stages, method.DENSE_DEGREE)
+    return (*called, complete.address(), *about, *found)
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
@@ -109,7 +112,7 @@ def march(s, r, b, setting, methods, most):
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
     Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN,
-    CRAWL or LEAPT.
+    CRAWL, LEAPT or WINDS.
     """
     accepted = tried = 0
     while r.clock[T] < setting[T_END]:
@@ -150,7 +153,9 @@ def march(s, r, b, setting, methods, most):
             r.count[AFTER_REJECTION] = 2
             r.clock[H] = 0.1 * h
             continue
-        if outcome == STRAYED:
+        if outcome == WOUND and setting[FIXED_STEP] > 0.0:
+            return WINDS
+        if outcome in (STRAYED, WOUND):
             r.count[REJECTED] += 1
             r.count[AFTER_REJECTION] = 1
             r.clock[H] = 0.3 * h
@@ -216,6 +221,8 @@ def next_step(s, r, b, setting):
     h = min(r.clock[H], setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
     if setting[FIXED_STEP] > 0.0:
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
+    if s.wound.size > 0:
+        h = min(h, longest_turn(s, r))
     if h >= left * (1.0 - 1e-12):
         return left
     return 0.5 * left if 2.0 * h > left else h

@@ -178,6 +178,7 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         noise=np.zeros_like(begun.y),
         mem=model.mem,
         branch=model.branch,
+        turning=np.zeros_like(model.branch),
         gap=np.zeros((len(model.contact) + len(model.watch), 2)),
         corner=np.zeros(len(model.contact)),
         clock=np.zeros(rec.N_CLOCK),

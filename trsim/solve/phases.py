@@ -160,7 +160,7 @@ def evaluate_all(s, r, setting, t):
         r.gap[c, 1] = s.gap[s.contact[c], 1]
     watch(s, t, r.gap)
     for k in range(s.n_s):
-        r.branch[k] = s.S[k, 0]
+        r.branch[k], r.turning[k] = s.S[k, 0], s.S[k, 1]
     if setting[LOCATE] > 0.0:
         for c in range(s.contact.size):
             look(s, c)

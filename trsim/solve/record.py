@@ -105,6 +105,7 @@ TOO_FAST = 7  # a body is faster than FASTEST
 CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
 OPEN = 10  # a row that was dropped as redundant is not
+WINDS = 12  # a fixed step turns a joint by more than is sure to be counted, see solve/turns.py
 LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
@@ -133,6 +134,7 @@ class Record(Packed):
     noise: A1  # (n_y) what rounding makes of y in steps, per second              rounding.py
     mem: A2  # (N, n_mem) the scene's own
     branch: A1  # (n_s) turn every angle is on; the scene's own
+    turning: A1  # (n_s) rates of S at y
     gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
     corner: A1  # (n_contacts) how far each has left the branch of its law at y
     clock: A1
@@ -186,6 +188,7 @@ class Buffers(Packed):
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
+    turning1: A1
     net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
     curve: A2  # (14, 9) those of two frames on a part of it
 
@@ -220,6 +223,7 @@ def fresh_buffers(
         root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
+        turning1=np.zeros(max(model.n_s, 1)),
         net=np.zeros((9, model.n_q if contacts + watched else 0)),
         curve=np.zeros((14, 9)),
     )

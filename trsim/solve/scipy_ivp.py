@@ -21,7 +21,7 @@ from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.blame import why
 from trsim.solve.calls import INTERPOLATE
-from trsim.solve.complete import SMOOTH_STEP, STRAYED, WORTHLESS, complete
+from trsim.solve.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
 from trsim.solve.features import next_time
 from trsim.solve.march import begin
 from trsim.solve.norm import weigh
@@ -86,7 +86,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     )  # fmt: skip
     called = (0, 0, interpolate.address(), complete.address())
     about = (locator(mechanism), meets(mechanism), looked_at(mechanism))
-    found_by = (searcher(mechanism, setting), 0, NODES.size - 1)
+    found_by = (0, searcher(mechanism, setting), 0, NODES.size - 1)
     method = np.array((*called, LAST, 1, 0, *about, *found_by), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
@@ -105,7 +105,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break
-        if outcome == STRAYED:
+        if outcome in (STRAYED, WOUND):
             r.clock[rec.H] = 0.3 * (solver.t - solver.t_old)
             solver = restarted(scenario, s, r, b, setting, float(r.clock[rec.H]))
             continue

@@ -68,6 +68,8 @@ REASONS = {
     "without bound, or jumps",
     rec.CRAWL: CRAWLS,
     rec.NOT_FINITE: "a force or an acceleration is not finite",
+    rec.WINDS: "a fixed step turns a joint in space by a third of a turn or more, so that its "
+    "turns cannot be counted: take a shorter `step`",
     rec.CHATTER: "contacts open and close without time passing (chatter)",
 }
 

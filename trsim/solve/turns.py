@@ -1,0 +1,38 @@
+"""Turns of angles that are known up to full turns: no step is so long that one could be lost.
+
+The angle of a joint in space is read off two axes, and unwrapped to the value next to that at the
+last accepted point: right as long as it goes less than half a turn from there.  With r its rate,
+
+    h |r| <= MOST                                at both ends of a step of length h
+    |s_1 - s_0 - h (r_0 + r_1) / 2| <= ASIDE     between them
+
+or the step is made again, shorter.  A turn that is lost puts the second one out by a full turn.
+Angles of bodies in the plane are sums of coordinates and have no such bound.
+"""
+
+from trsim.elements.vectors import internal
+
+MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
+NEXT = 0.9  # of MOST: what the next step may turn a joint by at its present rate
+
+
+@internal
+def too_far(s, r, b, h):
+    """Whether some joint turns further in the step just landed than is sure to be counted."""
+    for n in range(s.wound.size):
+        k = s.wound[n]
+        rate, rate1 = r.turning[k], b.turning1[k]
+        if h * max(abs(rate), abs(rate1)) > MOST:
+            return True
+        if abs(b.branch1[k] - r.branch[k] - 0.5 * h * (rate + rate1)) > ASIDE:
+            return True
+    return False
+
+
+@internal
+def longest_turn(s, r):
+    """The longest step that turns no joint by more than is sure to be counted, s."""
+    longest = 1e300
+    for n in range(s.wound.size):
+        longest = min(longest, NEXT * MOST / max(abs(r.turning[s.wound[n]]), 1e-300))
+    return longest
