@@ -153,7 +153,7 @@ def test_empty_name(folder, trsim):
 
 def test_bench_sees_its_folder_first(folder, trsim, monkeypatch):
     monkeypatch.setattr("trsim.cli.bench.measured", None)
-    monkeypatch.setattr(targets.Path, "write_bytes", failing(errno.EROFS))
+    monkeypatch.setattr("trsim.store.target.TemporaryFile", failing(errno.EROFS))
     code, _, err = trsim("bench", "crank.yaml", *QUICK, "-o", "figures")
     assert code == 7
     assert "figures: cannot be written: Read-only file system" in err

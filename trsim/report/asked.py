@@ -63,7 +63,7 @@ def table(path: Path, titles: Sequence[str], rows: Iterable[Sequence[Any]]) -> P
     with (
         told(path),
         fresh(path, headed(*titles[:2])) as unfinished,
-        unfinished.open("x", newline="", encoding="utf-8") as file,
+        unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
         out = csv.writer(file)
         out.writerow(titles)

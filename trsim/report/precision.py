@@ -42,7 +42,7 @@ def write(study: "Study", path: Path) -> Path:
     with (
         told(path),
         fresh(path, TABLE) as unfinished,
-        unfinished.open("x", newline="", encoding="utf-8") as file,
+        unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
         table = csv.writer(file)
         table.writerow(TITLES)

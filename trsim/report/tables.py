@@ -12,6 +12,7 @@ from trsim.report.style import WIDTH, look, panels, save, titled
 from trsim.store.target import fresh, headed, told
 
 NOISE = 1e-9  # of the largest load of the same unit: rounding
+EVENTS = ("run", "event", "did", "time", "work")  # columns
 SECTIONS = ("joints", "drives", "forces")
 
 
@@ -45,16 +46,20 @@ def user_events(runs: list[Shown], path: Path) -> list[Path]:
     for shown in runs:
         events = shown.run.events
         columns = (events.element, events.did, events.time, events.work)
-        told = zip(*(column.tolist() for column in columns), strict=False)
-        user = [line for line, kind in zip(told, events.kind, strict=False) if kind == "user"]
+        rows = zip(*(column.tolist() for column in columns), strict=False)
+        user = [line for line, kind in zip(rows, events.kind, strict=False) if kind == "user"]
         lines += [[shown.label, *line] for line in user]
         lines += [
             [shown.label, name, "never", "", ""] for name, n in shown.run.fired.items() if not n
         ]
     if not lines:
         return []
-    with path.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([["run", "event", "did", "time", "work"], *lines])
+    with (
+        told(path),
+        fresh(path, headed(*EVENTS)) as unfinished,
+        unfinished.open("w", newline="", encoding="utf-8") as file,
+    ):
+        csv.writer(file).writerows([EVENTS, *lines])
     return [path]
 
 
@@ -113,7 +118,7 @@ def write(loads: list[Load], path: Path) -> Path:
     with (
         told(path),
         fresh(path, headed(*Load._fields)) as unfinished,
-        unfinished.open("x", newline="", encoding="utf-8") as file,
+        unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
         table = csv.writer(file)
         table.writerow(Load._fields)

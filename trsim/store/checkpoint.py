@@ -27,7 +27,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.errors import FileError
+from trsim.store import own
 from trsim.store.disk import synced
+from trsim.store.target import CHECKPOINT
 from trsim.version import __version__
 
 MAGIC = "trsim checkpoint 1"
@@ -148,7 +150,8 @@ def store(path: Path, kept: Checkpoint) -> None:
     digest = hashlib.sha256(body.getbuffer()).hexdigest()
     fresh = path.with_name(path.name + ".new")
     try:
-        with fresh.open("wb") as file:
+        own.see(path, CHECKPOINT)
+        with open(own.made(fresh, CHECKPOINT), "wb") as file:
             file.write(f"{MAGIC} {digest}\n".encode())
             file.write(body.getbuffer())
             file.flush()
@@ -156,8 +159,8 @@ def store(path: Path, kept: Checkpoint) -> None:
         os.replace(fresh, path)
         synced(path.parent)
     except OSError as error:
-        with suppress(OSError):
-            fresh.unlink()
+        with suppress(OSError, FileError):
+            own.remove(fresh, CHECKPOINT)
         raise FileError(f"{path}: cannot be written: {error.strerror}") from None
 
 

@@ -31,7 +31,7 @@ def export(run: Run, names: list[str], target: Path) -> int:
     with (
         told(target),
         fresh(target, TABLE, [run.path]) as unfinished,
-        unfinished.open("x", encoding="utf-8", newline="") as out,
+        unfinished.open("w", encoding="utf-8", newline="") as out,
     ):
         out.write(",".join(f'"{head}"' if "," in head else head for head in heads) + "\r\n")
         for table in _tables(run, [places[name] for name in names]):

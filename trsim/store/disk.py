@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 from pathlib import Path
+from tempfile import TemporaryFile
 
 import h5py
 
@@ -18,17 +19,14 @@ BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
 
 def see_room(part: Path) -> None:
     """See that a file can be begun: HDF5 ends the process where its first bytes fail."""
-    trial = part.with_name(part.name + ".room")  # readers may already look for the part file
     try:
-        with trial.open("wb") as file:
+        with TemporaryFile(dir=part.parent) as file:  # without a name
             file.write(bytes(BEGINNING))
             file.flush()
             os.fsync(file.fileno())
     except OSError as error:
         what = f"{part}: the first {BEGINNING} bytes cannot be written: {error.strerror}"
         raise FileError(what, file=str(part)) from None
-    finally:
-        trial.unlink(missing_ok=True)
 
 
 def see_more(path: Path) -> None:

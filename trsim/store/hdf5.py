@@ -17,7 +17,7 @@ import h5py
 from trsim.errors import FileError, TrsimError
 from trsim.statuses import Status
 from trsim.store import checkpoint as checkpoints
-from trsim.store import describe, peaks, points, tables
+from trsim.store import describe, own, peaks, points, tables
 from trsim.store.checkpoint import Checkpoint
 from trsim.store.content import content_hash
 from trsim.store.disk import let_go, see_room, synced
@@ -25,7 +25,7 @@ from trsim.store.grow import Field, Growing, scales
 from trsim.store.lock import alone
 from trsim.store.read import Run, read
 from trsim.store.resume import refill
-from trsim.store.target import PART, replaceable
+from trsim.store.target import CHECKPOINT, PART, replaceable
 
 __all__ = ["Run", "read", "write"]
 
@@ -115,6 +115,12 @@ class Running:
             if not os.access(final.parent, os.W_OK) or final.is_dir():
                 raise OSError("not a file in a folder that can be written to")
             replaceable(self.part, PART)
+            for path, kind in (
+                (self.part, PART),
+                (self.fresh, PART),
+                (self.checkpoint, CHECKPOINT),
+            ):
+                own.see(path, kind)
 
     @contextlib.contextmanager
     def told(self) -> Iterator[None]:
@@ -147,13 +153,14 @@ class Running:
     def open(self) -> None:
         """Make the file, unless it is there."""
         if self.file is None:
-            for old in (self.checkpoint, self.fresh):  # of rows about to be written over
-                old.unlink(missing_ok=True)
+            own.remove(self.checkpoint, CHECKPOINT)  # of rows about to be written over
+            own.remove(self.fresh, PART)
             self.file = self.begun(self.part)
 
     def begun(self, path: Path, kept: Checkpoint | None = None) -> h5py.File:
         """A file with all that has a name, and the rows of a checkpoint; readers may come."""
         see_room(path)
+        os.close(own.made(path, PART))  # HDF5 would follow a link
         file = h5py.File(path, "w", libver=LIBVER, rdcc_nbytes=CACHE)
         try:
             self.declare(file)
@@ -287,7 +294,7 @@ class Running:
             if complete:
                 os.replace(self.part, self.final)
                 synced(self.final.parent)
-                self.checkpoint.unlink(missing_ok=True)
+                own.remove(self.checkpoint, CHECKPOINT)
         summary["file"] = str(self.final if complete else self.part)
         return summary
 

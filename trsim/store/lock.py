@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
 from trsim.errors import FileError
-from trsim.store.target import make, told
+from trsim.store.own import ASIDE, see_open
+from trsim.store.target import HEADER, LOCK, make, told
 
 ENDING = ".lock"
 ATTEMPTS, PAUSE = 3, 0.03  # s
@@ -56,7 +57,7 @@ def writing(final: Path) -> Iterator[None]:
 def refuse_if_written(final: Path) -> None:
     """Raise FileError if a process is writing a result file."""
     try:
-        handle = os.open(_beside(final), os.O_RDONLY | os.O_NONBLOCK)
+        handle = os.open(_beside(final), os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW)
     except OSError:
         return
     try:
@@ -68,8 +69,12 @@ def refuse_if_written(final: Path) -> None:
 def _held(path: Path, final: Path) -> int:
     """A locked handle of the file that has the name: its last owner may just have removed it."""
     while True:
+        if path.is_symlink() or path.is_dir():
+            why = "it is a link" if path.is_symlink() else "it is a folder"
+            raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path))
         handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
         try:
+            _see_ours(handle, path)
             _lock(handle, fcntl.LOCK_EX, final)
             if os.path.samestat(os.fstat(handle), os.stat(path)):
                 return handle
@@ -79,6 +84,14 @@ def _held(path: Path, final: Path) -> int:
             os.close(handle)
             raise
         os.close(handle)
+
+
+def _see_ours(handle: int, path: Path) -> None:
+    """Raise FileError where something else has the name of a lock; what is removed is a lock."""
+    if os.fstat(handle).st_nlink:  # its last owner may just have removed it
+        see_open(handle, path)
+    if not LOCK.fits(os.pread(handle, HEADER, 0)):
+        raise FileError(f"{path} exists and is not a {LOCK.name}", ASIDE, file=str(path))
 
 
 def _lock(handle: int, how: int, final: Path) -> None:

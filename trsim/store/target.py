@@ -10,7 +10,9 @@ import os
 import stat
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import NamedTuple
 
 from trsim.errors import FileError, UsageError, what_it_is
@@ -68,8 +70,20 @@ def headed(*titles: str) -> Kind:
     return Kind("table of trsim", lambda start: start.split(b"\r\n")[0].startswith(line))
 
 
+def _is_checkpoint(start: bytes) -> bool:
+    """Also one whose first line is damaged: an archive behind a line with a hash."""
+    return start.startswith(b"trsim checkpoint ") or start[84:88] == b"PK\3\4" or not start
+
+
+def _is_lock(start: bytes) -> bool:
+    """The number of a process, or nothing yet."""
+    return len(start) <= len(b"18446744073709551615\n") and not start.strip(b"0123456789\n")
+
+
 RESULT = Kind("result file", _is_result)
 PART = Kind("part of a result file", _is_part)
+CHECKPOINT = Kind("checkpoint of trsim", _is_checkpoint)
+LOCK = Kind("lock of trsim", _is_lock)
 TABLE = Kind("table that `trsim export` wrote", _is_table)
 SCHEMA = Kind("schema of trsim", _is_schema)
 FIGURE = Kind("figure of trsim", _is_figure)
@@ -116,11 +130,13 @@ def told(target: Path) -> Iterator[None]:
 
 @contextmanager
 def fresh(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Iterator[Path]:
-    """A name to write to; it takes that of the target at the end, and is gone after an error."""
+    """An empty file to write; it takes the name of the target at the end, and is gone after an
+    error."""
     with told(target):
         make(target.parent)
     final = replaceable(target, kind, given)
-    unfinished = final.with_name(f"{final.name}.{os.getpid()}")
+    with told(target):
+        unfinished = _empty(final)
     try:
         yield unfinished
         with told(target):
@@ -128,6 +144,16 @@ def fresh(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> 
     finally:
         with suppress(OSError):
             unfinished.unlink()
+
+
+def _empty(final: Path) -> Path:
+    """A new file beside another; what has its name already, or a link of it, stays as it is."""
+    for k in count():
+        path = final.with_name(f"{final.name}.{os.getpid()}{f'-{k}' if k else ''}")
+        with suppress(FileExistsError):
+            os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
+            return path
+    raise AssertionError
 
 
 def make(folder: Path) -> None:
@@ -140,10 +166,8 @@ def make(folder: Path) -> None:
 
 def see_writable(folder: Path) -> None:
     """See that files can be made in a folder, which is made where it is not there."""
-    trial = folder / f".trsim.{os.getpid()}"
     with told(folder):
         make(folder)
-        try:
-            trial.write_bytes(b"trial")
-        finally:
-            trial.unlink(missing_ok=True)
+        with TemporaryFile(dir=folder) as trial:
+            trial.write(b"trial")
+            trial.flush()

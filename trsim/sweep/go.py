@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 from trsim.errors import FileError
 from trsim.store.checkpoint import sources
 from trsim.store.lock import refuse_if_written, writing
-from trsim.store.target import make, told
+from trsim.store.own import remove
+from trsim.store.target import LOCK, make, told
 from trsim.sweep.folder import read_plan, see_usable, write_index, write_plan
 from trsim.sweep.job import task
 from trsim.sweep.ledger import Entry, Ledger, entries, stamp
@@ -87,9 +88,9 @@ def see_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
 def sweep_out(folder: Path) -> None:
     """Remove what processes that were killed left beside results that are complete: locks."""
     for lock in (folder / "cases").glob("*.h5.lock"):
-        with suppress(FileError):  # of a case that is being run
+        with suppress(FileError):  # of a case that is being run, or no lock
             refuse_if_written(lock.with_name(lock.name.removesuffix(".lock")))
-            lock.unlink(missing_ok=True)
+            remove(lock, LOCK)
 
 
 def differing(plan: Plan, folder: Path) -> int:

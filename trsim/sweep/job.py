@@ -102,6 +102,8 @@ def _told(
 def _checkpoint(target: Path, scenario: Any) -> Any:
     """Where an earlier, broken off run of the same case goes on; None at the start."""
     from trsim.store.checkpoint import beside, differences, load
+    from trsim.store.own import remove
+    from trsim.store.target import PART
 
     path, part = beside(target), target.with_name(target.name + ".part")
     _alone(target)
@@ -111,7 +113,7 @@ def _checkpoint(target: Path, scenario: Any) -> Any:
             kept = load(path)
     if kept and not differences(kept, scenario):
         return kept
-    part.unlink(missing_ok=True)  # killed early it may not even look like one
+    remove(part, PART)
     return None
 
 

@@ -44,7 +44,8 @@ class Ledger:
 
     def __init__(self, folder: Path, shard: str = "") -> None:
         self.path = folder / f"ledger{f'-{shard}' if shard else ''}.jsonl"
-        self.file = self.path.open("ab")
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW | os.O_NONBLOCK
+        self.file = open(os.open(self.path, flags, 0o666), "ab")  # noqa: SIM115 - see close
         if self.file.tell() and not _ends_a_line(self.path):
             self.file.write(b"\n")
 
@@ -67,7 +68,7 @@ def _ends_a_line(path: Path) -> bool:
 def entries(folder: Path) -> dict[str, Entry]:
     """The last entry of every case, of all shards."""
     found: dict[str, Entry] = {}
-    for path in sorted(folder.glob("ledger*.jsonl")):
+    for path in filter(Path.is_file, sorted(folder.glob("ledger*.jsonl"))):
         for line in path.read_bytes().splitlines():
             with suppress(ValueError, TypeError):
                 entry = Entry(**json.loads(line))

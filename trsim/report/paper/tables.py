@@ -38,7 +38,7 @@ def table(path: Path, head: Sequence[str], lines: Iterable[Sequence[object]]) ->
     with (
         told(path),
         fresh(path, headed(*head)) as unfinished,
-        unfinished.open("x", newline="", encoding="utf-8") as file,
+        unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
         writer = csv.writer(file)
         writer.writerow(head)
