@@ -145,3 +145,35 @@ solver: {end: 0.1}
     stay, fly = pi / omega, 0.02 / 10
     first = 0.01 / 10 + (stay + fly) * np.arange(100)
     assert times(r, ONSET) == pytest.approx(first[first < 0.1], abs=1e-7)
+
+
+@pytest.mark.parametrize("axis", AXES.values(), ids=AXES)
+@pytest.mark.parametrize("rate", [10, 100])
+def test_every_point_of_a_section(axis, rate):
+    """A section at the mark's place, and one at its rate, which goes through zero twice a turn."""
+    more = """
+poincare:
+  over: {when: beside, crosses: up, plot: [turn, turn.rate]}
+  tops: {when: beside.rate, crosses: both, plot: [turn, beside]}
+"""
+    r, _, _ = rotor(axis, rate, 10.0, more)
+    want = tau * np.arange(1, 2000)
+    want = want[want <= 10.0 * rate]
+    assert r.section("over")[:, 1] == pytest.approx(want, abs=2e-4 * rate)
+    tops = pi / 2 + pi * np.arange(2000)
+    tops = tops[tops <= 10.0 * rate]
+    assert r.section("tops")[:, 1] == pytest.approx(tops, abs=2e-4 * rate)
+
+
+def test_two_points_close_together():
+    """A ball just reaches a height: both points lie within a hundredth of the step."""
+    text = """
+gravity: [0, -9.81]
+bodies: {ball: {mass: 1, inertia: 1, velocity: [0, 4.905]}}
+joints: {rail: {type: prismatic, bodies: [ground, ball], axis: [0, 1, 0]}}
+sensors: {height: {joint: rail, at_start: -1.22624}}
+solver: {end: 1}
+poincare: {there: {when: height, crosses: both, plot: [height, height.rate]}}
+"""
+    aside = np.sqrt(2 * (4.905**2 / (2 * 9.81) - 1.22624) / 9.81)
+    assert run(text).section("there")[:, 0] == pytest.approx([0.5 - aside, 0.5 + aside], abs=1e-7)

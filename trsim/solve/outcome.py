@@ -57,6 +57,7 @@ LOOKS = 200  # of a run, at least: steps while something depends on time explici
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
+CROSSINGS = 256.0  # of a step, at most, see WHOLE of turns.py
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 MOST_ROWS = 10_000  # output rows one fixed step may span
 
@@ -143,7 +144,7 @@ def most_points(mechanism: Mechanism, setting: Array) -> int:
     longest = min(setting[rec.T_END], spanned * setting[rec.EVERY])
     most = 0
     for section in mechanism.sections:
-        own = longest / section.every + 2.0 if section.every else 16.0
+        own = longest / section.every + 2.0 if section.every else CROSSINGS
         if own > MOST_POINTS:
             raise ScenarioError(
                 f"{own:.0e} points may fall into one step",

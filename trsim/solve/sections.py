@@ -4,9 +4,12 @@
     strobe    t = after + k every
     touch     the end of a step that a contact ends by touching
 
-A crossing lies between two neighbours of different sign among the ends of the step and PARTS - 1
-points inside it.  These are looked at where the sign changed, or where the cubic through values and
-rates of the channel at both ends comes near zero: so two crossings in one step are two points.
+A crossing lies between two neighbours of different sign among the ends of the step and points
+inside it: PARTS - 1, and as many again for every TURN that the fastest body turns by.  These are
+looked at where the sign changed, where bodies turn so far, or where the cubic through values and
+rates of the channel at both ends comes near zero.  Where three neighbours of one sign dip towards
+zero the bottom is looked for too: so two crossings in one step are two points, however close.
+Channels are of every kind, forces among them, so this is sampled, not bounded as events are.
 The root is found to the resolution of the time.
 
 Like the phase of a contact the side `when` is on is a discrete state: zero is on the side it came
@@ -59,8 +62,11 @@ from trsim.solve.record import (
     RATE,
     WORK_PROJECTION,
 )
+from trsim.solve.turns import WHOLE, fastest
 
-PARTS = 8  # of a step that is looked at
+PARTS = 8  # of a step that is looked at, for each TURN
+TURN = 0.5  # rad
+DIPS = 12  # looks at the bottom of a dip
 NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
 AHEAD = 1e-4  # of a step: how far the rate of a channel looks
 JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
@@ -79,13 +85,14 @@ def sections(s, r, b, method, t, h, t1, projected, built, event):
     factorisations, contradictory = s.status[2], s.status[3]
     interpolate = method[INTERPOLATE_AT]
     ends_known(s, r, b, t, t1, method[LAST_AT], built, event)
+    parts = parts_of(s, r, b, t1 - t, method[LAST_AT])
     for k in range(s.section.shape[0]):
         kind = s.section[k, KIND]
         if kind == TOUCH:
             if event > 0 and touches(s, r, b, s.section[k, WHEN]):
                 point(s, r, b, k, t1, b.out)
         elif (kind == STROBE and instant(s, r, k) <= latest(t1)) or (
-            crosses_after(s, k, t1) and may_cross(s, r, b, k, t1 - t, event)
+            crosses_after(s, k, t1) and may_cross(s, r, b, k, t1 - t, event, parts)
         ):
             if built == 0:
                 call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
@@ -93,7 +100,7 @@ def sections(s, r, b, method, t, h, t1, projected, built, event):
             if kind == STROBE:
                 strobes(s, r, b, k, interpolate, t, h, t1, projected)
             else:
-                crossings(s, r, b, k, interpolate, t, h, t1, projected)
+                crossings(s, r, b, k, interpolate, t, h, t1, projected, parts)
         keep_end(s, r, b, k, t1, event)
     s.status[0], s.status[1] = went, evaluations
     s.status[2], s.status[3] = factorisations, contradictory
@@ -222,10 +229,10 @@ def keep_end(s, r, b, k, t1, event):
 
 
 @internal
-def may_cross(s, r, b, k, length, event):
+def may_cross(s, r, b, k, length, event, parts):
     """Whether the step must be looked into: the sign changes, or the cubic comes near zero."""
     side = r.section[k, ON]
-    if event > 0 or r.section[k, KNOWN] == 0.0 or side == 0.0:
+    if event > 0 or r.section[k, KNOWN] == 0.0 or side == 0.0 or parts > PARTS:
         return True
     f0, f1 = side * r.section[k, LAST], side * b.out[s.section[k, WHEN]]
     rise = f1 - f0
@@ -241,23 +248,90 @@ def may_cross(s, r, b, k, length, event):
 
 
 @internal
-def crossings(s, r, b, k, interpolate, t, h, t1, projected):
+def parts_of(s, r, b, length, last):
+    """In how many parts a step is looked at."""
+    fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
+    return PARTS * (1 + int(min(fast * length, 2.0 * WHOLE) / TURN))
+
+
+@internal
+def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
     """The points of all crossings in the step."""
-    when, want, reach = s.section[k, WHEN], s.section[k, DIRECTION], (t1 - t) / h
+    when, reach = s.section[k, WHEN], (t1 - t) / h
+    before, f_before = -1.0, 0.0  # the neighbour before the last, where both are on one side
     low, f_low, side = 0.0, r.section[k, LAST], r.section[k, ON]
-    for j in range(1, PARTS + 1):
-        high = reach * j / PARTS
-        f_high = b.out[when]
-        if j < PARTS:
-            measure_inside(s, r, b, interpolate, t, h, high, projected)
-            f_high = s.out[when]
+    for j in range(1, parts + 1):
+        high = reach * j / parts
+        f_high = value(s, r, b, k, interpolate, t, h, high, projected) if j < parts else b.out[when]
         new = side_of(f_high, side)
-        if side * new < 0.0 and (want == 0 or want == new):
-            theta = root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected)
-            if theta >= 0.0:
-                measure_inside(s, r, b, interpolate, t, h, theta, projected)
-                point(s, r, b, k, min(t + theta * h, t1), s.out)
+        if side * new < 0.0:
+            crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, new, projected)
+            before = -1.0
+        else:
+            if before >= 0.0 and side * f_low < min(side * f_before, side * f_high):
+                bottom = dip(s, r, b, k, interpolate, t, h, before, f_before, low, f_low, high,
+                             f_high, side, projected)  # fmt: skip
+                if bottom >= 0.0:
+                    f = value(s, r, b, k, interpolate, t, h, bottom, projected)
+                    crossed(s, r, b, k, interpolate, t, h, t1, before, f_before, bottom, f, -side,
+                            projected)  # fmt: skip
+                    crossed(s, r, b, k, interpolate, t, h, t1, bottom, f, high, f_high, side,
+                            projected)  # fmt: skip
+            before, f_before = low, f_low
         low, f_low, side = high, f_high, new
+
+
+@internal
+def value(s, r, b, k, interpolate, t, h, theta, projected):
+    """What section k looks at, inside the step."""
+    measure_inside(s, r, b, interpolate, t, h, theta, projected)
+    return s.out[s.section[k, WHEN]]
+
+
+@internal
+def crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, to, projected):
+    """The point of a crossing to the side `to` between two places, if it is asked for."""
+    want = s.section[k, DIRECTION]
+    if want != 0 and want != to:
+        return
+    when = s.section[k, WHEN]
+    theta = root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected)
+    if theta >= 0.0:
+        measure_inside(s, r, b, interpolate, t, h, theta, projected)
+        point(s, r, b, k, min(t + theta * h, t1), s.out)
+
+
+@internal
+def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, projected):
+    """A place beyond zero at the bottom of three values of one side; -1 where it stays on it.
+
+    By parabolas through the three lowest, as far as these may reach zero.
+    """
+    for _ in range(DIPS):
+        a, c = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
+        bend = (c - a) / (x2 - x0)
+        if side * bend <= 0.0:
+            return -1.0
+        x = 0.5 * (x0 + x1) - 0.5 * a / bend
+        bottom = side * (f0 + (x - x0) * (a + bend * (x - x1)))
+        if bottom > NEAR * (max(side * f0, side * f2) - side * f1):
+            return -1.0
+        if abs(x - x1) < 1e-3 * (x2 - x0):  # the middle is the bottom: look beside it
+            x = x1 + 0.1 * (x2 - x1 if x2 - x1 > x1 - x0 else x0 - x1)
+        f = value(s, r, b, k, interpolate, t, h, x, projected)
+        if side * f < 0.0:
+            return x
+        if side * f < side * f1:
+            if x > x1:
+                x0, f0 = x1, f1
+            else:
+                x2, f2 = x1, f1
+            x1, f1 = x, f
+        elif x > x1:
+            x2, f2 = x, f
+        else:
+            x0, f0 = x, f
+    return -1.0
 
 
 @internal

@@ -10,9 +10,13 @@ or the step is made again, shorter.  A turn that is lost puts the second one out
 Angles of bodies in the plane are sums of coordinates and have no such bound.
 """
 
+from math import sqrt
+
 from trsim.elements.vectors import internal
+from trsim.solve.spread import coordinates_of
 
 MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
+WHOLE = 50.0  # rad: the most a body turns by in a step where points of sections are looked for
 NEXT = 0.9  # of MOST: what the next step may turn a joint by at its present rate
 
 
@@ -31,8 +35,29 @@ def too_far(s, r, b, h):
 
 @internal
 def longest_turn(s, r):
-    """The longest step that turns no joint by more than is sure to be counted, s."""
+    """The longest step that turns no joint by more than is sure to be counted, s.
+
+    Where points of sections are looked for none turns a body by more than WHOLE.
+    """
     longest = 1e300
+    if s.section.shape[0] > 0:
+        longest = WHOLE / max(fastest(s, r.y, r.yd), 1e-300)
     for n in range(s.wound.size):
         longest = min(longest, NEXT * MOST / max(abs(r.turning[s.wound[n]]), 1e-300))
     return longest
+
+
+@internal
+def fastest(s, y, yd):
+    """The largest angular velocity of a frame, rad/s, from the rates of its attitude."""
+    most = 0.0
+    for f in range(1, s.n):
+        q, places, attitude = coordinates_of(s, f)
+        rate = size = 0.0
+        for c in range(q + places, q + places + attitude):
+            rate += yd[c] * yd[c]
+            size += y[c] * y[c]
+        if attitude > 1:  # of a direction, or of a quaternion, which turns half as fast
+            rate *= (4.0 if attitude == 4 else 1.0) / max(size, 1e-300)
+        most = max(most, rate)
+    return sqrt(most)
