@@ -27,8 +27,9 @@ INTERPOLATE = types.void(A2, A1, f8, A1)
 #                                 method t h t1 work of projection, built, event
 SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, f8, f8, f8, f8, i8, i8)
 
-# what looks at redundant rows, for runs that may have some  scene record buffers setting t y
-LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1)
+# what looks at redundant rows, for runs that may have some
+#                   scene  record  buffers  setting t y end of a step
+LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1, i8)
 # what finds the first event of a step, for runs that can have some       scene  record  buffers
 #                                        setting method t h built
 SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)

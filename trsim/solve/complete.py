@@ -125,7 +125,7 @@ def complete(s, r, b, setting, method, h, built):
             projected = land(s, r, b, t1, b.y1, b.K[last])
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     copy_to(b.out, s.out)
-    if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1) > 0:
+    if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
     near = near_peak(s, r, b, t1, t1 - t, last)
     inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
@@ -237,7 +237,7 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
             measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
             copy_to(row[1:], s.out)
             if method[LOOK_AT] > 0:
-                call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2)
+                call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2, 0)
         if not all_finite(row):
             r.count[ROWS], r.count[NEXT_ROW], r.count[OPENED] = rows, next_row, 0
             return False

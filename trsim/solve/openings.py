@@ -54,8 +54,10 @@ REMEDY = (
 
 
 @compiled(LOOK)
-def look(s, r, b, setting, t, y):
+def look(s, r, b, setting, t, y, step):
     """Note the openings of the redundant rows at (t, y), which the last evaluation was at.
+
+    step: 1 at the end of a step, 0 inside, where interpolation may open them to what is told.
 
     Leaves other poses in the workspace, and b.y2 changed, where it returns 1; else 0.
     """
@@ -64,7 +66,7 @@ def look(s, r, b, setting, t, y):
         worst = max(worst, opening(s, s.m + k))
         r.clock[WORST_OPEN_RATE] = max(r.clock[WORST_OPEN_RATE], rate(s, k))
     r.clock[WORST_OPEN] = max(r.clock[WORST_OPEN], worst)
-    if worst <= told:
+    if worst <= (told if step == 1 else setting[HELD_TO]):
         return 0
     copy_to(b.y2, y)
     bound = AS_THE_OTHERS * closed(s, t, b.y2)
