@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from tests.runs import run
 from trsim.laws.functions import table, value
@@ -126,3 +127,189 @@ def test_a_model_is_not_changed_by_a_run():
                 break
     np.testing.assert_array_equal(mechanism.model.tab, before)
     np.testing.assert_array_equal(*ends)
+
+
+# --- corners that sensors meet ---------------------------------------------------------------
+
+SLIDING = """
+bodies: {{slider: {{mass: 2, inertia: 1, velocity: [{}, 0]}}}}
+joints: {{guide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}}}
+sensors: {{x: {{joint: guide}}, y: {{joint: guide, sign: -1, at_start: 0.3}}}}
+forces: {{wall: {{type: applied_load, body: slider, direction: [1, 0], force: {}}}}}
+solver: {{end: {} s, {}}}
+output: {{every: 1 s}}
+"""
+TURNING = """
+bodies: {{disc: {{mass: 2, inertia: {}, angular_velocity: [0, 0, {}]}}}}
+joints: {{bearing: {{type: revolute, bodies: [ground, disc], at: [0, 0], axis: {}}}}}
+sensors: {{x: {{joint: bearing}}}}
+forces: {{detent: {{type: applied_load, body: disc, direction: {}, torque: {}}}}}
+solver: {{end: {} s, {}}}
+output: {{every: 1 s}}
+"""
+ADAPTIVE = METHODS[:4]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("v", [2.0, -2.0, 30.0])
+def test_a_wall_of_a_millimetre(method, v):
+    """-1000 N over 1 mm takes 1 J of m v^2 / 2, whatever the speed and the way."""
+    load = f'"-1000*{math.copysign(1, v)}*(abs(x) > 0.5)*(abs(x) < 0.501)"'
+    r = run(SLIDING.format(v, load, 3 / abs(v), method))
+    assert speed(r) == pytest.approx(math.copysign(math.sqrt(v * v - 1.0), v), rel=1e-9)
+    book = r.outcome.statistics["energy_residual_relative"]
+    assert book < 1e-9
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_turning_back_inside_it(method):
+    """Half a joule does not suffice: it comes back as fast as it came."""
+    r = run(SLIDING.format(math.sqrt(0.5), '"-1000*(x > 0.5)*(x < 0.501)"', 3, method))
+    assert speed(r) == pytest.approx(-math.sqrt(0.5), rel=1e-9)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-4, 1e-8, 1e-10])
+@pytest.mark.parametrize("method", ["method: dop853", "method: radau", "method: generalized_alpha"])
+def test_work_of_features_at_any_tolerance(method, tolerance):
+    """Several on one sensor, of all kinds; the work of each is an integral done by hand."""
+    pieces = {
+        "50*max(0, 1 - abs(x - 0.4)/1e-3)": 0.05,
+        "-200*(x > 0.6)*(x < 0.6005)": -0.1,
+        "100*step(x, 0.7, 0, 0.7001, 1)*(y > -0.4011)": 0.1 * 0.5 * 0.1 + 0.1,
+        "min(max(1e4*(x - 0.9), 0), 10)*(1.0 - x > 0.098)": 0.5 * 10 * 1e-3 + 10e-3,
+    }
+    load = '"' + " + ".join(pieces) + '"'
+    r = run(SLIDING.format(3.0, load, 1, f"tolerance: {tolerance}, {method}"))
+    gained = sum(pieces.values())
+    assert speed(r) == pytest.approx(math.sqrt(9.0 + gained), rel=max(1e-9, 1e-2 * tolerance))
+
+
+@pytest.mark.parametrize("method", METHODS[:3])
+@pytest.mark.parametrize("axis", ["[0, 0, 1]", "[0, 0, -1]"])
+@pytest.mark.parametrize("omega", [20.0, -200.0])
+def test_a_detent_of_a_degree_on_every_turn(method, axis, omega):
+    """Its torque against the motion takes 2 w T from the energy each time it is passed."""
+    w, torque, end = math.radians(0.5), 3.0, 2.0
+    text = f'"{-math.copysign(torque, omega)}*(cos(x - 1) > {math.cos(w)!r})"'
+    r = run(TURNING.format(1, -omega if "-" in axis else omega,
+                           axis, axis, text, end, method))  # fmt: skip
+    turned = r.outcome.record.y[2]
+    first = 1.0 if omega > 0 else 2 * math.pi - 1.0
+    passed = 1 + math.floor((abs(turned) - first) / (2 * math.pi))
+    assert passed > 2
+    expected = math.sqrt(omega**2 - 2 * passed * 2 * w * torque)
+    assert abs(r.outcome.record.y[5]) == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize("method", METHODS[:4])
+def test_a_narrow_triangle_in_a_table_of_a_sensor(method):
+    x = [0, 0.5, 0.5005, 0.501, 0.5015, 0.502, 10]
+    y = [0, 0, 0, 1e3, 0, 0, 0]
+    tab, none = np.array(table(x, y)), np.zeros((0, 2))
+    work = 0.0
+    for a, b in pairwise(x):
+        for side in (-1, 1):
+            at = 0.5 * (a + b) + side * (b - a) / math.sqrt(12)
+            work += 0.5 * (b - a) * value(tab, 0, at, none)
+    points = [list(p) for p in zip(x, y, strict=True)]
+    r = run(SLIDING.format(3.0, f"{{table: {points}, of: x}}", 1, method))
+    assert speed(r) == pytest.approx(math.sqrt(9.0 + work), rel=1e-7)
+
+
+@pytest.mark.parametrize("method", METHODS[:3])
+def test_an_oscillator_of_two_stiffnesses(method):
+    """Half a period on each side of a corner where the force is zero, and none of it chatters."""
+    r = run(
+        SLIDING.format(1.0, '"-(200*max(x, 0) + 800*min(x, 0))"', 10, f"{method}, tolerance: 1e-8")
+    )
+    period = math.pi * (1 / 10 + 1 / 20)
+    t = 10.0 % period
+    expected = math.cos(10 * t) if t < math.pi / 10 else -math.cos(20 * (t - math.pi / 10))
+    assert speed(r) == pytest.approx(expected, abs=1e-6)
+    assert r.outcome.record.y[0] == pytest.approx(
+        math.sin(10 * t) / 10 if t < math.pi / 10 else -math.sin(20 * (t - math.pi / 10)) / 20,
+        abs=1e-6,
+    )
+
+
+@pytest.mark.parametrize("method", METHODS[:3])
+def test_a_corner_that_moves(method):
+    """What a sensor is compared with may depend on time: free fall of the corner itself."""
+    r = run(SLIDING.format(1.0, '"-4*(x > 2*t - 0.5*t**2)*(x < 100)"', 3, method))
+    # x = t is below 2 t - t^2/2 until t = 2, then -2 m/s^2; above until the parabolas meet again
+    assert speed(r) == pytest.approx(1.0 - 2.0 * 1.0, abs=1e-8)
+
+
+@pytest.mark.parametrize("method", METHODS[:3])
+def test_at_rest_on_a_corner(method):
+    """It stays where the forces of both sides hold it, and leaves where they do not."""
+    r = run(SLIDING.format(0, '"10*(x < 0) - 10*(x > 0)"', 1, method))
+    assert r.outcome.status == "done" and abs(r.outcome.record.y[0]) < 1e-9
+    r = run(SLIDING.format(0, '"10*(x >= 0)*(x < 0.2)"', 1, method))
+    assert speed(r) == pytest.approx(math.sqrt(2.0), rel=1e-7)
+
+
+@pytest.mark.parametrize("method", METHODS[:2])
+def test_ever_shorter_swings_about_a_corner(method):
+    """m v' = -c v - F sign(x), from crossing to crossing by its closed form."""
+    damper = (
+        "damper: {type: spring_damper, bodies: [ground, slider], points: [[-1, 0], [0, 0]], "
+        "stiffness: 0, damping: 20}"
+    )
+    text = SLIDING.format(1.0, '"10*(x < 0) - 10*(x > 0)"', 1, method)
+    r = run(text.replace("forces: {", "forces: {" + damper + ", "))
+    t, v, sign, k, a = 0.0, 1.0, 1.0, 10.0, 5.0  # c/m, F/m
+
+    def place(tau):
+        return (v + a / k) * (1.0 - math.exp(-k * tau)) / k - a / k * tau
+
+    while True:
+        top = math.log(1.0 + v * k / a) / k
+        tau = brentq(place, top, 3.0 * top + 1e-9, xtol=1e-16)
+        if t + tau > 1.0:
+            break
+        t, v, sign = t + tau, a / k - (v + a / k) * math.exp(-k * tau), -sign
+    end = 1.0 - t
+    assert r.outcome.record.y[0] == pytest.approx(sign * place(end), abs=1e-8)
+    assert speed(r) == pytest.approx(sign * ((v + a / k) * math.exp(-k * end) - a / k), abs=1e-6)
+    assert r.outcome.statistics["steps"] < 2000
+
+
+SPATIAL = """
+planar: false
+bodies:
+  arm: {{mass: 1, inertia: [0.01, 0.02, 0.02], at: [0.5, 0, 0], angular_velocity: [0, {0}, 0],
+        velocity: [0, 0, {1}]}}
+joints: {{hinge: {{type: revolute, bodies: [ground, arm], at: [0, 0, 0], axis: [0, 1, 0]}}}}
+sensors: {{a: {{joint: hinge}}, s: {{type: displacement, bodies: [ground, arm], at: [0, 0, 0.0],
+           axis: [0, 0, 1]}}}}
+forces: {{detent: {{type: applied_load, body: arm, direction: [0, 1, 0], torque: "{2}"}}}}
+solver: {{end: 2 s, {3}}}
+output: {{every: 1 s}}
+"""
+
+
+@pytest.mark.parametrize("method", METHODS[:2])
+def test_a_detent_about_another_axis(method):
+    """About y, in space: the energy it takes is the same."""
+    w, omega = math.radians(0.5), 17.0
+    inertia = 0.02 + 0.25
+    text = f"-1.5*(sin(a) > {math.cos(w)!r})"
+    r = run(SPATIAL.format(omega, -0.5 * omega, text, f"{method}, tolerance: 1e-8"))
+    turns = 0
+    energy = 0.5 * inertia * omega**2
+    left, at = 2.0, 0.0  # by hand: free turning from detent to detent
+    while True:
+        rate = math.sqrt(2 * energy / inertia)
+        way = (math.pi / 2 - w if turns == 0 else 2 * math.pi - 2 * w) - at
+        if left * rate < way:
+            break
+        left -= way / rate
+        lost, slowed = 1.5 * 2 * w, math.sqrt(2 * (energy - 1.5 * 2 * w) / inertia)
+        left -= 2 * w / (0.5 * (rate + slowed))
+        energy -= lost
+        turns += 1
+    assert turns >= 5
+    assert np.linalg.norm(r.outcome.record.y[10:13]) == pytest.approx(
+        math.sqrt(2 * energy / inertia), rel=1e-6
+    )

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from trsim.assemble.features import Cornered, cornered
+from trsim.assemble.cornered import Cornered, cornered
 from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot

@@ -1,67 +1,46 @@
 """Functions with corners: where they are, when the time alone meets them, and what holds them.
 
     feature   0 offset in tab, 1 row of the drive whose time counts, or -1, 2 first of its instants,
-              3 behind the last, 4 first of its entries of `held`, 5 whether sensors meet corners,
-              6 state of z with the rate of a piston against the motion of its supply, or -1
+              3 behind the last, 4 first of its entries of `held`, 5 behind the last,
+              6 whether sensors meet corners,
+              7 state of z with the rate of a piston against the motion of its supply, or -1
     instant   0, then the instants of a function in rising order, then the end of the run
     jump      by how much the place and the rate of a motion jump there        jumps.py
     held      places in tab of what each corner is held on (laws/functions.py)
+    sensed    of the sensors that meet corners: entry of S, kind of quantity, instance (travel.py)
 
 A function that is held on the pieces it is on is smooth: a step never sees a corner, and ends
 where one is met (solve/features.py).  Unless a run holds them, functions are evaluated as written.
 """
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from trsim.assemble.jumps import NOBODY, driven
+from trsim.assemble.travel import of_instance
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, SINCE, compiled
 from trsim.elements.prescribed import MOTION
 from trsim.elements.signatures import f8, i8, void
 from trsim.elements.vectors import internal
-from trsim.instants import distinct, instants
 from trsim.laws.functions import (
     BY_SENSORS,
-    BY_TIME,
-    HEAD,
-    HELD,
-    HELD_OF_TABLE,
-    UNWATCHED,
-    WATCHED,
-    WIDTH,
+    FREE,
+    corner,
+    ends_of,
     hold,
+    located,
+    neighbour,
+    piece_at,
+    sensed,
 )
 
-OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, SENSED, PISTON, N_FEATURE = range(8)
+OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, HELD_TO, SENSED, PISTON, N_FEATURE = range(9)
 PLACE_JUMP, RATE_JUMP = range(2)  # columns of `jump`
+ENTRY, KIND, INSTANCE = range(3)  # of `sensed`
+SENSOR_ENTRY = 2  # of Row.con: where a sensor stands in S
 SAME = 0.5e-12  # of the run: an instant so near has been reached
-
-
-class Cornered(NamedTuple):
-    """A function with corners."""
-
-    offset: int
-    instants: list[float]  # in rising order, inside the run
-    held: list[int]  # places in tab
-    sensed: bool  # whether sensors meet some of them
-    end: float
-
-
-def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Cornered]:
-    """A function, if it has corners.  Raises ScenarioError where they cannot be told."""
-    if spec.kind == "constant":
-        return []
-    if spec.kind == "table":
-        of_t = spec.of == "t"
-        times = distinct(list(spec.x), end) if of_t else []
-        return [Cornered(offset, times, [offset + HELD_OF_TABLE], not of_t, end)]
-    places = range(HEAD + int(code[1]), HEAD + int(code[1]) + WIDTH * int(code[2]), WIDTH)
-    watched = [p for p in places if code[p + WATCHED] != UNWATCHED]
-    sensed = any(code[p + WATCHED] == BY_SENSORS for p in watched)
-    held = [offset + p + HELD for p in watched]
-    return [Cornered(offset, instants(spec.node, end), held, sensed, end)] if held else []
 
 
 def features(at: Any, instances: list[Any]) -> dict[str, Any]:
@@ -74,11 +53,18 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
     for f in at.functions:
         first = len(times)
         times += [0.0, *f.instants, f.end]
+        behind, last = len(times), len(held) + len(f.held)
         drive = own.get(f.offset, NOBODY)
         jumps.append(at.jumped.get(f.offset, np.zeros((len(times) - first, 2))))
-        rows.append((f.offset, drive.e, first, len(times), len(held), int(f.sensed), drive.slip))
+        by_sensors = int(bool(f.sensed))
+        rows.append((f.offset, drive.e, first, behind, len(held), last, by_sensors, drive.slip))
         held += f.held
+    entries = sorted({k for f in at.functions for k in f.sensed})
+    owner = {i.row.con[SENSOR_ENTRY]: e for e, i in enumerate(instances) if i.section == "sensors"}
+    sensed = [(k, *of_instance(instances, owner[k])[:2]) for k in entries]
     return {
+        "sensed": np.array(sensed, np.int64).reshape(-1, 3),
+        "slots": max((f.slots for f in at.functions if f.sensed), default=0),
         "feature": np.array(rows, np.int64).reshape(-1, N_FEATURE),
         "instant": np.array(times, float),
         "jump": np.vstack(jumps),
@@ -122,6 +108,39 @@ def between(s, n, k):
     return 0.5 * (s.instant[first + k - 1] + s.instant[first + k])
 
 
+NEAR = 1e-12  # of what u is the difference of: so near to a corner rounding tells no side
+
+
+@internal
+def hold_sensed(s, n, t, anew):
+    """Hold the corners of feature n that sensors meet, one after the other, just after t.
+
+    What is on a corner goes on where its rate leads, and is left FREE where it has none.
+    anew: not 0 where nothing was held; else only what is not on its piece is changed.
+    """
+    o, changed = s.feature[n, OFFSET], 0
+    for k in range(s.feature[n, HELD_FROM], s.feature[n, HELD_TO]):
+        place = s.held[k]
+        before = s.tab[place]
+        if not sensed(s.tab, o, place) or (anew == 0 and before == FREE):
+            continue
+        located(s.tab, o, t, s.S)
+        u, rate, size = corner(s.tab, o, place, s.S)
+        near = NEAR * size
+        low, high = ends_of(s.tab, o, place)
+        if anew != 0 or not (low - near <= u <= high + near):
+            s.tab[place] = piece_at(s.tab, o, place, u)
+            low, high = ends_of(s.tab, o, place)
+        if u - low <= near or high - u <= near:
+            above = high - u <= near
+            if (rate > 0.0) if above else (rate < 0.0):
+                s.tab[place] = neighbour(s.tab, o, place, above)
+            elif rate == 0.0 and anew != 0:
+                s.tab[place] = FREE
+        changed += int(s.tab[place] != before)
+    return changed
+
+
 @compiled(HOLD)
 def hold_all(s, t, which):
     """Hold all functions on the pieces they are on just after t, at the poses of the scene.
@@ -129,9 +148,8 @@ def hold_all(s, t, which):
     which: BY_TIME or BY_SENSORS, the corners to look at.
     """
     for n in range(s.feature.shape[0]):
-        at = t
-        if s.feature[n, DRIVE] >= 0:
-            at = t - s.mem[s.feature[n, DRIVE], SINCE]
-        if which == BY_TIME:
-            at = between(s, n, passed(s, n, t))
-        hold(s.tab, s.feature[n, OFFSET], at, s.S, which)
+        if which == BY_SENSORS:
+            if s.feature[n, SENSED] > 0:
+                hold_sensed(s, n, t, 1)
+            continue
+        hold(s.tab, s.feature[n, OFFSET], between(s, n, passed(s, n, t)), s.S, which)

@@ -100,6 +100,8 @@ class Model(Packed):
     instant: A1  # when those are met that the time alone decides
     wound: I1  # entries of S known up to full turns: angles not of bodies in the plane
     steep: i8  # how many motions of drives may be steep between their corners
+    sensed: I2  # (n, 3) sensors that meet corners
+    slots: i8  # the most that a function has whose corners they meet
     held: I1  # (corners) where in tab it stands what each is held on
     on_features: I1  # address of what holds functions on their pieces; 0 without such functions
     travel: I2  # (n_contacts + n_w, 2) kind of each gap, the instance it lies at   travel.py

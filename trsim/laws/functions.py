@@ -32,6 +32,7 @@ from trsim.laws.operations import (
     CORNERED,
     DIV,
     FREE,
+    INSIDE,
     MAX,
     MIN,
     MUL,
@@ -41,11 +42,13 @@ from trsim.laws.operations import (
     SUB,
     UNARY,
     branch_at,
+    branch_ends,
     operation,
     operation_rates,
     switching,
 )
-from trsim.laws.tables import akima, akima_table, held_cubic, interval_at
+from trsim.laws.ranges import ranged
+from trsim.laws.tables import akima, akima_table, held_cubic, interval_at, interval_ends
 
 CONSTANT, TABLE, EXPRESSION = 0, 1, 2
 HEAD = 5  # numbers before the sensors of an expression
@@ -264,6 +267,138 @@ def hold(tab, o, t, S, which):
         tab[out] = operation(code, a, b, tab[p + HELD])
         p += WIDTH
         out += 3
+
+
+# --- corners: each is known by its place in tab, of what is held there -----------------------
+
+
+@law
+def sensed(tab, o, place):
+    """Whether sensors meet a corner."""
+    if tab[o] == TABLE:
+        return tab[o + 1] >= 0.0
+    return tab[place - HELD + WATCHED] == BY_SENSORS
+
+
+@law
+def corner(tab, o, place, S):
+    """u of a corner that sensors meet, its rate, and the size of what u is the difference of.
+
+    As `located` left them in the slots.
+    """
+    if tab[o] == TABLE:
+        k = int(tab[o + 1])
+        return S[k, 0], S[k, 1], abs(S[k, 0])
+    p = place - HELD
+    code, a, b = int(tab[p]), o + int(tab[p + 1]), o + int(tab[p + 2])
+    if code == ATAN2 or code >= NEG:
+        return tab[a], tab[a + 1], abs(tab[a])
+    return tab[a] - tab[b], tab[a + 1] - tab[b + 1], abs(tab[a]) + abs(tab[b])
+
+
+@law
+def located(tab, o, t, S):
+    """Fill the slots of an expression with values and rates at t."""
+    if tab[o] == EXPRESSION:
+        value_and_rate(tab, o, t, S)
+
+
+@law
+def ends_of(tab, o, place):
+    """Between which u the piece lies that is held."""
+    held = tab[place]
+    if tab[o] != TABLE:
+        return branch_ends(int(tab[place - HELD]), held)
+    if held == FREE:
+        return -math.inf, math.inf
+    return interval_ends(tab, o + OF_TABLE, int(tab[o + 2]), held)
+
+
+@law
+def piece_at(tab, o, place, u):
+    """The piece that u is on; at a corner the one above."""
+    if tab[o] == TABLE:
+        return interval_at(tab, o + OF_TABLE, int(tab[o + 2]), u)
+    return branch_at(int(tab[place - HELD]), u)
+
+
+@law
+def neighbour(tab, o, place, above):
+    """The piece next to the one that is held."""
+    held = tab[place]
+    if tab[o] == TABLE:
+        if above:
+            return 1.0 if held < 0.0 else held + 1.0
+        return held - 1.0 if held > 1.0 else -1.0
+    if int(tab[place - HELD]) in (SMOOTHSTEP, QUINTIC) and held != INSIDE:
+        return INSIDE
+    return 1.0 if above else -1.0
+
+
+CLEAR, MEETS, UNSURE = 0, 1, 2
+
+
+@law
+def judged(u, l, h, m, n, low, high):
+    """Whether u stays between low and high: it is in l..h, its rate in m..n, and it ends at u."""
+    if low < l and h < high:
+        return CLEAR
+    if not (m > 0.0 or n < 0.0):
+        return UNSURE
+    return MEETS if u < low or u > high else CLEAR
+
+
+@law
+def enclosed(tab, o, t0, t1, S, seen, box):
+    """Whether a function stays on its pieces from t0 to t1, where its sensors show S.
+
+    Parameters
+    ----------
+    tab, o, S                as in `value`
+    t0, t1 : float           s
+    seen : (n_s, 4)          ranges of the sensors and of their rates meanwhile
+    box : (n_slots, 4)       scratch: those of the slots
+
+    Returns
+    -------
+    int                      CLEAR; MEETS one, whose u' has one sign meanwhile; UNSURE
+    """
+    if tab[o] == TABLE:
+        k = int(tab[o + 1])
+        low, high = ends_of(tab, o, o + HELD_OF_TABLE)
+        r = seen[k]
+        return judged(S[k, 0], r[0], r[1], r[2], r[3], low, high)
+    inputs(tab, o, t1, S)
+    run(tab, o)
+    n_in, n_op, first = int(tab[o + 1]), int(tab[o + 2]), int(tab[o + 3])
+    box[0, 0], box[0, 1], box[0, 2], box[0, 3] = t0, t1, 1.0, 1.0
+    for i in range(n_in):
+        for c in range(4):
+            box[i + 1, c] = seen[int(tab[o + HEAD + i]), c]
+    for k in range(1 + n_in + n_op, box.shape[0]):
+        place = o + first + 3 * k
+        if place >= tab.size:
+            break
+        box[k, 0] = box[k, 1] = tab[place]
+        box[k, 2] = box[k, 3] = 0.0
+    worst, p = CLEAR, o + HEAD + n_in
+    for k in range(1 + n_in, 1 + n_in + n_op):
+        code, held = int(tab[p]), tab[p + HELD]
+        slot_a, slot_b = int(tab[p + 1]), int(tab[p + 2])
+        x, y = box[(slot_a - first) // 3], box[(slot_b - first) // 3]
+        a, b, r0, r1, c, d, q0, q1 = x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3]
+        if tab[p + WATCHED] == BY_SENSORS and held != FREE:
+            low, high = branch_ends(code, held)
+            u = switching(code, tab[o + slot_a], tab[o + slot_b])
+            if code == ATAN2 or code >= NEG:
+                worst = max(worst, judged(u, a, b, r0, r1, low, high))
+            else:
+                l, h, m, n = ranged(SUB, a, b, r0, r1, c, d, q0, q1, FREE)
+                worst = max(worst, judged(u, l, h, m, n, low, high))
+        f = ranged(code, a, b, r0, r1, c, d, q0, q1, held)
+        box[k, 0], box[k, 1], box[k, 2], box[k, 3] = f[0], f[1], f[2], f[3]
+        p += WIDTH
+    return worst
 
 
 @law

@@ -11,6 +11,8 @@ from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import (
+    BEYOND_AT,
+    CORNERS_AT,
     DENSE_AT,
     IMPLICIT_AT,
     INTERPOLATE_AT,
@@ -21,6 +23,7 @@ from trsim.solve.calls import (
     SEARCH_AT,
     SECTIONS_AT,
     STEP_AT,
+    TURN_AT,
     call_interpolate,
     call_look,
     call_search,
@@ -28,6 +31,7 @@ from trsim.solve.calls import (
     call_step,
 )
 from trsim.solve.dense_output import build
+from trsim.solve.events import SAME
 from trsim.solve.features import call_meet
 from trsim.solve.land import land
 from trsim.solve.norm import grow
@@ -67,6 +71,7 @@ from trsim.solve.record import (
     WORST_PHI_DOT,
     T,
 )
+from trsim.solve.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.turns import too_far
 from trsim.solve.watch import take_sides
 from trsim.solve.works import exchanged
@@ -78,6 +83,7 @@ SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
 BRIEF = 1e-9  # of a run: no shorter step is asked for
 EXACT = 5  # Newton steps to the end of a step that an event cuts
+NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 
 #                       scene   record  buffers  settings method h built
@@ -92,8 +98,8 @@ def complete(s, r, b, setting, method, h, built):
     built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
     step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch),
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
-    (values not finite; nothing was changed) or STRAYED (so long that a motion was passed over; the
-    same).
+    (values not finite; nothing was changed) or STRAYED (so long that a motion or
+    a corner may be passed over; the same).
     """
     last, t = method[LAST_AT], r.clock[T]
     t1 = reached(setting, t + h)
@@ -107,12 +113,21 @@ def complete(s, r, b, setting, method, h, built):
     if s.wound.size > 0 and too_far(s, r, b, h):
         r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
         return WOUND
-    event = False
-    if method[SEARCH_AT] > 0:
-        before = r.count[DENSE_BUILT]
-        theta = call_search(method[SEARCH_AT], s, r, b, setting, method, t, h, built)
-        built = 1 if r.count[DENSE_BUILT] > before else built
-        event = theta <= 1.0
+    event = corner = False
+    if method[SEARCH_AT] > 0 or method[CORNERS_AT] > 0:
+        before, theta = r.count[DENSE_BUILT], NOTHING
+        if method[CORNERS_AT] > 0:
+            theta = call_search(method[CORNERS_AT], s, r, b, setting, method, t, h, built)
+            if theta == UNCERTAIN:
+                r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+                return STRAYED
+            built = 1 if r.count[DENSE_BUILT] > before else built
+        other = NOTHING
+        if method[SEARCH_AT] > 0:
+            other = call_search(method[SEARCH_AT], s, r, b, setting, method, t, h, built)
+            built = 1 if r.count[DENSE_BUILT] > before else built
+        event, corner = sooner(b, theta, other)
+        theta = min(theta, other)
         if theta < 1.0:
             shorter = exact(s, r, b, setting, method, t, h, theta)
             if shorter > 0.0:
@@ -139,7 +154,7 @@ def complete(s, r, b, setting, method, h, built):
             peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
     if method[SECTIONS_AT] > 0:
         call_sections(
-            method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event)
+            method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event or corner)
         )  # fmt: skip
     accept(s, r, b, t1, projected, last)
     take_sides(s, r)
@@ -153,8 +168,12 @@ def complete(s, r, b, setting, method, h, built):
     outcome = SMOOTH_STEP
     if event:
         outcome = WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
-    if method[MEET_AT] > 0 and call_meet(method[MEET_AT], s, r, b, t, t1) > 0 and not event:
-        outcome = AT_INSTANT
+    if method[MEET_AT] > 0:
+        met = call_meet(method[MEET_AT], s, r, b, t, t1)
+        outcome = AT_INSTANT if met > 0 and not event else outcome
+        if method[TURN_AT] > 0:
+            turned = call_turn(method[TURN_AT], s, r, b, setting, t1, met + int(event))
+            outcome = WITH_CORNER if turned > 0 and not event else outcome
     return outcome
 
 
@@ -171,6 +190,23 @@ def strayed(s, r, setting, h):
 
 
 @internal
+def sooner(b, corner, event):
+    """Whether an event, and whether a corner of a function, ends the step; of the later none."""
+    if corner > event + SAME:
+        for n in range(b.met.shape[0]):
+            b.met[n, 0] = NOTHING
+    elif event > corner + SAME:
+        for c in range(b.root.size):
+            b.root[c] = NOTHING
+        for c in range(b.corner_root.size):
+            b.corner_root[c] = NOTHING
+    return (
+        event <= 1.0 and event <= corner + SAME,
+        corner <= 1.0 and corner <= event + SAME,
+    )
+
+
+@internal
 def reached(setting, t):
     """t, or the end of the run where no step would be left before it."""
     left = setting[T_END] - t
@@ -181,8 +217,8 @@ def reached(setting, t):
 def exact(s, r, b, setting, method, t, h, theta):
     """The step that ends on the event found at theta, for methods with a poor interpolant.
 
-    A gap, or what is watched, is brought to zero at its end by Newton's method; a corner is good
-    enough as found.
+    A gap, what is watched, or u of a corner of a function is brought to zero at its end by Newton's
+    method; a corner of friction is good enough as found.
     Returns its length, its end in b.y1; 0 where the interpolant serves.
     """
     if method[STEP_AT] == 0:
@@ -192,14 +228,21 @@ def exact(s, r, b, setting, method, t, h, theta):
         if b.root[c] <= theta:
             gap_of = c
     h1 = theta * h
-    for _ in range(EXACT):
+    for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
         if not error < NO_STEP:
             return 0.0
         if gap_of < 0:
-            break
+            if method[BEYOND_AT] == 0:
+                break
+            land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
+            late = call_beyond(method[BEYOND_AT], s, b, t + h1)
+            if abs(late) <= SMALLEST * 2.2e-16 * max(abs(t), h1) or k == EXACT - 1:
+                break
+            h1 -= late
+            continue
         land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
         gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
         if abs(gap) <= PRECISE * setting[TOLERANCE] * r.clock[LENGTH] or rate == 0.0:

@@ -89,18 +89,18 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
-def method_table(method, sections=0, meet=0, look=0, search=0):
+def method_table(method, sections=0, meet=0, look=0, search=0, corners=(0, 0, 0)):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
     so do `look_closer`, and `sections`, the address of what locates points, `meet`, of what goes on
-    behind the corners of functions, `look`, of what looks at redundant rows, and `search`, of what
-    finds events; 0 where there are none.
+    behind the corners of functions, `look`, of what looks at redundant rows, `search`, of what
+    finds events, and `corners`, of what finds those that sensors meet; 0 where there are none.
     """
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look)
     stages = getattr(method, "DEAR", 0)
-    found = (look_closer.address(), search, stages, method.DENSE_DEGREE)
+    found = (look_closer.address(), search, stages, method.DENSE_DEGREE, *corners)
     return (*called, complete.address(), *about, *found)
 
 

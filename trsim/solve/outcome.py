@@ -126,6 +126,16 @@ def meets(mechanism: Mechanism) -> int:
     return int(meet.address())
 
 
+def cornered(mechanism: Mechanism) -> tuple[int, int, int]:
+    """The addresses of what finds the corners that sensors meet, tells how far beyond one a place
+    is, and goes on behind it; 0 where there are none."""
+    if len(mechanism.model.sensed) == 0:
+        return 0, 0, 0
+    from trsim.solve.sensed import beyond, corners_ahead, turn
+
+    return int(corners_ahead.address()), int(beyond.address()), int(turn.address())
+
+
 def searcher(mechanism: Mechanism, setting: Array) -> int:
     """The address of what finds events inside a step; 0 where there can be none."""
     if setting[rec.LOCATE] == 0.0 and not len(mechanism.model.watch):
@@ -195,6 +205,8 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         past=np.zeros((past_rows, begun.y.size)),
         watch=np.zeros((len(model.watch), rec.N_WATCH)),
         held=np.zeros(len(model.held)),
+        sight=np.zeros(len(model.sensed)),
+        chatter=np.zeros((len(model.feature), 3)),
         stage=np.zeros(switches, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
         jolt=np.zeros((rec.JOLTS_KEPT, 5)),

@@ -19,7 +19,7 @@ from trsim.elements.contract import (
 from trsim.elements.packed import A1
 from trsim.elements.signatures import void
 from trsim.elements.vectors import internal
-from trsim.laws.functions import BY_TIME
+from trsim.laws.functions import BY_SENSORS, BY_TIME
 from trsim.solve.corners import look
 from trsim.solve.events import NONE, SAME, flip, hertz_step
 from trsim.solve.features import keep
@@ -152,7 +152,10 @@ def evaluate_all(s, r, setting, t):
     evaluate(s, t, r.y, r.yd)
     if s.feature.shape[0] > 0:
         call_hold(s.on_features[0], s, t, BY_TIME)
+        call_hold(s.on_features[0], s, t, BY_SENSORS)
         keep(s, r)
+        for k in range(s.sensed.shape[0]):
+            r.sight[k] = s.S[s.sensed[k, 0], 0]
         evaluate(s, t, r.y, r.yd)
     gaps(s, t)
     for c in range(s.contact.size):

@@ -151,6 +151,8 @@ class Record(Packed):
     past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
     held: A1  # (corners) what functions are held on                            features.py
+    sight: A1  # (n_sensed) what the sensors that meet corners show at y
+    chatter: A2  # (n_features, 3) last time a corner was met, how often in a row, how far it went
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
     jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
@@ -191,6 +193,10 @@ class Buffers(Packed):
     turning1: A1
     net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
     curve: A2  # (14, 9) those of two frames on a part of it
+    seen: A2  # (n_s, 4) ranges of sensors and of their rates, where they meet corners
+    shown: A2  # (n_sensed, 2) what they show at both ends of a part of a step
+    box: A2  # (slots, 4) ranges of the parts of a function
+    met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
 
 
 RECORD, BUFFERS = Record.kind, Buffers.kind
@@ -224,7 +230,11 @@ def fresh_buffers(
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
         turning1=np.zeros(max(model.n_s, 1)),
-        net=np.zeros((9, model.n_q if contacts + watched else 0)),
+        net=np.zeros((9, model.n_q if contacts + watched + len(model.sensed) else 0)),
+        seen=np.zeros((max(model.n_s, 1) if len(model.sensed) else 0, 4)),
+        shown=np.zeros((len(model.sensed), 2)),
+        box=np.zeros((model.slots, 4)),
+        met=np.zeros((len(model.feature), 3)),
         curve=np.zeros((14, 9)),
     )
 

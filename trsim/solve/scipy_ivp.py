@@ -29,6 +29,7 @@ from trsim.solve.openings import looked_at, opened
 from trsim.solve.outcome import (
     CRAWLS,
     Outcome,
+    cornered,
     emptied,
     first_step,
     leapt,
@@ -86,7 +87,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     )  # fmt: skip
     called = (0, 0, interpolate.address(), complete.address())
     about = (locator(mechanism), meets(mechanism), looked_at(mechanism))
-    found_by = (0, searcher(mechanism, setting), 0, NODES.size - 1)
+    found_by = (0, searcher(mechanism, setting), 0, NODES.size - 1, *cornered(mechanism))
     method = np.array((*called, LAST, 1, 0, *about, *found_by), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)

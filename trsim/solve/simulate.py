@@ -23,6 +23,7 @@ from trsim.solve.outcome import (
     CRAWLS,
     Block,
     Outcome,
+    cornered,
     emptied,
     first_step,
     leapt,
@@ -148,7 +149,7 @@ def compiled(
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
     found_by = looked_at(mechanism), searcher(mechanism, setting)
-    called = (locator(mechanism), meets(mechanism), *found_by)
+    called = (locator(mechanism), meets(mechanism), *found_by, cornered(mechanism))
     methods[0] = method_table(used[0], *called)
     clock0 = time.process_time()
     if checkpoint:

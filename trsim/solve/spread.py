@@ -168,7 +168,12 @@ def spread(s, r, b, c, sign, low, high, h):
 
     The poses are those of one end of the part.  Both are negative where there are none.
     """
-    kind, e = s.travel[c, 0], s.travel[c, 1]
+    return spread_of(s, r, b, s.travel[c, 0], s.travel[c, 1], sign, low, high, h)
+
+
+@internal
+def spread_of(s, r, b, kind, e, sign, low, high, h):
+    """The same of a quantity of a kind, between the frames and points of instance e."""
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:
@@ -319,7 +324,12 @@ def slackness(s, f, h, spin, bend):
 @internal
 def spread_at_stages(s, r, b, c, sign, h):
     """`spread` over the whole step, from its stages; the poses are those of its end."""
-    kind, e = s.travel[c, 0], s.travel[c, 1]
+    return spread_of_stages(s, r, b, s.travel[c, 0], s.travel[c, 1], sign, h)
+
+
+@internal
+def spread_of_stages(s, r, b, kind, e, sign, h):
+    """The same of a quantity of a kind, between the frames and points of instance e."""
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:

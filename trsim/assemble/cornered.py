@@ -1,0 +1,46 @@
+"""A function as it is packed: whether it has corners, and when the time alone meets them."""
+
+from typing import Any, NamedTuple
+
+from trsim.instants import distinct, instants
+from trsim.laws.functions import (
+    BY_SENSORS,
+    HEAD,
+    HELD,
+    HELD_OF_TABLE,
+    UNWATCHED,
+    WATCHED,
+    WIDTH,
+)
+
+
+class Cornered(NamedTuple):
+    """A function with corners."""
+
+    offset: int
+    instants: list[float]  # in rising order, inside the run
+    held: list[int]  # places in tab
+    sensed: tuple[int, ...]  # entries of S that meet some of them
+    end: float
+    slots: int
+
+
+def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Cornered]:
+    """A function, if it has corners.  Raises ScenarioError where they cannot be told."""
+    if spec.kind == "constant":
+        return []
+    if spec.kind == "table":
+        of_t, held = spec.of == "t", [offset + HELD_OF_TABLE]
+        times = distinct(list(spec.x), end) if of_t else []
+        return [Cornered(offset, times, held, () if of_t else (int(code[1]),), end, 0)]
+    n_in = int(code[1])
+    places = range(HEAD + n_in, HEAD + n_in + WIDTH * int(code[2]), WIDTH)
+    watched = [p for p in places if code[p + WATCHED] != UNWATCHED]
+    if not watched:
+        return []
+    inputs = code[HEAD : HEAD + n_in]
+    by_sensors = any(code[p + WATCHED] == BY_SENSORS for p in watched)
+    sensed = tuple(int(k) for k in inputs) if by_sensors else ()
+    held = [offset + p + HELD for p in watched]
+    slots = (len(code) - int(code[3])) // 3
+    return [Cornered(offset, instants(spec.node, end), held, sensed, end, slots)]
