@@ -14,7 +14,8 @@ VALUES = 10**5  # of a scenario; 640 rods are longer than what a person writes
 
 def told(n: int, formulation: str, planar: bool = True) -> dict[str, float]:
     """Statistics of a run."""
-    scenario = loads(stiff_chain(n, planar), [f"solver.formulation={formulation}"])
+    limits = "limits={bodies: 1000, rows: 10000, entries: 5000}"
+    scenario = loads(stiff_chain(n, planar), [f"solver.formulation={formulation}", limits])
     statistics: dict[str, float] = run(scenario, assemble(scenario)).outcome.statistics
     return statistics
 

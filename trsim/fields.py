@@ -31,7 +31,7 @@ from trsim.errors import ScenarioError, described, known
 from trsim.frame import Frame
 from trsim.numbers import number
 from trsim.references import renamed
-from trsim.units import check_dimension, quantity, titled, unit
+from trsim.units import check_dimension, quantity, titled, told, unit
 
 
 class Unit:
@@ -103,6 +103,11 @@ class _VectorUnit(Unit):
     def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
         if not isinstance(value, list | tuple) or len(value) not in (2, 3):
             raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
+        for k, item in enumerate(value):  # a frame moves numbers, whatever pydantic says later
+            if not isinstance(item, str | int | float):
+                raise ScenarioError(
+                    f"must be a number, got {described(item)}", told(self.units), (k,)
+                )
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
         whole = tuple([*numbers, 0.0][:3])
         return self.into_world(frame, whole) if (frame := context.get("frame")) else whole

@@ -15,6 +15,7 @@ Inertia = Annotated[float, Ge(0), Unit("kg*m^2")]
 
 class RigidBody(Spec):
     type: ClassVar[str] = "rigid_body"
+    flexible: ClassVar[None] = None
     mass: Annotated[float, Ge(0), Unit("kg")]
     inertia: Inertia | tuple[Inertia, Inertia, Inertia]
     at: vector("m") = (0.0, 0.0, 0.0)
@@ -88,7 +89,7 @@ FAKES = {
 @pytest.fixture(autouse=True)
 def fake_elements(monkeypatch):
     known = {
-        spec.type: SimpleNamespace(key=spec.type, section=section, spec=spec)
+        spec.type: SimpleNamespace(key=spec.type, section=section, spec=spec, rows=())
         for section, specs in FAKES.items()
         for spec in specs
     }

@@ -29,7 +29,17 @@ from trsim.units import fits, quantity, titled, unit
 Array = NDArray[np.float64]
 
 ALIKE = 1e-5  # relative
-FREE = ("title", "solver", "output", "report", "phase_portraits", "poincare", "sweep", "cases")
+FREE = (
+    "title",
+    "limits",
+    "solver",
+    "output",
+    "report",
+    "phase_portraits",
+    "poincare",
+    "sweep",
+    "cases",
+)
 
 
 class Curve(NamedTuple):

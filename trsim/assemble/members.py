@@ -1,14 +1,14 @@
 """Which bodies there are: rigid ones, and flexible bars as beams or, for a start, as rigid ones."""
 
 from itertools import islice
-from math import dist
+from math import dist, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.elements.joint import perpendicular
-from trsim.errors import ScenarioError
+from trsim.errors import ModelError, ScenarioError
 from trsim.spec.slender import ends
 
 Array = NDArray[np.float64]
@@ -16,6 +16,10 @@ Array = NDArray[np.float64]
 SLENDER = 1e-6  # of its inertia across: what a bar without width has about its own line
 AT_A_NODE = 1e-6  # of its length: a joint so far from a node is at it
 MOST_TRIED = 100  # elements
+SHORTEST, LONGEST = 1e-9, 1e9  # m, of elements
+LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
+THINNEST, THICKEST = 1e-9, 1e3  # sqrt(I/A), of the length of an element
+SLOWEST, LIGHT, HIGHEST = 1e-6, 3e8, 1e12  # m/s, 1/s
 ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
@@ -49,8 +53,43 @@ def members(scenario: Any, stiff: bool = False) -> dict[str, Any]:
                 bar = cable(name, spec, scenario)
             except ScenarioError as error:
                 raise error.at("bodies", name) from None
+        if bar.type == "ancf_cable":
+            see_solvable(name, bar)
         found[name] = stiffened(bar) if stiff and bar.type == "ancf_cable" else bar
     return found
+
+
+def see_solvable(name: str, bar: Any) -> None:
+    """Refuse bars whose numbers no arithmetic of 16 digits carries; they are slips of units.
+
+    With l the length of an element, c = sqrt(E A / rho A) the speed of waves along it and
+    r = sqrt(I / A): c / l and c r / l^2 are the fastest frequencies, r / l what bending is to
+    stretching.
+    """
+    area, moment, _ = bar.numbers
+    l = bar.length / bar.elements
+    if not SHORTEST <= l <= LONGEST:
+        raise _unsolvable(name, f"elements of {l:.3g} m", f"{SHORTEST:g} to {LONGEST:g} m")
+    mass = bar.per_length * l
+    if not LIGHTEST <= mass <= HEAVIEST:
+        raise _unsolvable(name, f"elements of {mass:.3g} kg", f"{LIGHTEST:g} to {HEAVIEST:g} kg")
+    r = sqrt(moment / area) / l if area > 0.0 else 0.0
+    if not THINNEST <= r <= THICKEST:
+        what = f"sqrt(I/A) of {r * l:.3g} m in elements of {l:.3g} m"
+        raise _unsolvable(name, what, f"{THINNEST:g} to {THICKEST:g} of their length")
+    c = sqrt(bar.youngs_modulus / mass) * sqrt(area * l)
+    if not SLOWEST <= c <= LIGHT:
+        what = f"waves of {c:.3g} m/s along it, sqrt(E A/(mass/length))"
+        raise _unsolvable(name, what, f"{SLOWEST:g} m/s to the speed of light")
+    fastest = c / l * max(1.0, r)
+    if not fastest <= HIGHEST:
+        what = f"a frequency of {fastest:.3g} 1/s in elements of {l:.3g} m"
+        raise _unsolvable(name, what, f"at most {HIGHEST:g} 1/s")
+
+
+def _unsolvable(name: str, what: str, limits: str) -> ModelError:
+    hint = f"{limits} can be solved; check the units of length, section, modulus and density"
+    return ModelError(f"the bar has {what}", hint, ("bodies", name))
 
 
 def cable(name: str, spec: Any, scenario: Any) -> Any:

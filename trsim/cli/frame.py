@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 import click
@@ -28,6 +29,7 @@ EXIT_CODES = {
     143: "interrupted by SIGTERM",
 }
 WORKED_ON = ("scenario", "run", "part")  # arguments that are one file
+READ = (*WORKED_ON, "runs", "scenarios", "folder")  # that may be result files, or hold some
 INTERRUPTED: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}
 
 
@@ -170,6 +172,8 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
                 answer.interrupted(Stop.number)
             elif os.environ.get("TRSIM_DEBUG"):
                 raise
+            elif blamed := at_fault(options):
+                answer.fail(blamed)
             else:
                 answer.broken(error)
         return answer.close()
@@ -179,6 +183,22 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
         click.option("-q", "--quiet", is_flag=True, help="No messages but errors."),
     ]
     return functools.reduce(lambda inner, option: option(inner), options, command)
+
+
+def at_fault(options: dict[str, Any]) -> TrsimError | None:
+    """What is wrong with a result file that was read, where something unexpected happened."""
+    from trsim.cli.source import is_result
+    from trsim.store.suspect import blamed
+
+    given = [options[key] for key in READ if options.get(key)]
+    names = [name for one in given for name in ([one] if isinstance(one, str) else one)]
+    for name in names:
+        cases = sorted(Path(name).glob("cases/*.h5")) if os.path.isdir(name) else [Path(name)]
+        for path in cases:
+            with suppress(Exception):
+                if is_result(str(path)) and (found := blamed(path)):
+                    return found
+    return None
 
 
 @contextmanager

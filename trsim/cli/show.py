@@ -8,6 +8,8 @@ from trsim.cli.frame import Answer, framed
 from trsim.cli.redundancy import redundancy
 from trsim.errors import FileError
 
+TOLD = ("format", "format_version", "title", "status", "reason", "content_sha256")
+
 
 @click.command("show")
 @click.argument("run", type=click.Path())
@@ -25,7 +27,7 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         see_same(found)
     answer.data |= {
         "file": str(found.path),
-        **found.attributes,
+        **{name: found.attributes[name] for name in TOLD if name in found.attributes},
         "verified": verify or None,
         "rows": found.rows,
         "channels": {name: found.units[name] for name in found.names},

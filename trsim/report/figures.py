@@ -220,7 +220,7 @@ def contact_history(shown: Shown, name: str) -> tuple[Array, Array]:
     # a closed contact at the start or at the end has no zero there
     order = np.argsort(times, kind="stable")
     times, values = times[order], values[order]
-    first = np.append(True, np.diff(times) > 0.0)
+    first = np.append(True, np.diff(times) > 0.0)[: len(times)]
     group = np.cumsum(first) - 1
     largest = np.zeros(int(group[-1]) + 1 if len(group) else 0)
     np.maximum.at(largest, group, values)

@@ -18,12 +18,13 @@ MOST = 200_000  # points drawn
 
 def orbit(runs: list[Shown], name: str) -> Any:
     """The path of the journal centre; side by side on one scale."""
-    there = [shown for shown in runs if name in shown.run.contacts]
+    # a run that was broken off may have no point
+    found = [(shown, path(shown, name)) for shown in runs if name in shown.run.contacts]
+    there, paths = zip(*((s, points) for s, points in found if len(points[0])), strict=True)
     clearances = [shown.run.parts[name].clearance for shown in there]
     unit = there[0].display("m")[1]
     figure, axes = side_by_side(len(there))
-    for a, shown, c in zip(axes, there, clearances, strict=True):
-        time, x, y = path(shown, name)
+    for a, shown, c, (time, x, y) in zip(axes, there, clearances, paths, strict=True):
         time, x, y = shown.scaled(time, "s"), shown.scaled(x, "m"), shown.scaled(y, "m")
         shade = coloured(a, time, x, y)
         circle(a, shown.scaled(c, "m"))
@@ -38,7 +39,7 @@ def orbit(runs: list[Shown], name: str) -> Any:
     square(axes, there[0].scaled(max(reach), "m"))
     axes[0].set_ylabel(f"eccentricity y ({unit})")
     figure.colorbar(shade, ax=list(axes), label=there[0].time_label, shrink=0.8, aspect=30)
-    titled(figure, there, f"Journal at {name} (dot: start; dashed: clearance)")
+    titled(figure, list(there), f"Journal at {name} (dot: start; dashed: clearance)")
     return figure
 
 

@@ -84,6 +84,8 @@ def legend(figure: Figure, axes: Any, runs: list[Shown]) -> None:
     if len(runs) > 1:
         lines, names = axes.get_legend_handles_labels()
         once = dict(zip(names, lines, strict=True))
+        if not once:  # no run has a row
+            return
         figure.legend(once.values(), once.keys(), loc="outside lower center",
                       ncols=1 if max(map(len, once)) > 34 else min(3, len(once)))  # fmt: skip
 

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from trsim.errors import Problems, ScenarioError, TrsimError, closest, described
 from trsim.fields import Spec, SpecError, Unit
 from trsim.spec import expand
+from trsim.spec.limits import sizes
 from trsim.spec.memory import Memory
 from trsim.spec.names import name_faults, sweep_faults
 from trsim.spec.scenario import Scenario, suggestion
@@ -52,10 +53,11 @@ def valid(data: dict, memory: Memory) -> bool:
         return False
     context = {"parameters": values, "memory": memory}
     try:
-        Scenario.model_validate({**whole.entries(), "parameters": values}, context=context)
+        data = {**whole.entries(), "parameters": values}
+        scenario = Scenario.model_validate(data, context=context)
     except (ValidationError, SpecError):
         return False
-    return True
+    return not any(sizes(scenario))
 
 
 def locate(error: TrsimError, scenario: Scenario) -> TrsimError:
@@ -80,6 +82,7 @@ def _validated(tree: Tree, text: str) -> Scenario:
     try:
         data = {**whole.entries(), "parameters": values}
         scenario = Scenario.model_validate(data, context={"parameters": values})
+        problems += sizes(scenario)
     except (ValidationError, SpecError) as error:
         problems += _unfolded(error, (), whole)
     for problem in problems:

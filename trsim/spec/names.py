@@ -10,12 +10,15 @@ from trsim.expressions import FUNCTIONS
 from trsim.spec.merge import NAMED
 from trsim.spec.vary import sweep
 
-RESERVED = {
-    *("ground", "world", "t", "pi", "time", "energy"),
-    *("steps", "events", "peaks", "summary", "solver", "phase", "poincare", "scenario"),
-    *("provenance", *FUNCTIONS, *keyword.kwlist),
+# what stands beside the channels in a result file; `component` begins the names of their scales
+IN_FILES = {
+    *("time", "component", "steps", "events", "recorded", "peaks", "summary", "solver", "phase"),
+    *("poincare", "impact", "orbit", "scenario", "mechanism", "provenance", "certificate"),
 }
+RESERVED = {"ground", "world", "t", "pi", "energy", *IN_FILES, *FUNCTIONS, *keyword.kwlist}
 NAME = r"[A-Za-z_][A-Za-z0-9_]*"
+OF_POINTS = r"[A-Za-z0-9_][A-Za-z0-9_ +-]*"  # of portraits and sections, which have their own
+LONGEST = 100  # letters of a name
 NEW = {"parameters"}  # sections in which a name that is not there means nothing
 
 
@@ -29,12 +32,21 @@ def name_faults(data: dict) -> Iterator[ScenarioError]:
             if not re.fullmatch(NAME, name):
                 hint = "A name is letters, digits and _, a letter first."
                 yield ScenarioError(f"not a name: {described(name)}", hint, path)
+            elif len(name) > LONGEST:
+                yield ScenarioError(f"a name of {len(name)} letters", f"At most {LONGEST}.", path)
             elif name in RESERVED:
                 yield ScenarioError(f"the name '{name}' is reserved", "Choose another.", path)
             elif name in taken:
                 what = f"the name '{name}' is taken by {taken[name]}.{name}"
                 yield ScenarioError(what, "All names share one name space.", path)
             taken.setdefault(name, section)
+    for section in ("phase_portraits", "poincare"):
+        entries = data.get(section)
+        for name in entries if isinstance(entries, dict) else ():
+            if not re.fullmatch(OF_POINTS, name) or len(name) > LONGEST:
+                hint = f"A name is letters, digits, _, + and -, at most {LONGEST}."
+                what = f"not a name: {described(name)}"
+                yield ScenarioError(what, hint, (section, name))
 
 
 def sweep_faults(data: dict) -> Iterator[ScenarioError]:

@@ -18,6 +18,7 @@ from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, vector
 from trsim.spec import shown
 from trsim.spec.initial import Initial, initial_of
+from trsim.spec.limits import Limits
 from trsim.spec.sections import PhasePortrait, PoincareSection
 from trsim.spec.template import Instance, Template
 from trsim.spec.text import Tree
@@ -192,6 +193,7 @@ class Scenario(Spec):
     events           what happens where a sensor, or the time, crosses a value
     templates        parts of the mechanism described once, put in place by instances
     instances        templates put in place; entry `door` of instance `left` is left_door
+    limits           how many bodies, rows, nodes and entries there may be
     phases           kept for load steps; not used yet
     cases            named overrides, each a scenario of a sweep; not used by `run`
     sweep            values of keys to vary, by dotted path; not used by `run`
@@ -216,6 +218,7 @@ class Scenario(Spec):
     events: dict[str, Annotated[Event, BeforeValidator(_event)]] = EMPTY
     templates: dict[str, Template] = EMPTY
     instances: dict[str, Instance] = EMPTY
+    limits: Limits = Limits()
     phases: Any = None
     cases: dict[str, Any] = EMPTY
     sweep: dict[str, Any] = EMPTY

@@ -13,6 +13,7 @@ from typing import Any
 from trsim.errors import ScenarioError, described, known
 from trsim.frame import Frame
 from trsim.spec.expand import numbers
+from trsim.spec.limits import before_unfolding
 from trsim.spec.merge import merged
 from trsim.spec.names import NAME, name_faults
 from trsim.spec.template import SECTIONS, Placement
@@ -39,6 +40,9 @@ def unfold(
             faults += [(fault.at(*here), ()) for fault in name_faults(template)]
     if not instances:
         return whole, faults
+    if too_many := [(fault, ()) for fault in before_unfolding(tree.data, templates, instances)]:
+        whole.data["instances"] = {}
+        return whole, [*faults, *too_many]
     whole.data["instances"] = dict(instances)
     for section in SECTIONS:
         if isinstance(whole.data.get(section, {}), dict):

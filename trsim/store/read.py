@@ -19,6 +19,7 @@ from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import Impacts, Points, plain, split, stored
+from trsim.store.sound import Unsound, see_sound
 from trsim.store.tables import MAY_BE_NAN
 
 FORMAT, VERSION = "trsim run", 1
@@ -105,11 +106,10 @@ class Run:
     @property
     def events(self) -> Events:
         with opened(self.path) as file:
-            table = _table(file["events"])
-        none: dict[str, Any] = {"did": np.array([], "S1"), "work": np.array([])}
-        table = {**none, **table}
-        words = {name: table[name].astype(str) for name in ("kind", "element", "did")}
-        return Events(**{**table, **words})
+            none: dict[str, Any] = {"did": np.array([], "S1"), "work": np.array([])}
+            table = {**none, **_table(file["events"])}
+            words = {name: table[name].astype(str) for name in ("kind", "element", "did")}
+        return Events(**{name: {**table, **words}[name] for name in Events._fields})
 
     @property
     def fired(self) -> dict[str, int]:
@@ -188,7 +188,11 @@ class Run:
     @property
     def scenario(self) -> dict[str, Any]:
         """The scenario as plain data, after extends, tables and --set."""
-        return json.loads(self.text("scenario/resolved"))
+        with opened(self.path) as file:
+            found = json.loads(file["scenario/resolved"].asstr()[()])
+            if not isinstance(found, dict):
+                raise Unsound("its scenario is no mapping")
+        return found
 
 
 def read(path: str | os.PathLike) -> Run:
@@ -229,7 +233,7 @@ def opened(path: Path) -> Iterator[h5py.File]:
     try:
         with _file(path) as file:
             yield file
-    except (OSError, KeyError, RuntimeError, ValueError) as error:
+    except (OSError, LookupError, RuntimeError, ValueError, TypeError, MemoryError) as error:
         if isinstance(error, FileError):
             raise
         raise FileError(*_unreadable(path, error), file=str(path)) from None
@@ -265,10 +269,13 @@ def _check(file: h5py.File, path: Path) -> None:
     if file.attrs.get("format") != FORMAT:
         hint = "A result file is written by `trsim run`."
         raise FileError(f"{path} is an HDF5 file, but not a result of trsim", hint)
-    version = int(file.attrs["format_version"])
+    version = file.attrs["format_version"]
+    if not isinstance(version, np.integer):
+        raise Unsound("it does not say its version")
     if version > VERSION:
         what = f"{path} has format {version}; this trsim reads up to {VERSION}"
         raise FileError(what, "Use a newer trsim.")
+    see_sound(file)
 
 
 def _parts(group: h5py.Group) -> dict[str, Part]:

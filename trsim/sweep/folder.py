@@ -10,7 +10,7 @@ from typing import Any
 
 from trsim.errors import FileError, UsageError
 from trsim.store.target import Kind, fresh, headed, replaceable
-from trsim.sweep.ledger import Entry, in_a_line
+from trsim.sweep.ledger import WORD, Entry, in_a_line
 from trsim.sweep.plan import CASE, Plan
 from trsim.sweep.values import value
 
@@ -18,6 +18,9 @@ FORMAT, VERSION = "trsim sweep", 1
 INDEX = headed("name", "status", "reason")
 PLAN = Kind("plan of a sweep", lambda start: start.startswith(b'{"format": "trsim sweep"'))
 NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
+KINDS = {"source": str, "engine": str, "keys": list, "units": dict, "written": dict, "method": str,
+         "samples": int, "seed": int, "cases": list}  # fmt: skip
+AGAIN = "The same `trsim sweep` writes it again."
 LAST = ("attempts", "wall_time", "content_sha256")
 
 
@@ -60,19 +63,44 @@ def read_plan(folder: Path) -> dict[str, Any]:
         what = "no such folder" if not folder.exists() else "not the folder of a sweep"
         hint = "`trsim sweep SCENARIO -o FOLDER` makes one."
         raise FileError(f"{folder}: {what}", hint, file=str(folder)) from None
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         reason = getattr(error, "strerror", None) or "is damaged"
-        hint = "The same `trsim sweep` writes it again."
-        raise FileError(f"{path}: {reason}", hint, file=str(path)) from None
+        raise FileError(f"{path}: {reason}", AGAIN, file=str(path)) from None
     if not isinstance(told, dict) or told.get("format") != FORMAT:
         raise FileError(f"{path} is not the plan of a sweep", file=str(path))
-    if told.get("version", 0) > VERSION:
+    if not isinstance(told.get("version"), int):
+        raise FileError(f"{path} is damaged: it does not say its version", AGAIN, file=str(path))
+    if told["version"] > VERSION:
         what = f"{path} has version {told['version']}; this trsim reads up to {VERSION}"
         raise FileError(what, "Use a newer trsim.", file=str(path))
     if lost := NEEDED - set(told):
         what = f"{path} is damaged: it has no {', '.join(sorted(lost))}"
-        raise FileError(what, "The same `trsim sweep` writes it again.", file=str(path))
+        raise FileError(what, AGAIN, file=str(path))
+    if wrong := _wrong(told):
+        raise FileError(f"{path} is damaged: its {wrong}", AGAIN, file=str(path))
     return told
+
+
+def _wrong(told: dict[str, Any]) -> str:
+    """What in a plan is not of its kind."""
+    for name, kind in KINDS.items():
+        if not isinstance(told.get(name, kind()), kind):
+            return f"{name} is no {kind.__name__}"
+    texts = [*told["keys"], *told["units"].values(), *told.get("written", {}).values()]
+    if not all(isinstance(text, str) for text in texts):
+        return "keys or units are no texts"
+    names = []
+    for one in told["cases"]:
+        if not isinstance(one, dict) or not isinstance(one.get("values"), dict):
+            return "cases are no mappings with values"
+        if not all(isinstance(one.get(name), str) for name in ("name", "digest")):
+            return "cases have no name or digest"
+        if not all(isinstance(value, WORD) for value in one["values"].values()):
+            return f"case {one['name'][:60]!r} has a value that is none"
+        if "/" in one["name"] or "\0" in one["name"] or one["name"] in ("", ".", ".."):
+            return f"case {one['name'][:60]!r} is no name of a file"
+        names.append(one["name"])
+    return "cases have a name twice" if len({*names}) < len(names) else ""
 
 
 def write_index(folder: Path, told: Mapping[str, Any], entries: Mapping[str, Entry]) -> Path:

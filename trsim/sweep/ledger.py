@@ -12,10 +12,14 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from trsim.errors import FileError
+
 DIGEST = "case_sha256"  # attribute of /provenance in a result file
 AGAIN = ("crashed", "over time", "over memory", "no file")  # chance or limits: tried again
 REFUSED = "refused"  # no scenario, or no mechanism: there is no result file
 FAILED = (*AGAIN, REFUSED, "failed")
+LARGEST = 2**62  # of a number in a line
+WORD = str | int | float | None  # of the summary in a line
 
 
 class Entry(NamedTuple):
@@ -37,6 +41,12 @@ class Entry(NamedTuple):
     @property
     def failed(self) -> bool:
         return self.status in FAILED
+
+
+KINDS: dict[str, Any] = {
+    name: {int: int, float: (int, float)}.get(kind, kind if isinstance(kind, type) else dict)
+    for name, kind in Entry.__annotations__.items()
+}
 
 
 class Ledger:
@@ -68,13 +78,47 @@ def _ends_a_line(path: Path) -> bool:
 def entries(folder: Path) -> dict[str, Entry]:
     """The last entry of every case, of all shards."""
     found: dict[str, Entry] = {}
+<<<<<<< HEAD
     for path in filter(Path.is_file, sorted(folder.glob("ledger*.jsonl"))):
         for line in path.read_bytes().splitlines():
             with suppress(ValueError, TypeError):
                 entry = Entry(**json.loads(line))
                 if entry.case not in found or entry.at >= found[entry.case].at:
                     found[entry.case] = entry
+=======
+    for path in sorted(folder.glob("ledger*.jsonl")):
+        for line in _lines(path):
+            entry = entry_of(line)
+            if entry and (entry.case not in found or entry.at >= found[entry.case].at):
+                found[entry.case] = entry
+>>>>>>> a491ade (No exit 1: files looked at as a whole before they are read, limits of size, reserved names, lines of ledgers and plans by their types)
     return found
+
+
+def _lines(path: Path) -> list[bytes]:
+    try:
+        return path.read_bytes().splitlines()
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}", file=str(path)) from None
+
+
+def entry_of(line: bytes) -> Entry | None:
+    """The entry in a line; None of a line that holds something else, whatever it is."""
+    try:
+        told = json.loads(line)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(told, dict) or {*told} != {*Entry._fields}:
+        return None
+    if not all(isinstance(told[name], kind) for name, kind in KINDS.items()):
+        return None
+    if any(isinstance(value, bool) for value in told.values()):
+        return None
+    numbers = [value for value in told.values() if isinstance(value, int | float)]
+    words = told["summary"].values()
+    if not all(abs(n) < LARGEST for n in numbers) or not all(isinstance(w, WORD) for w in words):
+        return None
+    return Entry(**told)
 
 
 def stamp(file: Path) -> tuple[int, int]:

@@ -11,6 +11,7 @@ from trsim.sweep.job import CONTACT, STATISTICS
 from trsim.sweep.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
 from trsim.sweep.plan import Case, Plan, named_file
 
+DAMAGED = (OSError, LookupError, RuntimeError, ValueError, TypeError, AttributeError)
 SHOWN = 4  # differences that are told
 
 
@@ -59,7 +60,7 @@ def adopted(name: str, digest: str, file: Path, engine: str) -> Entry | None:
             told = {name: inner.attrs[name] for name in ("status", "reason", "content_sha256")}
             summary = _summary(inner)
             wall = float(provenance.get("wall_time", 0.0))
-    except (OSError, KeyError, RuntimeError, ValueError):
+    except DAMAGED:
         return None
     size, changed = stamp(file)
     return Entry(
@@ -100,7 +101,7 @@ def explained(plan: Plan, case: Case, told: Need, folder: Path) -> str:
     try:
         with h5py.File(named_file(folder, case.name), "r") as file:
             was = leaves(json.loads(file["scenario/resolved"].asstr()[()]))
-    except (OSError, KeyError, RuntimeError, ValueError):
+    except DAMAGED:
         return told.why
     now = leaves(case.data)
     parts = [
