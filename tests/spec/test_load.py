@@ -228,7 +228,7 @@ solver: {end: 1}
             "    ^\n"
             "  Did you mean 'solver'?  Known: title, planar, gravity, parameters, bodies, joints,"
             " drives, sensors, forces, contact_laws, initial, solver, output, phase_portraits"
-            " ... (9 more)",
+            " ... (10 more)",
         ),
     ],
 )
