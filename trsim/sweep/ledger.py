@@ -78,20 +78,11 @@ def _ends_a_line(path: Path) -> bool:
 def entries(folder: Path) -> dict[str, Entry]:
     """The last entry of every case, of all shards."""
     found: dict[str, Entry] = {}
-<<<<<<< HEAD
     for path in filter(Path.is_file, sorted(folder.glob("ledger*.jsonl"))):
-        for line in path.read_bytes().splitlines():
-            with suppress(ValueError, TypeError):
-                entry = Entry(**json.loads(line))
-                if entry.case not in found or entry.at >= found[entry.case].at:
-                    found[entry.case] = entry
-=======
-    for path in sorted(folder.glob("ledger*.jsonl")):
         for line in _lines(path):
             entry = entry_of(line)
             if entry and (entry.case not in found or entry.at >= found[entry.case].at):
                 found[entry.case] = entry
->>>>>>> a491ade (No exit 1: files looked at as a whole before they are read, limits of size, reserved names, lines of ledgers and plans by their types)
     return found
 
 
