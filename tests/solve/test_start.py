@@ -87,6 +87,77 @@ def test_indifferent_equilibrium_is_refused():
     assert "'rod'" in str(caught.value)
 
 
+UPRIGHT = """
+planar: {planar}
+gravity: [0, -9.81, 0]
+bodies: {{rod: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, {at}, 0]}}{bodies}}}
+joints: {{A: {{type: revolute, bodies: [ground, rod], at: [0, 0, 0]}}{joints}}}
+initial: {{equilibrium: all}}
+solver: {{end: 0.1}}
+"""
+BESIDE = ", two: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [3, %s, 0]}"
+ON_TOP = ", two: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, %s, 0]}"
+SECOND = ", B: {type: revolute, bodies: [%s, two], at: [%s, 0]}"
+TOGGLE = SECOND % ("rod", "0, 1") + ", C: {type: revolute, bodies: [two, slide], at: [0, 2, 0]}"
+TOGGLE += ", D: {type: prismatic, bodies: [ground, slide], axis: [0, 1, 0]}"
+SLIDE = ", slide: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 2, 0]}"
+SPRING = "forces: {{c: {{type: torsion_spring, joint: A, stiffness: {}}}}}\n"
+BOTH = pytest.mark.parametrize("planar", ["true", "false"])
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("at", "bodies", "joints", "more", "who"),
+    [
+        (0.5, "", "", "", "rod"),
+        (-0.5, "", "", "", None),
+        # k > m g l holds it
+        (0.5, "", "", SPRING.format(4.90), "rod"),
+        (0.5, "", "", SPRING.format(4.91), None),
+        (0.5, BESIDE % 0.5, SECOND % ("ground", "3, 0"), "", "rod"),
+        (-0.5, BESIDE % 0.5, SECOND % ("ground", "3, 0"), "", "two"),
+        (-0.5, BESIDE % -0.5, SECOND % ("ground", "3, 0"), "", None),
+        (0.5, ON_TOP % 1.5, SECOND % ("rod", "0, 1"), "", "rod two"),
+        (0.5, ON_TOP % 0.5, SECOND % ("rod", "0, 1"), "", "rod"),
+        (-0.5, ON_TOP % -1.5, SECOND % ("rod", "0, -1"), "", None),
+        # two links in line under a weight: the knee goes aside
+        (0.5, ON_TOP % 1.5 + SLIDE, TOGGLE, "", "rod two"),
+        (0.5, ON_TOP % 1.5 + SLIDE, TOGGLE, SPRING.format(1000), None),
+    ],
+)
+def test_in_balance_is_not_enough(planar, at, bodies, joints, more, who):
+    text = UPRIGHT.format(planar=planar, at=at, bodies=bodies, joints=joints) + more
+    if who is None:
+        r = run(text)
+        assert r["rod.position"][0] == pytest.approx([0, at, 0], abs=1e-9)
+        return
+    with pytest.raises(ModelError, match="in balance but not stable") as caught:
+        run(text)
+    assert caught.value.exit_code == 4 and caught.value.path == ("initial", "equilibrium")
+    assert any(f"'{one}'" in caught.value.what for one in who.split())
+
+
+def test_a_flexible_rod_on_its_tip_is_not_stable_either():
+    text = """
+bodies: {rod: {type: ancf_cable, start: [0, 0, 0], end: [0, 1, 0], section: {diameter: 20 mm},
+               youngs_modulus: 2e11, density: 7800}}
+joints: {A: {type: revolute, bodies: [ground, rod], at: [0, 0, 0]}}
+gravity: [0, -9.81, 0]
+initial: {equilibrium: all}
+solver: {end: 1 ms}
+"""
+    with pytest.raises(ModelError, match="in balance but not stable"):
+        run(text)
+    r = run(text.replace("end: [0, 1, 0]", "end: [0, -1, 0]"))
+    assert r["rod.tip"][0, :2] == pytest.approx([0, -1], abs=1e-5)
+
+
+def test_a_hair_beside_the_top_falls():
+    r = run(UPRIGHT.format(planar="true", at=0.5, bodies="", joints="").replace(
+        "[0, 0.5, 0]", "[1e-6, 0.5, 0]"))  # fmt: skip
+    assert r["rod.position"][0] == pytest.approx([0, -0.5, 0], abs=1e-6)
+
+
 def test_a_search_that_does_not_move_is_given_up(monkeypatch):
     """A pivot at 10^9 m: the steps of a journal in its clearance are below the rounding there."""
     seen, balance = [], statics.balance

@@ -128,9 +128,8 @@ def unequal(at: Addresses, mass: Array, inertia: Array, d: int) -> bool:
         return False
     moments = inertia[1:n, 8:] if d == 3 else np.linalg.eigvalsh(inertia[1:n].reshape(-1, 3, 3))
     swung = mass[1:n] * np.array(levers(at, 0.0)[1:n]) ** 2
-    least = np.maximum(moments[:, 0], 1e-300)
-    turned = np.maximum(moments[:, -1], swung) / least
-    return max(mass[1:n].max() / mass[1:n].min(), turned.max()) > UNEQUAL
+    turned = np.any(np.maximum(moments[:, -1], swung) > UNEQUAL * moments[:, 0])
+    return bool(turned or mass[1:n].max() > UNEQUAL * mass[1:n].min())
 
 
 def check_radius(name: str, mass: float, inertia: Array) -> None:

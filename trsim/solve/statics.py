@@ -5,7 +5,8 @@
 Pseudo-transient continuation [Kelley1998]: Newton steps on the reduced forces with a multiple of
 the mass matrix added to the stiffness, which fades as the forces balance.  A journal released in
 its bearing has no stiffness until it touches; the mass term carries it there, in steps well below
-the clearance.  A motion that stays without stiffness is indifferent, and refused.
+the clearance.  A motion that stays without stiffness is indifferent, and refused; so is a balance
+that is none of its lowest: steps go downhill, but one that begins on the top stays there.
 """
 
 import numpy as np
@@ -171,18 +172,30 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
 def check_stable(
     mechanism: Mechanism, values: Array, motions: Array, load: float, model: Model
 ) -> None:
-    """Refuse an equilibrium in which some motion meets no stiffness at all.
+    """Refuse an equilibrium that is left at the smallest push, or in which some motion meets no
+    stiffness at all.
 
+    values, motions: of the reduced stiffness Z^T K Z.
     load: N, of the forces as drawn or in balance; on the way they may have been far larger.
     """
     for value, motion in zip(values, motions.T, strict=True):
         along = motion / np.max(np.abs(motion))
-        restoring = abs(value) / np.max(np.abs(motion)) ** 2  # N/m or N*m/rad of that motion
-        if restoring < INDIFFERENT * load / model.size:
-            body = int(np.argmax(np.abs(along))) // 6 + 1
-            name = next(n for n, f in mechanism.frames.items() if f == body)
+        restoring = value / np.max(np.abs(motion)) ** 2  # N/m or N*m/rad of that motion
+        nothing = INDIFFERENT * load / model.size
+        if restoring >= nothing:
+            continue
+        body = int(np.argmax(np.abs(along))) // 6 + 1
+        name = next(n for n, f in mechanism.frames.items() if f == body)
+        if restoring <= -nothing:
             raise ModelError(
-                f"the equilibrium is indifferent: nothing holds '{name}' where it is",
-                "add a spring or a stop, or drop `equilibrium` to start as drawn",
+                f"in balance but not stable: at the smallest push '{name}' would leave the place "
+                "it is in",
+                "draw it on the side it shall come to rest on, hold it there by a drive or a value "
+                "of `initial`, or drop `equilibrium` to start as drawn",
                 ("initial", "equilibrium"),
             )
+        raise ModelError(
+            f"the equilibrium is indifferent: nothing holds '{name}' where it is",
+            "add a spring or a stop, or drop `equilibrium` to start as drawn",
+            ("initial", "equilibrium"),
+        )
