@@ -106,7 +106,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
     """The equilibrium reached from y, drives held at t = 0; and the force left, N.
 
     rigid: no body is a flexible bar made stiff, which may spin about itself; an equilibrium that
-    is indifferent is refused.
+    is indifferent is refused.  One that is not stable is refused always.
     """
     model = workspace(mechanism.model)
     y, _ = closest(model, 0.0, y)
@@ -132,8 +132,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
         size = float(np.linalg.norm(r))
         left = float(np.linalg.norm((Z @ r) * mass))
         if left <= BALANCED * scale or size == 0.0:
-            if rigid:
-                check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
+            check_stable(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
         if count == 0:
             push, load = max(abs(values[0]), size / reach), acting
@@ -148,8 +147,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
         turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
         # a stiff contact turns the rounding of a position into a force: no step is left to take
         if max(longest, turned) < ROUNDING * model.size and left < 1e-6 * scale:
-            if rigid:
-                check_stable(mechanism, values, Z @ vectors, max(load, acting), model)
+            check_stable(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
@@ -170,19 +168,21 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
 
 
 def check_stable(
-    mechanism: Mechanism, values: Array, motions: Array, load: float, model: Model
-) -> None:
+    mechanism: Mechanism, values: Array, motions: Array, load: float, model: Model,
+    rigid: bool = True,
+) -> None:  # fmt: skip
     """Refuse an equilibrium that is left at the smallest push, or in which some motion meets no
     stiffness at all.
 
     values, motions: of the reduced stiffness Z^T K Z.
     load: N, of the forces as drawn or in balance; on the way they may have been far larger.
+    rigid: no body is a flexible bar made stiff, which may spin about itself.
     """
     for value, motion in zip(values, motions.T, strict=True):
         along = motion / np.max(np.abs(motion))
         restoring = value / np.max(np.abs(motion)) ** 2  # N/m or N*m/rad of that motion
         nothing = INDIFFERENT * load / model.size
-        if restoring >= nothing:
+        if restoring >= nothing or (restoring > -nothing and not rigid):
             continue
         body = int(np.argmax(np.abs(along))) // 6 + 1
         name = next(n for n, f in mechanism.frames.items() if f == body)
