@@ -37,7 +37,7 @@ TURN, SLIDE = range(2)  # kinds of coordinates
 LOADS, DRIVES, DAMPERS, IMPACTS, N_WORK = range(5)
 DONE, STOPPED, STUCK, TOO_MANY = range(4)
 NEAR = 1e-2  # turning points nearer to zero are told
-MOST = 30000  # steps
+MOST = 10000  # steps
 SINGULAR = 1e-13  # pivots
 
 

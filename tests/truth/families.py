@@ -231,7 +231,7 @@ def redundant(rng: Any) -> Drawn:
             hinge(s, f"O{k}", "ground", f"c{k}", p, sensor=k == 0)
             hinge(s, f"A{k}", f"c{k}", "coupler", p + e)
         # stays clear of the flat position, where cranks may go either way
-        s.forces.append(Torsion("back", "O0", decades(rng, 5, 30), 0.1))
+        s.forces.append(Torsion("back", "O0", decades(rng, 40, 200), 0.1))
         s = consistent(s, rng, 0.4)
     elif kind == "flat":
         s = motion(rng, pick(rng, four_bar, slider_crank)(rng), w)

@@ -34,7 +34,7 @@ KINDS = {
     "constant": e.CONSTANT, "sine": e.SINE, "cubic": e.CUBIC, "ramp": e.RAMP, "area": e.RAMP,
     "box": e.BOX, "tent": e.TENT, "bell": e.BELL, "table": e.TABLE, "pulses": e.PULSES,
 }  # fmt: skip
-TIGHT, LOOSE = 1e-12, 3e-11
+LADDER = ((1e-12, 3e-11), (1e-10, 1e-9), (1e-9, 1e-8))  # rtol of the truth and beside it
 PARTS = (1.0, 0.4, 0.12)  # of the time a row may be off by
 APART = 1e-7  # perturbation of the second run
 MARGIN = 1e-3  # of 1: nearer turning points are told as grazing
@@ -648,9 +648,19 @@ def reaction(m: e.Arrays, a: int, R: Any, lam: Any) -> tuple[np.ndarray, np.ndar
 
 
 def truth(scene: Scene, bound: float) -> Truth:
-    """What is true of a scene, at its rows and, by what `bound` means in time, before and after."""
+    """What is true of a scene, as tight as its inertias let accelerations be above rounding."""
+    for tight, loose in LADDER[:-1]:
+        try:
+            return truth_at(scene, bound, tight, loose)
+        except Unfit:
+            pass
+    return truth_at(scene, bound, *LADDER[-1])
+
+
+def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
+    """At the rows and, by what `bound` means in time, before and after each."""
     rows = np.arange(scene.rows + 1) * scene.end / scene.rows
-    other = Course(scene, rows, LOOSE, turn=0.19)
+    other = Course(scene, rows, loose, turn=0.19)
     g = float(np.linalg.norm(scene.gravity))
     rough = Truth(rows, other.channels(), [], [], size=size(scene), mass=lightest(scene), gravity=g)
     top = scales(rough)
@@ -659,9 +669,9 @@ def truth(scene: Scene, bound: float) -> Truth:
     shifts = [sign * part * dt for part in PARTS for sign in (-1, 1)]
     every = [np.clip(rows + x, 0, scene.end) for x in shifts]
     times = np.unique(np.concatenate([rows, *every]))
-    main = Course(scene, times, TIGHT)
+    main = Course(scene, times, tight)
     apart = Course(
-        scene, rows, LOOSE, apart=APART, speeds=np.repeat([top["speed"], top["spin"]], 3)
+        scene, rows, loose, apart=APART, speeds=np.repeat([top["speed"], top["spin"]], 3)
     )
     all_of = main.channels()
     n = sum(len(part[2]) for part in main.parts)
