@@ -35,10 +35,9 @@ CONSTANT, SINE, CUBIC, RAMP, BOX, TENT, BELL, TABLE, PULSES = range(9)
 W_TIME, W_PLACE, W_RATE, W_GAP, W_PULSE = range(5)
 TURN, SLIDE = range(2)  # kinds of coordinates
 LOADS, DRIVES, DAMPERS, IMPACTS, N_WORK = range(5)
-DONE, STOPPED, STUCK, TOO_MANY = range(4)
+DONE, STOPPED, STUCK, TOO_MANY, SINGULAR = range(5)
 NEAR = 1e-2  # turning points nearer to zero are told
 MOST = 10000  # steps
-SINGULAR = 1e-13  # pivots
 
 
 class Arrays(NamedTuple):
@@ -804,10 +803,10 @@ def copied(a, b):
 
 
 @compiled
-def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit):
+def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singular):
     """Integrate over the times.
 
-    deep (w): how far each has been on the side it is on.
+    deep (w): how far each has been on the side it is on.  singular: the least pivot let pass.
 
     Returns rows of y, y', multipliers, forces; crossings (time, watched, rate, new side, how far it
     was on the old side, all coordinates, all rates); touches of zero that turned back or nearly
@@ -851,8 +850,8 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit):
             status = STUCK
             break
         error = step(m, t, y, hs, side, mem, yd, K, lam, told, rtol, size, out)
-        if pivot < SINGULAR:
-            status = STUCK
+        if pivot < singular:
+            status = SINGULAR
             break
         if not error <= 1.0:
             h = hs * (0.2 if not error < 1e30 else max(0.2, 0.9 * error ** (-1 / 8)))

@@ -36,6 +36,7 @@ KINDS = {
 }  # fmt: skip
 LADDER = ((1e-12, 3e-11), (1e-10, 1e-9), (1e-9, 1e-8))  # rtol of the truth and beside it
 PARTS = (1.0, 0.4, 0.12)  # of the time a row may be off by
+LEAST_PIVOT = 1e-13
 APART = 1e-7  # perturbation of the second run
 MARGIN = 1e-3  # of 1: nearer turning points are told as grazing
 
@@ -374,15 +375,25 @@ def independent(b: Builder, y: np.ndarray) -> list[int]:
         J[a, 6 * j : 6 * j + 6] += Jj[a]
     J = J[:, 6:]
     kept: list[int] = []
-    base = np.zeros((0, J.shape[1]))
+    left, size = J.copy(), np.linalg.norm(J, axis=1)
     # prescribed rows first: their multipliers are compared
-    for a in sorted(range(n), key=lambda a: m.row[a, 4] < 0):
-        left = J[a] - base.T @ (base @ J[a])
-        left -= base.T @ (base @ left)
-        if np.linalg.norm(left) > 1e-8 * np.linalg.norm(J[a]):
-            base = np.vstack([base, left / np.linalg.norm(left)])
+    for group in (m.row[:, 4] >= 0, m.row[:, 4] < 0):
+        while True:
+            far = np.where(group, np.linalg.norm(left, axis=1) / size, 0.0)
+            far[kept] = 0.0
+            a = int(np.argmax(far))
+            if far[a] < 1e-8:
+                break
+            d = left[a] / np.linalg.norm(left[a])
+            for _ in range(2):
+                left -= np.outer(left @ d, d)
             kept.append(a)
     return sorted(kept)
+
+
+def least_pivot(m: e.Arrays, y: np.ndarray, side: np.ndarray, mem: np.ndarray) -> float:
+    yd, lam, told = np.zeros(len(y)), np.zeros(len(m.row)), np.zeros((len(m.force), 4))
+    return float(e.derivative(m, 0.0, y, side, mem, yd, lam, told))
 
 
 @dataclass
@@ -466,15 +477,18 @@ class Course:
         t, at, fired = 0.0, 0, dict.fromkeys((v.name for v in self.s.events), 0)
         deep = np.zeros(len(m.watch))
         h_max = self.s.end / 40
+        pivot = least_pivot(m, y, side, mem)
+        redundant = len(kept) < len(b.rows)
+        floor = 1e-2 * pivot if redundant else LEAST_PIVOT
         size = np.full(len(y), 0.1)
         size[13 * len(self.s.bodies) :] = 1.0
         while True:
             found = e.march(
-                m, t, y, side, mem, deep, self.times[at:], h_max, turn, rtol, size, 20000
+                m, t, y, side, mem, deep, self.times[at:], h_max, turn, rtol, size, 20000, floor
             )
             rows, crossed, grazed, (t, n, status, steps, worst, _), y = found
             self.steps += steps
-            if status in (e.STUCK, e.TOO_MANY):
+            if status in (e.STUCK, e.TOO_MANY) or (status == e.SINGULAR and floor == LEAST_PIVOT):
                 raise Unfit(f"the reference stopped at {t:g} with {status}")
             if worst > 1e-6:
                 raise Unfit(f"rows of the reference open by {worst:.1e}")
@@ -488,6 +502,13 @@ class Course:
             at += n
             if status == e.DONE:
                 break
+            if status == e.SINGULAR:  # other rows say the same, and better
+                before = least_pivot(m, y, side, mem)
+                kept = independent(b, y)
+                m = restricted(b.arrays, kept)
+                pivot = least_pivot(m, y, side, mem)
+                floor = 1e-2 * pivot if pivot > 3 * before else LEAST_PIVOT
+                continue
             event = b.of_watch[int(crossed[-1, 1])]
             fired[event.name] += 1
             if event.times is not None and fired[event.name] > event.times:
@@ -501,6 +522,8 @@ class Course:
             kept = independent(b, y)
             m = restricted(b.arrays, kept)
             side = np.concatenate([side, np.ones(max(0, len(m.watch) - len(side)))])
+            pivot = least_pivot(m, y, side, mem)
+            floor = 1e-2 * pivot if len(kept) < len(b.rows) else LEAST_PIVOT
             e.projected(m, t, y, side)
             g = np.zeros(len(m.watch))
             e.watched(m, t, y, g)

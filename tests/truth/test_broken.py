@@ -36,6 +36,11 @@ BREAKS = {
             ),
         ],
     ),
+    # steps may turn a joint by any angle
+    "branch": (
+        "turns",
+        [("trsim/solve/turns.py", "MOST, ASIDE = 2.0, 1.0", "MOST, ASIDE = 9e9, 9e9")],
+    ),
 }
 TRY = """
 import sys
