@@ -6,12 +6,17 @@ tree; whoever holds the tree adds the `place` in a file.
 
 import difflib
 import os
+import re
 import stat
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 WIDTH = 90  # columns of an excerpt
 LISTED = 14  # words of a "Known:" list
+# control characters but tab and end of line; ends of lines and directions of Unicode; half letters
+OBEYED = re.compile(
+    "[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 
 
 class Place(NamedTuple):
@@ -56,7 +61,8 @@ class TrsimError(Exception):
         """file:line:column: dotted.path: what, the line with a caret, the hint."""
         where = [self.place.show()] if self.place else []
         where += [".".join(printable(str(key), 60) for key in self.path)] if self.path else []
-        text = ": ".join([*where, self.what])
+        # lines of a text from a file do not begin as ours do
+        text = ": ".join([*where, self.what.replace("\n", "\n    ")])
         text += f"\n{self.place.caret()}" if self.place and self.place.excerpt.strip() else ""
         return text + (f"\n  {self.hint}" if self.hint else "")
 
@@ -200,6 +206,16 @@ def edits(a: str, b: str) -> int:
                 cost = min(cost, last[j - 1] + 1)
             row.append(cost)
     return min(row[-1], 3)
+
+
+def shown(text: str) -> str:
+    """Text without what a terminal obeys, but ends of lines: colours, cursor, titles, direction."""
+    return OBEYED.sub("?", text)
+
+
+def one_line(text: str) -> str:
+    """The same, without ends of lines: nothing in it looks like a line of its own."""
+    return shown(text).replace("\n", "?")
 
 
 def printable(text: str, length: int = 1000) -> str:

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 import click
 
-from trsim.cli.frame import EXIT_CODES, Answer, opened
+from trsim.cli.frame import EXIT_CODES, Answer, careful, opened
 from trsim.version import __version__
 
 # imports make tens of thousands of objects that stay: collecting among them finds nothing
@@ -53,6 +53,7 @@ def program() -> None:
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run a command line and exit."""
     opened()
+    careful()
     given = list(sys.argv[1:] if arguments is None else arguments)
     named = given[0] if given and given[0] in COMMANDS else None
     answer = Answer(named, "--json" in given)  # where the command cannot give its own

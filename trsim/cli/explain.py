@@ -25,7 +25,7 @@ def command(answer: Answer, word: str | None) -> None:
     found = explained(word)
     answer.data |= {"word": word, **found}
     for text in lines(found) if word else listed(found):
-        answer.put(text)
+        answer.put(text, lines=True)
 
 
 def listed(found: dict[str, list[Any]]) -> Iterator[str]:

@@ -1,12 +1,14 @@
 """What all commands share: messages on stderr, one JSON document on stdout, exit codes."""
 
 import functools
+import io
 import json
 import math
 import os
 import signal
 import sys
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,7 +16,7 @@ from typing import Any
 
 import click
 
-from trsim.errors import FileError, Place, TrsimError, UsageError
+from trsim.errors import FileError, Place, TrsimError, UsageError, one_line, shown
 
 EXIT_CODES = {
     0: "done",
@@ -56,9 +58,9 @@ class Answer:
         }
 
     def say(self, text: str) -> None:
-        """A message."""
+        """A message, a line."""
         if not self.quiet:
-            tell(text)
+            tell(one_line(text))
 
     def warn(self, about: str, text: str) -> None:
         """A warning; one that was said is not said again."""
@@ -67,12 +69,12 @@ class Answer:
             self.say(message)
         self.warned.add(message)
 
-    def put(self, text: str) -> None:
-        """Data, for a reader; with --json it is in the document instead."""
+    def put(self, text: str, lines: bool = False) -> None:
+        """Data, for a reader, in a line or several; with --json it is in the document instead."""
         if self.as_json:
             return
         try:
-            click.echo(text)
+            click.echo(shown(text) if lines else one_line(text))
         except BrokenPipeError:
             raise
         except OSError as error:
@@ -104,8 +106,9 @@ class Answer:
 
     def refuse(self, error: click.ClickException) -> None:
         """Tell what is wrong with the command line."""
-        with suppress(OSError):
-            error.show(sys.stderr)
+        told = io.StringIO()
+        error.show(told)
+        tell(told.getvalue().removesuffix("\n"))
         self.exit_code = error.exit_code
         self.entry(error.format_message(), "", error.exit_code)
 
@@ -125,7 +128,8 @@ class Answer:
         self.data["exit_code"] = self.exit_code
         try:
             if self.as_json:
-                click.echo(json.dumps(plain(self.data), indent=1))
+                # the one control character that JSON leaves as it is
+                click.echo(json.dumps(plain(self.data), indent=1).replace("\x7f", "\\u007f"))
             sys.stdout.flush()
         except OSError as error:
             unheard()
@@ -227,7 +231,14 @@ def _stop(number: int, _: Any) -> None:
 def tell(text: str) -> None:
     """A line on standard error; where that cannot be written to, nobody is left to be told."""
     with suppress(OSError):
-        click.echo(text, err=True)
+        click.echo(shown(text), err=True)
+
+
+def careful() -> None:
+    """Warnings of Python, which may hold texts of files, as our own messages are."""
+    formatted = warnings.formatwarning
+    if formatted.__module__ == "warnings":
+        warnings.formatwarning = lambda *told, **named: shown(formatted(*told, **named))
 
 
 def unheard() -> None:

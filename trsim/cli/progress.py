@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from trsim.cli.frame import Answer, Stop
-from trsim.errors import FileError
+from trsim.errors import FileError, one_line
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
 WHILE = 2.0  # s: what takes longer is told
@@ -179,8 +179,8 @@ def bar(told: str) -> Any:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
 
-    columns = [TextColumn("{task.description}"), BarColumn(bar_width=24)]
-    columns += [TextColumn("{task.percentage:>3.0f}%"), TextColumn(told)]
+    columns = [TextColumn("{task.description}", markup=False), BarColumn(bar_width=24)]
+    columns += [TextColumn("{task.percentage:>3.0f}%"), TextColumn(told, markup=False)]
     columns += [TextColumn("{task.fields[left]} left")]
     started = Progress(*columns, console=Console(stderr=True), transient=True)
     started.start()
@@ -205,7 +205,9 @@ class Bar:
         self.last = now
         if self.bar is None:
             self.bar = bar("{task.fields[told]}")
-            self.task = self.bar.add_task(Path(self.name).stem, total=self.end, told="", left="")
+            self.task = self.bar.add_task(
+                one_line(Path(self.name).stem), total=self.end, told="", left=""
+            )
         to_go = left(now - self.began, share, self.first)
         self.bar.update(self.task, completed=block.time, told=told(block), left=to_go)
 
@@ -224,7 +226,7 @@ class Cases:
         self.bar: Any = None
         if sys.stderr.isatty() and not answer.quiet and total:
             self.bar = bar("{task.fields[told]}")
-            self.task = self.bar.add_task(Path(name).name, total=total, told="", left="?")
+            self.task = self.bar.add_task(one_line(Path(name).name), total=total, told="", left="?")
 
     def update(self, ended: Any) -> None:
         """One more case ended."""

@@ -27,7 +27,7 @@ def command(answer: Answer, what: str, output: str | None) -> None:
     answer.data |= {"what": what, "schema": found, "file": None, "modeline": None}
     text = json.dumps(found, indent=1)
     if output is None:
-        answer.put(text)
+        answer.put(text, lines=True)
         return
     write(Path(output), text)
     answer.data |= {"schema": None, "file": output}
