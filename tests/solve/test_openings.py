@@ -261,7 +261,7 @@ def test_cranks_start_lying_flat(R, method):
     way = (r["plate.position"] - r["plate.position"][0]) @ R
     assert way[:, 0] == pytest.approx(np.cos(3 * r.t) - 1, abs=1e-5)
     assert way[:, 1] == pytest.approx(np.sin(3 * r.t), abs=1e-5)
-    assert r.outcome.statistics["energy_residual_relative"] < 1e-6
+    assert r.outcome.statistics["energy_residual_relative"] < 100 * r.scenario.solver.tolerance
     # rounding is large where rows are nearly dependent, which may be said
     assert not any("rows" in text for text in doubts(r.scenario, r.mechanism, r.outcome))
 
