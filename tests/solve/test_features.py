@@ -313,3 +313,21 @@ def test_a_detent_about_another_axis(method):
     assert np.linalg.norm(r.outcome.record.y[10:13]) == pytest.approx(
         math.sqrt(2 * energy / inertia), rel=1e-6
     )
+
+
+IMPLICIT = ["method: radau", "method: radau, tolerance: 1e-2", "method: generalized_alpha"]
+
+
+@pytest.mark.parametrize("method", IMPLICIT)
+def test_an_implicit_step_does_not_rest_in_what_is_stiff_behind_a_corner(method):
+    """A soft wall of 0.17 mm, a stop of 1e7 N/m, a spring switched on: none of them damps."""
+    accuracy = 2e-3 if "1e-2" in method else 2e-4 if "alpha" in method else 1e-5
+    wall = '"11661.6*step5(abs(x), 0.98521, 0, 0.985379, 1)*(abs(x) < 0.985379)"'
+    r = run(SLIDING.format(-4.7585131, wall, 1, method))
+    expected = math.sqrt(4.7585131**2 - 0.5 * 11661.6 * (0.985379 - 0.98521))
+    assert speed(r) == pytest.approx(-expected, rel=accuracy)
+    r = run(SLIDING.format(2.0, '"-1e7*max(0, x - 0.5)"', 1, method))
+    assert speed(r) == pytest.approx(-2.0, rel=accuracy)
+    r = run(SLIDING.format(0.1, '"-2e4*(x - 0.06)*(t > 0.7)"', 0.8, method))
+    t = 0.1 * 100  # omega is 100/s; it begins 0.01 m beside its middle, with 0.1 m/s
+    assert speed(r) == pytest.approx(0.1 * math.cos(t) - math.sin(t), abs=20 * accuracy)

@@ -23,6 +23,7 @@ class Cornered(NamedTuple):
     sensed: tuple[int, ...]  # entries of S that meet some of them
     end: float
     slots: int
+    reads: bool  # whether it depends on sensors
 
 
 def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Cornered]:
@@ -32,7 +33,7 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
     if spec.kind == "table":
         of_t, held = spec.of == "t", [offset + HELD_OF_TABLE]
         times = distinct(list(spec.x), end) if of_t else []
-        return [Cornered(offset, times, held, () if of_t else (int(code[1]),), end, 0)]
+        return [Cornered(offset, times, held, () if of_t else (int(code[1]),), end, 0, not of_t)]
     n_in = int(code[1])
     places = range(HEAD + n_in, HEAD + n_in + WIDTH * int(code[2]), WIDTH)
     watched = [p for p in places if code[p + WATCHED] != UNWATCHED]
@@ -43,4 +44,4 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
     sensed = tuple(int(k) for k in inputs) if by_sensors else ()
     held = [offset + p + HELD for p in watched]
     slots = (len(code) - int(code[3])) // 3
-    return [Cornered(offset, instants(spec.node, end), held, sensed, end, slots)]
+    return [Cornered(offset, instants(spec.node, end), held, sensed, end, slots, n_in > 0)]

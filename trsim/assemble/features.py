@@ -3,7 +3,8 @@
     feature   0 offset in tab, 1 row of the drive whose time counts, or -1, 2 first of its instants,
               3 behind the last, 4 first of its entries of `held`, 5 behind the last,
               6 whether sensors meet corners,
-              7 state of z with the rate of a piston against the motion of its supply, or -1
+              7 whether it reads sensors at all,
+              8 state of z with the rate of a piston against the motion of its supply, or -1
     instant   0, then the instants of a function in rising order, then the end of the run
     jump      by how much the place and the rate of a motion jump there        jumps.py
     held      places in tab of what each corner is held on (laws/functions.py)
@@ -36,7 +37,7 @@ from trsim.laws.functions import (
     sensed,
 )
 
-OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, HELD_TO, SENSED, PISTON, N_FEATURE = range(9)
+OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, HELD_TO, SENSED, READS, PISTON, N_FEATURE = range(10)
 PLACE_JUMP, RATE_JUMP = range(2)  # columns of `jump`
 ENTRY, KIND, INSTANCE = range(3)  # of `sensed`
 SENSOR_ENTRY = 2  # of Row.con: where a sensor stands in S
@@ -56,8 +57,9 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
         behind, last = len(times), len(held) + len(f.held)
         drive = own.get(f.offset, NOBODY)
         jumps.append(at.jumped.get(f.offset, np.zeros((len(times) - first, 2))))
-        by_sensors = int(bool(f.sensed))
-        rows.append((f.offset, drive.e, first, behind, len(held), last, by_sensors, drive.slip))
+        by_sensors, reads = int(bool(f.sensed)), int(f.reads)
+        own_rows = (f.offset, drive.e, first, behind, len(held), last, by_sensors, reads)
+        rows.append((*own_rows, drive.slip))
         held += f.held
     entries = sorted({k for f in at.functions for k in f.sensed})
     owner = {i.row.con[SENSOR_ENTRY]: e for e, i in enumerate(instances) if i.section == "sensors"}

@@ -169,10 +169,11 @@ def complete(s, r, b, setting, method, h, built):
     if event:
         outcome = WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
     if method[MEET_AT] > 0:
+        copy_to(b.before, r.held)
         met = call_meet(method[MEET_AT], s, r, b, t, t1)
         outcome = AT_INSTANT if met > 0 and not event else outcome
         if method[TURN_AT] > 0:
-            turned = call_turn(method[TURN_AT], s, r, b, setting, t1, met + int(event))
+            turned = call_turn(method[TURN_AT], s, r, b, setting, method, t1, met + int(event))
             outcome = WITH_CORNER if turned > 0 and not event else outcome
     return outcome
 

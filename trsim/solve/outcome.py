@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.features import READS
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.scene import N_STORED, PROJECTION, Scene
@@ -129,10 +130,12 @@ def meets(mechanism: Mechanism) -> int:
 def cornered(mechanism: Mechanism) -> tuple[int, int, int]:
     """The addresses of what finds the corners that sensors meet, tells how far beyond one a place
     is, and goes on behind it; 0 where there are none."""
-    if len(mechanism.model.sensed) == 0:
+    if not mechanism.model.feature[:, READS].any():
         return 0, 0, 0
     from trsim.solve.sensed import beyond, corners_ahead, turn
 
+    if len(mechanism.model.sensed) == 0:
+        return 0, 0, int(turn.address())
     return int(corners_ahead.address()), int(beyond.address()), int(turn.address())
 
 

@@ -196,6 +196,7 @@ class Buffers(Packed):
     seen: A2  # (n_s, 4) ranges of sensors and of their rates, where they meet corners
     shown: A2  # (n_sensed, 2) what they show at both ends of a part of a step
     box: A2  # (slots, 4) ranges of the parts of a function
+    before: A1  # (corners) what functions were held on in the last step
     met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
 
 
@@ -234,6 +235,7 @@ def fresh_buffers(
         seen=np.zeros((max(model.n_s, 1) if len(model.sensed) else 0, 4)),
         shown=np.zeros((len(model.sensed), 2)),
         box=np.zeros((model.slots, 4)),
+        before=np.zeros(len(model.held)),
         met=np.zeros((len(model.feature), 3)),
         curve=np.zeros((14, 9)),
     )

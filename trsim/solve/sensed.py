@@ -25,6 +25,7 @@ from trsim.assemble.features import (
     KIND,
     NEAR,
     OFFSET,
+    READS,
     SENSED,
     hold_sensed,
 )
@@ -32,7 +33,7 @@ from trsim.assemble.travel import ANGLE
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.packed import A1, f8, i8
+from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import internal
 from trsim.laws.functions import (
     CLEAR,
@@ -49,10 +50,12 @@ from trsim.laws.functions import (
 from trsim.solve.calls import (
     DEGREE_AT,
     DENSE_AT,
+    IMPLICIT_AT,
     INTERPOLATE_AT,
     LAST_AT,
     SEARCH,
     STAGES_AT,
+    STEP_AT,
     call_interpolate,
 )
 from trsim.solve.dense_output import build
@@ -65,6 +68,7 @@ from trsim.solve.record import (
     RECORD,
     TOLERANCE,
     UNPROVED,
+    H,
 )
 from trsim.solve.spread import fill_net, spread_of, spread_of_stages
 
@@ -76,9 +80,10 @@ HIDDEN = 1e-3  # of the error allowed: how far beyond a corner is not looked for
 ROUNDING = 1e-15  # of the mechanism's size
 THETA, PLACE, NEXT = range(3)  # of b.met
 LAST, TIMES, FAR = range(3)  # of r.chatter
+HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
-TURN = types.int64(SCENE, RECORD, BUFFERS, A1, f8, i8)
+TURN = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
 BEYOND = types.float64(SCENE, BUFFERS, f8)
 call_turn, call_beyond = caller(TURN), caller(BEYOND)
 
@@ -265,8 +270,8 @@ def beyond(s, b, t):
 
 
 @compiled(TURN)
-def turn(s, r, b, setting, t1, changed):
-    """Go on from t1 behind the corners that sensors met there; whether any was.
+def turn(s, r, b, setting, method, t1, changed):
+    """Go on from t1 behind the corners that sensors met there; whether the next step is shorter.
 
     changed: not 0 where what was held has changed already, by the time or by an event.
     """
@@ -289,7 +294,60 @@ def turn(s, r, b, setting, t1, changed):
         evaluate(s, t1, r.y, r.yd)
         keep(s, r)
         other_side(s, r, t1)
+    explicit = method[IMPLICIT_AT] == 0 and method[STEP_AT] > 0
+    if not explicit and (turned > 0 or changed > 0) and other_pieces(s, b):
+        turned += ease(s, r, b, t1)
     return turned
+
+
+@internal
+def other_pieces(s, b):
+    """Whether a function that reads sensors is on other pieces than in the last step."""
+    for n in range(s.feature.shape[0]):
+        if s.feature[n, READS] > 0:
+            for k in range(s.feature[n, HELD_FROM], s.feature[n, HELD_TO]):
+                if s.tab[s.held[k]] != b.before[k]:
+                    return True
+    return False
+
+
+@internal
+def ease(s, r, b, t1):
+    """Make the next step so short that what the new pieces do to the velocities is little.
+
+    An implicit method takes a step much too long for one that rests there, and damps out what
+    should swing.  Whether the new pieces matter is told from the accelerations with them and
+    with those of before, at places straight ahead.  Returns whether the step is shorter.
+    """
+    most = 1.0  # of the velocities, in units of the tolerance
+    for c in range(s.n_q, s.n_q + s.n_v):
+        most = max(most, abs(r.y[c]) * b.weight[c])
+    h = r.clock[H]
+    for _ in range(HALVINGS):
+        for c in range(r.y.size):
+            b.y2[c] = r.y[c] + (h * r.yd[c] if c < s.n_q else 0.0)
+        evaluate(s, t1, b.y2, b.K[1])
+        swap(s, b)
+        evaluate(s, t1, b.y2, b.K[2])
+        swap(s, b)
+        worst = 0.0
+        for c in range(s.n_q, s.n_q + s.n_v):
+            worst = max(worst, abs(b.K[1, c] - b.K[2, c]) * b.weight[c])
+        if worst * h <= LITTLE * most:
+            break
+        h *= 0.25
+    evaluate(s, t1, r.y, r.yd)
+    shorter = h < r.clock[H]
+    r.clock[H] = h
+    return int(shorter)
+
+
+@internal
+def swap(s, b):
+    """Exchange what functions are held on for what they were held on before."""
+    for k in range(s.held.size):
+        held = s.tab[s.held[k]]
+        s.tab[s.held[k]], b.before[k] = b.before[k], held
 
 
 @internal
