@@ -20,7 +20,7 @@ from trsim.elements.calls import call_kernel, caller
 from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.elements.scene import BAUMGARTE
 from trsim.elements.signatures import A1, f8, float64, void
-from trsim.elements.vectors import clear, clear_table, copy_to
+from trsim.elements.vectors import clear, clear_table
 from trsim.elements.vectors import internal as equation
 
 #                        scene  t   y   y'
@@ -47,7 +47,8 @@ def derivative(s, t, y, yd):
         if contradictory(s, s.x) and masses_too_unequal(s):
             s.status[3] += 1
             s.x[0] = nan
-        copy_to(s.lam, s.x)
+        for k in range(s.m):  # what follows in x is the motion of hubs
+            s.lam[k] = s.x[k]
         if s.status[0] == POOR and s.unequal > 0 and s.n_r == s.n:
             once_more(s)
         power = 0.0
