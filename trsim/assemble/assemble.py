@@ -298,6 +298,8 @@ def build(
         joint_out=np.zeros((0, 4), np.int64),
         column_energy=-1,
         n_out=0,
+        vector=np.zeros(0, np.int64),
+        kin=np.zeros(0, np.int64),
         **watched(at.switches, size),
         **features(at, instances),
         steep=steep(at, instances),

@@ -38,6 +38,9 @@ def points_of(scenario: Any) -> set[str]:
     return named | {channel[:-2] for channel in named if channel[-2:] in COMPONENTS}
 
 
+OF_STEPS = ("projection", "residual")  # of the energy book
+
+
 def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Model, list[Column]]:
     """The model with its output tables filled, and the columns."""
     patterns, shown = tuple(scenario.output.channels), points_of(scenario)
@@ -90,5 +93,29 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
         joint_out=np.array(joints, np.int64).reshape(-1, 4),
         column_energy=energy,
         n_out=width,
+        **compared(columns, energy),
     )
     return filled, columns
+
+
+def compared(columns: list[Column], energy: int) -> dict[str, Any]:
+    """Vectors whose magnitudes have extremes of their own, and which channels are of one kind.
+
+    What projection and rounding leave in the energy book has extremes at samples only: it belongs
+    to the steps, not to the motion.
+    """
+    units: dict[str, int] = {}
+    kin: list[int] = []
+    for column in columns:
+        apart = column.start >= energy and column.name.rsplit(".", 1)[1] in OF_STEPS
+        number = -1 if apart else units.setdefault(column.unit, len(units))
+        kin += [number] * column.size
+    vectors = [column for column in columns if is_vector(column)]
+    kin += [units[column.unit] for column in vectors]
+    starts = [column.start for column in vectors]
+    return {"vector": np.array(starts, np.int64), "kin": np.array(kin, np.int64)}
+
+
+def is_vector(column: Column) -> bool:
+    """Whether the extremes of a channel are those of its magnitude as well."""
+    return column.size == 3 and "reaction" in column.name and column.wanted

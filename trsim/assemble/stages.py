@@ -19,7 +19,16 @@ from trsim.elements.scene import Model
 
 Rows = list[RowName]
 # the same in every stage
-OUTPUTS = ("wanted", "joint_out", "column_energy", "n_out", "section", "section_at")
+OUTPUTS = (
+    "wanted",
+    "joint_out",
+    "column_energy",
+    "n_out",
+    "section",
+    "section_at",
+    "vector",
+    "kin",
+)
 
 
 class Stages:

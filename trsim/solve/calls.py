@@ -40,10 +40,11 @@ SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
 # what looks at redundant rows, of what looks at rounding and of what finds events, or 0; how many
 # rows of K hold derivatives at the stages of a step whose dense output is dear, or 0; the degree of
 # that output; the addresses of what finds corners that sensors meet, of what tells how far beyond
-# one a place is and of what goes on behind it, or 0
+# one a place is and of what goes on behind it, or 0; and of what
+# keeps extremes
 STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
 SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, STAGES_AT, DEGREE_AT = range(7, 14)
-CORNERS_AT, BEYOND_AT, TURN_AT, METHOD_WIDTH = 14, 15, 16, 17
+CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, METHOD_WIDTH = 14, 15, 16, 17, 18
 
 call_step = caller(STEP)
 call_dense = caller(DENSE)

@@ -20,6 +20,7 @@ from trsim.solve.calls import (
     LOOK_AT,
     MEET_AT,
     NO_STEP,
+    SAMPLE_AT,
     SEARCH_AT,
     SECTIONS_AT,
     STEP_AT,
@@ -35,7 +36,7 @@ from trsim.solve.events import SAME
 from trsim.solve.features import call_meet
 from trsim.solve.land import land
 from trsim.solve.norm import grow
-from trsim.solve.peaks import near_peak, peaks_inside, refine
+from trsim.solve.peaks import call_sample
 from trsim.solve.phases import change_phases, latch
 from trsim.solve.record import (
     BEHIND,
@@ -82,6 +83,7 @@ ORIGIN = 1e-6  # of the weight's potential: what counts though it does not chang
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
 BRIEF = 1e-9  # of a run: no shorter step is asked for
+LONG, LOOKS = 0.01, 3  # of a run: parts that a step without a row inside is looked at in
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
@@ -142,16 +144,26 @@ def complete(s, r, b, setting, method, h, built):
     copy_to(b.out, s.out)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
-    near = near_peak(s, r, b, t1, t1 - t, last)
-    inside = due(r, setting, t1) and setting[EVERY] * r.count[NEXT_ROW] < t1
-    if built == 0 and (near or inside or method[IMPLICIT_AT] > 0):
+    inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.count[NEXT_ROW], t1)
+    unseen = not inside and t1 - t > LONG * setting[T_END]
+    if built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
         build(s, r, b, method[DENSE_AT], t, h)
         built = 1
-    if near or due(r, setting, t1):
+    if due(r, setting, t1):
+        first = r.count[ROWS]
         if not rows_until(s, r, b, setting, method, t, h, t1, projected):
             return WORTHLESS
-        if near:
-            peaks_inside(s, r, b, method[INTERPOLATE_AT], t, h, t1)
+        for k in range(first, r.count[ROWS]):
+            row = b.rows[k]
+            built = call_sample(
+                method[SAMPLE_AT], s, r, b, setting, method, t, h, row[0], row[1:], projected, built
+            )  # fmt: skip
+    if unseen:
+        for k in range(1, LOOKS):
+            look_inside(s, r, b, setting, method, t, h, t + k / LOOKS * (t1 - t), projected)
+    built = call_sample(
+        method[SAMPLE_AT], s, r, b, setting, method, t, h, t1, b.out, projected, built
+    )  # fmt: skip
     if method[SECTIONS_AT] > 0:
         call_sections(
             method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event or corner)
@@ -259,6 +271,12 @@ def due(r, setting, t1):
 
 
 @internal
+def at_end(t_o, t1):
+    """Whether an output time is the end of the step, as far as rounding can tell."""
+    return t_o >= t1 * (1.0 - 2e-15)
+
+
+@internal
 def rows_until(s, r, b, setting, method, t, h, t1, projected):
     """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
 
@@ -271,7 +289,7 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
             break
         row = b.rows[r.count[ROWS]]
         row[0] = t_o
-        if abs(t_o - (t + h)) <= 1e-15 * abs(t_o) and t1 >= t + h:
+        if at_end(t_o, t1):
             copy_to(row[1:], b.out)
         else:
             theta = (t_o - t) / h
@@ -288,6 +306,16 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
         r.count[ROWS] += 1
         r.count[NEXT_ROW] += 1
     return True
+
+
+@internal
+def look_inside(s, r, b, setting, method, t, h, at, projected):
+    """A sample inside the step, for the extremes."""
+    theta = (at - t) / h
+    call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
+    evaluate(s, at, b.y2, b.K[1])
+    measure(s, at, b.y2, r.clock[WORK_PROJECTION] + theta * projected, r.clock[ENERGY_0])
+    call_sample(method[SAMPLE_AT], s, r, b, setting, method, t, h, at, s.out, projected, 1)
 
 
 @internal
@@ -324,5 +352,3 @@ def accept(s, r, b, t1, projected, last):
         exchanged(s, r, b)
         residual = abs(b.out[s.n_out - 1])
         r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
-    refine(s, r, b.out, t1)
-    copy_to(r.slope, b.slope1)

@@ -26,7 +26,7 @@ from trsim.elements.packed import f8
 from trsim.elements.vectors import copy_to, internal
 from trsim.laws.functions import BY_TIME
 from trsim.solve.land import land
-from trsim.solve.peaks import extreme
+from trsim.solve.peaks import restart
 from trsim.solve.record import (
     BUFFERS,
     ENERGY_0,
@@ -47,7 +47,6 @@ from trsim.solve.record import (
     NO_HISTORY,
     NO_JACOBIAN,
     PAST_ERROR,
-    PEAK_T1,
     RECORD,
     TORN,
     TORN_BY,
@@ -184,9 +183,7 @@ def tell(r, b, first, done):
 def other_side(s, r, t1):
     """What the end of a step leaves behind does not hold across a corner."""
     measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-    for c in range(s.n_out):
-        extreme(r.peak[c], t1, s.out[c])
-        r.peak[c, PEAK_T1] = t1  # no parabola across it
+    restart(s, r, t1)
     r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
     r.clock[PAST_ERROR] = 0.0
     r.worked[0, LONG] = 0.0

@@ -33,6 +33,7 @@ from trsim.solve.complete import (
 )
 from trsim.solve.features import next_instant
 from trsim.solve.norm import units, weights
+from trsim.solve.peaks import restart, sample
 from trsim.solve.phases import evaluate_all
 from trsim.solve.record import (
     ACT,
@@ -66,7 +67,6 @@ from trsim.solve.record import (
     PAUSE,
     PEAK_MAX,
     PEAK_MIN,
-    PEAK_V2,
     POINT_ROWS,
     RECORD,
     REJECTED,
@@ -101,7 +101,7 @@ def method_table(method, sections=0, meet=0, look=0, search=0, corners=(0, 0, 0)
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look)
     stages = getattr(method, "DEAR", 0)
     found = (look_closer.address(), search, stages, method.DENSE_DEGREE, *corners)
-    return (*called, complete.address(), *about, *found)
+    return (*called, complete.address(), *about, *found, sample.address())
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
@@ -284,7 +284,7 @@ def begin(s, r, b, setting):
     r.count[ROWS] = 1
     r.count[NEXT_ROW] = 1
     clear_table(r.peak)
-    for c in range(s.n_out):
-        r.peak[c, PEAK_MAX] = b.out[c]
-        r.peak[c, PEAK_MIN] = b.out[c]
-        r.peak[c, PEAK_V2] = b.out[c]
+    for c in range(s.kin.size):
+        r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN] = -1e300, 1e300
+    copy_to(s.out, b.out)
+    restart(s, r, 0.0)

@@ -1,57 +1,175 @@
-"""Extremes of every channel: at accepted points, and of contact forces inside the steps.
+"""Extremes of every channel: of the dense motion, right to the tolerance, never beyond it.
 
-A contact force passes its maximum between two accepted points.  Its rate at both ends says so; the
-step is then searched on its dense output, for all channels, since reactions and drive forces peak
-with it.
+Channels are known at samples: the ends of steps and the output rows inside them.  Between two
+samples a channel may pass an extreme.  The polynomial through its last POINTS samples says how far
+it may go there, and its last term how uncertain that is.  Only where that is beyond the extreme so
+far is the dense output evaluated, at the place where the polynomial is largest; the polynomial then
+goes through that place too, until it promises nothing more.  What is kept is always a value of the
+dense motion, so a run costs little once its extremes have been met.
+
+Samples on two sides of an event have nothing to do with each other: `restart`.
 """
 
-from trsim.assemble.equations import call_one, evaluate, poses
+from math import sqrt
+
+from trsim.assemble.equations import evaluate
 from trsim.assemble.outputs import measure
-from trsim.elements.contract import FLIGHT, PHASE
-from trsim.elements.vectors import copy_to, internal
-from trsim.solve.calls import call_interpolate
-from trsim.solve.illinois import between, narrowed
+from trsim.elements import signatures as types
+from trsim.elements.calls import caller
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.packed import A1, I1, f8, i8
+from trsim.elements.vectors import internal
+from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT, call_interpolate
+from trsim.solve.dense_output import build
 from trsim.solve.record import (
+    BUFFERS,
     ENERGY_0,
+    NEWEST,
     PEAK_MAX,
     PEAK_MAX_T,
     PEAK_MIN,
     PEAK_MIN_T,
-    PEAK_T1,
-    PEAK_T2,
-    PEAK_V1,
-    PEAK_V2,
+    POINTS,
+    RECORD,
+    SAMPLES,
+    TOLERANCE,
     WORK_PROJECTION,
 )
 
-AHEAD = 1e-4  # of a step: how far the rate of a contact force looks
-TRIALS, FLAT = 12, 1e-3  # to the maximum of a contact force; of its rate: flat enough there
-INSIDE = 16  # parts a searched step is cut into
-NEAR = 0.9  # of the largest contact force so far: a maximum that may be above is searched for
-SMOOTH = 0.05  # of a channel's value: three points closer than this carry a parabola
+SHARE = 0.3  # of the tolerance, times the range of a channel: what may be missed
+HALF, EASY, PROPORTION = 0.5, 1e-2, 7.0 / 8.0  # from the tolerance of a step to that
+SURE = 0.2  # of that: a polynomial that doubts no more is believed
+ROUNDING = 1e-12  # of the largest channel of its unit: less is no extreme
+CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
+NEAR = 1e-4  # of it: an extreme so near a known place is known
+DOUBT = 0.25  # of the last term of a polynomial: its error
+SLOPES = 4  # samples whose polynomials tell the rates at both ends
+PARTS, ROUNDS = 8, 3  # in which the top of a polynomial is looked for
+TRIES = 6  # evaluations for one extreme of one channel
+
+#                     scene  record  buffers setting method t  h   at values projected built
+SAMPLE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, A1, f8, i8)
+call_sample = caller(SAMPLE)
+
+
+@compiled(SAMPLE)
+def sample(s, r, b, setting, method, t, h, at, values, projected, built):
+    """Take the channels at one time of the step from t into their extremes, and what lies between
+    them and those of the sample before.
+
+    built: whether b.P holds the dense output.  Returns whether it does now.
+    """
+    head, known = r.count[NEWEST], r.count[SAMPLES]
+    if known > 0 and at <= r.sampled[head]:
+        return built
+    before = (head + POINTS - 1) % POINTS
+    apart = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[before])
+    new = (head + 1) % POINTS if apart else head
+    last, older = r.sample[head], r.sample[before] if known > 1 else r.sample[head]
+    now = r.sample[new]
+    lengths(s, now, values)
+    for c in range(now.size):
+        if now[c] > r.peak[c, PEAK_MAX] or now[c] < r.peak[c, PEAK_MIN]:
+            extreme(r.peak[c], at, now[c])
+            grow(s, r, c, now[c])
+    if apart and known > 0:
+        b.found[0], share = 0.0, missed(setting)
+        rates(r, b, at)
+        for c in range(now.size):
+            v, v0, p = now[c], last[c], r.peak[c]
+            bend = abs(v - v0) + abs(v0 - older[c])
+            enough = share * (p[PEAK_MAX] - p[PEAK_MIN])
+            high, low = max(v, v0) + bend > p[PEAK_MAX], min(v, v0) - bend < p[PEAK_MIN]
+            if not (high or low) or bend <= enough or s.kin[c] < 0:
+                continue
+            enough = max(enough, ROUNDING * r.largest[s.kin[c]])
+            if bend <= enough:
+                continue
+            if known >= SLOPES - 1:
+                turn = turns(r, b, now, c)
+                high, low = high and turn > 0, low and (turn < 0 or turn == 2)
+            if high:
+                built = search(
+                    s, r, b, enough, method, t, h, at, now, c, 1.0, projected, built
+                )  # fmt: skip
+            if low:
+                built = search(
+                    s, r, b, enough, method, t, h, at, now, c, -1.0, projected, built
+                )  # fmt: skip
+    r.count[NEWEST], r.sampled[new] = new, at
+    if apart:
+        r.count[SAMPLES] = min(known + 1, POINTS)
+    return built
 
 
 @internal
-def refine(s, r, values, t):
-    """Take the channels at t into their extremes.
+def missed(setting):
+    """What may be missed of an extreme, as a part of the range of its channel: SHARE of the
+    tolerance asked for, of which that of a step is made in outcome.py."""
+    return SHARE * EASY * (setting[TOLERANCE] / (HALF * EASY)) ** PROPORTION
 
-    A local extremum between the last three points, if they lie close together, is refined by the
-    parabola through them.
-    """
+
+@internal
+def grow(s, r, c, value):
+    """Let the size of the channels of one unit follow."""
+    g = s.kin[c]
+    if g >= 0 and abs(value) > r.largest[g]:
+        r.largest[g] = abs(value)
+
+
+@internal
+def lengths(s, now, values):
+    """The channels and, behind them, the magnitudes of vectors among them."""
     for c in range(s.n_out):
-        p, v2 = r.peak[c], values[c]
-        t0, v0, t1, v1 = p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2]
-        extreme(p, t, v2)
-        turns = t0 < t1 < t and (v1 - v0) * (v2 - v1) < 0.0
-        if turns and abs(v1 - v0) + abs(v2 - v1) < SMOOTH * abs(v1):
-            slope = (v1 - v0) / (t1 - t0)
-            bend = ((v2 - v1) / (t - t1) - slope) / (t - t0)
-            turn = 0.5 * (t0 + t1) - 0.5 * slope / bend
-            value = v0 + (turn - t0) * (slope + bend * (turn - t1))
-            # a kink between unevenly spaced points is no parabola
-            if abs(value - v1) < 0.25 * max(abs(v1 - v0), abs(v2 - v1)):
-                extreme(p, turn, value)
-        p[PEAK_T1], p[PEAK_V1], p[PEAK_T2], p[PEAK_V2] = t1, v1, t, v2
+        now[c] = values[c]
+    for k in range(s.vector.size):
+        x, y, z = values[s.vector[k]], values[s.vector[k] + 1], values[s.vector[k] + 2]
+        now[s.n_out + k] = sqrt(x * x + y * y + z * z)
+
+
+@internal
+def rates(r, b, at):
+    """Weights of the newest SLOPES values, `at` included, into b.node: of their polynomial's rate
+    at the last sample and at `at`, and of the divided difference of order SLOPES - 1, times what
+    it adds to either rate."""
+    if r.count[SAMPLES] < SLOPES - 1:
+        return
+    head, times = r.count[NEWEST], b.node[0]
+    times[0] = at
+    for k in range(1, SLOPES):
+        times[k] = r.sampled[(head + POINTS + 1 - k) % POINTS]
+    h, old = at - times[1], times[1] - times[2]
+    for j in range(SLOPES):
+        product = 1.0
+        for i in range(SLOPES):
+            if i != j:
+                product *= times[j] - times[i]
+        b.node[3, j] = 1.0 / product
+    # what the cubic term (x - t0)(x - t1)(x - t2) adds to the rate at t0 = at and at t1
+    b.node[4, 0], b.node[4, 1] = h * (h + old), -h * old
+    b.node[4, 2], b.node[4, 3] = h, old
+
+
+@internal
+def turns(r, b, now, c):
+    """How channel c may turn between the newest sample and the present: 1 to a maximum, -1 to a
+    minimum, 0 not at all, 2 if nobody knows."""
+    head = r.count[NEWEST]
+    v0, v1 = now[c], r.sample[head, c]
+    v2 = r.sample[(head + POINTS - 1) % POINTS, c]
+    v3 = r.sample[(head + POINTS - 2) % POINTS, c]
+    h, old = b.node[4, 2], b.node[4, 3]
+    third = b.node[3, 0] * v0 + b.node[3, 1] * v1 + b.node[3, 2] * v2 + b.node[3, 3] * v3
+    rise, before = (v0 - v1) / h, (v1 - v2) / old
+    second = (rise - before) / (h + old)
+    end, start = rise + second * h, rise - second * h
+    off_end, off_start = abs(third * b.node[4, 0]), abs(third * b.node[4, 1])
+    up, down = start + off_start > 0.0, start - off_start < 0.0
+    rising, falling = end + off_end > 0.0, end - off_end < 0.0
+    most, least = up and falling, down and rising
+    if most and least:
+        return 2
+    return 1 if most else (-1 if least else 0)
 
 
 @internal
@@ -64,113 +182,125 @@ def extreme(p, t, value):
 
 
 @internal
-def ahead_of(s, y, yd, ahead):
-    """Move y along y', and the poses with it."""
-    for k in range(y.size):
-        y[k] += ahead * yd[k]
-    poses(s, y)
+def restart(s, r, t):
+    """Begin anew with the channels in s.out, those behind an event."""
+    lengths(s, r.sample[0], s.out)
+    for c in range(r.sample.shape[1]):
+        extreme(r.peak[c], t, r.sample[0, c])
+        grow(s, r, c, r.sample[0, c])
+    r.count[NEWEST], r.count[SAMPLES], r.sampled[0] = 0, 1, t
 
 
 @internal
-def force_rate(s, y, yd, t, ahead, c):
-    """Rate of contact c's force at (t, y), by its channel a little before and after along y'.
+def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
+    """Look for an extreme of channel c between the newest sample and `at`, by its polynomial.
 
-    y is moved to and fro; it ends where the channel was looked at last.
+    sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
+    surer than that is taken at its word.
     """
-    ahead_of(s, y, yd, -ahead)
-    before = force(s, t - ahead, c)
-    ahead_of(s, y, yd, 2.0 * ahead)
-    return (force(s, t + ahead, c) - before) / (2.0 * ahead)
+    p, start = r.peak[c], r.sampled[r.count[NEWEST]]
+    for _ in range(TRIES):
+        best = p[PEAK_MAX] if sign > 0.0 else -p[PEAK_MIN]
+        n = nodes(r, b, at, now, c, sign)
+        place, promised = top(b.node, n, start, at)
+        if not promised > best + enough or known_place(b, start, at, place):
+            break
+        said = polynomial(b.node[0], b.node[2], n, place, 0.0)
+        if n == POINTS and promised - said < SURE * enough:
+            extreme(p, place, sign * said)
+            break
+        k = int(b.found[0])
+        if k + 1 >= b.found.size:
+            break
+        if built == 0:
+            build(s, r, b, method[DENSE_AT], t, h)
+            built = 1
+        theta = (place - t) / h
+        call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
+        evaluate(s, place, b.y2, b.K[1])
+        done = r.clock[WORK_PROJECTION] + theta * projected
+        measure(s, place, b.y2, done, r.clock[ENERGY_0])
+        lengths(s, b.inside[k], s.out)
+        b.found[0], b.found[1 + k] = k + 1.0, place
+        for o in range(now.size):
+            extreme(r.peak[o], place, b.inside[k, o])
+    return built
 
 
 @internal
-def force(s, t, c):
-    """The first channel of contact c, at the poses as they are."""
-    call_one(s, s.measure, t, s.contact[c])
-    return s.out[s.wanted[s.contact[c]]]
+def known_place(b, start, end, place):
+    """Whether the channels are known at this place between two samples."""
+    near = NEAR * (end - start)
+    if place - start < near or end - place < near:
+        return True
+    for k in range(int(b.found[0])):  # noqa: SIM110 - a generator does not compile
+        if abs(b.found[1 + k] - place) < near:
+            return True
+    return False
 
 
 @internal
-def near_peak(s, r, b, t, h, last):
-    """Whether a contact force passes a maximum, one of its largest, inside the step just made.
+def nodes(r, b, at, now, c, sign):
+    """Fill b.node with times and values of sign times channel c; how many there are.
 
-    Fills b.slope1 with the rate of every contact force at the end of the step, all from one place
-    a little ahead and from b.out.
+    Both samples around come first, then what was found between them, then older samples: the last
+    one is what the polynomial may do without.
     """
-    rates, touching = b.slope1, False
-    for c in range(s.contact.size):
-        rates[c] = 0.0
-        touching = touching or loaded(s, c)
-    if not touching:
-        return False
-    ahead = AHEAD * h
-    copy_to(b.y2, b.y1)
-    ahead_of(s, b.y2, b.K[last], ahead)
-    near = False
-    for c in range(s.contact.size):
-        if loaded(s, c):
-            rates[c] = (force(s, t + ahead, c) - b.out[s.wanted[s.contact[c]]]) / ahead
-            near = near or passes(s, r, b, c, h)
-    return near
+    times, values = b.node[0], b.node[1]
+    head, found = r.count[NEWEST], int(b.found[0])
+    times[0], values[0] = at, sign * now[c]
+    times[1], values[1] = r.sampled[head], sign * r.sample[head, c]
+    n = 2
+    for k in range(max(0, found - POINTS + 3), found):
+        times[n], values[n] = b.found[1 + k], sign * b.inside[k, c]
+        n += 1
+    for k in range(1, r.count[SAMPLES]):
+        if n == POINTS:
+            break
+        old = (head + POINTS - k) % POINTS
+        times[n], values[n] = r.sampled[old], sign * r.sample[old, c]
+        n += 1
+    return n
 
 
 @internal
-def loaded(s, c):
-    """Whether contact c has a force, and a channel of it."""
-    return s.mem[s.contact[c], PHASE] != FLIGHT and s.wanted[s.contact[c]] >= 0
+def top(node, n, start, end):
+    """Where the polynomial through n nodes may be largest between two times, and how large.
 
-
-@internal
-def passes(s, r, b, c, h):
-    """Whether the force of contact c has a maximum worth finding in the step of length h.
-
-    It lies below the point where the tangents at both ends meet.
+    Newton's form; the last term, which another node changed, counts as its error.  Uses node[2].
     """
-    o, rise, fall = s.wanted[s.contact[c]], r.slope[c], b.slope1[c]
-    if o < 0 or not (rise > 0.0 and fall < 0.0):
-        return False
-    start, end = r.peak[o, PEAK_V2], b.out[o]
-    meet = min(max((end - start - fall * h) / (rise - fall), 0.0), h)
-    return max(start + rise * meet, end) > NEAR * r.peak[o, PEAK_MAX]
+    times, slope = node[0], node[2]
+    for i in range(n):
+        slope[i] = node[1, i]
+    for j in range(1, n):
+        for i in range(n - 1, j - 1, -1):
+            slope[i] = (slope[i] - slope[i - 1]) / (times[i] - times[i - j])
+    place, best, low, high = start, -1e300, start, end
+    for _ in range(ROUNDS):
+        width = (high - low) / PARTS
+        for k in range(PARTS + 1):
+            x = low + k * width
+            value = polynomial(times, slope, n, x, DOUBT)
+            if value > best:
+                best, place = value, x
+        low, high = max(start, place - width), min(end, place + width)
+    if low < place < high:
+        # the vertex of the parabola through the last three
+        f0, f2 = (polynomial(times, slope, n, low, DOUBT), polynomial(times, slope, n, high, DOUBT))
+        left, right = (best - f0) / (place - low), (best - f2) / (high - place)
+        if left + right > 0.0:
+            x = place + 0.5 * (left * (high - place) - right * (place - low)) / (left + right)
+            value = polynomial(times, slope, n, x, DOUBT)
+            if value > best:
+                best, place = value, x
+    return place, best
 
 
 @internal
-def peaks_inside(s, r, b, interpolate, t, h, t1):
-    """Extremes of all channels inside the step, from its dense output.
-
-    The step is cut into parts, whose tops are refined by parabolas; and the maximum of every
-    contact force is found as the root of its rate.
-    """
-    reach = (t1 - t) / h
-    for c in range(s.contact.size):
-        if loaded(s, c) and passes(s, r, b, c, t1 - t):
-            top = summit(s, r, b, interpolate, t, h, reach, c)
-            values_inside(s, r, b, interpolate, t, h, top)
-            for o in range(s.n_out):
-                extreme(r.peak[o], t + top * h, s.out[o])
-    for k in range(1, INSIDE):
-        values_inside(s, r, b, interpolate, t, h, reach * k / INSIDE)
-        refine(s, r, s.out, t + reach * k / INSIDE * h)
-
-
-@internal
-def summit(s, r, b, interpolate, t, h, reach, c):
-    """Where the force of contact c is largest, as theta: the root of its rate."""
-    bracket = (0.0, r.slope[c], reach, b.slope1[c], 0.0)
-    enough = FLAT * (r.slope[c] - b.slope1[c])
-    for k in range(TRIALS):
-        middle = between(bracket, k)
-        values_inside(s, r, b, interpolate, t, h, middle)
-        rate = force_rate(s, b.y2, b.K[1], t + middle * h, AHEAD * h, c)
-        if abs(rate) < enough:
-            return middle
-        bracket = narrowed(bracket, middle, rate, False)
-    return between(bracket, 3)
-
-
-@internal
-def values_inside(s, r, b, interpolate, t, h, theta):
-    """All channels at t + theta h into s.out; the state in b.y2, its derivative in b.K[1]."""
-    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-    evaluate(s, t + theta * h, b.y2, b.K[1])
-    measure(s, t + theta * h, b.y2, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+def polynomial(times, slope, n, x, doubt):
+    """Its value at x in Newton's form, and on top that much of the size of its last term."""
+    value, term = slope[0], 1.0
+    for i in range(1, n):
+        term *= x - times[i - 1]
+        value += slope[i] * term
+    return value + doubt * abs(slope[n - 1] * term)

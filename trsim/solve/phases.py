@@ -8,7 +8,6 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import (
     BRANCH,
     CONTACT,
-    FLIGHT,
     IMPACT_SPEED,
     PHASE,
     SCENE,
@@ -23,7 +22,7 @@ from trsim.laws.functions import BY_SENSORS, BY_TIME
 from trsim.solve.corners import look
 from trsim.solve.events import NONE, SAME, flip, hertz_step
 from trsim.solve.features import keep
-from trsim.solve.peaks import extreme
+from trsim.solve.peaks import restart
 from trsim.solve.record import (
     BUFFERS,
     CORNERS,
@@ -48,7 +47,6 @@ from trsim.solve.record import (
     NOT_STIFF,
     ONSET,
     PAST_ERROR,
-    PEAK_T1,
     RECORD,
     SEPARATION,
     STIFF,
@@ -123,13 +121,8 @@ def change_phases(s, r, b, setting, t1):
     for c in range(s.contact.size):
         # inside its new branch, whatever rounding says
         r.corner[c] = min(s.corner[s.contact[c], 0], -TINY)
-    for k in range(s.n_out):
-        r.peak[k, PEAK_T1] = t1  # no parabola across an event
-    for c in range(s.contact.size):
-        if s.mem[s.contact[c], PHASE] == FLIGHT:
-            r.slope[c] = 0.0
-        elif b.root[c] <= first + SAME:
-            r.slope[c] = 1.0  # a touch: the force grows from here
+    measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+    restart(s, r, t1)
     if h < 1e300:
         r.clock[H] = min(r.clock[H], h)
     return touched
@@ -181,5 +174,4 @@ def settle(s, r, b, setting):
     r.count[STIFF], r.count[NOT_STIFF] = 0, 0
     r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
     measure(s, r.clock[T], r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-    for c in range(s.n_out):
-        extreme(r.peak[c], r.clock[T], s.out[c])  # the other side of a jump
+    restart(s, r, r.clock[T])

@@ -78,8 +78,10 @@ from trsim.elements.scene import Model
     DEGREE,  # of the polynomials in `net`
     LOOKED,  # steps when rounding was looked at last    rounding.py
     FAILED,  # and how many trials were rejected then
+    NEWEST,  # which of the last samples of the channels is the newest, and how many there are
+    SAMPLES,
     N_COUNT,
-) = range(33)
+) = range(35)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -110,6 +112,7 @@ LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
 JOLTS_KEPT = 8
+FOUND = 12  # places between two samples where extremes are looked for
 
 # columns of the event buffer
 (
@@ -139,9 +142,11 @@ class Record(Packed):
     corner: A1  # (n_contacts) how far each has left the branch of its law at y
     clock: A1
     count: I1
-    peak: A2  # (n_out, N_PEAK) extremes of every channel, and the last two values
+    peak: A2  # (n_c, N_PEAK) extremes of channels and magnitudes
+    sample: A2  # (POINTS, n_c) their last values
+    sampled: A1  # (POINTS) when those were taken
+    largest: A1  # (n_c) size of the channels of one unit, see `kin` of the scene
     impact: A1  # (n_contacts) largest penetration so far
-    slope: A1  # (n_contacts) rate of the first contact channel (the normal force) at y
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
     by_place: A2  # (n_w, n_v) w' against displacements
     by_rate: A2  # (n_w, n_w) w' against w
@@ -159,7 +164,8 @@ class Record(Packed):
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
 
 
-PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, PEAK_T1, PEAK_V1, PEAK_T2, PEAK_V2, N_PEAK = range(9)
+POINTS = 6  # samples of every channel that are kept: see peaks.py
+PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
 
 
 SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
@@ -186,7 +192,9 @@ class Buffers(Packed):
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts + n_w, 2)
     corner1: A1  # (n_contacts)
-    slope1: A1  # (n_contacts)
+    inside: A2  # (FOUND, n_c) channels where an extreme was looked for           peaks.py
+    found: A1  # (1 + FOUND) how often, and when
+    node: A2  # (5, POINTS) of polynomials: times, values, slopes; weights of rates
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
@@ -226,7 +234,9 @@ def fresh_buffers(
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts + watched, 2)),
         corner1=np.zeros(contacts),
-        slope1=np.zeros(contacts),
+        inside=np.zeros((FOUND, len(model.kin))),
+        found=np.zeros(1 + FOUND),
+        node=np.zeros((5, POINTS)),
         root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),

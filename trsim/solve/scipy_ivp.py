@@ -42,6 +42,7 @@ from trsim.solve.outcome import (
     settings,
     statistics,
 )
+from trsim.solve.peaks import sample
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
 from trsim.solve.works import ROUNDING
@@ -88,7 +89,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     called = (0, 0, interpolate.address(), complete.address())
     about = (locator(mechanism), meets(mechanism), looked_at(mechanism))
     found_by = (0, searcher(mechanism, setting), 0, NODES.size - 1, *cornered(mechanism))
-    method = np.array((*called, LAST, 1, 0, *about, *found_by), np.int64)
+    method = np.array((*called, LAST, 1, 0, *about, *found_by, sample.address()), np.int64)
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)

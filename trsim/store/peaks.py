@@ -1,7 +1,8 @@
 """The table of peaks: extremes of forces and motions, exact where the solver kept them.
 
-Extremes of scalars and components come from the solver, at its accepted steps.  Magnitudes of
-vectors that have no channel of their own come from the output rows.
+Extremes of scalars and components, and of the magnitudes of vectors that have no channel of their
+own, come from the solver, which finds those of the motion between its steps.  Where a run was
+recovered without them they are those of the output rows.
 """
 
 import math
@@ -57,12 +58,14 @@ def table(
 ) -> list[Peak]:
     """The peaks of a run, without their strokes; `extremes` is what the solver kept."""
     names = {i.name for i in mechanism.instances if i.section in SECTIONS}
-    peaks = []
+    peaks, width = [], mechanism.model.n_out
     for column in mechanism.columns:
         if column.name.split(".")[0] not in names or column.for_points:
             continue
         if column.name in magnitudes.row:
             value, time = magnitudes.of(column.name)
+            if extremes is not None:
+                value, time = extremes[width + magnitudes.row[column.name], :2].tolist()
             peaks.append(Peak(column.name, "magnitude", value, time, np.nan, column.unit))
         if extremes is None or column.size not in (1, 3):
             continue
@@ -103,4 +106,4 @@ def store(file: h5py.File, peaks: list[Peak]) -> None:
     group["time"].attrs["units"] = "s"
     if "stroke" in file:
         group["stroke"].attrs["units"] = file["stroke"].attrs["units"]
-    group.attrs["extremes"] = "at accepted steps, magnitudes at output rows"
+    group.attrs["extremes"] = "of the motion, between steps too"

@@ -1,0 +1,238 @@
+"""Extremes of channels are those of the motion: against closed forms, never below a row, the same
+with rows far apart and close together."""
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+from ..runs import run
+
+METHODS = {
+    "dop853": ("method: dop853", 1.0),
+    "radau": ("method: radau", 1.0),
+    "auto": ("method: auto", 1.0),
+    "rk4": ("method: rk4, step: 5 ms", 10.0),
+    "generalized_alpha": ("method: generalized_alpha", 100.0),
+    "scipy:RK45": ("method: scipy:RK45", 20.0),
+}
+
+
+def extremes(r, name, component=0):
+    """Largest value and its time, smallest value and its time."""
+    return r.outcome.peaks[r.place[name][0] + component]
+
+
+def magnitude(r, name):
+    """Largest magnitude of a vector and its time."""
+    vectors = r.mechanism.model.vector.tolist()
+    return r.outcome.peaks[r.mechanism.model.n_out + vectors.index(r.place[name][0]), :2]
+
+
+def check_rows(r):
+    """No row lies outside of the extremes."""
+    n = r.mechanism.model.n_out
+    rows, peaks = r.rows[:, 1:], r.outcome.peaks[:n]
+    assert np.all(rows.max(axis=0) <= peaks[:, 0])
+    assert np.all(rows.min(axis=0) >= peaks[:, 2])
+
+
+PENDULUM = """
+gravity: [0, -9.81, 0]
+bodies: {{rod: {{mass: 2, inertia: 0.05, at: [0.5, 0]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, rod], at: [0, 0]}}}}
+sensors: {{angle: {{joint: hinge}}}}
+solver: {{end: 7.3, {solver}, tolerance: {tolerance}}}
+output: {{every: {every}}}
+"""
+W2 = 2 * 2 * 9.81 * 0.5 / (0.05 + 2 * 0.25)  # square of the rate at the bottom
+PULL = 2 * 9.81 + 2 * 0.5 * W2  # reaction there
+
+
+@pytest.mark.parametrize("every", [10, 0.1, 0.01, 0.003])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-10])
+def test_pendulum(tolerance, every):
+    r = run(PENDULUM.format(solver="method: dop853", tolerance=tolerance, every=every))
+    allowed = max(tolerance, 1e-9)
+    value, time = extremes(r, "hinge.reaction", 1)[:2]
+    assert value == pytest.approx(PULL, rel=allowed)
+    (n,) = np.round((time / quarter() - 1.0) / 2.0)[None]
+    assert time == pytest.approx((1 + 2 * n) * quarter(), rel=10 * sqrt(allowed))
+    assert magnitude(r, "hinge.reaction")[0] == pytest.approx(PULL, rel=allowed)
+    assert extremes(r, "angle")[2] == pytest.approx(-pi, rel=allowed)
+    assert extremes(r, "angle.rate")[[0, 2]] == pytest.approx([sqrt(W2), -sqrt(W2)], rel=allowed)
+    check_rows(r)
+
+
+def quarter():
+    """A quarter of the period of the pendulum let go at 90 deg, s."""
+    from scipy.special import ellipk
+
+    return ellipk(0.5) / sqrt(2 * 9.81 * 0.5 / (0.05 + 2 * 0.25))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_pendulum_by_every_method(method):
+    solver, rough = METHODS[method]
+    for every in (10, 0.01):
+        r = run(PENDULUM.format(solver=solver, tolerance=1e-6, every=every))
+        assert extremes(r, "hinge.reaction", 1)[0] == pytest.approx(PULL, rel=rough * 1e-6)
+        check_rows(r)
+
+
+CRANK = """
+gravity: [0, -9.81, 0]
+bodies:
+  crank: {{mass: 1, inertia: 0.02, at: [0.1, 0]}}
+  rod: {{mass: 2, inertia: 0.1, at: [0.5, 0.0]}}
+  slider: {{mass: 3, inertia: 1, at: [0.8, 0]}}
+joints:
+  bearing: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  pin: {{type: revolute, bodies: [crank, rod], at: [0.2, 0]}}
+  end: {{type: revolute, bodies: [rod, slider], at: [0.8, 0]}}
+  guide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0], at: [0.8, 0]}}
+drives: {{motor: {{joint: bearing, velocity: {speed}}}}}
+sensors: {{x: {{joint: guide}}}}
+solver: {{end: {end}, tolerance: {tolerance}, method: {method}}}
+output: {{every: {every}}}
+"""
+
+
+def torque(theta, w):
+    """Of the motor: the rate of energy at constant speed, by derivatives in the angle."""
+    r, L = 0.2, 0.6
+    s, c = np.sin(theta), np.cos(theta)
+    phi = np.arcsin(r * s / L)
+    p1 = r * c / (L * np.cos(phi))  # phi'
+    p2 = (-r * s + L * np.sin(phi) * p1**2) / (L * np.cos(phi))
+    x2, y2 = -r * s - 0.3 * np.sin(phi) * p1, r * c - 0.3 * np.cos(phi) * p1
+    x22 = -r * c - 0.3 * (np.cos(phi) * p1**2 + np.sin(phi) * p2)
+    y22 = -r * s - 0.3 * (-np.sin(phi) * p1**2 + np.cos(phi) * p2)
+    x3 = -r * s - L * np.sin(phi) * p1
+    x33 = -r * c - L * (np.cos(phi) * p1**2 + np.sin(phi) * p2)
+    inertial = 0.1 * p1 * p2 + 2 * (x2 * x22 + y2 * y22) + 3 * x3 * x33
+    return inertial * w**2 + 9.81 * (1 * 0.1 * c + 2 * y2)
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("speed", [3.0, 30.0, 300.0])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-7])
+def test_torque_of_a_driven_crank(tolerance, speed, method):
+    """At 1e-3 a step may be a quarter of a turn."""
+    angles = np.linspace(0, 6 * pi, 2_000_001)
+    M = torque(angles, speed)
+    end = 6 * pi / speed
+    for rows in (1.0, 1e-3):
+        text = CRANK.format(speed=speed, end=end, tolerance=tolerance, method=method,
+                            every=rows * end)  # fmt: skip
+        r = run(text)
+        high, _, low, _ = extremes(r, "motor.force")
+        allowed = 3.0 * tolerance * (M.max() - M.min())
+        assert (high, low) == pytest.approx((M.max(), M.min()), abs=allowed)
+        # the slider turns back where the crank lies on its line
+        assert extremes(r, "x")[[0, 2]] == pytest.approx([0, -0.4], abs=3.0 * tolerance)
+        check_rows(r)
+
+
+ROTOR = """
+bodies: {rotor: {mass: 5, inertia: [0.1, 0.2, 0.3], at: [0.3, 0, 0]}}
+joints: {hinge: {type: revolute, bodies: [ground, rotor], at: [0, 0, 0], axis: [1, 2, 2]}}
+drives: {motor: {joint: hinge, velocity: 20}}
+solver: {end: 3, tolerance: TOLERANCE}
+output: {every: 3}
+"""
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_reactions_of_a_rotor_in_space(tolerance):
+    """m rho w^2 in a plane across the axis: sqrt(1 - a_k^2) of it along each of the axes."""
+    r = run(ROTOR.replace("TOLERANCE", str(tolerance)))
+    a = np.array([1, 2, 2]) / 3
+    radius = np.linalg.norm(np.cross(a, [0.3, 0, 0]))
+    force = 5 * radius * 400
+    allowed = max(3 * tolerance, 1e-9)
+    for k in range(3):
+        part = sqrt(1 - a[k] ** 2) * force
+        high, _, low, _ = extremes(r, "hinge.reaction", k)
+        assert (high, -low) == pytest.approx((part, part), rel=allowed)
+    assert magnitude(r, "hinge.reaction")[0] == pytest.approx(force, rel=allowed)
+
+
+STOP = """
+bodies: {{block: {{mass: 2, inertia: 1, velocity: [{speed}, 0]}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}}}
+forces:
+  wall: {{type: limit_stop, joint: slide, upper: 0.1, stiffness: 4e5}}
+  back: {{type: limit_stop, joint: slide, lower: -0.1, stiffness: 4e5}}
+solver: {{end: 1, tolerance: {tolerance}, method: {method}}}
+output: {{every: {every}}}
+"""
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "auto"])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_force_of_a_contact(tolerance, method):
+    """v sqrt(k m), reached between two rows and between two steps."""
+    for every in (1, 0.01):
+        r = run(STOP.format(speed=1.7, tolerance=tolerance, method=method, every=every))
+        value, _, low, _ = extremes(r, "wall.force")
+        largest = max(abs(value), abs(low))
+        assert largest == pytest.approx(1.7 * sqrt(4e5 * 2), rel=max(10 * tolerance, 1e-8))
+        check_rows(r)
+
+
+def test_both_sides_of_a_jump():
+    text = """
+bodies: {block: {mass: 2, inertia: [1, 1, 1]}}
+joints: {slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}
+drives: {pull: {joint: slide, position: "0.1*t**2*(t < 0.5) + (0.1*t - 0.025)*(t >= 0.5)"}}
+forces:
+  load: {type: applied_load, body: block, direction: [1, 0, 0],
+         force: "100*t*(t < 0.7) - 30*(t >= 0.7)"}
+solver: {end: 1}
+output: {every: 0.3}
+"""
+    r = run(text)
+    high, when, low, then = extremes(r, "load.magnitude")
+    assert (high, when, low, then) == pytest.approx((70, 0.7, -30, 0.7))
+    # of the drive: 0.4 - 100 t, then -100 t, then 30
+    high, when, low, then = extremes(r, "pull.force")
+    assert (high, when, low, then) == pytest.approx((30, 0.7, -70, 0.7))
+
+
+SPRING = """
+bodies: {{block: {{mass: 2, inertia: [1, 1, 1], at: [1.3, 0, 0]}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}}}
+sensors: {{x: {{joint: slide}}}}
+forces:
+  spring: {{type: spring_damper, bodies: [ground, block], points: [[0, 0, 0], [1.3, 0, 0]],
+           stiffness: 5000, free_length: 1, damping: {damping}}}
+solver: {{end: 3, tolerance: {tolerance}, method: {method}}}
+output: {{every: {every}}}
+"""
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("damping", [0.0, 3.0])
+def test_rates_of_an_oscillator(damping, method):
+    for every in (3, 0.01):
+        r = run(SPRING.format(damping=damping, tolerance=1e-8, method=method, every=every))
+        w0, d = sqrt(5000 / 2), damping / 4
+        w = sqrt(w0**2 - d**2)
+        # x = 0.3 e^-dt (cos wt + d/w sin wt) - 0.3,  x' = -0.3 w0^2/w e^-dt sin wt
+        t1 = np.arctan2(w, d) / w
+        rate = -0.3 * w0**2 / w * np.exp(-d * t1) * np.sin(w * t1)
+        low, when = extremes(r, "x.rate")[[2, 3]]
+        assert low == pytest.approx(rate, rel=1e-7)
+        if damping:  # the first is the largest; flat there, so of the time half the digits
+            assert when == pytest.approx(t1, abs=1e-4 / w)
+        turn = -0.3 - 0.3 * np.exp(-d * pi / w)
+        assert extremes(r, "x")[2] == pytest.approx(turn, rel=1e-7)
+        check_rows(r)
+
+
+def test_rows_at_the_ends_of_fixed_steps():
+    """An output time that rounding puts beside the end of a step is the end of the step."""
+    r = run(PENDULUM.format(solver="method: rk4, step: 10 ms", tolerance=1e-6, every=0.01))
+    energy = r["energy.kinetic"] + r["energy.stored.gravity"]
+    assert np.abs(energy - energy[0]).max() < 1e-5
