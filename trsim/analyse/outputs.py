@@ -4,7 +4,7 @@ This is the one place that turns words into numbers: tables, sweeps, bifurcation
 all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of the run counts
 (window.py).
 
-    peak, least          largest and smallest value: at accepted steps for the whole run; in a
+    peak, least          largest and smallest value: of the motion for the whole run; in a
                          window of rows, of the steps of a contact, and of the extremes of the run
                          that lie in it
     range                peak - least

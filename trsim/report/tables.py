@@ -135,7 +135,7 @@ def picture(runs: list[Shown], loads: list[Load]) -> Any:
     figure, axes = panels(1, height=0.22 * (len(cells) + 1) + 0.4, width=width)
     a = axes[0, 0]
     a.axis("off")
-    a.set_title("reactions and moments at output rows, all others at accepted steps", fontsize=8)
+    a.set_title("of the motion, between steps and rows too", fontsize=8)
     widths = [max(longest(row[k]) for row in [head, *cells]) + 3 for k in range(len(head))]
     table = a.table(cells, colLabels=head, loc="center", cellLoc="left", edges="horizontal",
                     colWidths=[w / sum(widths) for w in widths])  # fmt: skip

@@ -86,8 +86,7 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
             if bend <= enough:
                 continue
             if known >= SLOPES - 1:
-                turn = turns(r, b, now, c)
-                high, low = high and turn > 0, low and (turn < 0 or turn == 2)
+                high, low = turns(r, b, now, c, p[PEAK_MAX] + enough, p[PEAK_MIN] - enough)
             if high:
                 built = search(
                     s, r, b, enough, method, t, h, at, now, c, 1.0, projected, built
@@ -151,25 +150,31 @@ def rates(r, b, at):
 
 
 @internal
-def turns(r, b, now, c):
-    """How channel c may turn between the newest sample and the present: 1 to a maximum, -1 to a
-    minimum, 0 not at all, 2 if nobody knows."""
+def turns(r, b, now, c, most, least):
+    """Whether channel c may rise beyond `most` and turn, and whether it may fall below `least`,
+    between the newest sample and the present: a parabola, with the cubic term for its doubt."""
     head = r.count[NEWEST]
     v0, v1 = now[c], r.sample[head, c]
     v2 = r.sample[(head + POINTS - 1) % POINTS, c]
     v3 = r.sample[(head + POINTS - 2) % POINTS, c]
     h, old = b.node[4, 2], b.node[4, 3]
     third = b.node[3, 0] * v0 + b.node[3, 1] * v1 + b.node[3, 2] * v2 + b.node[3, 3] * v3
-    rise, before = (v0 - v1) / h, (v1 - v2) / old
-    second = (rise - before) / (h + old)
+    rise = (v0 - v1) / h
+    second = (rise - (v1 - v2) / old) / (h + old)
     end, start = rise + second * h, rise - second * h
     off_end, off_start = abs(third * b.node[4, 0]), abs(third * b.node[4, 1])
-    up, down = start + off_start > 0.0, start - off_start < 0.0
-    rising, falling = end + off_end > 0.0, end - off_end < 0.0
-    most, least = up and falling, down and rising
-    if most and least:
-        return 2
-    return 1 if most else (-1 if least else 0)
+    up, down = start + off_start, off_end - end
+    above = up > 0.0 and down > 0.0 and max(v0, v1) + arch(up, down, h) > most
+    up, down = off_start - start, end + off_end
+    below = up > 0.0 and down > 0.0 and min(v0, v1) - arch(up, down, h) < least
+    return above, below
+
+
+@internal
+def arch(up, down, h):
+    """How far a curve that starts with one slope and ends with the other rises above the higher of
+    its ends: at most what the tangents allow."""
+    return h * up * down / (up + down)
 
 
 @internal
