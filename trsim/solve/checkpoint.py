@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.elements.scene import Scene
+from trsim.errors import FileError
 from trsim.solve.record import Record, copy, restore
 from trsim.solve.start import Start
 
+UNFIT, ANEW = "the checkpoint does not fit this run", "Without --resume the run starts anew."
 State = dict[str, NDArray[Any]]
 
 
@@ -34,12 +36,25 @@ def state(r: Record, work: Scene, begun: Start, cpu: float) -> State:
 
 def begun_at(checkpoint: State) -> Start:
     """The start of the run that a checkpoint was taken of."""
-    found: dict[str, Any] = {f.name: checkpoint[f"start.{f.name}"] for f in fields(Start)}
+    found: dict[str, Any] = {f.name: checkpoint.get(f"start.{f.name}") for f in fields(Start)}
+    for f in fields(Start):
+        array, wanted = found[f.name], 0 if f.type in (float, "float") else None
+        if array is None or array.dtype.kind not in "fi" or wanted not in (None, array.ndim):
+            raise FileError(f"{UNFIT}: start.{f.name}", ANEW)
     return Start(**{name: a if a.ndim else a.item() for name, a in found.items()})
 
 
 def put_back(checkpoint: State, r: Record, work: Scene) -> float:
-    """Bring the record and the counters to a checkpoint; the cpu time spent until then, s."""
+    """Bring the record and the counters to a checkpoint; the cpu time spent until then, s.
+
+    Raises FileError, as begun_at does, where it is not one of this mechanism.
+    """
+    wanted = {f"record.{name}": array for name, array in r.arrays().items()}
+    wanted |= {"scene.status": work.status, "cpu": np.array(0.0)}
+    for name, array in wanted.items():
+        other = checkpoint.get(name)
+        if other is None or (other.shape, other.dtype) != (array.shape, array.dtype):
+            raise FileError(f"{UNFIT}: {name}", ANEW)
     restore(r, {name: checkpoint[f"record.{name}"] for name in r.arrays()})
     work.status[:] = checkpoint["scene.status"]
     return float(checkpoint["cpu"])

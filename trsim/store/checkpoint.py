@@ -16,7 +16,9 @@ import json
 import os
 import platform
 import shlex
-from collections.abc import Iterator
+import zipfile
+import zlib
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -37,6 +39,8 @@ ENDING = ".checkpoint"
 ANEW = "Without --resume the run starts anew."
 SHOWN = 5  # differences in a message
 OUTSIDE = {"cli", "report", "analyse", "sweep"}  # packages that have no part in a run
+DAMAGED = (ValueError, LookupError, TypeError, AttributeError, EOFError, OSError, MemoryError,
+           RuntimeError, NotImplementedError, zipfile.BadZipFile, zlib.error)  # fmt: skip
 Arrays = dict[str, NDArray[Any]]
 
 
@@ -175,6 +179,17 @@ def load(path: Path) -> Checkpoint:
         raise FileError(f"{path} is not a checkpoint of this trsim", ANEW)
     if first.decode(errors="replace").split()[-1] != hashlib.sha256(body).hexdigest():
         raise FileError(f"{path} is damaged: its checksum is wrong", ANEW)
+    try:
+        kept = _parsed(body)
+    except DAMAGED as error:
+        what = f"{path} is damaged: {type(error).__name__} while it was read"
+        raise FileError(what, ANEW, file=str(path)) from None
+    if wrong := _wrong(kept):
+        raise FileError(f"{path} is damaged: its {wrong}", ANEW, file=str(path))
+    return kept
+
+
+def _parsed(body: bytes) -> Checkpoint:
     parts: dict[str, Any] = {"state": {}, "extremes": {}, "tail": {}}
     with np.load(io.BytesIO(body), allow_pickle=False) as archive:
         about = json.loads(archive["about"].item())
@@ -183,3 +198,31 @@ def load(path: Path) -> Checkpoint:
             if inner:
                 parts[part][inner] = archive[name]
     return Checkpoint(**about, **parts)
+
+
+def _wrong(kept: Checkpoint) -> str:
+    """What in a checkpoint is not of its kind."""
+    if isinstance(kept.time, bool) or not isinstance(kept.time, int | float):
+        return "time is no number"
+    if not isinstance(kept.keys, dict):
+        return "keys are no mapping"
+    counts = kept.rows.values() if isinstance(kept.rows, dict) else [None]
+    if not all(isinstance(n, int) and not isinstance(n, bool) and n >= 0 for n in counts):
+        return "rows are no counts"
+    if not isinstance(kept.resumed, list) or not all(isinstance(t, str) for t in kept.resumed):
+        return "times of resuming are no texts"
+    return ""
+
+
+def see_like(path: Path, arrays: Arrays, wanted: Mapping[str, NDArray[Any]], rows: bool) -> None:
+    """See that arrays of a checkpoint are those that are wanted.
+
+    rows: their length may be another.  Raises FileError.
+    """
+    for name, like in wanted.items():
+        found = arrays.get(name)
+        if found is None or (found.dtype.kind, found.ndim, found.shape[rows:]) != (
+            like.dtype.kind, like.ndim, like.shape[rows:],
+        ):  # fmt: skip
+            what = f"{path} does not fit this run: {name} is not as it should be"
+            raise FileError(what, ANEW, file=str(path))

@@ -177,6 +177,7 @@ class Running:
         """Be where a run was at a checkpoint, with a fresh part file in place of the old one."""
         if kept is None:
             return
+        checkpoints.see_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
         with self.told():
             file = self.begun(self.fresh, kept)
             file.flush()
@@ -184,8 +185,8 @@ class Running:
             os.replace(self.fresh, self.part)
             synced(self.part.parent)
         self.file = file
-        for name, array in kept.extremes.items():
-            self.extremes[name][:] = array
+        for name, array in self.extremes.items():
+            array[:] = kept.extremes[name]
         self.time = self.kept = kept.time
         self.resumed = [*kept.resumed, f"t = {kept.time:g} s on {describe.stamp(time.time())}"]
 

@@ -20,7 +20,8 @@ import numpy as np
 
 from trsim import child
 from trsim.errors import FileError
-from trsim.store.checkpoint import ANEW, Checkpoint
+from trsim.store.checkpoint import ANEW, Checkpoint, see_like
+from trsim.store.checkpoint import beside as checkpoint_of
 from trsim.store.describe import cause
 from trsim.store.disk import end_with_parent
 from trsim.store.grow import Growing
@@ -37,6 +38,7 @@ def refill(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
     """
     if not part.is_file():
         raise FileError(f"{part}: no such file, although its checkpoint is there", ANEW)
+    see_there(part, tables, kept)
     wanted = [(d.name, t.full(kept.rows[t.name])) for t in tables for d in t.datasets]
     with sender(part, wanted) as rows:
         for table in tables:
@@ -47,6 +49,23 @@ def refill(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
                     dataset[k : min(k + ROWS, full)] = _taken(rows, dataset, min(ROWS, full - k))
                 dataset[full:] = kept.tail[dataset.name]
             table.n = n
+
+
+def see_there(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
+    """See that a checkpoint tells of all tables, and has the rows of their last chunks."""
+    like = {d.name: np.empty((0, *d.shape[1:]), d.dtype) for t in tables for d in t.datasets}
+    if {t.name for t in tables} != {*kept.rows}:
+        raise FileError(f"{beside(part)} does not fit this run: other tables", ANEW)
+    see_like(beside(part), kept.tail, like, rows=True)
+    for table in tables:
+        n = kept.rows[table.name] - table.full(kept.rows[table.name])
+        if any(len(kept.tail[dataset.name]) != n for dataset in table.datasets):
+            raise FileError(f"{beside(part)} does not fit this run: rows of {table.name}", ANEW)
+
+
+def beside(part: Path) -> Path:
+    """The checkpoint of a part file."""
+    return checkpoint_of(part.with_name(part.name.removesuffix(".new").removesuffix(".part")))
 
 
 def _taken(rows: BinaryIO, like: h5py.Dataset, n: int) -> Any:
