@@ -2,6 +2,8 @@
 
 from typing import Any
 
+STRAIGHT = 1e-9  # of the length: an error that is rounding
+
 
 def bar_lines(found: dict[str, Any]) -> list[str]:
     """What each flexible bar gives way, and how it moves."""
@@ -22,8 +24,23 @@ def bar_lines(found: dict[str, Any]) -> list[str]:
             f"reaches at most {bar['highest']:.3g} Hz: explicit steps below "
             f"{bar['explicit_step']:.1e} s",
             f"              a wave along it takes {bar['wave']:.1e} s" + rows_line(found, bar),
+            mesh_line(bar),
         ]
     return told
+
+
+def mesh_line(bar: dict[str, Any]) -> str:
+    """What its mesh makes wrong at the start, or who tells it."""
+    mesh, lead = bar["mesh"], "              its mesh: "
+    if mesh is None:
+        return lead + "no estimate of its error (`stretching: full`, or more than 100 elements)"
+    if mesh["relative"] < STRAIGHT:
+        return lead + "no error at the start, where nothing bends it; a run tells its own"
+    return lead + (
+        f"wrong by about {mesh['error']:.1e} m at the start, {mesh['relative']:.1e} of the length "
+        f"(estimated by halving the elements); {mesh['wanted']} elements would make it 1e-4; a "
+        "run tells its own"
+    )
 
 
 def rows_line(found: dict[str, Any], bar: dict[str, Any]) -> str:

@@ -126,6 +126,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
     from trsim.solve import doubts
     from trsim.solve.bar_scales import bar_scales
+    from trsim.solve.mesh_error import mesh_errors
     from trsim.solve.modes import modes
     from trsim.solve.projected import projected
     from trsim.solve.scales import scales
@@ -140,6 +141,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     of_start = scales(scenario, mechanism, at)
     check_step(scenario, of_start)
     found = asdict(of_start)
+    meshes = {mesh.name: mesh._asdict() for mesh in mesh_errors(scenario, mechanism, at.y)}
     found["eigenvalues"] = [[x.real, x.imag] for x in found["eigenvalues"]]
     return {
         "start": {
@@ -154,7 +156,10 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
         },
         "doubts": list(doubts.of_start(scenario, mechanism, at)),
         "scales": {**found, "end": end},
-        "flexible": [asdict(bar) for bar in bar_scales(scenario, mechanism, of_start.contacts)],
+        "flexible": [
+            {**asdict(bar), "mesh": meshes.get(bar.name)}
+            for bar in bar_scales(scenario, mechanism, of_start.contacts)
+        ],
         "every": scenario.output.every or (end / 1000.0 if end is not None else None),
         **({"modes": [asdict(mode) for mode in modes(mechanism, at)]} if shapes else {}),
     }

@@ -4,6 +4,7 @@ start      a position or a velocity is not the one that was given
 contacts   pressed in by more than their law is made for: a half width of the contact of half the
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                          solve/strained.py
+meshes     of bars bent further than their elements follow                   solve/mesh_error.py
 waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
 energy     the book of the run does not close
@@ -23,6 +24,7 @@ from trsim.elements.contract import STORED
 from trsim.elements.scene import PROJECTION
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
+from trsim.solve.mesh_error import of_meshes
 from trsim.solve.openings import apart
 from trsim.solve.outcome import Outcome, whose
 from trsim.solve.projected import given_velocities, projected
@@ -55,6 +57,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_bars(scenario, mechanism, outcome.peaks),
+        *of_meshes(scenario, mechanism, outcome.bent),
         *of_waves(mechanism, outcome),
         *of_rounding(scenario, mechanism, outcome),
         *of_books(mechanism, outcome),

@@ -46,6 +46,7 @@ class Outcome(NamedTuple):
     record: Record | None
     start: Start
     fired: Mapping[str, int] = {}  # user event -> how often it happened
+    bent: Mapping[str, tuple[float, Array]] = {}  # bar -> time and y where it was bent most
 
 
 CRAWLS = (

@@ -24,6 +24,7 @@ from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
 from trsim.solve.features import next_time
 from trsim.solve.march import begin
+from trsim.solve.mesh_error import Bends
 from trsim.solve.norm import weigh
 from trsim.solve.openings import looked_at, opened
 from trsim.solve.outcome import (
@@ -139,7 +140,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     if status == "failed":
         known = r.count[rec.OPENED] or r.count[rec.TORN]
         reason = reason if known else why(scenario, mechanism, r) or reason
-    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun)
+    bends = Bends(mechanism)
+    bends.look(float(r.clock[rec.T]), r.y)
+    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun,
+                   bent=bends.states)  # fmt: skip
 
 
 def stopped(solver: Any) -> str:

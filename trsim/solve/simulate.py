@@ -18,6 +18,7 @@ from trsim.solve.calls import METHOD_WIDTH
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.features import put_back as put_back_held
 from trsim.solve.march import begin, march, method_table
+from trsim.solve.mesh_error import Bends
 from trsim.solve.openings import looked_at, opened
 from trsim.solve.outcome import (
     CRAWLS,
@@ -164,6 +165,8 @@ def compiled(
     limit = scenario.solver.max_steps or 2**62
     visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v))
     visit = min(visit, BARS) if mechanism.beams else visit
+    bends = Bends(mechanism)
+    bends.look(float(r.clock[rec.T]), r.y)
     ended = None  # by a user event
     while True:
         most = min(visit, limit - int(r.count[rec.STEPS]))
@@ -174,6 +177,7 @@ def compiled(
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
                 b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
+        bends.look(float(r.clock[rec.T]), r.y)
         if reason in GO_ON and ended is None and mechanism.beams:
             text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
             ended = ("failed", text) if text else None
@@ -192,7 +196,7 @@ def compiled(
     times = zip(switches.events, r.watch[:, rec.TIMES].astype(int).tolist(), strict=True)
     fired = {event.name: n for event, n in times if event.kind != "limit"}
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
-                   r.peak[:, :4].copy(), r, begun, fired)  # fmt: skip
+                   r.peak[:, :4].copy(), r, begun, fired, bends.states)  # fmt: skip
 
 
 def ending(

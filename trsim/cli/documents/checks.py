@@ -134,6 +134,23 @@ class Scales(TypedDict):
     end: Number
 
 
+class Mesh(TypedDict):
+    """What the mesh of a flexible bar makes wrong of its shape at the start: an estimate.
+
+    name      of the body
+    elements  how many
+    error     of the node that is farthest off, m
+    relative  of the length
+    wanted    elements for a relative error of 1e-4
+    """
+
+    name: str
+    elements: int
+    error: Number
+    relative: Number
+    wanted: int
+
+
 class Bar(TypedDict):
     """What a flexible bar gives way, and its slowest and fastest motion.
 
@@ -150,6 +167,7 @@ class Bar(TypedDict):
     explicit_step   largest step of rk4 that is stable for it, s
     contact_shares  joint with clearance -> its compliance at the load of the start, as a part of
                     that of contact and bar in line
+    mesh            what it makes wrong at the start; null: not estimated
     """
 
     name: str
@@ -164,6 +182,7 @@ class Bar(TypedDict):
     highest: Number
     explicit_step: Number
     contact_shares: dict[str, Number]
+    mesh: Mesh | None
 
 
 class Moved(TypedDict):
