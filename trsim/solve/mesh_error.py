@@ -11,7 +11,9 @@ bar is held as its joints to the ground hold it, or its first joint; what is fre
 a rigid body keeps its mean place and direction (inertia relief).  Forces and inertia forces stay
 as they are, moments turn with their node.  Nodes in between are eliminated.
 
-It is an estimate of the shape at a time, not of what errors do to a motion as they add up.
+Loads within elements are not seen, only what they do to nodes: errors below AIM may be several
+times larger or smaller then.  It is an estimate of the shape at a time, not of what errors do to
+a motion as they add up.
 """
 
 from collections.abc import Iterator, Mapping
