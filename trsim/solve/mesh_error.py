@@ -39,6 +39,7 @@ ORDER = 4
 OF_TWICE = 1.0 / (1.0 - 2.0**-ORDER)  # of a mesh twice as fine to an exact one
 AIM = 1e-4  # of the length
 TOLD = 3.0 * AIM  # more than the aim even where the estimate is 3 times too large
+STRAIGHT = 1e-3  # rad, between the ends of an element: a bar that is bent less is not looked at
 MOST = 100  # elements; more are not looked at
 HALVES = [  # polynomials of n over an element as those over its halves
     [[1.0, 0.0, 0.0], [side * 0.25, 0.5, 0.0], [0.0625, side * 0.25, 0.25]] for side in (-1, 1)
@@ -60,7 +61,7 @@ class Bends:
 
     def __init__(self, mechanism: Mechanism) -> None:
         self.mechanism = mechanism
-        self.most = dict.fromkeys(mechanism.beams, -1.0)
+        self.most = dict.fromkeys(mechanism.beams, STRAIGHT**5)
         self.states: dict[str, State] = {}
 
     def look(self, t: float, y: Array) -> None:
