@@ -71,7 +71,8 @@ class Bends:
         """
         for name, beam in self.mechanism.beams.items():
             g = places(self.mechanism, beam, y)[1]
-            bend = float(np.sum(np.sum(np.square(np.diff(g, axis=0)), axis=1) ** 2.5))
+            along = g / np.linalg.norm(g, axis=1)[:, None]
+            bend = float(np.sum(np.sum(np.square(np.diff(along, axis=0)), axis=1) ** 2.5))
             if bend > self.most[name]:
                 self.most[name], self.states[name] = bend, (t, y.copy())
 
