@@ -62,6 +62,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_rounding(scenario, mechanism, outcome),
         *of_books(mechanism, outcome),
         *of_rows(mechanism, outcome),
+        *of_events(outcome),
     )
 
 
@@ -217,6 +218,15 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
         yield (
             f"joints were open by up to {apart:.2g} of the mechanism's size; "
             "`stabilisation: projection` closes them"
+        )
+
+
+def of_events(outcome: Outcome) -> Iterator[str]:
+    """Steps in which a touch or an event could not be excluded."""
+    if n := outcome.statistics.get("unproved_searches", 0):
+        yield (
+            f"solver.max_step: in {n:.0f} steps a touch or an event may have been passed over, "
+            "because a gap stays next to zero all along; take a shorter `max_step`"
         )
 
 

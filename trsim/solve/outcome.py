@@ -292,6 +292,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "factorisations": int(work.status[2]),
         "dense_outputs": int(r.count[rec.DENSE_BUILT]),
         "events": int(r.count[rec.EVENTS]),
+        "unproved_searches": int(r.count[rec.UNPROVED]),
         "corners": int(r.count[rec.CORNERS]),
         "method_switches": int(r.count[rec.SWITCHES]),
         "jacobians": int(r.count[rec.JACOBIANS]),

@@ -74,7 +74,7 @@ from trsim.elements.scene import Model
     OPEN_INDEX,
     JOLTS,  # jumps of the rate of a rigid drive
     TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
-    UNPROVED,  # parts of steps in which the search for events gave up
+    UNPROVED,  # searches for an event in a step that gave up
     DEGREE,  # of the polynomials in `net`
     LOOKED,  # steps when rounding was looked at last    rounding.py
     FAILED,  # and how many trials were rejected then

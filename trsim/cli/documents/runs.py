@@ -35,6 +35,7 @@ class Statistics(TypedDict, total=False):
     factorisations            of the constraint matrix
     dense_outputs             interpolants made
     events                    onsets and separations located
+    unproved_searches         searches for an event in a step that gave up; 0 where all is proved
     corners                   of friction laws, passed
     method_switches           between the explicit and the implicit method
     jacobians                 made by the implicit method
@@ -62,6 +63,7 @@ class Statistics(TypedDict, total=False):
     factorisations: int
     dense_outputs: int
     events: int
+    unproved_searches: int
     corners: int
     method_switches: int
     jacobians: int
