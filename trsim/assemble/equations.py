@@ -47,14 +47,13 @@ def derivative(s, t, y, yd):
         if contradictory(s, s.x) and masses_too_unequal(s):
             s.status[3] += 1
             s.x[0] = nan
+        power = 0.0
         for k in range(s.m):  # what follows in x is the motion of hubs
             s.lam[k] = s.x[k]
-        if s.status[0] == POOR and s.unequal > 0 and s.n_r == s.n:
-            once_more(s)
-        power = 0.0
-        for k in range(s.m):
             # a moving constraint is a drive: the power it gives to the mechanism
             power += s.lam[k] * s.phi_t[k]
+        if s.status[0] == POOR and s.unequal > 0 and s.n_r == s.n:
+            power += once_more(s)
         s.zd[DRIVES] += power
     accelerations(s, y, yd)
 
@@ -214,14 +213,18 @@ def once_more(s):
     """Take what x does off the accelerations, and solve for what is left of the rows.
 
     Where inertias are very unequal x has too few digits for the small ones: its last bit turns them
-    by much.  What is left has digits of its own.  x is then that alone, lam all of it.
+    by much.  What is left has digits of its own.  x is then that alone, lam all of it.  Returns the
+    power of the change.
     """
     for f in range(1, s.n_r):
         pull(s, f, s.x)
     right_hand_side(s)
     solve(s, s.x)
+    power = 0.0
     for k in range(s.m):
         s.lam[k] += s.x[k]
+        power += s.x[k] * s.phi_t[k]
+    return power
 
 
 @equation

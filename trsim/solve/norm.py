@@ -24,14 +24,20 @@ def weights(s, r, b, setting):
     Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
     the origin; rotations by that length over the body's arm; velocities by the matching speed.
     """
+    length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
     for c in range(b.weight.size):
-        b.weight[c] = weight_of(s, r, setting[TOLERANCE], c)
+        b.weight[c] = weighed(s, length, speed, tolerance, c)
 
 
 @internal
 def weight_of(s, r, tolerance, c):
     """The same of one entry."""
-    length, speed = r.clock[LENGTH], r.clock[SPEED]
+    return weighed(s, r.clock[LENGTH], r.clock[SPEED], tolerance, c)
+
+
+@internal
+def weighed(s, length, speed, tolerance, c):
+    """The same, with these units."""
     kind, scale = s.scale_kind[c], s.scale[c]
     if kind == LENGTH_SCALE:
         return 1.0 / (tolerance * length)

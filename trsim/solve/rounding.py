@@ -15,8 +15,8 @@ certificate keeps above it.
 Where Newton's method fails because its increments do not fall below it, there is no end to look
 at; radau.py then takes the rounding of the derivative through its matrix.
 
-Steps that do not fail cost nothing: of those that do one is looked at in APART steps, where two
-fail in a row or a quarter of all, and where steps stay short: after a touch they grow again.
+Steps that do not fail cost nothing: of those that do one is looked at in APART steps, where many
+fail, and where steps stay short: after a touch they grow again.
 """
 
 from trsim.assemble.equations import evaluate
@@ -50,7 +50,7 @@ APART = 32  # steps between two looks
 MARGIN = 4.0  # between the difference of two steps and what others may be
 FADES = 0.5  # of what was seen, every APART steps
 STUCK = 5.0  # times a step that fails: none before it was longer, where rounding is to blame
-MANY = 4  # steps to a failure: of sound ones fewer fail
+MANY, MOST = 6, 3  # steps to a failure, of one step the second and the first: of sound ones fewer
 PART = 0.1  # of the tolerance: below, rounding does not show in the error of a step
 
 #                         scene  record  buffers  setting step h
@@ -91,11 +91,11 @@ def beside(s, r, setting, y, moved, sign):
 
 @internal
 def to_look(r, h):
-    """Whether a trial that failed is to be looked at: the second of its step, or one of many, where
-    steps have been short for a while."""
-    steps = r.count[STEPS] - r.count[LOOKED]
-    many = MANY * (r.count[REJECTED] - r.count[FAILED]) >= steps
-    if steps < APART or not (many or r.count[AFTER_REJECTION] == 1):
+    """Whether a trial that failed is to be looked at: one of many, where steps have been short for
+    a while."""
+    steps, failed = r.count[STEPS] - r.count[LOOKED], r.count[REJECTED] - r.count[FAILED]
+    second = r.count[AFTER_REJECTION] == 1
+    if steps < APART or (MANY if second else MOST) * failed < steps:
         return False
     stuck = r.clock[LONGEST] <= STUCK * h
     again(r)
