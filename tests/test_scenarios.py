@@ -69,14 +69,21 @@ def test_slider_crank_of_period_two(tolerance):
     assert points[-1] == pytest.approx([312.03e-6, -4.81e-6], abs=1e-8)
 
 
-def test_slider_crank_of_other_periods():
-    """0.05 mm: all points are one; 0.0875 mm: on their way to four; 0.35 mm: none comes again."""
-    points, apart = periodic("joints.pin.clearance=0.05 mm")
+@pytest.mark.parametrize("tolerance", ["1e-6", "7e-7", "1e-7"])
+def test_slider_crank_of_other_periods(tolerance):
+    """0.05 mm: all points are one; 0.0625 mm: four; 0.35 mm: none comes again.
+
+    Between 0.075 mm and 0.2 mm motions of several periods are stable side by side, and a long
+    irregular beginning leads to one of them: to which, rounding decides.  At these two there is
+    one, reached within 30 turns; steps alone leave 2e-11 m between turns.
+    """
+    sets = f"solver.tolerance={tolerance}"
+    points, apart = periodic("joints.pin.clearance=0.05 mm", sets)
     assert np.ptp(points, axis=0).max() < 1e-10
-    points, apart = periodic("joints.pin.clearance=0.0875 mm")
+    points, apart = periodic("joints.pin.clearance=0.0625 mm", sets)
     again = {k: np.abs(points[k:] - points[:-k])[-8:].max() for k in (1, 2, 4)}
-    assert again[4] < 2e-7 and again[2] > 1e-5 and again[1] > 1e-5
-    points, apart = periodic("joints.pin.clearance=0.35 mm")
+    assert again[4] < 1e-9 and again[2] > 1e-6 and again[1] > 1e-6
+    points, apart = periodic("joints.pin.clearance=0.35 mm", sets)
     assert apart > 1e-4
     assert np.hypot(*points.std(axis=0)) == pytest.approx(1.4e-4, rel=0.3)
 

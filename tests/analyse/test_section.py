@@ -41,6 +41,23 @@ def test_crossings_by_cubics(crosses, exact):
     assert stated[1] < 100.0 * worst[1]  # an error so large that it says nothing would cover all
 
 
+@pytest.mark.parametrize("shares", [(0.0, 1.0), (1.0, 0.0), (1.0, 1.0)], ids=str)
+def test_stated_errors_cover_the_scatter_of_rows(shares):
+    """Rows tremble about a slow motion, and so does the motion where it crosses."""
+    rng, size = np.random.default_rng(3), 1e-4
+    time = np.arange(0.0, 500.0, 0.02)
+    w = np.sin(2 * np.pi * time) + size * shares[0] * rng.normal(size=len(time))
+    y = np.cos(1.7 * time) + size * shares[1] * rng.normal(size=len(time))
+    t, at_x, at_y, *errors = crossings(time, w, time, y, "both", NO_EVENTS)
+    assert len(t) == 999
+    true_t = np.round(2.0 * t) / 2.0 + size * shares[0] * rng.normal(size=len(t)) / (2 * np.pi)
+    true_y = np.cos(1.7 * true_t) + size * shares[1] * rng.normal(size=len(t))
+    for found, true, error in zip((t, at_x, at_y), (true_t, true_t, true_y), errors, strict=True):
+        off = np.abs(found - true)
+        assert np.mean(off <= error + 1e-9) > 0.95
+        assert np.median(error) < 6.0 * np.sqrt(np.mean(off**2)) + 1e-5  # it says something
+
+
 def test_a_kink_between_the_rows_is_told():
     """|t - 0.5| - 0.3 with a kink at 0.5: the straight line counts where an event says so."""
     time = np.linspace(0.0, 1.0, 101)

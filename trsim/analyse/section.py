@@ -11,6 +11,10 @@ its cubic and
 and where a contact opened or closed between the rows in use, so that more rows need not help,
     the straight line through the two rows around it.
 
+All of these can agree by chance where a journal trembles on its contact faster than the rows follow.
+So the error is never less than COVERED times the scatter of the rows near the point: the median
+distance of a row from the polynomial through the three before and the three behind it.
+
 Two crossings between two rows are not seen at all, and a contact shorter than their distance may
 leave no trace in the rows: `unresolved` counts the touches that no row saw.
 """
@@ -33,6 +37,12 @@ CUBIC = (-1, 0, 1, 2)
 OTHERS = ((-2, -1, 0, 1, 2), (-1, 0, 1, 2, 3), (-2, -1, 0, 1, 2, 3), (-2, 0, 2, 4), (-3, -1, 1, 3))
 LINE = (0, 1)
 STEPS, AHEAD = 4, 1e-3  # of Newton's method; of a row
+AROUND = (-3, -2, -1, 1, 2, 3)  # rows that say what the one between them should be
+NEARBY = tuple(range(-5, 7))  # rows whose scatter counts
+# a cubic halfway between scattered rows is off by 0.8 of their scatter, the motion there by 1: 1.3
+# in all, of which twice covers 95 %; half as much again as the median of twelve rows scatters too
+COVERED = 4.0
+MEDIAN = 0.6745  # of the absolute values of a normal distribution with scatter 1
 
 
 class Interpolated(NamedTuple):
@@ -133,6 +143,7 @@ def crossings(
     kinked = np.searchsorted(events, time[begin]) < np.searchsorted(events, time[end], "right")
     line = np.abs(along(time, (when, x, y), k, LINE)[0] - best)
     error = np.where(kinked, np.maximum(error, line), error)
+    error = np.maximum(error, trembling(time, (when, x, y), k, root))
     return best[0], best[1], best[2], error[0], error[1], error[2]
 
 
@@ -153,6 +164,34 @@ def along(
     weight = weights(lever, at)
     found = [time[k] + at * span, *(np.sum(weight * c[rows], axis=1) for c in shown)]
     return np.array(found), at
+
+
+def trembling(time: Array, channels: tuple[Array, ...], k: Numbers, root: Array) -> Array:
+    """What the scatter of the rows makes of time, x and y (3, n), at roots of the cubics."""
+    shift = np.clip(k, -min(CUBIC), len(time) - 1 - max(CUBIC)) - k
+    rows = (k + shift)[:, None] + np.array(CUBIC)
+    span = time[k + 1] - time[k]
+    lever = (time[rows] - time[k][:, None]) / span[:, None]
+    slope = (weights(lever, root + AHEAD) - weights(lever, root - AHEAD)) / (2.0 * AHEAD)
+    slopes = [np.abs(np.sum(slope * c[rows], axis=1)) for c in channels]
+    mine = np.clip(k[:, None] + np.array(NEARBY), max(AROUND), len(time) - 1 - max(AROUND))
+    noise = [COVERED * np.median(s[mine - max(AROUND)], axis=1) for s in scatter(time, channels)]
+    rows_off = np.minimum(noise[0], 3.0 * slopes[0])  # no further than roots are looked for
+    rows_off = np.divide(rows_off, slopes[0], out=np.zeros_like(root), where=slopes[0] > 0.0)
+    return np.array([span * rows_off, *(n + s * rows_off for n, s in zip(noise[1:], slopes[1:]))])
+
+
+def scatter(time: Array, channels: tuple[Array, ...]) -> list[Array]:
+    """Of each row with three on both sides: how far it is from what those say of it.
+
+    In units of the standard deviation of rows that are independent.
+    """
+    middle = np.arange(max(AROUND), len(time) - max(AROUND))
+    rows = middle[:, None] + np.array(AROUND)
+    lever = (time[rows] - time[middle][:, None]) / (time[middle + 1] - time[middle])[:, None]
+    weight = weights(lever, np.zeros(len(middle)))
+    size = MEDIAN * np.sqrt(1.0 + np.sum(weight**2, axis=1))
+    return [np.abs(c[middle] - np.sum(weight * c[rows], axis=1)) / size for c in channels]
 
 
 def between(u: Array, w: Array) -> Array:
