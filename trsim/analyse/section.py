@@ -11,9 +11,9 @@ its cubic and
 and where a contact opened or closed between the rows in use, so that more rows need not help,
     the straight line through the two rows around it.
 
-All of these can agree by chance where a journal trembles on its contact faster than the rows follow.
-So the error is never less than COVERED times the scatter of the rows near the point: the median
-distance of a row from the polynomial through the three before and the three behind it.
+All of these can agree by chance where a journal trembles on its contact faster than the rows
+follow.  So the error is never less than COVERED times the scatter of the rows near the point: the
+median distance of a row from the polynomial through the three before and the three behind it.
 
 Two crossings between two rows are not seen at all, and a contact shorter than their distance may
 leave no trace in the rows: `unresolved` counts the touches that no row saw.
@@ -175,10 +175,13 @@ def trembling(time: Array, channels: tuple[Array, ...], k: Numbers, root: Array)
     slope = (weights(lever, root + AHEAD) - weights(lever, root - AHEAD)) / (2.0 * AHEAD)
     slopes = [np.abs(np.sum(slope * c[rows], axis=1)) for c in channels]
     mine = np.clip(k[:, None] + np.array(NEARBY), max(AROUND), len(time) - 1 - max(AROUND))
-    noise = [COVERED * np.median(s[mine - max(AROUND)], axis=1) for s in scatter(time, channels)]
-    rows_off = np.minimum(noise[0], 3.0 * slopes[0])  # no further than roots are looked for
-    rows_off = np.divide(rows_off, slopes[0], out=np.zeros_like(root), where=slopes[0] > 0.0)
-    return np.array([span * rows_off, *(n + s * rows_off for n, s in zip(noise[1:], slopes[1:]))])
+    of_when, *noise = [
+        COVERED * np.median(s[mine - max(AROUND)], axis=1) for s in scatter(time, channels)
+    ]
+    off = np.minimum(of_when, 3.0 * slopes[0])  # no further than roots are looked for
+    off = np.divide(off, slopes[0], out=np.zeros_like(root), where=slopes[0] > 0.0)
+    shown = [n + s * off for n, s in zip(noise, slopes[1:], strict=True)]
+    return np.array([span * off, *shown])
 
 
 def scatter(time: Array, channels: tuple[Array, ...]) -> list[Array]:
