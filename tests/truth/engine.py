@@ -32,7 +32,7 @@ FORCE, TORQUE, SPRING, TORSION, BUSHING, WALL, LIMIT, SOFT_DRIVE, SOFT_LINE, CLE
 # functions of time or of a coordinate
 CONSTANT, SINE, CUBIC, RAMP, BOX, TENT, BELL, TABLE, PULSES = range(9)
 # what is watched: the time, a coordinate, its rate, the gap of a force, a train of pulses
-W_TIME, W_PLACE, W_RATE, W_GAP, W_PULSE = range(5)
+W_TIME, W_PLACE, W_RATE, W_GAP, W_PULSE, W_RAMP, W_PUSH = range(7)
 TURN, SLIDE = range(2)  # kinds of coordinates
 LOADS, DRIVES, DAMPERS, IMPACTS, N_WORK = range(5)
 DONE, STOPPED, STUCK, TOO_MANY, SINGULAR = range(5)
@@ -734,6 +734,17 @@ def watched(m, t, y, out):
             out[k] = p[k, 1] * qd[of] - p[k, 0]
         elif kind == W_GAP:
             out[k] = gap(m, of, r, v, w, R, q, qd)[0]
+        elif kind == W_RAMP or kind == W_PUSH:
+            d, dd, _ = gap(m, of, r, v, w, R, q, qd)
+            first = 0 if m.force[of, 0] == LIMIT else 9
+            ramp = m.force_par[of, first + 2]
+            out[k] = d / ramp - 1.0
+            if kind == W_PUSH:
+                # force over that of its spring: below 0 it would pull, and is none
+                loss = m.force_par[of, first + 1] / m.force_par[of, first]
+                out[k] = 1.0
+                if d > 0.0:
+                    out[k] += loss * dd * smooth(d / ramp)[0] / d
         else:
             x = t if of < 0 else p[k, 1] * q[of] + p[k, 2]
             out[k] = np.sin(p[k, 3] * x) - p[k, 0]

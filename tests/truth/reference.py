@@ -229,6 +229,10 @@ class Builder:
         self.watch.append(([e.W_GAP, len(self.forces), 0, 0], [0.0, 0.0, 0.0, 0.0]))
         self.of_watch.append(name)
         self.force(name, kind, i, j, k, -1, par, len(self.watch) - 1)
+        if kind != e.CLEARANCE:  # its kinks: where the damper is fully there, and where it pulls
+            for corner in (e.W_RAMP, e.W_PUSH):
+                self.watch.append(([corner, len(self.forces) - 1, 0, 0], [0.0] * 4))
+                self.of_watch.append(None)
 
     def add_force(self, f: Any) -> None:
         n = self.number
