@@ -40,6 +40,7 @@ from trsim.assemble.tables import (
     extent,
     kernels,
     levers,
+    lone,
     masses,
     norm,
     tables,
@@ -249,7 +250,8 @@ def build(
     n_nodes = n - at.n_rigid
     q_node, v_node = (3 if d == 3 else 7) * (at.n_rigid - 1), d * (at.n_rigid - 1)
     frames = [r.frames for r in rows]
-    scale_kind, scale = norm(at, d, size)
+    arms = levers(at, lone(at, size, mass, inertia))
+    scale_kind, scale = norm(at, d, size, arms)
     contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
     stabilisation = {"none": NONE, "baumgarte": BAUMGARTE, "projection": PROJECTION}
     baumgarte = solver.baumgarte
@@ -307,5 +309,5 @@ def build(
         section=np.zeros((0, 5), np.int64),
         section_at=np.zeros((0, 2)),
         size=size,
-        reach=min(size, max(levers(at, size)[1:], default=size)),
+        reach=min(size, max(arms[1:], default=size)),
     )

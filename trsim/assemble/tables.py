@@ -22,6 +22,7 @@ LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
 STATE_SCALES = {"angle": scales.ANGLE, "stroke": scales.LENGTH, "speed": scales.SPEED}
 UNEQUAL = 1e5  # with all else of one size S = J M^-1 J^T loses as many digits
 SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
+FARTHEST = 0.01  # of the mechanism with its anchors: the least that stands for the arm of a body
 
 
 def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.int64], Array]:
@@ -220,21 +221,36 @@ def extent(at: Addresses) -> float:
     return size if size > 0.0 else 1.0
 
 
-def levers(at: Addresses, size: float) -> list[float]:
-    """Largest arm of every frame; the mechanism's size where nothing is fixed to it, m."""
+def lone(at: Addresses, size: float, mass: Array, inertia: Array) -> float:
+    """What stands for the arm of a body to which nothing is fixed away from its centre, m.
+
+    How far bodies and what is fixed to them lie apart, or the largest radius of gyration.  Points
+    of the ground do not count: a mass on a spring that is anchored far away does not move so far.
+    """
+    corners = [*at.at_start[1:]]
+    corners += [at.at_start[i] + at.rotation[i] @ np.array(s) for i, s in at.points if i > 0]
+    apart = float(np.linalg.norm(np.ptp(np.array(corners), axis=0))) if corners else 0.0
+    n = at.n_rigid
+    moments = inertia[1:n, [0, 4, 8]].max(axis=1, initial=0.0)
+    gyration = float(np.sqrt(moments / mass[1:n]).max(initial=0.0))
+    return min(size, max(apart, gyration, FARTHEST * size))
+
+
+def levers(at: Addresses, alone: float) -> list[float]:
+    """Largest arm of every frame; `alone` where nothing is fixed away from its centre, m."""
     arms = [0.0] * len(at.frames)
     for i, s in at.points:
         arms[i] = max(arms[i], float(np.linalg.norm(s)))
     for beam in at.beams.values():
         arms[beam.first : beam.first + beam.nodes] = [beam.whole] * beam.nodes
-    return [a if a > 0.0 else size for a in arms]
+    return [a if a > 0.0 else alone for a in arms]
 
 
-def norm(at: Addresses, d: int, size: float) -> tuple[NDArray[np.int64], Array]:
+def norm(at: Addresses, d: int, size: float, arms: list[float]) -> tuple[NDArray[np.int64], Array]:
     """Unit of every entry of y in the error norm, and the lever of rotations."""
     kind: list[int] = []
     lever: list[float] = []
-    arms, width = levers(at, size), 2 if d == 3 else 3
+    width = 2 if d == 3 else 3
     bodies, nodes = arms[1 : at.n_rigid], arms[at.n_rigid :]
     for arm in bodies:
         kind += [scales.LENGTH] * width + [scales.ANGLE] * (1 if d == 3 else 4)

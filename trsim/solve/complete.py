@@ -87,6 +87,7 @@ LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is look
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
+NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
 
 #                       scene   record  buffers  settings method h built
 COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
@@ -232,7 +233,8 @@ def exact(s, r, b, setting, method, t, h, theta):
 
     A gap, what is watched, or u of a corner of a function is brought to zero at its end by Newton's
     method; a corner of friction is good enough as found.
-    Returns its length, its end in b.y1; 0 where the interpolant serves.
+    Returns its length, its end in b.y1; 0 where the interpolant serves: also where Newton's method
+    does not come nearer, as where what is watched turns back close to its value.
     """
     if method[STEP_AT] == 0:
         return 0.0
@@ -240,7 +242,7 @@ def exact(s, r, b, setting, method, t, h, theta):
     for c in range(b.root.size):
         if b.root[c] <= theta:
             gap_of = c
-    h1 = theta * h
+    h1, before = theta * h, 1e300
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0
@@ -249,19 +251,21 @@ def exact(s, r, b, setting, method, t, h, theta):
             return 0.0
         if gap_of < 0:
             if method[BEYOND_AT] == 0:
-                break
+                return h1
             land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
             late = call_beyond(method[BEYOND_AT], s, b, t + h1)
             if abs(late) <= SMALLEST * 2.2e-16 * max(abs(t), h1) or k == EXACT - 1:
-                break
+                return h1
             h1 -= late
             continue
         land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
         gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
-        if abs(gap) <= PRECISE * setting[TOLERANCE] * r.clock[LENGTH] or rate == 0.0:
-            break
-        h1 -= gap / rate
-    return h1
+        if abs(gap) <= PRECISE * setting[TOLERANCE] * r.clock[LENGTH]:
+            return h1
+        if rate == 0.0 or not abs(gap) < NEARER * before:
+            return 0.0
+        h1, before = h1 - gap / rate, abs(gap)
+    return 0.0
 
 
 @internal
