@@ -48,6 +48,12 @@ def true(drawn: Drawn, bound: float) -> Truth:
             x: c for x, c in t.channels.items()
             if x.rsplit(".", 1)[0] not in names or "reaction" not in x
         }  # fmt: skip
+    if not drawn.scene.flat:
+        # of a hinge that came apart in space an angle is a convention: its rate is compared
+        free = {name for event in drawn.scene.events for name in event.release}
+        for sensor in drawn.scene.sensors:
+            if sensor.joint in free:
+                t.channels.pop(sensor.name, None)
     return t
 
 

@@ -290,7 +290,7 @@ def build(
         scale_kind=scale_kind,
         scale=scale,
         contact=np.array(contacts, np.int64),
-        contact_par=contact_numbers(scenario, at, instances, contacts),
+        contact_par=contact_numbers(at, instances, contacts, arms),
         contact_state=contact_states(instances, contacts),
         contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(

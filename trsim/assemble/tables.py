@@ -294,9 +294,13 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
 
 
 def contact_numbers(
-    scenario: Any, at: Addresses, instances: list[Instance], contacts: list[int]
+    at: Addresses, instances: list[Instance], contacts: list[int], arms: list[float]
 ) -> Array:
-    """K, exponent, effective mass, clearance, slowest impact of every contact."""
+    """K, exponent, effective mass, clearance, slowest impact and arm of every contact.
+
+    A stop on an angle has an inertia for a mass, that of its bodies at the larger of their arms;
+    the arm turns its depth, an angle, into the length that errors are weighed with.
+    """
     rows = []
     for e in contacts:
         row = instances[e].row
@@ -304,8 +308,10 @@ def contact_numbers(
         i, j = row.con[0], row.con[1]
         inverse = (1.0 / at.mass(i) if i else 0.0) + (1.0 / at.mass(j) if j else 0.0)
         c = row.contact
-        rows.append((c.stiffness, c.exponent, 1.0 / inverse, c.clearance, c.slowest_impact))
-    return np.array(rows, float).reshape(-1, 5)
+        arm = max(arms[f] for f in (i, j) if f) if row.turns else 1.0
+        mass = arm**2 / inverse
+        rows.append((c.stiffness, c.exponent, mass, c.clearance, c.slowest_impact, arm))
+    return np.array(rows, float).reshape(-1, 6)
 
 
 def contact_states(instances: list[Instance], contacts: list[int]) -> NDArray[np.int64]:

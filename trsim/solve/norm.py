@@ -70,9 +70,10 @@ def units(s, r):
         depth = min(r.impact[c], s.contact_par[c, 3])
         if depth <= 0.0:
             continue
-        length = min(length, depth)
+        arm = s.contact_par[c, 5]
+        length = min(length, depth * arm)
         # the frequency of the contact at that depth turns the length into a speed
-        speed = min(speed, depth * np.sqrt(n * K * depth ** (n - 1.0) / mass))
+        speed = min(speed, depth * arm * np.sqrt(n * K * depth ** (n - 1.0) / mass))
     if length < 1e300:
         r.clock[LENGTH], r.clock[SPEED] = length, speed
 
