@@ -1,0 +1,92 @@
+"""The error norm: what a run is off by stays in proportion to its tolerance, in any units."""
+
+import numpy as np
+import pytest
+
+from ..mechanisms import torsion_pendulum
+from ..runs import run
+
+TURNS, RATE = 8, 20.0  # rad/s: sqrt(2 / 5e-3)
+# times the tolerance after 8 turns: about the sum of the local errors, each over its part of a turn
+MOST = {"dop853": 10.0, "radau": 10.0, "generalized_alpha": 50.0}
+
+
+@pytest.mark.parametrize("method", MOST)
+def test_phase_after_many_turns_is_in_proportion_to_the_tolerance(method):
+    over = []
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        solver = f"end: {TURNS * 2 * np.pi / RATE}, method: {method}, tolerance: {tolerance}"
+        text, angle = torsion_pendulum(solver=solver)
+        r = run(text, "output.every=0.01")
+        over.append(np.abs(r["angle"] - angle(r.t)).max() / tolerance)
+    assert max(over) < MOST[method], over
+    assert over[2] < 1.5 * over[0], over
+
+
+def sprung(anchor, tolerance=1e-4):
+    """A mass on a slide; its spring is as long as drawn, so that only its stiffness counts."""
+    return run(f"""
+bodies: {{mass: {{mass: 1, inertia: 0.1, at: [0, 0], velocity: [2, 0, 0]}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, mass], axis: [1, 0, 0]}}}}
+sensors: {{x: {{joint: slide}}}}
+forces: {{spring: {{type: spring_damper, bodies: [ground, mass], points: [[{anchor}, 0], [0, 0]],
+         stiffness: 100}}}}
+gravity: [0, 0]
+solver: {{end: 6, method: dop853, tolerance: {tolerance}}}
+""")
+
+
+def test_an_anchor_far_away_makes_no_motion_larger():
+    near, far = sprung(2.0), sprung(30.0)
+    assert near.outcome.statistics["steps"] == far.outcome.statistics["steps"]
+    exact = 0.2 * np.sin(10 * far.t)
+    assert np.abs(far["x"] - exact).max() < 1e-4 * np.sqrt(0.1) * 20  # of the radius of gyration
+
+
+def stopped(unit):
+    """A pendulum between stops, with lengths in units of so many metres."""
+    m = unit
+    return run(f"""
+bodies: {{rod: {{mass: 1, inertia: {0.1 * m * m}, at: [{0.5 * m}, 0]}}}}
+joints: {{O: {{type: revolute, bodies: [ground, rod], at: [0, 0]}}}}
+sensors: {{a: {{joint: O}}}}
+forces: {{stop: {{type: limit_stop, joint: O, lower: -2, upper: 0.3, stiffness: {3000 * m * m},
+         damping: {m * m}, ramp: 1e-3}}}}
+gravity: [0, {-9.81 * m}]
+solver: {{end: 3, tolerance: 1e-5}}
+""")
+
+
+def test_stops_on_angles_are_the_same_in_any_unit_of_length():
+    one, small, large = stopped(1.0), stopped(2.0**-9), stopped(2.0**7)
+    for other in (small, large):
+        steps = other.outcome.statistics["steps"]
+        assert steps == pytest.approx(one.outcome.statistics["steps"], abs=3)
+        assert np.abs(other["a"] - one["a"]).max() < 1e-4  # ten tolerances
+
+
+TREMBLING = """
+bodies:
+  rotor: {mass: 1, inertia: 0.5, at: [0, 0], angular_velocity: [0, 0, 1.5]}
+  yoke: {mass: 0.05, inertia: 0.01, at: [0.3, 0], velocity: [0, 0.5, 0]}
+joints:
+  O: {type: revolute, bodies: [ground, rotor], at: [0, 0]}
+  way: {type: prismatic, bodies: [ground, yoke], at: [0.3, 0], axis: [0, 1, 0]}
+sensors: {turn: {joint: O}, y: {joint: way}}
+forces: {spring: {type: spring_damper, bodies: [ground, yoke], points: [[0.3, 30], [0.3, 0]],
+         stiffness: 0.16}}
+events: {hit: {when: y, value: VALUE, crosses: down, do: {record: true}}}
+gravity: [0, 0]
+solver: {method: METHOD, end: 60, tolerance: 2e-2}
+output: {every: 0.5}
+"""
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])
+@pytest.mark.parametrize("part", [0.9, 0.97, 0.99, 0.998])
+def test_a_step_that_ends_on_an_event_ends_at_its_time(method, part):
+    """Close to where a motion turns Newton's method need not come nearer to a value."""
+    amplitude = 0.5 / np.sqrt(0.16 / 0.05)
+    text = TREMBLING.replace("VALUE", f"{-part * amplitude}").replace("METHOD", method)
+    r = run(text)
+    assert np.abs(r["turn"] - 1.5 * r.t).max() < 1e-9
