@@ -169,7 +169,8 @@ def test_fixed_steps_tell_the_error_of_their_works():
 def test_nothing_is_asked_of_rounding():
     """A balanced rotor at constant speed exchanges nothing: its steps are not shortened."""
     text = """
-bodies: {rotor: {mass: 50, inertia: [33, 33, 50], at: [0.3, 0.2, 0.1], angular_velocity: [0, 0, 300]}}
+bodies:
+  rotor: {mass: 50, inertia: [33, 33, 50], at: [0.3, 0.2, 0.1], angular_velocity: [0, 0, 300]}
 joints: {hinge: {type: revolute, bodies: [ground, rotor], at: [0.3, 0.2, 0.1], axis: [0, 0, 1]}}
 drives: {motor: {joint: hinge, velocity: 300}}
 solver: {end: 10, tolerance: 1e-12}

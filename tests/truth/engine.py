@@ -734,7 +734,7 @@ def watched(m, t, y, out):
             out[k] = p[k, 1] * qd[of] - p[k, 0]
         elif kind == W_GAP:
             out[k] = gap(m, of, r, v, w, R, q, qd)[0]
-        elif kind == W_RAMP or kind == W_PUSH:
+        elif kind in (W_RAMP, W_PUSH):
             d, dd, _ = gap(m, of, r, v, w, R, q, qd)
             first = 0 if m.force[of, 0] == LIMIT else 9
             ramp = m.force_par[of, first + 2]
