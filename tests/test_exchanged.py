@@ -168,13 +168,18 @@ def test_exchanged(part, tmp_path, monkeypatch):
     checks, count = Checks(), COUNT // len(PARTS)
     kept = Path(os.environ["FUZZ"]) / f"exchanged_{part}" if "FUZZ" in os.environ else None
     first = int(kept.read_text()) if kept and kept.exists() else 0
+    bad = []
     for k in range(first, count):
         tree, told = mutant(random.Random(f"exchanged {part} {k}"))
         text = json.dumps(tree)
         try:
             checks.check(written(tmp_path / "mutant.yaml", text.encode()))
         except BaseException as error:
-            raise AssertionError(f"{k} {told} {type(error).__name__} {error}: {text}") from error
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            bad.append(f"{k} {told} {type(error).__name__} {error}: {text}")
+            print(f"bad: {bad[-1]}", flush=True)
         if kept:
             kept.write_text(str(k + 1))
     print(f"exchanged {first}..{count}: {checks.told()}")
+    assert not bad

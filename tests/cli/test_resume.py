@@ -96,6 +96,25 @@ def test_without_resume_it_says_that_it_could(interrupted, trsim):
     assert not interrupted.exists()
 
 
+@pytest.mark.parametrize("name", ["y", "mem", "branch", "depth", "length"])
+def test_a_start_of_another_shape(name, interrupted, trsim):
+    """A checkpoint with a right checksum that is not one of this run."""
+    state = load(interrupted).state
+    other = state[f"start.{name}"][..., None]
+    changed(interrupted, state={**state, f"start.{name}": other})
+    code, _, err = trsim("run", "crank.yaml", *LONG, "--resume")
+    assert code == 7 and f"does not fit this run: start.{name}" in err
+
+
+def test_a_run_that_was_killed_when_it_had_just_ended(interrupted, scenario, trsim):
+    """Its file is complete and has its name; only the checkpoint was not removed yet."""
+    part = interrupted.with_name("crank.h5.part")
+    part.rename(interrupted.with_name("crank.h5"))
+    code, _, err = trsim("run", "crank.yaml", *LONG, "--resume")
+    assert code == 0 and "nothing to resume" in err
+    assert [path.name for path in interrupted.parent.iterdir()] == ["crank.h5"]
+
+
 def test_nothing_to_resume(scenario, trsim):
     code, _, err = trsim("run", "crank.yaml", "--resume")
     assert code == 0

@@ -38,12 +38,12 @@ def found(answer: Answer, source: str, target: Path, scenario: Any, wanted: bool
     Raises UsageError where it is that of another run, FileError where it cannot be read, or where
     another process writes this result.
     """
-    from trsim.store.checkpoint import ANEW, beside, differences, load
+    from trsim.store.checkpoint import ANEW, beside, differences, load, waiting
     from trsim.store.lock import refuse_if_written
 
     refuse_if_written(target)
     path = beside(target)
-    if not path.is_file():
+    if not waiting(target):
         if wanted:
             answer.say(f"{source}: nothing to resume at {path}: starts from the beginning")
         return None

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene
 from trsim.errors import FileError
 from trsim.solve.record import Record, copy, restore
@@ -34,14 +35,20 @@ def state(r: Record, work: Scene, begun: Start, cpu: float) -> State:
     }
 
 
-def begun_at(checkpoint: State) -> Start:
-    """The start of the run that a checkpoint was taken of."""
-    found: dict[str, Any] = {f.name: checkpoint.get(f"start.{f.name}") for f in fields(Start)}
+def begun_at(checkpoint: State, mechanism: Mechanism, work: Scene) -> Start:
+    """The start of the run that a checkpoint was taken of.
+
+    Raises FileError where it is not that of a run of this mechanism.
+    """
+    like = {"y": mechanism.y0, "mem": work.mem, "branch": work.branch,
+            "depth": np.zeros(len(work.contact_par))}  # fmt: skip
+    found: dict[str, Any] = {}
     for f in fields(Start):
-        array, wanted = found[f.name], 0 if f.type in (float, "float") else None
-        if array is None or array.dtype.kind not in "fi" or wanted not in (None, array.ndim):
+        array, wanted = checkpoint.get(f"start.{f.name}"), like.get(f.name, np.array(0.0))
+        if array is None or array.shape != wanted.shape or array.dtype.kind not in "fi":
             raise FileError(f"{UNFIT}: start.{f.name}", ANEW)
-    return Start(**{name: a if a.ndim else a.item() for name, a in found.items()})
+        found[f.name] = array if array.ndim else array.item()
+    return Start(**found)
 
 
 def put_back(checkpoint: State, r: Record, work: Scene) -> float:

@@ -197,7 +197,7 @@ def holding(r: Array, g: Array, beam: Beam, held: list[tuple[int, bool]]) -> Arr
                 row = np.zeros((nodes, 2, width))
                 row[node, 1] = direction
                 rows.append(row.ravel())
-    supported = np.array(rows).reshape(len(rows), -1)
+    supported = np.reshape(rows, (len(rows), 2 * nodes * width))
     motions = rigid(r, g)
     left = motions
     if len(rows):

@@ -130,7 +130,9 @@ def compiled(
     work = scene(mechanism.model)
     setting = settings(scenario, mechanism, used[0].ADAPTIVE)
     located = setting[rec.LOCATE] > 0.0
-    begun = begun_at(checkpoint) if checkpoint else start(scenario, mechanism, located)
+    begun = (
+        begun_at(checkpoint, mechanism, work) if checkpoint else start(scenario, mechanism, located)
+    )
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:

@@ -62,6 +62,12 @@ def beside(final: Path) -> Path:
     return final.with_name(final.name + ENDING)
 
 
+def waiting(final: Path) -> bool:
+    """Whether there is a run to go on with: not where one was killed when it had just ended."""
+    part = final.with_name(final.name + ".part")
+    return beside(final).is_file() and (part.exists() or not final.exists())
+
+
 def left(part: Path, path: Path, time: float, command: str) -> str:
     """What a run that was broken off left, and the commands that use it."""
     text = f"{part} holds the run until t = {time:g} s; "
@@ -166,6 +172,16 @@ def store(path: Path, kept: Checkpoint) -> None:
         with suppress(OSError, FileError):
             own.remove(fresh, CHECKPOINT)
         raise FileError(f"{path}: cannot be written: {error.strerror}") from None
+
+
+def forget(path: Path) -> None:
+    """Remove a checkpoint that nothing goes on from any more, and one that a kill left half made.
+
+    Raises FileError where something else has its name.
+    """
+    with suppress(FileError):  # the name is that of a file of somebody else's
+        own.remove(path.with_name(path.name + ".new"), CHECKPOINT)
+    own.remove(path, CHECKPOINT)
 
 
 def load(path: Path) -> Checkpoint:

@@ -65,7 +65,9 @@ class Impacts:
 
 def begin(file: h5py.File, scenario: Any, mechanism: Any) -> None:
     """Attributes and groups of a file whose run is about to start."""
-    file.attrs["format"], file.attrs["format_version"] = FORMAT, VERSION
+    file.attrs["format_version"] = VERSION
+    file.flush()  # who is killed from now on leaves a file that is known as ours, see target.py
+    file.attrs["format"] = FORMAT
     file.attrs["title"] = getattr(scenario, "title", "") or ""
     file.attrs["status"], file.attrs["reason"] = "running", ""
     for name in GROUPS:

@@ -153,7 +153,7 @@ class Running:
     def open(self) -> None:
         """Make the file, unless it is there."""
         if self.file is None:
-            own.remove(self.checkpoint, CHECKPOINT)  # of rows about to be written over
+            checkpoints.forget(self.checkpoint)  # of rows about to be written over
             own.remove(self.fresh, PART)
             self.file = self.begun(self.part)
 
@@ -295,7 +295,7 @@ class Running:
             if complete:
                 os.replace(self.part, self.final)
                 synced(self.final.parent)
-                own.remove(self.checkpoint, CHECKPOINT)
+                checkpoints.forget(self.checkpoint)
         summary["file"] = str(self.final if complete else self.part)
         return summary
 

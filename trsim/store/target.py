@@ -16,7 +16,7 @@ from tempfile import TemporaryFile
 from typing import NamedTuple
 
 from trsim.errors import FileError, UsageError, what_it_is
-from trsim.store.plain import SIGNATURE
+from trsim.store.plain import SIGNATURE, SIZE
 
 BEGINNING = 1 << 20  # bytes a file is recognised by
 ELSEWHERE = "Name another file with -o."
@@ -35,8 +35,9 @@ def _is_result(start: bytes) -> bool:
 
 
 def _is_part(start: bytes) -> bool:
-    """HDF5 writes the first bytes of a file that was killed early last."""
-    return _is_result(start) or not any(start[:HEADER])
+    """Also one that was killed early: empty, zeros, or a superblock with no object behind it."""
+    first = start.startswith(SIGNATURE) and not any(start[SIZE:])
+    return _is_result(start) or first or not any(start)
 
 
 def _is_table(start: bytes) -> bool:

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from trsim.sweep.plan import CASE, Plan
 from trsim.sweep.values import value
 
 FORMAT, VERSION = "trsim sweep", 1
+STARTED = re.compile(r"ledger(-\d+of\d+)?\.jsonl(\.lock)?|plan\.json\.\d+(-\d+)?")
 INDEX = headed("name", "status", "reason")
 PLAN = Kind("plan of a sweep", lambda start: start.startswith(b'{"format": "trsim sweep"'))
 NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
@@ -28,11 +30,22 @@ def see_usable(folder: Path) -> None:
     """See that a folder is that of a sweep, empty, or not there."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder", "Name another one with -o.")
-    if folder.is_dir() and not (folder / "plan.json").exists() and any(folder.iterdir()):
+    if (
+        folder.is_dir()
+        and not (folder / "plan.json").exists()
+        and not all(map(_of_a_start, folder.iterdir()))
+    ):
         what = f"{folder} is a folder of other files, not of a sweep"
         raise UsageError(what, "Name another one with -o.")
     for name, kind in (("index.csv", INDEX), ("plan.json", PLAN)):
         replaceable(folder / name, kind)
+
+
+def _of_a_start(path: Path) -> bool:
+    """Whether a sweep that was killed before its plan was written may have left this."""
+    if path.name == "cases":
+        return path.is_dir() and not any(path.iterdir())
+    return STARTED.fullmatch(path.name) is not None and path.is_file()
 
 
 def write_plan(folder: Path, plan: Plan, engine: str) -> None:

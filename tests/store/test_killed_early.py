@@ -1,0 +1,188 @@
+"""Killed at any instant: what is left is known as ours, and the same command goes on.
+
+Folders are copied at every call of a function before which something in them has changed: so would
+a kill have left them.
+"""
+
+import shutil
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import h5py
+import pytest
+
+from tests import small
+from tests.sizes import size
+from tests.sweep.test_go import contents
+from trsim import store, sweep
+from trsim.assemble.assemble import assemble
+from trsim.errors import FileError, UsageError
+from trsim.solve import simulate as solver
+from trsim.spec.load import loads
+from trsim.store import checkpoint, hdf5, own
+from trsim.store.lock import refuse_if_written
+from trsim.store.plain import SIZE
+from trsim.store.recover import recover
+from trsim.store.target import CHECKPOINT, LOCK, PART
+from trsim.sweep import job
+from trsim.sweep.go import go
+from trsim.sweep.plan import plan
+
+ENDING = {".part": PART, ".part.new": PART, ".lock": LOCK, ".checkpoint": CHECKPOINT,
+          ".checkpoint.new": CHECKPOINT}  # fmt: skip
+SETS = ("joints.B.clearance=[0.4 mm, 0.5 mm]", "solver.end=0.5 ms")
+
+
+WRITERS = tuple(f"{Path(module.__file__).parent}/" for module in (store, sweep, h5py))
+ENOUGH = 4096  # bytes: what is longer is a file with rows
+
+
+def looks(folder):
+    """What tells two states of a folder apart: names, lengths of what is short, beginnings."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        try:
+            with path.open("rb") as file:
+                start = file.read(ENOUGH)
+                found.append((path.name, len(start), start[:64]))
+        except (IsADirectoryError, FileNotFoundError):
+            found.append((path.name, 0, b""))
+    return tuple(found)
+
+
+@contextmanager
+def instants(folder, kept):
+    """Copies of a folder in all states it goes through, one after the other, in `kept`."""
+    states = set()
+
+    def look(frame, *_):
+        if not frame.f_code.co_filename.startswith(WRITERS):
+            return
+        sys.setprofile(None)
+        state = looks(folder)
+        if state not in states:
+            states.add(state)
+            shutil.copytree(folder, kept / f"{len(states):04}")
+        sys.setprofile(look)
+
+    kept.mkdir()
+    sys.setprofile(look)
+    try:
+        yield
+    finally:
+        sys.setprofile(None)
+
+
+def some(folders):
+    """The first ones, and of the others as many as there is time for."""
+    return [*folders[:8], *folders[8 :: size(9, 1)]]
+
+
+@pytest.fixture(scope="module")
+def scene():
+    scenario = loads(small.SLIDER_CRANK, SETS[1:])
+    return scenario, assemble(scenario)
+
+
+def test_the_first_bytes_of_a_part_file(scene, tmp_path):
+    """As HDF5 writes them: a superblock, room, then the first object with its attribute."""
+    (tmp_path / "here").mkdir()
+    path = tmp_path / "here" / "x.h5"
+    running = hdf5.Running(path, *scene, hdf5.points.plan(*scene), 0.0)
+    with instants(path.parent, tmp_path / "kept"):
+        running.begun(running.part).close()
+    left = [folder / "x.h5.part" for folder in sorted((tmp_path / "kept").iterdir())]
+    states = [part.read_bytes() for part in left if part.exists()]
+    assert [len(state) for state in states[:2]] == [0, SIZE]
+    first = states[1]
+    torn = [first[:n] for n in (8, 20)] + [first + bytes(n) for n in (1, 131, 5000)]
+    for state in (*states, *torn, bytes(1), bytes(4096), bytes(1 << 18)):
+        assert PART.fits(state), state[:300]
+
+
+def test_what_is_somebody_elses_is_not_ours(tmp_path):
+    with h5py.File(tmp_path / "others.h5", "w", libver=hdf5.LIBVER) as file:
+        file["numbers"] = [1.0, 2.0]
+    assert not PART.fits((tmp_path / "others.h5").read_bytes())
+    assert not PART.fits(bytes(4096) + b"a disk")
+
+
+def begun(folder, scene, ends=None):
+    """A run with a checkpoint after every block, that is broken off or not."""
+    blocks = solver.simulate(*scene)
+
+    def some():
+        for k, block in enumerate(blocks):
+            yield block
+            if k + 1 == ends:
+                raise KeyboardInterrupt
+
+    return hdf5.write(folder / "x.h5", *scene, some() if ends else blocks, every=1e-9)
+
+
+def again(folder, scene):
+    """The same run anew, or from its checkpoint if it has one that can be read."""
+    path, kept = folder / "x.h5", None
+    if checkpoint.waiting(path):
+        kept = checkpoint.load(checkpoint.beside(path))
+    blocks = solver.simulate(*scene, kept.state if kept else None)
+    return hdf5.write(path, *scene, blocks, kept=kept)
+
+
+def test_a_run_killed_at_any_instant(scene, tmp_path, monkeypatch):
+    """Begun, gone on with from a checkpoint, or recovered from."""
+    monkeypatch.setattr(solver, "VISIT", 15)  # steps of a block
+    here, kept = tmp_path / "here", tmp_path / "kept"
+    here.mkdir()
+    with pytest.raises(KeyboardInterrupt):
+        begun(here, scene, 2)
+    with instants(here, kept):
+        whole = again(here, scene)["content_sha256"]
+    (here / "x.h5").unlink()
+    with instants(here, tmp_path / "more"):
+        assert begun(here, scene)["content_sha256"] == whole
+    folders = [*sorted(kept.iterdir()), *sorted((tmp_path / "more").iterdir())]
+    assert len(folders) > 20
+    for folder in folders:
+        for path in folder.iterdir():
+            kind = ENDING.get(path.name.removeprefix("x.h5"))
+            assert kind is None or own.see(path, kind), (folder, path)
+    for folder in some(folders):
+        refuse_if_written(folder / "x.h5")
+        if (folder / "x.h5.part").exists() and folder in folders[:10]:
+            try:
+                recover(folder / "x.h5.part", tmp_path / "recovered.h5")
+            except FileError as error:
+                assert "recover" in str(error)
+        summary = again(folder, scene)
+        assert summary["content_sha256"] == whole
+        assert [path.name for path in folder.iterdir()] == ["x.h5"]
+
+
+def named(folder):
+    """All names but of what was to take the place of a plan or an index: it has a number."""
+    return sorted(path.name for path in folder.rglob("*") if not path.name[-1].isdigit())
+
+
+def test_a_sweep_killed_at_any_instant(tmp_path):
+    def run(tasks):
+        for task in tasks:
+            yield task, job.run(task, lambda: None)
+
+    (tmp_path / "crank.yaml").write_text(small.SLIDER_CRANK)
+    planned = plan(str(tmp_path / "crank.yaml"), SETS, "one")
+    here, kept = tmp_path / "here", tmp_path / "kept"
+    here.mkdir()
+    with instants(here, kept):
+        list(go(planned, here, "one", run))
+    whole, names = contents(here), named(here)
+    folders = sorted(kept.iterdir())
+    assert len(folders) > 20
+    for folder in some(folders):
+        try:
+            list(go(planned, folder, "one", run))
+        except (FileError, UsageError) as error:
+            raise AssertionError(f"{folder}: {error}") from error
+        assert contents(folder) == whole
+        assert named(folder) == names
