@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
+from trsim.assemble.beside import beside
 from trsim.assemble.equations import derivative
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
@@ -30,7 +31,7 @@ from trsim.assemble.rows import (
     reactions,
 )
 from trsim.assemble.sections import sections
-from trsim.assemble.stages import Stages
+from trsim.assemble.stages import Choice, Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
     contact_numbers,
@@ -123,23 +124,34 @@ def assemble(
         frames=at.frames,
         beams=at.beams,
         notes=(*verdict.notes(), *notes(scenario), *at.notes),
-        stages=stages(scenario, at, instances, model, planar),
+        stages=stages(scenario, at, instances, Choice(model, kept, dropped(rows, found)), planar),
         sections=shown,
     )
 
 
 def stages(
-    scenario: Any, at: Addresses, instances: list[Instance], first: Model, planar: bool
+    scenario: Any, at: Addresses, instances: list[Instance], first: Choice, planar: bool
 ) -> Stages:
-    """What user events make of the mechanism; planarity is that of the start."""
+    """What user events make of the mechanism; planarity is that of the start.
 
-    def built(instances: list[Instance], rows: list[RowName]) -> tuple[Model, list[RowName]]:
+    Of joints that are proved to move to first order only nothing is asked: each stage has joints of
+    the start, and fewer of them hold less.
+    """
+    d = 3 if planar else 6
+
+    def built(instances: list[Instance], rows: list[RowName]) -> Choice:
         full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
         kept, found = choose_rows(full, y6, instances, planar, rows)
         own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
-        return build(scenario, at, instances, kept, 3 if planar else 6, own, left), kept
+        return Choice(build(scenario, at, instances, kept, d, own, left), kept, left)
 
-    return Stages(at.switches, instances, first, built)
+    def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
+        rows = [*kept, *left]
+        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
+        own = hubs(full, y6, rows, kept, planar, spans(at))
+        return build(scenario, at, instances, kept, d, own, left)
+
+    return Stages(at.switches, instances, first, built, rebuilt)
 
 
 def notes(scenario: Any) -> tuple[str, ...]:
@@ -283,6 +295,7 @@ def build(
         **watched_rows(instances, rows, redundant, size),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
+        beside=beside.address(),
         on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],
         alpha=baumgarte.alpha if baumgarte else 0.0,

@@ -12,16 +12,44 @@ redundant rows have stresses too, and then this holds for every z.
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import constraints, poses
-from trsim.assemble.reduce import in_solve_axes, weights
+from trsim.assemble.equations import constraints, derivative, poses
+from trsim.assemble.reduce import all_rows, in_solve_axes, weights
 from trsim.elements.scene import Scene
 
 Array = NDArray[np.float64]
 
 DEPENDENT = 1e-9  # singular values, of the largest
 HOLDS = 1e-9  # of the largest term of gamma
+PLAINLY = 1e-3  # the same, and of what forces do to free bodies: more than a rounded drawing's
+TAKES_PART = 0.1  # of the largest entry of a self-stress
 MOST = 40  # motions that are looked at
 STARTS, STEPS = 16, 60  # of Newton's method; its steps
+
+
+def undecided(work: Scene, y: Array) -> list[int]:
+    """Rows that depend on each other at a start from rest whose forces ask for no single branch.
+
+    A motion from rest goes by a t^2 / 2 at first, so accelerations must go on as velocities do;
+    those that the forces ask for are the answer only if they do.
+    """
+    if not work.m or work.n > work.n_r:
+        return []
+    derivative(work, 0.0, y, np.zeros_like(y))
+    unit = np.tile([work.size] * 3 + [1.0] * 3, work.n - 1)
+    push = np.abs(work.F[1:]).ravel() * weights(work) ** 2 / np.repeat(work.mass[1:], 6)
+    a, moving = np.nan_to_num(work.A[1:].ravel()), np.any(work.V)
+    rows = list(range(work.m + len(work.redundant)))
+    branches = Branches(work, y, all_rows(work, y), rows)
+    a = branches.motions @ (branches.free.T @ (a / branches.scale))
+    if moving or not np.max(np.abs(a) / unit) > PLAINLY * np.max(push / unit, initial=0.0):
+        return []
+    if not branches.stresses.shape[1]:
+        return []
+    off, largest = np.max(np.abs(branches.left(a))), np.max(np.abs(work.gamma))
+    if off <= PLAINLY * largest * np.max(np.abs(branches.stresses)):
+        return []
+    part = np.max(np.abs(branches.stresses) * branches.length[:, None], axis=1)[: work.m]
+    return np.flatnonzero(part > TAKES_PART * part.max(initial=0.0)).tolist()
 
 
 class Branches:
@@ -39,7 +67,7 @@ class Branches:
         R = J[:, self.moving] * self.scale
         length = np.linalg.norm(R, axis=1)
         length[length == 0.0] = 1.0
-        R = R / length[:, None]
+        R, self.length = R / length[:, None], length
         u, s, vt = np.linalg.svd(R)
         rank = int(np.sum(s > DEPENDENT * s.max(initial=0.0)))
         self.stresses = u[:, rank:] / length[:, None]  # columns

@@ -3,20 +3,27 @@
 A stage is the position of all switches (switches.py).  Bodies, element instances, states and output
 columns are those of the whole run; what differs is which constraint rows are solved, and the motion
 that drives follow.  Rows are chosen again for every stage, so what becomes redundant is dropped.
+
+Rows that stand for others where the mechanism is drawn may come to depend on each other as it
+moves, where others would not.  `anew` then chooses others of the same stage (better.py); which ones
+is a part of the record of a run.
 """
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.better import better
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, Switches, lock_name
 from trsim.elements.prescribed import OWN_MOTION, OWN_STATE, C, K
-from trsim.elements.scene import Model
+from trsim.elements.scene import Model, Scene
 
+Array = NDArray[np.float64]
 Rows = list[RowName]
 # the same in every stage
 OUTPUTS = (
@@ -31,42 +38,104 @@ OUTPUTS = (
 )
 
 
+class Choice(NamedTuple):
+    """The model of a stage, its rows in the solve and those left out."""
+
+    model: Model
+    kept: Rows
+    dropped: Rows
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the rows in the solve."""
+        return tuple(f"{row.element}.{row.axis}" for row in self.kept)
+
+
 class Stages:
     """Models by the position of the switches, made when they are first asked for."""
 
     def __init__(
-        self, switches: Switches, instances: list[Instance], first: Model,
-        build: Callable[[list[Instance], Rows], tuple[Model, Rows]],
+        self, switches: Switches, instances: list[Instance], first: Choice,
+        build: Callable[[list[Instance], Rows], Choice],
+        rebuild: Callable[[list[Instance], Rows, Rows], Model],
     ) -> None:  # fmt: skip
-        """build: (instances, rows that are in force) -> (model without outputs, rows solved)."""
-        self.switches, self.instances, self.first = switches, instances, first
-        self._build = build
-        self._made: dict[tuple[int, ...], tuple[Model, tuple[str, ...]]] = {}
+        """build: (instances, rows that are in force) -> a choice, its model without outputs;
+        rebuild: (instances, rows to solve, rows to leave out) -> such a model."""
+        self.switches, self.instances, self.first = switches, instances, first.model
+        self._build, self._rebuild = build, rebuild
+        self._made = {(0,) * len(switches.names): first}
+        locks = [name for section, name in switches.names if section == "locks"]
+        every = all_rows(instances, [lock_name(name) for name in locks])
+        may_depend = len(first.dropped) > 0 or len(switches.names) > 0
+        self._place = {key(row): k for k, row in enumerate(every)} if may_depend else {}
 
     def model(self, stage: NDArray[np.int64]) -> Model:
         """The model of a stage.  Raises ModelError where a lock or drive contradicts the rest."""
-        return self._found(stage)[0]
+        return self._found(stage).model
 
     def rows(self, stage: NDArray[np.int64]) -> tuple[str, ...]:
         """Names of the rows in the solve."""
-        return self._found(stage)[1]
+        return self._found(stage).names
 
-    def mechanism(self, mechanism: Mechanism, stage: NDArray[np.int64]) -> Mechanism:
-        """The mechanism as it is in a stage."""
-        if not np.any(stage):
+    def mechanism(
+        self, mechanism: Mechanism, stage: NDArray[np.int64], left_out: NDArray[np.int64]
+    ) -> Mechanism:
+        """The mechanism as it is in a stage, with these rows left out."""
+        choice = self.choice(stage, left_out)
+        if choice.model is mechanism.model:
             return mechanism
-        return replace(mechanism, model=self.model(stage), rows=self.rows(stage))
+        return replace(mechanism, model=choice.model, rows=choice.names)
 
-    def _found(self, stage: NDArray[np.int64]) -> tuple[Model, tuple[str, ...]]:
+    def left_out(self, stage: NDArray[np.int64]) -> NDArray[np.int64]:
+        """1 for every row, of all there may be, that is left out as a stage is made."""
+        return self._marked(self._found(stage).dropped)
+
+    def choice(self, stage: NDArray[np.int64], left_out: NDArray[np.int64]) -> Choice:
+        """What a stage solves where these rows are left out."""
+        made = self._found(stage)
+        if np.array_equal(left_out, self._marked(made.dropped)):
+            return made
+        position = (*stage.tolist(), -1, *left_out.tolist())
+        if position not in self._made:
+            rows = sorted([*made.kept, *made.dropped], key=key)
+            kept = [row for row in rows if not left_out[self._place[key(row)]]]
+            dropped = [row for row in rows if left_out[self._place[key(row)]]]
+            model = self._rebuild(self._switched(stage), kept, dropped)
+            self._made[position] = Choice(self._with_outputs(model), kept, dropped)
+        return self._made[position]
+
+    def anew(
+        self, stage: NDArray[np.int64], left_out: NDArray[np.int64], work: Scene, y: Array
+    ) -> NDArray[np.int64]:
+        """Which rows to leave out at y; work: a scene of the choice in force."""
+        made = self.choice(stage, left_out)
+        dropped = better(work, y, made.kept, made.dropped, self.instances)
+        return left_out if dropped is None else self._marked(dropped)
+
+    def _marked(self, rows: Rows) -> NDArray[np.int64]:
+        marks = np.zeros(len(self._place), np.int64)
+        marks[[self._place[key(row)] for row in rows]] = 1
+        return marks
+
+    def _switched(self, stage: NDArray[np.int64]) -> list[Instance]:
+        at = dict(zip(self.switches.names, stage.tolist(), strict=True))
+        return [switched(i, at, self.switches) for i in self.instances]
+
+    def _with_outputs(self, model: Model) -> Model:
+        return model.replaced(**{name: getattr(self.first, name) for name in OUTPUTS})
+
+    def _found(self, stage: NDArray[np.int64]) -> Choice:
         position = tuple(stage.tolist())
         if position not in self._made:
             at = dict(zip(self.switches.names, position, strict=True))
-            instances = [switched(i, at, self.switches) for i in self.instances]
-            model, rows = self._build(instances, in_force(instances, at))
-            outputs = {name: getattr(self.first, name) for name in OUTPUTS}
-            names = tuple(f"{row.element}.{row.axis}" for row in rows)
-            self._made[position] = model.replaced(**outputs), names
+            made = self._build(self._switched(stage), in_force(self.instances, at))
+            self._made[position] = made._replace(model=self._with_outputs(made.model))
         return self._made[position]
+
+
+def key(row: RowName) -> tuple[int, int]:
+    """What tells a row from all others, in the order of the elements."""
+    return row.instance, row.index
 
 
 def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switches) -> Instance:

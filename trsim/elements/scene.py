@@ -79,6 +79,7 @@ class Model(Packed):
     row: I1  # (places) their unknowns, that of the diagonal first: m rows, then d of each hub
     target: I1  # (updates) the place that two entries of one column of L are taken from
     derivative: i8  # address of the equations of motion
+    beside: i8  # address of what finds limits where rows depend on each other     beside.py
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
     beta: f8
@@ -151,6 +152,7 @@ class Scene(Model):
     x: A1  # (n_x) right-hand side, then solution
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
+    aside: A2  # (7, n_y or n_v+m) states and accelerations beside this one   beside.py
     moved: A2  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: A2  # (n, 6) accelerations without constraints, axes of the solve
     gap: A2  # (N, 2) penetration and its rate
@@ -211,6 +213,7 @@ def scene(model: Model) -> Scene:
         x=np.zeros(n_x),
         r=np.zeros(n_x),
         r2=np.zeros(n_x),
+        aside=np.zeros((7, max(model.n_q + model.n_v + model.n_z, model.n_v + m))),
         moved=np.zeros((n, 6)),
         free=np.zeros((n, 6)),
         gap=np.zeros((len(model.con), 2)),

@@ -107,6 +107,8 @@ def turned(
     for n in driven:
         take_hold(mechanism, work, model, r, n, int(before[n]))
     close_locks(mechanism, work, r, before)
+    r.left_out[:] = stages.left_out(r.stage)
+    r.count[rec.WEAK], r.clock[rec.WEAKEST] = 1, 1.0
     work = carried(work, model)
     project(mechanism, work, r)
     done = total_energy(work, t, y) - energy

@@ -34,7 +34,7 @@ from trsim.solve.calls import (
 from trsim.solve.dense_output import build
 from trsim.solve.events import SAME
 from trsim.solve.features import call_meet
-from trsim.solve.land import land
+from trsim.solve.land import evaluate_inside, land
 from trsim.solve.norm import grow
 from trsim.solve.peaks import call_sample
 from trsim.solve.phases import change_phases, latch
@@ -298,7 +298,7 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
         else:
             theta = (t_o - t) / h
             call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
-            evaluate(s, t_o, b.y2, b.K[1])
+            evaluate_inside(s, t_o, b.y2, b.K[1])
             done = r.clock[WORK_PROJECTION] + theta * projected
             measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
             copy_to(row[1:], s.out)
@@ -317,7 +317,7 @@ def look_inside(s, r, b, setting, method, t, h, at, projected):
     """A sample inside the step, for the extremes."""
     theta = (at - t) / h
     call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
-    evaluate(s, at, b.y2, b.K[1])
+    evaluate_inside(s, at, b.y2, b.K[1])
     measure(s, at, b.y2, r.clock[WORK_PROJECTION] + theta * projected, r.clock[ENERGY_0])
     call_sample(method[SAMPLE_AT], s, r, b, setting, method, t, h, at, s.out, projected, 1)
 

@@ -19,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.onward import undecided
 from trsim.assemble.reduce import world_rates
 from trsim.elements.contract import STORED
-from trsim.elements.scene import PROJECTION
+from trsim.elements.scene import PROJECTION, scene
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
 from trsim.solve.mesh_error import of_meshes
@@ -79,6 +80,15 @@ def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]
         yield (
             f"bodies.{p.turn_body}: starts turned by {p.turn:.2g} rad against the drawing, to meet "
             "joints and drives at t = 0; correct the points"
+        )
+    rows = undecided(scene(mechanism.model), begun.y)
+    if rows:
+        names = dict.fromkeys(mechanism.rows[k].rpartition(".")[0] for k in rows)
+        yield (
+            f"joints.{next(iter(names))}: the run begins at rest where branches of the motion meet "
+            f"({', '.join(names)} depend on each other as drawn), and the forces ask for none of "
+            "them: which way it goes is not determined, nor are the accelerations there; give it a "
+            "velocity, or draw it a little on its way"
         )
     given = twists(mechanism, begun, given_velocities(mechanism, begun))
     real = twists(mechanism, begun, world_rates(mechanism.model, begun.y).reshape(-1, 6))

@@ -3,6 +3,7 @@
 from math import nan
 
 from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
+from trsim.assemble.linear import SOUND
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.assemble.schur import velocity_residual
@@ -14,6 +15,7 @@ from trsim.solve.watch import watch
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 NEWTON = 8
+CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
@@ -68,6 +70,25 @@ def land(s, r, b, t, y, yd):
     for k in range(s.n_s):
         b.branch1[k], b.turning1[k] = s.S[k, 0], s.S[k, 1]
     return done
+
+
+@internal
+def evaluate_inside(s, t, y, yd):
+    """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
+
+    With an eigenvalue of S of d^2 accelerations feel 1/d times what interpolation opens rows by;
+    redundant rows are held by others times their levers only.
+    """
+    evaluate(s, t, y, yd)
+    doubtful = s.redundant.shape[0] > 0 or s.status[0] != SOUND
+    if s.m == 0 or not doubtful or s.stabilisation != PROJECTION:
+        return
+    for _ in range(NEWTON):
+        if not project_positions(s, t, y) > CLOSED * s.size:
+            break
+    poses(s, y)
+    project_velocities(s, y)
+    evaluate(s, t, y, yd)
 
 
 @internal

@@ -8,6 +8,9 @@ Interpolation, or a run without projection, opens all rows a little.  Where a re
 by more than is told, the position is brought to the rows of the solve first.  What is then open by
 much more than these is not held by them: beyond max(100 tolerance, 1e-8) the run ends, as the
 accuracy that was asked for is lost; beyond a hundredth of that it is told.
+
+Where rows of the solve nearly depend on each other, others of those that hold the same may not;
+solve/anew.py then sees which to take.
 """
 
 from typing import Any
@@ -16,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
+from trsim.assemble.linear import SINGULAR
 from trsim.assemble.mechanism import Instance, Mechanism
 from trsim.assemble.projection import project_positions
 from trsim.assemble.tables import turns_by
@@ -27,10 +31,13 @@ from trsim.solve.calls import LOOK
 from trsim.solve.record import (
     APART,
     APART_T,
+    FIRED,
     HELD_TO,
     OPEN_INDEX,
     OPEN_ROW,
     OPENED,
+    WEAK,
+    WEAKEST,
     WORST_OPEN,
     WORST_OPEN_RATE,
     Record,
@@ -42,6 +49,7 @@ FRAME_I, FRAME_J, ROW, INDEX = range(4)  # columns of s.redundant
 OF_TOLERANCE, LEAST = 100.0, 1e-8
 TOLD, LEAST_TOLD = 0.01, 1e-9
 NEWTON, CLOSED = 12, 1e-14  # steps; of the mechanism's size
+FEEBLE, FALLEN = 1e-2, 0.1  # pivots; against the last one that was asked about
 AS_THE_OTHERS = 100.0  # where rows are singular, Newton's steps leave them open
 WHY = (
     "It was left out of the solve, since the other rows seemed to hold what it holds; but these "
@@ -61,6 +69,8 @@ def look(s, r, b, setting, t, y, step):
 
     Leaves other poses in the workspace, and b.y2 changed, where it returns 1; else 0.
     """
+    if step == 1:
+        look_at_pivots(s, r)
     told, worst = max(TOLD * setting[HELD_TO], LEAST_TOLD), 0.0
     for k in range(s.redundant.shape[0]):
         worst = max(worst, opening(s, s.m + k))
@@ -80,6 +90,27 @@ def look(s, r, b, setting, t, y, step):
         if left > setting[HELD_TO]:
             r.count[OPENED] = 1
     return 1
+
+
+@internal
+def look_at_pivots(s, r):
+    """Ask for other rows where those of the solve come to depend on each other.
+
+    A pivot is the square of what is left of a row when those before it are taken out.
+    """
+    smallest = 1.0
+    for k in range(s.first.size):
+        place = s.column_start[k]
+        if s.row[place] < s.m:
+            smallest = min(smallest, s.value[place] / s.first[k])
+    if s.status[0] == SINGULAR:
+        smallest = 0.0
+    if smallest < FEEBLE and smallest <= FALLEN * r.clock[WEAKEST]:
+        r.clock[WEAKEST] = smallest
+        r.count[WEAK] = 1
+    r.clock[WEAKEST] = max(r.clock[WEAKEST], smallest)
+    if r.count[WEAK] > 0:
+        r.count[FIRED] += 1
 
 
 @internal

@@ -177,8 +177,12 @@ def first_step(scenario: Any, record: Record) -> float:
     return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
 
 
-def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0) -> Record:
+def new_record(
+    model: Scene, begun: Start, left_out: Any, past_rows: int = 0, switches: int = 0
+) -> Record:
     """A record at the start; memory and branches are the scene's own arrays.
+
+    left_out: which rows are, see assemble/stages.py.
 
     past_rows: of the dense output an implicit method draws on; 0 for explicit ones.
     switches: what user events can switch, see assemble/stages.py.
@@ -214,10 +218,12 @@ def new_record(model: Scene, begun: Start, past_rows: int = 0, switches: int = 0
         sight=np.zeros(len(model.sensed)),
         chatter=np.zeros((len(model.feature), 3)),
         stage=np.zeros(switches, np.int64),
+        left_out=np.array(left_out, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
         jolt=np.zeros((rec.JOLTS_KEPT, 5)),
         worked=np.zeros((2, N_WORKED)),
     )
+    record.clock[rec.WEAKEST] = 1.0
     record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
     record.clock[rec.EXCHANGED] = LEAST * float(np.sum(model.mass)) * begun.speed**2
     return record

@@ -12,7 +12,6 @@ Samples on two sides of an event have nothing to do with each other: `restart`.
 
 from math import sqrt
 
-from trsim.assemble.equations import evaluate
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
@@ -21,6 +20,7 @@ from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import internal
 from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT, call_interpolate
 from trsim.solve.dense_output import build
+from trsim.solve.land import evaluate_inside
 from trsim.solve.record import (
     BUFFERS,
     ENERGY_0,
@@ -222,7 +222,7 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
             built = 1
         theta = (place - t) / h
         call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
-        evaluate(s, place, b.y2, b.K[1])
+        evaluate_inside(s, place, b.y2, b.K[1])
         done = r.clock[WORK_PROJECTION] + theta * projected
         measure(s, place, b.y2, done, r.clock[ENERGY_0])
         lengths(s, b.inside[k], s.out)

@@ -32,6 +32,7 @@ from trsim.elements.scene import Model
     WORST_OPEN_RATE,  # the same per second
     APART,  # the same of rows that are open by more than the rest is
     APART_T,  # s, when
+    WEAKEST,  # pivot of a row, of its diagonal: at the last look at which rows to solve
     TORN_BY,  # m or rad
     OFF,  # m or rad, largest constraint residual at the end of the last trial step
     OFF_RATE,
@@ -42,7 +43,7 @@ from trsim.elements.scene import Model
     ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
     LONGEST,  # s, the longest step since then, see LOOKED
     N_CLOCK,
-) = range(35)
+) = range(36)
 
 # count: integer state of the march
 (
@@ -69,6 +70,7 @@ from trsim.elements.scene import Model
     CRAWLED,  # trial steps in a row that were vanishingly short
     FIRED,  # user events at the end of the last step, not yet acted on
     POINT_ROWS,
+    WEAK,  # 1: rows of the solve nearly depend on each other, others may not      openings.py
     OPENED,  # 1: a redundant row is open beyond its bound
     OPEN_ROW,  # element row e and row of it that APART is of
     OPEN_INDEX,
@@ -81,7 +83,7 @@ from trsim.elements.scene import Model
     NEWEST,  # which of the last samples of the channels is the newest, and how many there are
     SAMPLES,
     N_COUNT,
-) = range(35)
+) = range(36)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -159,6 +161,9 @@ class Record(Packed):
     sight: A1  # (n_sensed) what the sensors that meet corners show at y
     chatter: A2  # (n_features, 3) last time a corner was met, how often in a row, how far it went
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
+    left_out: (
+        I1  # 1: a row of all there may be is not solved; empty where none can depend on others
+    )
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
     jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py

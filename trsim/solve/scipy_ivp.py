@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import derivative
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.elements.scene import Scene, scene
+from trsim.elements.scene import Scene
 from trsim.solve import record as rec
+from trsim.solve.anew import anew, begun_with
 from trsim.solve.blame import why
 from trsim.solve.calls import INTERPOLATE
 from trsim.solve.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
@@ -80,9 +81,10 @@ def interpolate(P, y, theta, out):
 
 def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     """As solve/simulate.py's, with scipy's solver making the steps."""
-    s, setting = scene(mechanism.model), settings(scenario, mechanism, True)
+    setting = settings(scenario, mechanism, True)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
-    r = new_record(s, begun)
+    s, left_out = begun_with(mechanism, begun)
+    r = new_record(s, begun, left_out)
     b = fresh_buffers(
         s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0)),
         points=most_points(mechanism, setting),
@@ -123,7 +125,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         if reason:
             status = "failed"
             break
-        if outcome == SMOOTH_STEP:
+        changed = s
+        if r.count[rec.WEAK]:
+            s = anew(mechanism, s, r, b, setting)
+        if outcome == SMOOTH_STEP and s is changed:
             nudge(solver, r)
             solver.atol[books(s)] = unit_of_works(r, setting)
             r.clock[rec.H] = solver.t - solver.t_old
@@ -138,8 +143,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
+        at = mechanism.stages.mechanism(mechanism, r.stage, r.left_out)
         known = r.count[rec.OPENED] or r.count[rec.TORN]
-        reason = reason if known else why(scenario, mechanism, r) or reason
+        reason = reason if known else why(scenario, at, r) or reason
     bends = Bends(mechanism)
     bends.look(float(r.clock[rec.T]), r.y)
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun,

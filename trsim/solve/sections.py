@@ -47,6 +47,7 @@ from trsim.solve.calls import (
 )
 from trsim.solve.events import NONE, SAME
 from trsim.solve.illinois import between, narrowed
+from trsim.solve.land import evaluate_inside
 from trsim.solve.record import (
     END_RATE,
     ENERGY_0,
@@ -121,7 +122,7 @@ def point(s, r, b, k, t, values):
 def measure_inside(s, r, b, interpolate, t, h, theta, projected):
     """All channels at t + theta h into s.out."""
     call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-    evaluate(s, t + theta * h, b.y2, b.K[1])
+    evaluate_inside(s, t + theta * h, b.y2, b.K[1])
     done = r.clock[WORK_PROJECTION] + theta * projected
     measure(s, t + theta * h, b.y2, done, r.clock[ENERGY_0])
 

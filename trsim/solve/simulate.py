@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.scene import Scene, carried, scene
+from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
+from trsim.solve.anew import anew, begun_with, resumed
 from trsim.solve.blame import why
 from trsim.solve.calls import METHOD_WIDTH
 from trsim.solve.checkpoint import State, begun_at, put_back, state
@@ -127,12 +128,13 @@ def compiled(
     scenario: Any, mechanism: Mechanism, used: list[Any], checkpoint: State | None
 ) -> Generator[Block, None, Outcome]:
     """The march of march.py with a compiled method, or an explicit and an implicit one."""
-    work = scene(mechanism.model)
     setting = settings(scenario, mechanism, used[0].ADAPTIVE)
     located = setting[rec.LOCATE] > 0.0
-    begun = (
-        begun_at(checkpoint, mechanism, work) if checkpoint else start(scenario, mechanism, located)
-    )
+    if checkpoint:
+        begun = begun_at(checkpoint, mechanism, scene(mechanism.model))
+    else:
+        begun = start(scenario, mechanism, located)
+    work, left_out = begun_with(mechanism, begun)
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
@@ -144,7 +146,7 @@ def compiled(
     switches = mechanism.stages.switches
     sparse = next((m.SPARSE for m in used if hasattr(m, "SPARSE")), None)
     past_rows = dense_rows if implicit and not sparse else 0
-    r = new_record(work, begun, past_rows, len(switches.names))
+    r = new_record(work, begun, left_out, past_rows, len(switches.names))
     room = most_points(mechanism, setting)
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned, room)
     if sparse:
@@ -157,9 +159,8 @@ def compiled(
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
-        if np.any(r.stage):
-            work = carried(work, mechanism.stages.model(r.stage))
-            b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
+        work = resumed(mechanism, work, r)
+        b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
         put_back_held(work, r)
     else:
         begin(work, r, b, setting)
@@ -178,6 +179,9 @@ def compiled(
             before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
+            if r.count[rec.WEAK] and ended is None:
+                work = anew(mechanism, work, r, b, setting)
+            if work is not before:
                 b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
         bends.look(float(r.clock[rec.T]), r.y)
         if reason in GO_ON and ended is None and mechanism.beams:
@@ -219,6 +223,6 @@ def ending(
         reason = CONTRADICTORY
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     if reason != NO_STEPS_LEFT:
-        at = mechanism.stages.mechanism(mechanism, r.stage)
+        at = mechanism.stages.mechanism(mechanism, r.stage, r.left_out)
         text = why(scenario, at, r) or text
     return "failed", text

@@ -1,0 +1,117 @@
+"""Accelerations and torques where branches of the motion meet: cranks that lie flat.
+
+Two or three cranks of length 1 that carry a plate and turn by theta as one:
+
+    (I + sum of m p'^2) theta'' = 2 (g_y cos theta - g_x sin theta) + torque    for two of mass 1
+"""
+
+import numpy as np
+import pytest
+
+from trsim.solve.doubts import doubts
+
+from ..overconstrained import ORDINARY, TILTED, cranks, text
+from ..runs import run
+
+METHODS = {
+    "dop853": ("solver.method=dop853",),
+    "radau": ("solver.method=radau",),
+    "ggl": ("solver.method=radau", "solver.formulation=ggl"),
+    "generalized_alpha": ("solver.method=generalized_alpha", "solver.tolerance=1e-6"),
+    "rk4": ("solver.method=rk4", "solver.step=1e-3"),
+    "scipy": ("solver.method=scipy:RK45", "solver.tolerance=1e-6"),
+}
+GRAVITY = np.array([2.0, -5.0, 0.0])
+
+
+def inertia(number, R=ORDINARY):
+    """About theta: cranks of mass 1 and 0.15 kg m2 about z, and the plate of mass 1."""
+    axis = np.asarray(R)[:, 2]  # bodies are placed, not turned
+    return number * (axis @ np.diag([0.1, 0.12, 0.15]) @ axis + 0.25) + 1.0
+
+
+def weight(number, theta):
+    way = np.array([-np.sin(theta), np.cos(theta), 0.0])
+    return (0.5 * number + 1.0) * (GRAVITY @ way)
+
+
+def flat(number, more, R=ORDINARY, angle=0.0, end=0.5):
+    """Lying flat on each other's line at angle 0."""
+    parts = cranks([1.0] * number, np.cumsum([0.0, 0.7, 0.9])[:number], angle, top=0.0)
+    g = "[" + ", ".join(repr(float(x)) for x in R @ GRAVITY) + "]"
+    planar = "true" if R is ORDINARY else "false"
+    return text(parts, f"gravity: {g}\n{more}", R, planar=planar, end=end)
+
+
+def turning(number, rate, R=ORDINARY):
+    """Velocities of the bodies at theta = 0."""
+    spin = [float(x) for x in R @ [0, 0, rate]]
+    given = [f"bodies.plate.velocity={[float(x) for x in R @ [0, rate, 0]]}"]
+    for k in range(number):
+        given += [f"bodies.crank{k}.velocity={[float(x) for x in R @ [0, rate / 2, 0]]}"]
+        given += [f"bodies.crank{k}.angular_velocity={spin}"]
+    return given
+
+
+def spins(r, number, R):
+    """Angular accelerations about the cranks' axis of all bodies at the rows."""
+    names = ["plate", *(f"crank{k}" for k in range(number))]
+    return np.column_stack([r[f"{name}.angular_acceleration"] @ R[:, 2] for name in names])
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+@pytest.mark.parametrize("number", [2, 3])
+def test_a_start_where_branches_meet_has_the_accelerations_of_its_branch(number, method):
+    r = run(flat(number, "", end=1e-2), *turning(number, 3.0), *method)
+    a = spins(r, number, ORDINARY)[0]
+    assert a[0] == pytest.approx(0.0, abs=1e-8)
+    assert a[1:] == pytest.approx(weight(number, 0.0) / inertia(number), rel=1e-8)
+
+
+@pytest.mark.parametrize("R", [ORDINARY, TILTED], ids=["plane", "tilted"])
+def test_the_same_in_space(R):
+    r = run(flat(3, "", R), *turning(3, 3.0, R))
+    a = spins(r, 3, np.asarray(R))[0]
+    # the drawing is rounded, 1e-16, and looked at 1e-3 beside it, by rows at small angles
+    assert a[0] == pytest.approx(0.0, abs=1e-7)
+    assert a[1:] == pytest.approx(weight(3, 0.0) / inertia(3, R), rel=1e-7)
+
+
+@pytest.mark.parametrize("law", ["velocity: 2 + t", "position: 2*t + 0.5*t**2"])
+def test_a_drive_from_where_branches_meet_has_its_torque(law):
+    r = run(flat(3, f"drives: {{motor: {{joint: F0, {law}}}}}", end=0.01))
+    assert spins(r, 3, ORDINARY)[0] == pytest.approx([0.0, 1.0, 1.0, 1.0], abs=1e-8)
+    assert r["motor.force"][0] == pytest.approx(inertia(3) - weight(3, 0.0), rel=1e-8)
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_a_row_exactly_where_branches_meet(method):
+    """A quarter turn at half a second, with rows there and nowhere near."""
+    more = "drives: {motor: {joint: F0, velocity: -3.141592653589793}}\noutput: {every: 0.25}"
+    r = run(flat(3, more, angle=np.pi / 2, end=1.0), *method)
+    there = np.flatnonzero(np.abs(r.t - 0.5) < 1e-9)[0]
+    tolerance = r.scenario.solver.tolerance
+    assert spins(r, 3, ORDINARY)[there] == pytest.approx(0.0, abs=max(1e-7, 1e3 * tolerance))
+    assert r["motor.force"][there] == pytest.approx(-weight(3, 0.0), rel=max(1e-7, 1e3 * tolerance))
+
+
+def test_stiff_forces_do_not_matter_to_the_limit():
+    """A spring far stiffer than the motion is fast: forces are those of the place itself."""
+    more = "forces: {s: {type: torsion_spring, joint: F0, stiffness: 1e9, preload: 1e3}}"
+    r = run(flat(2, more, end=1e-7), *turning(2, 3.0))
+    a = spins(r, 2, ORDINARY)[0]
+    assert a[1:] == pytest.approx((1e3 + weight(2, 0.0)) / inertia(2), rel=1e-8)
+
+
+def test_rest_where_branches_meet_is_told():
+    """Whether the two cranks turn as one or against each other nobody has said."""
+
+    def said(load, *more):
+        r = run(flat(2, load, end=0.01), *more)
+        return [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "branches" in x]
+
+    torque = "forces: {s: {type: torsion_spring, joint: F0, stiffness: 0, preload: 3}}"
+    assert "F0, T0" in said(torque)[0]
+    assert "not determined" in said(torque)[0]
+    assert not said(torque, *turning(2, 1.0))
+    assert not said("")  # they are moved alike

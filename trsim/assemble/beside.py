@@ -1,0 +1,162 @@
+"""Accelerations where branches of the motion meet: the limit along the motion.
+
+With the rows of J dependent (w^T J = 0) the equations of motion leave some accelerations open:
+cranks lying flat could go on as a parallelogram or fold.  Which of them is true follows from rows
+that only appear as the motion goes on,
+
+    w^T J(q + d v) / d  ->  w^T J'      J' = dJ/dt,      w^T J' a = what third derivatives ask for
+
+and next to such a place, on the branch that the velocities are on, J has its full rank.  So the
+motion is followed by d to both sides, brought to the constraints there, and the accelerations are
+those between, to fourth order in d:
+
+    a(d) = (a_ahead + a_behind) / 2,        a = (4 a(d) - a(2 d)) / 3 + O(d^4)
+
+d is halved until that no longer changes.  Forces are those of the place itself, so stiff ones do
+not matter.  Reactions of the rows that depend on each other grow like 1/d with another sign on the
+other side; what is given is the mean of both.  Where nothing moves, or rows depend on each other
+beside the place too, nothing is changed.
+"""
+
+from trsim.assemble.equations import (
+    DERIVATIVE,
+    constraints,
+    equation,
+    free_accelerations,
+    poses,
+    right_hand_side,
+)
+from trsim.assemble.linear import SINGULAR, factorise, solve
+from trsim.assemble.projection import move_all, project_positions, project_velocities
+from trsim.assemble.schur import pull, rows
+from trsim.elements.contract import DRIVES, compiled
+
+FARTHEST, HALVED = 0.02, 8  # rad, or of the mechanism's size; how often
+NEWTON, CLOSED = 8, 1e-14  # steps; of the mechanism's size
+SURE = 1e-3  # of the accelerations: more than that, and there is no limit
+SETTLED = 1e-11  # the same: nothing smaller is asked for
+PLACE, WAY, MEAN, BEFORE, LIMIT, NEWER, FOUND = range(7)  # rows of s.aside
+
+
+@compiled(DERIVATIVE)
+def beside(s, t, y, yd):
+    """Replace the accelerations and multipliers of a singular evaluation by their limits."""
+    fastest = speed(s)
+    if s.n_r < s.n or not fastest > 0.0:
+        return
+    counted = s.status[2]
+    best, scale = look_beside(s, t, y, fastest)
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    factorise(s)
+    s.status[2] = counted
+    if best <= SURE * scale:
+        take(s, y, yd)
+
+
+@equation
+def speed(s):
+    """The fastest rate of a body, rad/s or sizes/s."""
+    fastest = 0.0
+    for f in range(1, s.n_r):
+        for c in range(3):
+            fastest = max(fastest, abs(s.V[f, c]) / s.size, abs(s.V[f, 3 + c]))
+    return fastest
+
+
+@equation
+def look_beside(s, t, y, fastest):
+    """The limit into s.aside[FOUND]; by how much it changed at last, and the size of it."""
+    aside, n = s.aside, s.n_v + s.m
+    best, scale = 1e300, 0.0
+    for k in range(HALVED):
+        d = FARTHEST * 0.5**k / fastest
+        for i in range(n):
+            aside[BEFORE, i], aside[MEAN, i] = aside[MEAN, i], 0.0
+        if not (at(s, t, y, d) and at(s, t, y, -d)):
+            return 1e300, 0.0
+        if k == 0:
+            continue
+        for i in range(n):
+            aside[LIMIT, i] = aside[NEWER, i]
+            aside[NEWER, i] = (4.0 * aside[MEAN, i] - aside[BEFORE, i]) / 3.0
+        if k == 1:
+            continue
+        change = largest = 0.0
+        for i in range(s.n_v):
+            unit = s.size if i % s.d < s.d // 2 + s.d % 2 else 1.0
+            change = max(change, abs(aside[NEWER, i] - aside[LIMIT, i]) / unit)
+            largest = max(largest, abs(aside[NEWER, i]) / unit)
+        if change < best:
+            best, scale = change, max(largest, fastest * fastest)
+            for i in range(n):
+                aside[FOUND, i] = aside[NEWER, i]
+        if best <= SETTLED * scale or change > 8.0 * best:
+            break
+    return best, scale
+
+
+@equation
+def at(s, t, y, d):
+    """Add half of the accelerations and multipliers at d from y along the motion to s.aside[MEAN].
+
+    Returns whether the rows are independent there.
+    """
+    place, mean = s.aside[PLACE], s.aside[MEAN]
+    for i in range(y.size):
+        place[i] = y[i]
+    for i in range(s.n_v):
+        s.aside[WAY, i] = d * y[s.n_q + i]
+    move_all(s, place, s.aside[WAY])
+    for k in range(s.n_z):  # where drives are
+        place[s.n_q + s.n_v + k] += d * s.zd[k]
+    for _ in range(NEWTON):
+        worst = project_positions(s, t + d, place)
+        if s.status[0] == SINGULAR:
+            return False
+        if not worst > CLOSED * s.size:
+            break
+    poses(s, place)
+    constraints(s, t + d)
+    rows(s)
+    factorise(s)
+    if s.status[0] == SINGULAR:
+        return False
+    project_velocities(s, place)
+    poses(s, place)
+    constraints(s, t + d)
+    free_accelerations(s)
+    right_hand_side(s)
+    solve(s, s.x)
+    for k in range(s.m):
+        mean[s.n_v + k] += 0.5 * s.x[k]
+    for f in range(1, s.n_r):
+        pull(s, f, s.x)
+        for c in range(s.d):
+            mean[s.d * (f - 1) + c] += 0.5 * s.free[f, c]
+    return True
+
+
+@equation
+def take(s, y, yd):
+    """The limit into yd, A, lam and the power of the drives."""
+    found, X, A = s.aside[FOUND], s.X, s.A
+    for k in range(s.m):
+        s.zd[DRIVES] += (found[s.n_v + k] - s.lam[k]) * s.phi_t[k]
+        s.lam[k] = found[s.n_v + k]
+    yd[s.n_q + s.n_v + DRIVES] = s.zd[DRIVES]
+    for f in range(1, s.n_r):
+        o = s.d * (f - 1)
+        for c in range(s.d):
+            yd[s.n_q + o + c] = s.free[f, c] = found[o + c]
+        if s.d == 3:
+            A[f, 0], A[f, 1], A[f, 5] = found[o], found[o + 1], found[o + 2]
+            continue
+        for c in range(3):
+            A[f, c] = found[o + c]
+            A[f, 3 + c] = (
+                X[f, 3 + 3 * c] * found[o + 3]
+                + X[f, 4 + 3 * c] * found[o + 4]
+                + X[f, 5 + 3 * c] * found[o + 5]
+            )

@@ -1,0 +1,70 @@
+"""Rows chosen anew in a run, where those of the solve come to depend on each other."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.linear import SINGULAR
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.projection import project_positions
+from trsim.elements.scene import Model, Scene, carried, scene
+from trsim.errors import FileError
+from trsim.solve import record as rec
+from trsim.solve.checkpoint import ANEW, UNFIT
+from trsim.solve.openings import FEEBLE
+from trsim.solve.phases import settle
+from trsim.solve.record import Buffers, Record
+from trsim.solve.start import Start
+
+Array = NDArray[np.float64]
+
+
+def begun_with(mechanism: Mechanism, begun: Start) -> tuple[Scene, NDArray[np.int64]]:
+    """The scene a run starts with, and which rows are left out of it."""
+    stages = mechanism.stages
+    stage = np.zeros(len(stages.switches.names), np.int64)
+    left_out = stages.left_out(stage)
+    work = scene(mechanism.model)
+    if len(mechanism.model.redundant) and feeble(work, begun.y):
+        left_out = stages.anew(stage, left_out, work, begun.y)
+        work = scene(stages.choice(stage, left_out).model)
+    return work, left_out
+
+
+def resumed(mechanism: Mechanism, work: Scene, r: Record) -> Scene:
+    """The scene of a record that was put back.  Raises FileError where it has other rows."""
+    stages = mechanism.stages
+    usual = stages.left_out(r.stage)
+    choice = stages.choice(r.stage, r.left_out)
+    marks = int(np.sum(r.left_out == 1))
+    if not marks == len(choice.dropped) == int(np.sum(usual)) == int(np.sum(r.left_out != 0)):
+        raise FileError(f"{UNFIT}: record.left_out", ANEW)
+    return work if same(work, choice.model) else carried(work, choice.model)
+
+
+def same(work: Scene, model: Model) -> bool:
+    """Whether a scene is that of a model: the same rows of the same elements."""
+    return np.array_equal(work.con, model.con) and np.array_equal(work.par, model.par)
+
+
+def feeble(work: Scene, y: Array) -> bool:
+    """Whether rows nearly depend on each other, by the pivots of S; see openings.py."""
+    project_positions(work, 0.0, y.copy())
+    first = work.column_start[:-1]
+    of_rows = work.row[first] < work.m
+    shares = work.value[first][of_rows] / work.first[of_rows]
+    return bool(work.status[0] == SINGULAR or np.min(shares, initial=1.0) < FEEBLE)
+
+
+def anew(mechanism: Mechanism, work: Scene, r: Record, b: Buffers, setting: Any) -> Scene:
+    """The scene to go on with: of the same stage, its rows those that hold best here."""
+    r.count[rec.WEAK] = 0
+    stages = mechanism.stages
+    left_out = stages.anew(r.stage, r.left_out, work, r.y)
+    if np.array_equal(left_out, r.left_out):
+        return work
+    r.left_out[:] = left_out
+    work = carried(work, stages.choice(r.stage, left_out).model)
+    settle(work, r, b, setting)
+    return work
