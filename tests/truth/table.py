@@ -92,7 +92,8 @@ def summary(lines: list[dict[str, Any]], commit: str) -> str:
         f"Run: {len(lines)} scenes with the seeds of commit `{commit}`, {own} of them judged"
         f" without trsim's assembly and events. {wrong} were wrong; {count[REFUSED]} of {valid}"
         f" valid ones were refused ({100 * count[REFUSED] / max(valid, 1):.2f} %),"
-        f" {count[UNJUDGED]} could not be judged. References took {cpu[0]:.0f} s of one processor, trsim {cpu[1]:.0f} s.\n"
+        f" {count[UNJUDGED]} could not be judged. References took {cpu[0]:.0f} s of one processor,"
+        f" trsim {cpu[1]:.0f} s.\n"
     )
 
 

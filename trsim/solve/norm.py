@@ -63,14 +63,15 @@ def grow(s, r, c):
 
 @internal
 def units(s, r):
-    """Length and speed of the error norm from the penetrations met so far."""
+    """Length and speed of the error norm from the penetrations met so far; a soft stop makes no
+    unit longer than bodies reach."""
     length, speed = 1e300, 1e300
     for c in range(s.contact.size):
         K, n, mass = s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2]
-        depth = min(r.impact[c], s.contact_par[c, 3])
+        arm = s.contact_par[c, 5]
+        depth = min(r.impact[c], s.contact_par[c, 3], s.reach / arm)
         if depth <= 0.0:
             continue
-        arm = s.contact_par[c, 5]
         length = min(length, depth * arm)
         # the frequency of the contact at that depth turns the length into a speed
         speed = min(speed, depth * arm * np.sqrt(n * K * depth ** (n - 1.0) / mass))

@@ -332,14 +332,14 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
     reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
     force = max(force, float(max(reaction, default=0.0)))
-    depth = []
-    for K, n, mass, c, slowest, arm in model.contact_par:
-        speed = max(slowest, 1e-3) / arm
-        touch = ((n + 1.0) * mass * speed**2 / (2.0 * K)) ** (1.0 / (n + 1.0))
-        depth.append(min(max((force * arm / K) ** (1.0 / n), touch), c))
     speed = float(np.linalg.norm(w.V[:, :3], axis=1).max(initial=0.0))
     speed = max(speed, float(np.abs(w.V[:, 3:]).max(initial=0.0)) * reach)
     pull = float(np.linalg.norm(w.A[:, :3], axis=1).max(initial=0.0))
     pull = max(pull, float(np.abs(w.A[:, 3:]).max(initial=0.0)) * reach)
     speed = max(speed, np.sqrt(pull * reach), reach / max(scenario.solver.end, 1e-300))
+    depth = []
+    for K, n, mass, c, slowest, arm in model.contact_par:
+        approach = min(max(slowest, 1e-3), speed) / arm
+        touch = ((n + 1.0) * mass * approach**2 / (2.0 * K)) ** (1.0 / (n + 1.0))
+        depth.append(min(max((force * arm / K) ** (1.0 / n), touch), c))
     return reach, speed, np.array(depth)
