@@ -5,6 +5,7 @@ import shutil
 import subprocess
 import sys
 import time
+from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
@@ -12,13 +13,20 @@ import pytest
 from tests import small
 from tests.store.outside import ROOT, warm
 from tests.store.test_resume import cut
-from trsim import child
+from trsim import child, cli
 from trsim.assemble.assemble import assemble
 from trsim.spec.load import loads
 
-# what trsim, its children, numba, HDF5 and matplotlib import
-NAMES = ("h5py", "numba", "fcntl", "random", "yaml", "click", "numpy", "ctypes", "subprocess",
-         "json", "tempfile", "matplotlib", "scipy", "llvmlite", "sitecustomize")  # fmt: skip
+# whatever trsim, its children, numba, HDF5 and matplotlib may import
+NAMES = sorted({
+    name for name in (*sys.stdlib_module_names, *packages_distributions(), "sitecustomize",
+                      "usercustomize", "pip", "setuptools", "IPython", "cython", "cffi")
+    if name.isidentifier() and name != "trsim"
+})  # fmt: skip
+BARE = """
+import sys
+print(*sys.modules)
+"""
 PLANTED = "open('executed', 'a').write(__name__ + '\\n')\nraise SystemExit('planted')\n"
 SWEEP = "sweep: {joints.B.clearance: [0.4 mm, 0.5 mm]}\n"
 LONGER = ("solver.end=0.05",)
@@ -37,10 +45,20 @@ def folder(tmp_path_factory):
     small.run(folder / "done.h5")
     scenario = loads(small.SLIDER_CRANK, LONGER)
     cut(folder / "dead.h5", scenario, assemble(scenario), 2)
-    for name in NAMES:
+    for name in {*NAMES} - by_python(folder):
         (folder / f"{name}.py").write_text(PLANTED)
     (folder / ".numba_config.yaml").write_text("disable_jit: 1\n")
     return folder
+
+
+def by_python(folder):
+    """What Python itself imports for -m, from the folder it is begun in, before any module runs."""
+    (folder / "bare.py").write_text(BARE)
+    told = subprocess.run(
+        [sys.executable, "-m", "bare"], cwd=folder, capture_output=True, text=True, check=True
+    )
+    (folder / "bare.py").unlink()
+    return {name.split(".")[0] for name in told.stdout.split()}
 
 
 def ended(folder, command, *arguments, **environment):
@@ -64,7 +82,14 @@ COMMANDS = (
     ("export", "done.h5", "--csv", "-o", "done.csv"),
     ("explain", "revolute"),
     ("schema", "-o", "schema.json"),
-)
+    ("bench", "crank.yaml", "--methods", "dop853", "--tolerances", "1e-3", "--reference",
+     "dop853:1e-4", "--repeats", "1"),
+)  # fmt: skip
+
+
+def test_every_command_is_tried():
+    assert {words[0] for words in COMMANDS} == {*cli.COMMANDS}
+    assert {"h5py", "numba", "fcntl", "random", "yaml", "numpy", "click", "json"} <= {*NAMES}
 
 
 @pytest.mark.parametrize("words", COMMANDS, ids=lambda words: words[0])
@@ -75,34 +100,46 @@ def test_no_command_executes_a_file_of_the_working_folder(words, folder):
     assert code == 0, said
 
 
-def test_the_installed_command_executes_none(folder):
-    """Not even where a folder is called as its package is."""
-    command = Path(sys.executable).with_name("trsim")
-    if not command.exists():
+SAFE = {
+    "trsim": [str(Path(sys.executable).with_name("trsim"))],
+    "python -P -m trsim": [sys.executable, "-P", "-m", "trsim"],
+}
+
+
+@pytest.mark.parametrize("how", SAFE)
+def test_with_a_safe_path_none_is_executed(how, folder, tmp_path):
+    """Not even what Python itself imports, or where a folder is called as its package is."""
+    if how == "trsim" and not Path(SAFE[how][0]).exists():
         pytest.skip("it is not installed")
-    (folder / "trsim").mkdir()
-    (folder / "trsim" / "__init__.py").write_text(PLANTED)
+    here = tmp_path / "here"
+    shutil.copytree(folder, here)
+    (here / "trsim").mkdir()
+    for path in (here / "trsim" / "__init__.py", *(here / f"{name}.py" for name in NAMES)):
+        path.write_text(PLANTED)
     for words in (("check", "crank.yaml"), ("recover", "done.h5", "-o", "again.h5")):
-        code, said = ended(folder, [str(command)], *words)
-        assert not (folder / "executed").exists(), (folder / "executed").read_text()
+        code, said = ended(here, SAFE[how], *words)
+        assert not (here / "executed").exists(), (here / "executed").read_text()
         assert code == 0, said
-    shutil.rmtree(folder / "trsim")
 
 
-def test_a_first_run_executes_none(folder, tmp_path):
-    """With an empty cache, until it has compiled something."""
-    environment = {**ENVIRONMENT, "XDG_CACHE_HOME": str(tmp_path)}
-    process = subprocess.Popen(
-        [sys.executable, "-m", "trsim", "run", "crank.yaml"], cwd=folder, env=environment,
+@pytest.mark.parametrize("words", COMMANDS, ids=lambda words: words[0])
+def test_no_command_executes_one_with_an_empty_cache(words, folder, tmp_path):
+    """To its end, or until it has compiled something and waits for more."""
+    here = tmp_path / "here"
+    shutil.copytree(folder, here)
+    environment = {**ENVIRONMENT, "XDG_CACHE_HOME": str(tmp_path / "cache")}
+    process = subprocess.Popen(  # noqa: S603
+        [sys.executable, "-m", "trsim", *words], cwd=here, env=environment,
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     until = time.monotonic() + PATIENCE
-    while process.poll() is None and time.monotonic() < until and not kept(tmp_path):
+    while process.poll() is None and time.monotonic() < until and not kept(tmp_path / "cache"):
         time.sleep(0.1)
+    compiles = process.poll() is None
     process.kill()
     process.wait()
-    assert kept(tmp_path)
-    assert not (folder / "executed").exists(), (folder / "executed").read_text()
+    assert not (here / "executed").exists(), (here / "executed").read_text()
+    assert kept(tmp_path / "cache") if compiles else process.returncode == 0
 
 
 def kept(cache):

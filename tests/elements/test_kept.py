@@ -3,12 +3,14 @@
 import os
 import re
 import stat
+import subprocess
 import sys
 from math import sin
 
 import pytest
 
 from tests import small
+from tests.store.outside import ROOT
 from trsim.cli import main
 from trsim.elements import kept
 from trsim.elements.machine import Compiled
@@ -208,3 +210,46 @@ def test_a_command_says_so_once_and_goes_on(home, tmp_path, capsys, monkeypatch)
     said = capsys.readouterr().err
     assert said.count("belongs to another user (12345)") == 1
     assert "nothing is loaded from the cache" in said and "XDG_CACHE_HOME" in said
+
+
+NOBODY = 65534
+AS_NOBODY = """
+import os
+from tests.elements.test_kept import fresh
+from trsim.elements import kept
+function = fresh()
+function.key  # what others may not read has been read
+os.setgroups([])
+os.setgid({0})
+os.setuid({0})
+print(kept.refused(), kept.folder(), function.file.exists(), sep="\\n")
+if function.file.exists():
+    assert function(0.0) == 1.0
+"""
+
+
+@AS_ROOT
+@pytest.mark.parametrize("change", ["root's", "open", "own"])
+def test_what_another_user_finds(change, home, tmp_path):
+    """A folder of root's, or one that all may write, is not used; his own is."""
+    for path in [home, *home.rglob("*")]:
+        path.chmod(0o777 if change == "open" else 0o755)
+        if change != "root's":
+            os.chown(path, NOBODY, NOBODY)
+    way = [path for path in (tmp_path, *tmp_path.parents) if mode(path) & 0o011 != 0o011]
+    before = {path: mode(path) for path in way}
+    for path, bits in before.items():
+        path.chmod(bits | 0o011)
+    try:
+        done = subprocess.run(  # noqa: S603
+            [sys.executable, "-c", AS_NOBODY.format(NOBODY)], cwd=ROOT, capture_output=True,
+            text=True, timeout=120, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        )  # fmt: skip
+    finally:
+        for path, bits in before.items():
+            path.chmod(bits)
+    assert done.returncode == 0, done.stderr
+    told, folder, there = done.stdout.splitlines()
+    why = {"root's": r"belongs to another user \(0\)", "open": "others may write", "own": ""}
+    assert re.search(why[change], told) and bool(told) == (change != "own")
+    assert (folder == str(home / "trsim" / "code")) == (there == "True") == (change == "own")
