@@ -144,6 +144,19 @@ solver: {end: 10 ms, tolerance: 1e-4}
         assert found.error < 1e-2
 
 
+def test_a_bar_that_two_joints_hold_at_one_place():
+    """The estimate is that of one clamp."""
+    again = CLAMP.replace("}}", "}, again: {type: revolute, bodies: [ground, beam], at: [0, 0]}}")
+    once, two = (loads(BAR + joints + ACROSS + SETTLED) for joints in (CLAMP, again))
+    assert len(two.joints) == len(once.joints) + 1
+    errors = []
+    for read in (once, two):
+        mechanism = assemble(read)
+        (found,) = mesh_errors(read, mechanism, start(read, mechanism, True).y)
+        errors.append(found.error)
+    assert errors[0] == pytest.approx(errors[1], rel=1e-6, abs=1e-12)
+
+
 TURNED = """
   hub: {type: rigid_body, mass: 1, inertia: 1, at: [0, 0]}
 joints:

@@ -106,7 +106,10 @@ def mesh_errors(scenario: Any, mechanism: Mechanism, y: Array) -> Iterator[MeshE
         law = Law(beam.stiffness, beam.bending, strain, curvature)
         width = mechanism.model.d_node // 2
         r, g = (part[:, :width] for part in places(mechanism, beam, y))
-        moved = refined(r, g, beam, law, supports(scenario, name, beam))
+        try:
+            moved = refined(r, g, beam, law, supports(scenario, name, beam))
+        except np.linalg.LinAlgError:  # where it buckles the halves have no one place to go to
+            continue
         error = OF_TWICE * float(np.linalg.norm(moved[:, 0], axis=1).max())
         relative = error / beam.whole
         wanted = ceil(n * max(relative / AIM, 1e-12) ** (1.0 / ORDER))
@@ -117,11 +120,11 @@ def supports(scenario: Any, name: str, beam: Beam) -> list[tuple[int, bool]]:
     """Nodes that joints hold, and whether their direction is held too."""
     joints = [j for j in scenario.joints.values() if name in j.bodies and j.at is not None]
     grounded = [j for j in joints if "ground" in j.bodies] or joints[:1]
-    found = []
+    found: dict[int, bool] = {}
     for joint in grounded:
-        far = np.linalg.norm(beam.places - np.array(joint.at), axis=1)
-        found.append((int(np.argmin(far)), joint.type == "fixed"))
-    return found
+        node = int(np.argmin(np.linalg.norm(beam.places - np.array(joint.at), axis=1)))
+        found[node] = found.get(node, False) or joint.type == "fixed"
+    return [*found.items()]
 
 
 def refined(r: Array, g: Array, beam: Beam, law: Law, held: list[tuple[int, bool]]) -> Array:
