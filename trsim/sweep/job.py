@@ -14,7 +14,10 @@ from trsim.sweep.ledger import DIGEST, REFUSED
 CHECKPOINT = 60.0  # s of wall time between two
 PATIENCE = 10.0  # s
 CONTACT = ("impacts", "fastest_impact", "peak_force", "peak_time")
-STATISTICS = ("steps", "position_residual", "energy_residual_relative", "integration_cpu")
+STATISTICS = (
+    "steps", "position_residual", "joints_open_relative", "redundant_open_relative",
+    "energy_residual_relative", "integration_cpu",
+)  # fmt: skip
 
 
 def prepare() -> None:
