@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim.assemble.cornered import Cornered, cornered
+from trsim.assemble.dense import product
 from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
@@ -125,13 +126,13 @@ class Addresses:
 
     def local(self, i: int, place: tuple[float, ...]) -> tuple[float, ...]:
         """A world point as drawn, in the axes of a body from its centre of mass."""
-        s = tuple(self.rotation[i].T @ (np.array(place) - self.at_start[i]))
+        s = tuple(product(self.rotation[i].T, np.array(place) - self.at_start[i]))
         self.points.append((i, s))
         return s
 
     def axes(self, i: int, direction: tuple[float, ...]) -> tuple[float, ...]:
         """A world direction as drawn, in the axes of a body."""
-        return tuple(self.rotation[i].T @ np.array(direction))
+        return tuple(product(self.rotation[i].T, np.array(direction)))
 
     def drawn_angle(
         self, i: int, j: int, axis: tuple[float, ...], frame: Frame | None = None

@@ -48,6 +48,20 @@ def factorised(band: Array) -> Array:
     return A
 
 
+def inverse_of(factors: Array) -> Array:
+    """M^-1, from L D L^T."""
+    n = len(factors)
+    X = np.eye(n)
+    for k in range(n):
+        for p in range(1, min(WIDTH, n - k)):
+            X[k + p] -= factors[k, p] * X[k]
+    X *= factors[:, :1]
+    for k in range(n - 1, -1, -1):
+        for p in range(1, min(WIDTH, n - k)):
+            X[k] -= factors[k, p] * X[k + p]
+    return X
+
+
 def band_tables(beams: list[Beam], row_frames: list[tuple[int, int]]) -> dict[str, Any]:
     """`beam`, `band`, `consistent` and `across` of a model."""
     if not beams:
@@ -60,7 +74,7 @@ def band_tables(beams: list[Beam], row_frames: list[tuple[int, int]]) -> dict[st
     for beam in beams:
         M = scalar_mass(beam)
         band = banded(M)
-        inverse = np.linalg.inv(M)
+        inverse = inverse_of(factorised(band))
         rows.append((beam.first, beam.nodes, at, beam.element))
         bands.append(band)
         at += 2 * beam.nodes

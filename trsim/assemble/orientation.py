@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.dense import product
 from trsim.assemble.members import Beam
 
 Array = NDArray[np.float64]
@@ -27,7 +28,7 @@ def orientations(rigid: Mapping[str, Any], beams: Mapping[str, Beam]) -> tuple[A
     rotation[:, 2, 2] = 1.0
     for f, spec in enumerate(rigid.values(), start=1):
         if spec.drawn_in is not None:
-            rotation[f] = np.stack(spec.drawn_in[1:], axis=1) @ rotation[f]
+            rotation[f] = product(np.stack(spec.drawn_in[1:], axis=1), rotation[f])
             about_z[f] += spec.drawn_in.about_z
     for beam in beams.values():
         along = [np.arctan2(beam.tangent[1], beam.tangent[0])] * beam.nodes

@@ -7,6 +7,7 @@ Which rows are redundant: redundant.py.  Whether motion stays in a plane: planar
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.dense import least_squares
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.projection import move_all
 from trsim.elements.scene import Model, Scene, workspace
@@ -137,7 +138,7 @@ def closest(
         if worst < 1e-14 * model.size:
             break
         dx = np.zeros(free.size)
-        dx[free] = -scale[free] * np.linalg.lstsq(J[:, free] * scale[free], phi, rcond=1e-10)[0]
+        dx[free] = -scale[free] * least_squares(J[:, free] * scale[free], phi, 1e-10)
         # a far start must not overshoot: at most 0.3 rad, or 0.3 of the mechanism's size
         parts = np.abs(dx).reshape(-1, 6)
         far = max(float(np.max(parts[:, :3])) / model.size, float(np.max(parts[:, 3:])))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.dense import least_squares, product
 from trsim.assemble.equations import poses
 from trsim.assemble.onward import Branches
 from trsim.assemble.rank import DEPENDENT, dependent_rows
@@ -95,7 +96,7 @@ def nearby(
     size = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)[keep]
     for _ in range(SAMPLES):
         way = SPREAD * rng.normal(size=size.size) * size
-        free = way - scale * np.linalg.lstsq(J * scale, J @ way, rcond=DEPENDENT)[0]
+        free = way - scale * least_squares(J * scale, product(J, way), DEPENDENT)
         if model.n == model.n_r:
             goes = np.zeros(keep.size)
             goes[keep] = free

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
+from trsim.assemble.dense import inverse, length, product
 from trsim.assemble.mechanism import Instance, RowName
 from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
@@ -115,7 +116,7 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
         if d == 3:
             inertia_inverse[f, 8] = 1.0 / inertia[f, 8]
         elif complete:
-            inertia_inverse[f] = np.linalg.inv(known).ravel()
+            inertia_inverse[f] = inverse(known).ravel()
         else:  # only for the look at the rows before planarity is known
             inertia_inverse[f, [0, 4, 8]] = 1.0 / inertia[f, 8]
     return mass, inertia, mass_inverse, inertia_inverse
@@ -205,7 +206,7 @@ def extent(at: Addresses) -> float:
     """Size of the mechanism: the diagonal of the box around its points as drawn, m."""
     # the origin is none of its points, unless something is joined to the ground there
     corners = [*at.at_start[1:]] if len(at.at_start) > 1 else [at.at_start[0]]
-    corners += [at.at_start[i] + at.rotation[i] @ np.array(s) for i, s in at.points]
+    corners += [at.at_start[i] + product(at.rotation[i], np.array(s)) for i, s in at.points]
     far = np.max(np.abs(corners), axis=1)
     worst = int(np.argmax(far))
     if far[worst] > LARGEST:
@@ -217,7 +218,7 @@ def extent(at: Addresses) -> float:
             ("bodies", name) if name in at.scenario.bodies else ("joints",),
         )
     box = np.ptp(np.array(corners), axis=0)
-    size = float(np.linalg.norm(box))
+    size = length(box)
     return size if size > 0.0 else 1.0
 
 
@@ -228,8 +229,10 @@ def lone(at: Addresses, size: float, mass: Array, inertia: Array) -> float:
     of the ground do not count: a mass on a spring that is anchored far away does not move so far.
     """
     corners = [*at.at_start[1:]]
-    corners += [at.at_start[i] + at.rotation[i] @ np.array(s) for i, s in at.points if i > 0]
-    apart = float(np.linalg.norm(np.ptp(np.array(corners), axis=0))) if corners else 0.0
+    corners += [
+        at.at_start[i] + product(at.rotation[i], np.array(s)) for i, s in at.points if i > 0
+    ]
+    apart = length(np.ptp(np.array(corners), axis=0)) if corners else 0.0
     n = at.n_rigid
     moments = inertia[1:n, [0, 4, 8]].max(axis=1, initial=0.0)
     gyration = float(np.sqrt(moments / mass[1:n]).max(initial=0.0))
@@ -240,7 +243,7 @@ def levers(at: Addresses, alone: float) -> list[float]:
     """Largest arm of every frame; `alone` where nothing is fixed away from its centre, m."""
     arms = [0.0] * len(at.frames)
     for i, s in at.points:
-        arms[i] = max(arms[i], float(np.linalg.norm(s)))
+        arms[i] = max(arms[i], length(np.array(s)))
     for beam in at.beams.values():
         arms[beam.first : beam.first + beam.nodes] = [beam.whole] * beam.nodes
     return [a if a > 0.0 else alone for a in arms]

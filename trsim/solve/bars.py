@@ -7,6 +7,7 @@ carries the velocities of a rigid body to all of its nodes: no bar starts with a
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.dense import length, product
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import Beam
 from trsim.assemble.reduce import world_rates
@@ -46,7 +47,7 @@ def as_rigid(flexible: Mechanism, stiff: Mechanism, y: Array) -> Array:
         if name in flexible.beams:
             beam = flexible.beams[name]
             r, _ = places(flexible, beam, y)
-            chord = (r[-1] - r[0]) / np.linalg.norm(r[-1] - r[0])
+            chord = (r[-1] - r[0]) / length(r[-1] - r[0])
             ends = twists[[beam.first - 1, beam.first + beam.nodes - 2], :3]
             omega = np.cross(chord, ends[1] - ends[0]) / beam.whole
             out[here] = pose(0.5 * (r[0] + r[-1]), np.array(beam.tangent), chord, b.d)
@@ -55,7 +56,7 @@ def as_rigid(flexible: Mechanism, stiff: Mechanism, y: Array) -> Array:
                 out[rate : rate + 3] = twist[[0, 1, 5]]
             else:
                 out[rate : rate + 3] = twist[:3]
-                out[rate + 3 : rate + 6] = turned(out[here][3:]).T @ omega
+                out[rate + 3 : rate + 6] = product(turned(out[here][3:]).T, omega)
         else:
             k = flexible.frames[name]
             out[here] = y[q * (k - 1) : q * k]
@@ -78,7 +79,7 @@ def as_flexible(flexible: Mechanism, stiff: Mechanism, y: Array) -> Array:
             centre = here[:2] if q == 3 else here[:3]
             R = turned(np.array([0.0]) if q == 3 else here[3:], here[2] if q == 3 else None)
             along = np.linspace(-0.5, 0.5, beam.nodes)[:, None] * beam.whole
-            t = (R @ np.array(beam.tangent))[:width]
+            t = product(R, np.array(beam.tangent))[:width]
             nodes = np.hstack([centre + along * t, np.tile(t, (beam.nodes, 1))])
             out[node_columns(flexible, beam, 0)] = nodes
         else:
@@ -111,15 +112,15 @@ def moving_as_rigid(flexible: Mechanism, stiff: Mechanism, y: Array, v: Array) -
 def pose(centre: Array, drawn: Array, now: Array, d: int) -> Array:
     """Coordinates of a bar whose tangent turned from `drawn` to `now` along the shortest way."""
     if d == 3:
-        angle = np.arctan2(drawn[0] * now[1] - drawn[1] * now[0], drawn @ now)
+        angle = np.arctan2(drawn[0] * now[1] - drawn[1] * now[0], product(drawn[None], now)[0])
         return np.array([centre[0], centre[1], angle])
     half = drawn + now
-    size = np.linalg.norm(half)
+    size = length(half)
     if size < 1e-9:  # straight back: about any axis across
         axis = np.cross(drawn, np.eye(3)[int(np.argmin(np.abs(drawn)))])
-        return np.concatenate([centre, [0.0], axis / np.linalg.norm(axis)])
+        return np.concatenate([centre, [0.0], axis / length(axis)])
     half /= size
-    return np.concatenate([centre, [drawn @ half], np.cross(drawn, half)])
+    return np.concatenate([centre, [product(drawn[None], half)[0]], np.cross(drawn, half)])
 
 
 def turned(p: Array, angle: float | None = None) -> Array:
@@ -128,4 +129,4 @@ def turned(p: Array, angle: float | None = None) -> Array:
         p = np.array([np.cos(0.5 * angle), 0.0, 0.0, np.sin(0.5 * angle)])
     e0, e = p[0], p[1:]
     cross = np.array([[0.0, -e[2], e[1]], [e[2], 0.0, -e[0]], [-e[1], e[0], 0.0]])
-    return np.asarray(np.eye(3) + 2.0 * e0 * cross + 2.0 * cross @ cross)
+    return np.asarray(np.eye(3) + 2.0 * e0 * cross + 2.0 * product(cross, cross))

@@ -7,6 +7,8 @@ from math import sqrt
 
 import numpy as np
 
+from trsim.assemble.dense import inverse
+
 _S6 = sqrt(6.0)
 C = np.array([(4.0 - _S6) / 10.0, (4.0 + _S6) / 10.0, 1.0])
 A = np.array(
@@ -19,13 +21,25 @@ A = np.array(
 
 
 def _transformed():
-    """Real basis T with T^-1 A^-1 T = diag(gamma, [[alpha, -beta], [beta, alpha]])."""
-    values, vectors = np.linalg.eig(np.linalg.inv(A))
-    real = int(np.argmin(np.abs(values.imag)))
-    pair = int(np.argmax(values.imag))
-    # columns Re u, -Im u of A^-1 u = (alpha + i beta) u give that block
-    T = np.column_stack([vectors[:, real].real, vectors[:, pair].real, -vectors[:, pair].imag])
-    return T, np.linalg.inv(T), values[real].real, values[pair].real, values[pair].imag
+    """Real basis T with T^-1 A^-1 T = diag(gamma, [[alpha, -beta], [beta, alpha]]).
+
+    The eigenvalues of A^-1 are the roots of x^3 - 9 x^2 + 36 x - 60 [HairerWanner1996 IV.8].
+    """
+    third = 3.0 ** (1.0 / 3.0)
+    gamma = 3.0 + third * third - third
+    alpha, beta = 3.0 + 0.5 * (third - third * third), 0.5 * sqrt(3.0) * (third * third + third)
+    u, w = _vector(1.0 / gamma), _vector(1.0 / complex(alpha, beta))
+    # columns Re w, -Im w of A^-1 w = (alpha + i beta) w give that block
+    T = np.column_stack([u.real, w.real, -w.imag])
+    return T, inverse(T), gamma, alpha, beta
+
+
+def _vector(value):
+    """Of unit length, with A x = value x, by Cramer's rule with the last entry 1."""
+    (a, b, e), (c, d, f) = A[:2].tolist()
+    a, d = a - value, d - value
+    x = np.array([b * f - e * d, e * c - a * f, a * d - b * c])
+    return x / sqrt(float(np.sum(x.real**2 + x.imag**2)))
 
 
 T, T_INVERSE, GAMMA, ALPHA, BETA = _transformed()

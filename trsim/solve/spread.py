@@ -19,10 +19,11 @@ bounds are taken from the derivatives at the stages of the step, of which it is 
 enlarged: accelerations twice.
 """
 
-from math import comb, inf, sqrt
+from math import comb, cos, inf, pi, sqrt
 
 import numpy as np
 
+from trsim.assemble.dense import inverse
 from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, UNKNOWN
 from trsim.elements.contract import I, J
 from trsim.elements.frames import arm, centripetal, cross, dot, separation, spin, velocity
@@ -38,10 +39,10 @@ SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of t
 
 def _to_bernstein(degree):
     """Nodes on [0, 1], and the control points from values there: the inverse of B_k(nodes[m])."""
-    x = 0.5 - 0.5 * np.cos(np.pi * np.arange(degree + 1) / degree)
+    x = 0.5 - 0.5 * np.array([cos(pi * k / degree) for k in range(degree + 1)])
     k = np.arange(degree + 1)
     binomial = np.array([comb(degree, int(j)) for j in k], float)
-    return x, np.linalg.inv(binomial * x[:, None] ** k * (1.0 - x[:, None]) ** (degree - k))
+    return x, inverse(binomial * x[:, None] ** k * (1.0 - x[:, None]) ** (degree - k))
 
 
 NODES_CUBIC, FROM_CUBIC = _to_bernstein(CUBIC)

@@ -12,6 +12,7 @@ that is none of its lowest: steps go downhill, but one that begins on the top st
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.dense import least_squares, length, product, spaces, symmetric
 from trsim.assemble.equations import forces, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import along_rates, closest, displaced, jacobian, moves
@@ -26,7 +27,7 @@ ROUNDING = 1e-15  # of the mechanism's size: a shorter step cannot be told from 
 STEPS = 200
 STALLED = 1e-3  # of the force: a smaller change, step after step, is none
 PATIENCE = 30  # steps without a change, and those that cross the widest clearance
-PLAINLY, DEPENDENT = 1e-6, 1e-10  # relative sizes of rows that are, or are not, independent
+DEPENDENT = 1e-10  # relative size of a row that is not independent
 INDIFFERENT = 1e-6  # of the largest eigenvalue scale: see `equilibrium`
 
 
@@ -64,15 +65,7 @@ def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
 
 def null_space(J: Array) -> Array:
     """Columns: an orthonormal basis of what J maps to zero."""
-    m, n = J.shape
-    if m <= n:  # a tenth of the cost, where the rows are plainly independent
-        Q, R = np.linalg.qr(J.T, mode="complete")
-        size = np.abs(np.diag(R))
-        if size.min(initial=1.0) > PLAINLY * size.max(initial=1.0):
-            return np.asarray(Q[:, m:])
-    _, s, vt = np.linalg.svd(J, full_matrices=True)
-    rank = int(np.sum(s > DEPENDENT * max(s.max(initial=0.0), 1e-300)))
-    return np.asarray(vt[rank:].T)
+    return spaces(J, DEPENDENT)[1].T
 
 
 def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Array:
@@ -83,8 +76,8 @@ def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Arra
         total = []
         for sign in (1.0, -1.0):
             near = displaced(model, y, sign * size * Z[:, k])
-            total.append(static_forces(model, near) - jacobian(model, 0.0, near)[2].T @ lam)
-        K[:, k] = -Z.T @ (total[0] - total[1]) / (2.0 * size)
+            total.append(static_forces(model, near) - product(jacobian(model, 0.0, near)[2].T, lam))
+        K[:, k] = -product(Z.T, total[0] - total[1]) / (2.0 * size)
     return np.asarray(0.5 * (K + K.T))
 
 
@@ -122,15 +115,15 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
             return y, 0.0
         lam: Array = np.zeros(0)
         if len(J):
-            lam = np.asarray(np.linalg.lstsq(J.T[free], F[free], rcond=1e-12)[0])
-        r = Z.T @ F
+            lam = least_squares(J.T[free], F[free], 1e-12)
+        r = product(Z.T, F)
         K = stiffness(model, y, Z, lam, probe(model))
-        values, vectors = np.linalg.eigh(K)
+        values, vectors = symmetric(K)
         # bodies in balance have no net force left: the largest one met is the scale
         acting = max(float(np.max(np.abs(F))), float(np.max(np.abs(lam), initial=0.0)))
         scale = max(scale, acting)
-        size = float(np.linalg.norm(r))
-        left = float(np.linalg.norm((Z @ r) * mass))
+        size = length(r)
+        left = length(product(Z, r) * mass)
         if left <= BALANCED * scale or size == 0.0:
             check_stable(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
@@ -142,7 +135,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
             break
         # Newton where the stiffness is positive, downhill where it is not
         curvature = np.maximum(np.abs(values), 1e-12 * np.abs(values).max()) + push
-        dx = Z @ (vectors @ ((vectors.T @ r) / curvature))
+        dx = product(Z, product(vectors, product(vectors.T, r) / curvature))
         longest = float(np.max(np.abs(dx.reshape(-1, 6)[:, :3])))
         turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
         # a stiff contact turns the rounding of a position into a force: no step is left to take
@@ -153,7 +146,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
         # against the motions allowed there: the old ones would see the constraints' forces
         there = balance(model, y_new, free, mass)
-        r_new = np.linalg.norm(there[2].T @ there[0])
+        r_new = length(product(there[2].T, there[0]))
         # a journal crosses its clearance under a constant force, and on the way down from an
         # unstable place the force grows before it fades
         push *= 0.3 if r_new < 1.000001 * size or values[0] < 0.0 else 4.0

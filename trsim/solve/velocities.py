@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.assemble import assemble
+from trsim.assemble.dense import least_squares, length, product, spaces
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import Branches
@@ -90,7 +91,7 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     rate = np.append(rate, [wishes[k][1] for k in kept])
     v = world_rates(model, y_ideal)
     if len(J):
-        v = v + scale * np.linalg.lstsq(J * scale, rate - J @ v, rcond=1e-10)[0]
+        v = v + scale * least_squares(J * scale, rate - product(J, v), 1e-10)
     left = np.max(np.abs(J @ v - rate), initial=0.0)
     if left > 1e-6 * max(1.0, np.max(np.abs(rate), initial=0.0)):
         raise ModelError(
@@ -108,14 +109,13 @@ def independent(J: Array, wishes: list[Array]) -> list[int]:
     """Which wishes, one after the other, are not fixed by the rows of J and the wishes before."""
     basis = np.zeros((0, J.shape[1]))
     if len(J):
-        _, s, vt = np.linalg.svd(J, full_matrices=False)
-        basis = vt[s > INDEPENDENT * s.max()]
+        basis, _ = spaces(J, INDEPENDENT)
     kept = []
     for k, wish in enumerate(wishes):
-        left = wish - basis.T @ (basis @ wish)
-        left -= basis.T @ (basis @ left)
-        size = np.linalg.norm(left)
-        if size > INDEPENDENT * np.linalg.norm(wish):
+        left = wish - product(basis.T, product(basis, wish))
+        left -= product(basis.T, product(basis, left))
+        size = length(left)
+        if size > INDEPENDENT * length(wish):
             basis = np.vstack([basis, left / size])
             kept.append(k)
     return kept
@@ -154,8 +154,8 @@ def bushings(mechanism: Mechanism, y: Array) -> list[Array]:
         i, j = instance.row.con[:2]
         par = np.array(instance.row.par)
         R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-        place = w.X[j, :3] + R_j @ par[3:6]
-        for k, a in enumerate(par[6:15].reshape(3, 3) @ R_i.T):
+        place = w.X[j, :3] + product(R_j, par[3:6])
+        for k, a in enumerate(product(par[6:15].reshape(3, 3), R_i.T)):
             if par[STIFFNESS + k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a, [place - w.X[f, :3] for f in (i, j)]))
             if par[ROTATIONAL + k] > 0.0:

@@ -1,0 +1,186 @@
+"""Dense linear algebra that gives the same bits on every processor with the same operations.
+
+The kernels of a BLAS differ between families of processors in the order of their sums, and so in
+the last bit of what they give.  Where a run starts, and what its tables hold, must not hang on
+that: what decides it is computed here.  Numbers for messages and bounds may come of numpy.linalg.
+
+Householder's triangles with exchange of columns stand for singular values: the rank is that of the
+diagonal, which falls [GolubVanLoan2013 5.4].  Sums of products are einsum's, which asks no BLAS.
+"""
+
+from math import copysign, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.elements.contract import compiled
+from trsim.elements.signatures import A1, A2, I1, int64, void
+
+Array = NDArray[np.float64]
+
+SWEEPS = 60  # of Jacobi's method: it takes 6 to 10
+
+
+@compiled(void(A2, A2, A1, I1))
+def triangle(B, Q, w, order):
+    """B, its columns in an order of their own, becomes R with Q B = R; to Q the same is done.
+
+    order: filled.  w: room for a row of the wider of B and Q.
+    """
+    p, q, r = B.shape[0], B.shape[1], Q.shape[1]
+    for j in range(q):
+        order[j] = j
+    for k in range(min(p, q)):
+        for j in range(k, q):
+            w[j] = 0.0
+        for i in range(k, p):
+            for j in range(k, q):
+                w[j] += B[i, j] * B[i, j]
+        best = k
+        for j in range(k + 1, q):
+            if w[j] > w[best]:
+                best = j
+        square = w[best]
+        if square == 0.0:
+            return
+        if best != k:
+            order[k], order[best] = order[best], order[k]
+            for i in range(p):
+                B[i, k], B[i, best] = B[i, best], B[i, k]
+        alpha = -copysign(sqrt(square), B[k, k])
+        head = B[k, k] - alpha
+        scale = -1.0 / (alpha * head)  # of v v^T, v: the column with this head
+        for j in range(k + 1, q):
+            w[j] = head * B[k, j]
+        for i in range(k + 1, p):
+            for j in range(k + 1, q):
+                w[j] += B[i, k] * B[i, j]
+        for j in range(k + 1, q):
+            w[j] *= scale
+            B[k, j] -= head * w[j]
+        for i in range(k + 1, p):
+            for j in range(k + 1, q):
+                B[i, j] -= B[i, k] * w[j]
+        for j in range(r):
+            w[j] = head * Q[k, j]
+        for i in range(k + 1, p):
+            for j in range(r):
+                w[j] += B[i, k] * Q[i, j]
+        for j in range(r):
+            w[j] *= scale
+            Q[k, j] -= head * w[j]
+        for i in range(k + 1, p):
+            for j in range(r):
+                Q[i, j] -= B[i, k] * w[j]
+        B[k, k] = alpha
+        for i in range(k + 1, p):
+            B[i, k] = 0.0
+
+
+@compiled(int64(A2, A2))
+def diagonalised(A, V):
+    """A, symmetric, becomes diagonal by Jacobi's rotations; V, rows, turns along.  Sweeps taken."""
+    n = A.shape[0]
+    for sweep in range(SWEEPS):
+        turned = False
+        for p in range(n - 1):
+            for q in range(p + 1, n):
+                off = A[p, q]
+                if abs(off) <= 1e-17 * sqrt(abs(A[p, p] * A[q, q])) or abs(off) < 1e-300:
+                    continue
+                turned = True
+                theta = 0.5 * (A[q, q] - A[p, p]) / off
+                t = copysign(1.0, theta) / (abs(theta) + sqrt(theta * theta + 1.0))
+                c = 1.0 / sqrt(t * t + 1.0)
+                s = t * c
+                for k in range(n):
+                    a, b = A[p, k], A[q, k]
+                    A[p, k], A[q, k] = c * a - s * b, s * a + c * b
+                for k in range(n):
+                    a, b = A[k, p], A[k, q]
+                    A[k, p], A[k, q] = c * a - s * b, s * a + c * b
+                A[p, q] = 0.0
+                A[q, p] = 0.0
+                for k in range(n):
+                    a, b = V[p, k], V[q, k]
+                    V[p, k], V[q, k] = c * a - s * b, s * a + c * b
+        if not turned:
+            return sweep
+    return SWEEPS
+
+
+def length(v: Array) -> float:
+    """The length of a vector."""
+    return sqrt(float(np.sum(np.square(v))))
+
+
+def product(A: Array, b: Array) -> Array:
+    """A b, of a matrix with a vector or with a matrix."""
+    return np.einsum("ij,j->i" if b.ndim == 1 else "ij,jk->ik", A, b)
+
+
+def _triangle(B: Array, Q: Array) -> tuple[Array, Array, NDArray[np.int64]]:
+    R, Q = np.array(B, float, order="C"), np.array(Q, float, order="C")
+    order = np.zeros(R.shape[1], np.int64)
+    if R.size:
+        triangle(R, Q, np.zeros(max(R.shape[1], Q.shape[1])), order)
+    return R, Q, order
+
+
+def spaces(J: Array, least: float) -> tuple[Array, Array]:
+    """Orthonormal rows that span the rows of J, and those that J maps to zero.
+
+    least: of the largest row, what must be left of one that does not depend on the others.
+    """
+    R, Q, _ = _triangle(J.T, np.eye(J.shape[1]))
+    rank = _rank(R, least)
+    return Q[:rank], Q[rank:]
+
+
+def least_squares(A: Array, b: Array, least: float) -> Array:
+    """The shortest x with the least |A x - b|; least: as in `spaces`."""
+    R, Q, order = _triangle(A.T, np.eye(A.shape[1]))
+    rank = _rank(R, least)
+    # A[order] = L Q[:rank], so that |L y - b[order]| is to be least
+    L, c = R[:rank].T, b[order]
+    U, turned, second = _triangle(L, c[:, None])
+    y = np.zeros(rank)
+    y[second] = _back(U[:rank], turned[:rank, 0])
+    return np.sum(Q[:rank] * y[:, None], axis=0)
+
+
+def _back(U: Array, b: Array) -> Array:
+    """U x = b, U upper triangular."""
+    x = b.copy()
+    for k in range(len(x) - 1, -1, -1):
+        x[k] /= U[k, k]
+        x[:k] -= U[:k, k] * x[k]
+    return x
+
+
+def _rank(R: Array, least: float) -> int:
+    diagonal = np.abs(np.diagonal(R))
+    return int(np.sum(diagonal > least * max(diagonal.max(initial=0.0), 1e-300)))
+
+
+def symmetric(K: Array) -> tuple[Array, Array]:
+    """Eigenvalues of a symmetric matrix, rising, and their vectors as columns."""
+    A, V = np.array(K, float, order="C"), np.eye(len(K))
+    diagonalised(A, V)
+    values = np.diagonal(A)
+    rising = np.argsort(values, kind="stable")
+    return values[rising].copy(), V[rising].T.copy()
+
+
+def inverse(M: Array) -> Array:
+    """That of a small regular matrix, by Gauss and Jordan with exchange of rows."""
+    n = len(M)
+    A = np.hstack([M, np.eye(n)])
+    for k in range(n):
+        best = k + int(np.argmax(np.abs(A[k:, k])))
+        A[[k, best]] = A[[best, k]]
+        A[k] /= A[k, k]
+        for i in range(n):
+            if i != k:
+                A[i] -= A[i, k] * A[k]
+    return A[:, n:].copy()  # compiled code takes constants as they lie in memory
