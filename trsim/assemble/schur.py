@@ -19,7 +19,8 @@ from trsim.elements.vectors import internal as equation
 def rows(s):
     """B, W and S of the J of the last evaluation."""
     clear(s.value)
-    clear(s.through)
+    if s.first.size > s.m:  # there are hubs
+        clear(s.through)
     pair = planar_rows(s) if s.d == 3 else spatial_rows(s)
     if s.n_r < s.n:
         call_beams(s.on_beams[ROWS], s, s.x, s.x, pair)

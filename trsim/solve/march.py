@@ -100,7 +100,9 @@ def method_table(method, sections=0, meet=0, look=0, search=0, corners=(0, 0, 0)
     called = (method.step.address(), method.dense.address(), method.interpolate.address())
     about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look)
     stages = getattr(method, "DEAR", 0)
-    found = (look_closer.address(), search, stages, method.DENSE_DEGREE, *corners)
+    searched = search > 0 or corners[0] > 0
+    control = method.control.address() if searched and hasattr(method, "control") else 0
+    found = (look_closer.address(), search, stages, method.DENSE_DEGREE, control, *corners)
     return (*called, complete.address(), *about, *found, sample.address())
 
 

@@ -48,7 +48,6 @@ from trsim.laws.functions import (
     sensed,
 )
 from trsim.solve.calls import (
-    DEGREE_AT,
     DENSE_AT,
     IMPLICIT_AT,
     INTERPOLATE_AT,
@@ -110,7 +109,7 @@ def corners_ahead(s, r, b, setting, method, t, h, built):
     evaluations = s.status[1]
     if built == 0:
         build(s, r, b, method[DENSE_AT], t, h)
-    fill_net(s, r, b, method[INTERPOLATE_AT], method[DEGREE_AT])
+    fill_net(s, r, b, method)
     again = setting[FIXED_STEP] == 0.0  # a shorter step can be had
     first = first_corner(s, r, b, setting, t, h, method[INTERPOLATE_AT], again)
     if first >= 1.0:

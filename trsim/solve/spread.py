@@ -28,10 +28,16 @@ from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, UNKNOWN
 from trsim.elements.contract import I, J
 from trsim.elements.frames import arm, centripetal, cross, dot, separation, spin, velocity
 from trsim.elements.vectors import internal
-from trsim.solve.calls import call_interpolate
+from trsim.solve.calls import (
+    CONTROL_AT,
+    DEGREE_AT,
+    INTERPOLATE_AT,
+    call_control,
+    call_interpolate,
+)
 from trsim.solve.record import DEGREE
 
-CUBIC, MOST = 3, 8  # degrees of the dense outputs: of methods of low order, of any
+CUBIC = 3  # degree of the dense output of methods that do not tell its control points
 FRAME = 7  # rows of b.curve for one frame
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
@@ -45,26 +51,27 @@ def _to_bernstein(degree):
     return x, inverse(binomial * x[:, None] ** k * (1.0 - x[:, None]) ** (degree - k))
 
 
-NODES_CUBIC, FROM_CUBIC = _to_bernstein(CUBIC)
-NODES, FROM_NODES = _to_bernstein(MOST)
+NODES, FROM_NODES = _to_bernstein(CUBIC)
 
 
 # --- the dense output as control points ------------------------------------------------------
 
 
 @internal
-def fill_net(s, r, b, interpolate, degree):
+def fill_net(s, r, b, method):
     """b.net[k] = k-th control points of q over the step, less q at its beginning."""
-    net, n = b.net, degree + 1
-    r.count[DEGREE] = degree
+    net, n = b.net, CUBIC + 1
+    r.count[DEGREE] = method[DEGREE_AT]
+    if method[CONTROL_AT] > 0:
+        call_control(method[CONTROL_AT], b.P, net)
+        return
     for k in range(n):
         for c in range(s.n_q):
             net[k, c] = 0.0
     for m in range(n):
-        node = NODES_CUBIC[m] if degree == CUBIC else NODES[m]
-        call_interpolate(interpolate, b.P, r.y, node, b.y2)
+        call_interpolate(method[INTERPOLATE_AT], b.P, r.y, NODES[m], b.y2)
         for k in range(n):
-            weight = FROM_CUBIC[k, m] if degree == CUBIC else FROM_NODES[k, m]
+            weight = FROM_NODES[k, m]
             for c in range(s.n_q):
                 net[k, c] += weight * (b.y2[c] - r.y[c])
 

@@ -1,0 +1,139 @@
+"""CPU time of the integration beside that of another tree of trsim: interleaved pairs.
+
+    python -m benchmarks.against FOLDER [--pairs 31] [CASE ...]
+
+FOLDER holds another tree with its own .venv. One process of each tree assembles the case once; then
+both integrate in turn, each first in every other pair. A pair's ratio is of the CPU times of both;
+the median over the pairs is given with the bounds of its 95 % interval, which are order statistics of
+the ratios (binomial), so that nothing is assumed of how they are distributed.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import comb
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+ROOT = Path(__file__).parent.parent
+VALIDATION, REVERSER = ROOT / "scenarios/validation", ROOT / "scenarios/thrust_reverser"
+LEAST = 0.03  # s of CPU of one measurement: shorter runs are repeated
+
+
+def cases() -> dict[str, tuple[str, list[str]]]:
+    """Name -> text or file of a scenario, and what is set in it."""
+    from benchmarks.problems import bending_chain, chain, windows
+
+    end, found = ["solver.end=3 ms"], {}
+    for variant in ("frictionless", "friction"):
+        for tolerance in ("1e-3", "1e-4", "1e-6", "1e-8"):
+            found[f"P1 {variant} {tolerance}"] = (
+                str(VALIDATION / f"slider_crank_{variant}.yaml"),
+                [*end, f"solver.tolerance={tolerance}"],
+            )
+    for tolerance in ("1e-6", "1e-9"):
+        found[f"P3 {tolerance}"] = (
+            str(VALIDATION / "andrews.yaml"),
+            [f"solver.tolerance={tolerance}"],
+        )
+    for n, tolerance in ((2, "1e-6"), (10, "1e-6"), (2, "1e-8")):
+        found[f"P4 N={n} {tolerance}"] = (windows(n), [f"solver.tolerance={tolerance}"])
+    found["P5 n=40 1e-8"] = (chain(40), [])
+    found["P5 n=40 bending 1e-8"] = (bending_chain(40), [])
+    for name in ("ideal", "clearance_b_0.3mm", "clearance_ab_0.3mm", "clearance_abpq_0.1mm"):
+        found[f"reverser {name}"] = (str(REVERSER / f"{name}.yaml"), ["solver.end=0.5 s"])
+    return found
+
+
+WORKER = r"""
+import json, sys
+from pathlib import Path
+from trsim.spec.load import load, loads
+from trsim.assemble.assemble import assemble
+from trsim.analyse.trajectory import marched
+source, sets = json.loads(sys.stdin.readline())
+read = (lambda s: loads(source, s)) if "\n" in source else (lambda s: load(Path(source), s))
+end = read(sets).solver.end
+scenario = read([*sets, f"output.every={end!r}", "output.channels=[]"])
+mechanism = assemble(scenario)
+for line in sys.stdin:
+    total = 0.0
+    for _ in range(int(line)):
+        numbers = marched(scenario, mechanism)[1].statistics
+        total += numbers["integration_cpu"]
+    keep = ("steps", "rejected", "evaluations", "dense_outputs_built")
+    print(json.dumps([total, {k: numbers[k] for k in keep if k in numbers}]), flush=True)
+"""
+
+
+@contextmanager
+def worker(tree: Path, source: str, sets: list[str]) -> Iterator[Any]:
+    """A call that integrates a number of times in another process: CPU s, the run's counts."""
+    process = subprocess.Popen(  # noqa: S603
+        [str(tree / ".venv/bin/python"), "-c", WORKER],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tree,
+    )  # fmt: skip
+    ask, answer = process.stdin, process.stdout
+    assert ask is not None and answer is not None  # noqa: S101
+    ask.write(json.dumps([source, sets]) + "\n")
+
+    def run(times: int) -> tuple[float, dict[str, float]]:
+        ask.write(f"{times}\n")
+        ask.flush()
+        cpu, numbers = json.loads(answer.readline())
+        return cpu, numbers
+
+    try:
+        yield run
+    finally:
+        ask.close()
+        process.wait()
+
+
+def interval(ratios: list[float]) -> tuple[float, float]:
+    """Bounds of the median at 95 %: the k-th smallest and largest, P(Binomial(n, 1/2) < k) <= 2.5 %."""
+    n, k, below = len(ratios), 0, 0.0
+    while below + comb(n, k) / 2**n <= 0.025:
+        below += comb(n, k) / 2**n
+        k += 1
+    ordered = sorted(ratios)
+    return ordered[max(k - 1, 0)], ordered[min(n - k, n - 1)]
+
+
+def main() -> None:
+    read = argparse.ArgumentParser(prog="python -m benchmarks.against", description=__doc__)
+    read.add_argument("folder", type=Path)
+    read.add_argument("case", nargs="*", help="those whose names begin with it; all unless given")
+    read.add_argument("--pairs", type=int, default=31)
+    a = read.parse_intermixed_args()
+    print("  case                            ms there   ms here   ratio   95 %             counts")
+    for name, (source, sets) in cases().items():
+        if a.case and not any(name.startswith(one) for one in a.case):
+            continue
+        with worker(a.folder, source, sets) as there, worker(ROOT, source, sets) as here:
+            there(1), here(1)
+            times = max(1, round(LEAST / min(there(1)[0], here(1)[0])))
+            first, second, ratios = [], [], []
+            for pair in range(a.pairs):
+                if pair % 2:
+                    one, before = there(times)
+                    two, after = here(times)
+                else:
+                    two, after = here(times)
+                    one, before = there(times)
+                first.append(one / times)
+                second.append(two / times)
+                ratios.append(two / one)
+        low, high = interval(ratios)
+        counts = " ".join(f"{k[:5]} {before[k]:.0f}/{after[k]:.0f}" for k in after if k in before)
+        print(f"  {name:30s} {1e3 * median(first):9.2f} {1e3 * median(second):9.2f}   "
+              f"{median(ratios):.3f}   {low:.3f}..{high:.3f}   {counts}", flush=True)  # fmt: skip
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main()
