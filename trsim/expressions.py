@@ -212,6 +212,35 @@ def names(node: Node) -> set[str]:
     return set()
 
 
+def degree(node: Node) -> float:
+    """The degree of the polynomials in its names that an expression consists of between its
+    corners; infinite where it is something else."""
+    match node:
+        case ("number", _):
+            return 0
+        case ("name", name):
+            return 0 if name == "pi" else 1
+        case ("unary", _, operand):
+            return degree(operand)
+        case ("binary", "+" | "-", left, right):
+            return max(degree(left), degree(right))
+        case ("binary", "*", left, right):
+            return degree(left) + degree(right)
+        case ("binary", "/", left, right):
+            return degree(left) if degree(right) == 0 else math.inf
+        case ("binary", "**", left, ("number", power)) if power >= 0 and power == int(power):
+            return power * degree(left) if power > 0 else 0
+        case ("binary", sign, left, right) if sign != "**":  # a comparison
+            return 0 if max(degree(left), degree(right)) < math.inf else math.inf
+        case ("call", "min" | "max" | "abs", arguments):
+            return max(map(degree, arguments))
+        case ("call", "smoothstep", (x,)):
+            return 3 * degree(x)
+        case ("call", "step" | "step5" as word, (x, *ends)) if not any(map(degree, ends)):
+            return (3 if word == "step" else 5) * degree(x)
+    return math.inf
+
+
 def renamed(node: Node, names: Mapping[str, str]) -> Node:
     """The expression with other names for those in `names`; of `B.angle` what counts is B."""
     match node:

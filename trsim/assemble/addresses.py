@@ -13,7 +13,7 @@ from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
-from trsim.expressions import names
+from trsim.expressions import degree, names
 from trsim.frame import Frame
 from trsim.laws import functions
 from trsim.units import fits
@@ -34,6 +34,7 @@ class JointCoordinate(NamedTuple):
 
 
 UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
+LOW = 5  # degree of a polynomial that has nothing short between two corners
 
 
 @dataclass
@@ -49,7 +50,7 @@ class Addresses:
     sensors: dict[str, int] = field(default_factory=dict)
     n_s: int = 0
     timed: bool = False  # something depends on t explicitly
-    sensed: bool = False  # or on a sensor
+    sensed: bool = False  # or on a sensor, and may be short between two corners
     notes: list[str] = field(default_factory=list)
     instances: dict[tuple[str, str], Any] = field(default_factory=dict)  # packed so far
     switches: Any = None  # of user events, once all elements are packed
@@ -273,7 +274,8 @@ class Addresses:
         else:
             self.timed = self.timed or "t" in names(spec.node)
             used = names(spec.node) - {"t", "pi"}
-            self.sensed = self.sensed or bool(used)
+            # what is a polynomial between its corners has nothing short there
+            self.sensed = self.sensed or (bool(used) and degree(spec.node) > LOW)
             indices = {name: self.known_sensor(name, time_only, path) for name in used}
             code = functions.expression(spec.node, indices)
         if self.end is not None:

@@ -107,7 +107,9 @@ def compared(columns: list[Column], energy: int) -> dict[str, Any]:
     units: dict[str, int] = {}
     kin: list[int] = []
     for column in columns:
-        apart = column.start >= energy and (not column.wanted or column.name.rsplit(".", 1)[1] in OF_STEPS)
+        apart = column.start >= energy and (
+            not column.wanted or column.name.rsplit(".", 1)[1] in OF_STEPS
+        )
         number = -1 if apart else units.setdefault(column.unit, len(units))
         kin += [number] * column.size
     vectors = [column for column in columns if is_vector(column)]

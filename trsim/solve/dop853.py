@@ -59,9 +59,7 @@ def stage(K, y, h, s, out):
                 out[c] = a0 * K[j0, c] + a1 * K[j1, c] + a2 * K[j2, c] + a3 * K[j3, c]
         else:
             for c in range(n):
-                out[c] = (
-                    out[c] + a0 * K[j0, c] + a1 * K[j1, c] + a2 * K[j2, c] + a3 * K[j3, c]
-                )
+                out[c] = out[c] + a0 * K[j0, c] + a1 * K[j1, c] + a2 * K[j2, c] + a3 * K[j3, c]
     for c in range(n):
         out[c] = y[c] + h * out[c]
 
