@@ -2,10 +2,10 @@
 
     python -m benchmarks.against FOLDER [--pairs 31] [CASE ...]
 
-FOLDER holds another tree with its own .venv. One process of each tree assembles the case once; then
-both integrate in turn, each first in every other pair. A pair's ratio is of the CPU times of both;
-the median over the pairs is given with the bounds of its 95 % interval, which are order statistics of
-the ratios (binomial), so that nothing is assumed of how they are distributed.
+FOLDER holds another tree with its own .venv.  One process of each tree assembles the case once;
+then both integrate in turn, each first in every other pair.  A pair's ratio is of the CPU times of
+both; the median over the pairs is given with the bounds of its 95 % interval, which are order
+statistics of the ratios (binomial), so that nothing is assumed of how they are distributed.
 """
 
 import argparse
@@ -78,7 +78,7 @@ def worker(tree: Path, source: str, sets: list[str]) -> Iterator[Any]:
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tree,
     )  # fmt: skip
     ask, answer = process.stdin, process.stdout
-    assert ask is not None and answer is not None  # noqa: S101
+    assert ask is not None and answer is not None
     ask.write(json.dumps([source, sets]) + "\n")
 
     def run(times: int) -> tuple[float, dict[str, float]]:
@@ -95,7 +95,10 @@ def worker(tree: Path, source: str, sets: list[str]) -> Iterator[Any]:
 
 
 def interval(ratios: list[float]) -> tuple[float, float]:
-    """Bounds of the median at 95 %: the k-th smallest and largest, P(Binomial(n, 1/2) < k) <= 2.5 %."""
+    """Bounds of the median at 95 %: the k-th smallest and largest.
+
+    k is the largest with P(Binomial(n, 1/2) < k) <= 2.5 %.
+    """
     n, k, below = len(ratios), 0, 0.0
     while below + comb(n, k) / 2**n <= 0.025:
         below += comb(n, k) / 2**n

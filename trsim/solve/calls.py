@@ -7,15 +7,22 @@ STEP        b.y1 <- one step of size h from r.y, with b.K[0] = y'(t, y); returns
 DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
             is y'(t + h, y1) with y1 as finally accepted, projected
 INTERPOLATE y <- solution at t + theta h
-CONTROL     net <- control points of the solution less y, in Bernstein's basis; where a method has none
-            they are taken from values                                              spread.py
+CONTROL     net <- control points of the solution less y, in Bernstein's basis; where a method has
+            none they are taken from values                                   spread.py
 """
+
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE
 from trsim.elements.packed import A1, A2, I1, f8, i8
 from trsim.solve.record import BUFFERS, RECORD
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 NO_STEP = 10.0
 
@@ -38,17 +45,38 @@ LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1, i8)
 #                                        setting method t h built
 SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
 
-# a row of `methods`: addresses of step, dense output, interpolation and of `complete`, which row
-# of K holds the last derivative, the power of h its error estimate falls with, whether implicit;
-# the addresses of what locates points of sections, of what goes on behind corners of functions, of
-# what looks at redundant rows, of what looks at rounding and of what finds events, or 0; how many
-# rows of K hold derivatives at the stages of a step whose dense output is dear, or 0; the degree of
-# that output, and the address of its control points, or 0; the addresses of what finds corners that sensors meet, of what tells how far beyond
-# one a place is and of what goes on behind it, or 0; and of what
-# keeps extremes
-STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT = range(7)
-SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, STAGES_AT, DEGREE_AT = range(7, 14)
-CONTROL_AT, CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, METHOD_WIDTH = 14, 15, 16, 17, 18, 19
+# a row of `methods`, made by `method_row`: what the march must know of a method and of a run, in
+# whole numbers; an address is 0 where nothing of that kind is to be done
+FIELDS = (
+    "step", "dense", "interpolate",  # addresses of the three functions
+    "complete",  # and of what makes a trial step an accepted one
+    "last",  # the row of K with the derivative at the end of a step
+    "estimate",  # the power of h that the error estimate falls with
+    "implicit",  # whether it is
+    "stages",  # rows of K with derivatives at the stages of a step whose dense output is dear, or 0
+    "degree", "control",  # of the dense output, and the address of its control points
+    "sections",  # what locates points of sections
+    "meet",  # what goes on behind corners of functions
+    "look",  # what looks at redundant rows
+    "rounding",  # what looks at rounding
+    "search",  # what finds events
+    "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
+    "sample",  # what keeps extremes
+)  # fmt: skip
+(
+    STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
+    DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
+    BEYOND_AT, TURN_AT, SAMPLE_AT,
+) = range(len(FIELDS))  # fmt: skip
+
+
+def method_row(**values: int) -> "NDArray[np.int64]":
+    """A row of `methods` from its fields by name; those not given are 0."""
+    unknown = set(values) - set(FIELDS)
+    if unknown:
+        raise TypeError(f"no field {sorted(unknown)} in a row of methods")
+    return np.array([values.get(name, 0) for name in FIELDS], np.int64)
+
 
 call_step = caller(STEP)
 call_dense = caller(DENSE)

@@ -20,6 +20,7 @@ from trsim.solve.calls import (
     ROUNDING_AT,
     STEP_AT,
     call_step,
+    method_row,
 )
 from trsim.solve.complete import (
     SMALLEST,
@@ -89,21 +90,29 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
-def method_table(method, sections=0, meet=0, look=0, search=0, corners=(0, 0, 0)):
+def method_table(method, **called):
     """What the march must know of a method, a file of this folder.
 
     `complete` stands there too: called by its address it is compiled once, not into the march;
-    so do `look_closer`, and `sections`, the address of what locates points, `meet`, of what goes on
-    behind the corners of functions, `look`, of what looks at redundant rows, `search`, of what
-    finds events, and `corners`, of what finds those that sensors meet; 0 where there are none.
+    so do `look_closer` and `sample`, and what only some runs need: `called`, see calls.py.
     """
-    called = (method.step.address(), method.dense.address(), method.interpolate.address())
-    about = (method.LAST, method.ESTIMATE, int(method.IMPLICIT), sections, meet, look)
-    stages = getattr(method, "DEAR", 0)
-    searched = search > 0 or corners[0] > 0
-    control = method.control.address() if searched and hasattr(method, "control") else 0
-    found = (look_closer.address(), search, stages, method.DENSE_DEGREE, control, *corners)
-    return (*called, complete.address(), *about, *found, sample.address())
+    searched = called.get("search", 0) > 0 or called.get("corners", 0) > 0
+    if searched and hasattr(method, "control"):
+        called["control"] = method.control.address()
+    return method_row(
+        step=method.step.address(),
+        dense=method.dense.address(),
+        interpolate=method.interpolate.address(),
+        complete=complete.address(),
+        last=method.LAST,
+        estimate=method.ESTIMATE,
+        implicit=int(method.IMPLICIT),
+        stages=getattr(method, "DEAR", 0),
+        degree=method.DENSE_DEGREE,
+        rounding=look_closer.address(),
+        sample=sample.address(),
+        **called,
+    )
 
 
 @compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))

@@ -147,10 +147,9 @@ def rate(s, k):
     return abs(total) / s.row_unit[row]
 
 
-def looked_at(mechanism: Mechanism) -> int:
-    """The address of `look`; 0 where no stage of the run can have redundant rows."""
-    stages = mechanism.stages.switches.names
-    return int(look.address()) if len(mechanism.model.redundant) or stages else 0
+def may_open(mechanism: Mechanism) -> bool:
+    """Whether a stage of the run can have redundant rows."""
+    return bool(len(mechanism.model.redundant) or mechanism.stages.switches.names)
 
 
 def held_to(tolerance: float) -> float:

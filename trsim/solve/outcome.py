@@ -12,7 +12,7 @@ from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
-from trsim.solve.openings import held_to
+from trsim.solve.openings import held_to, look, may_open
 from trsim.solve.record import Record
 from trsim.solve.start import Start
 from trsim.solve.works import LEAST, N_WORKED
@@ -110,43 +110,33 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     return s
 
 
-def locator(mechanism: Mechanism) -> int:
-    """The address of what locates points of Poincare sections; 0 where there are none."""
-    if not mechanism.sections:
-        return 0
-    from trsim.solve.sections import sections  # compiled where it is needed
+def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
+    """The addresses of what only some runs need, by its field of a row of methods (calls.py).
 
-    return int(sections.address())
+    What a run does not need is not compiled.
+    """
+    model, found = mechanism.model, {}
+    if mechanism.sections:
+        from trsim.solve.sections import sections
 
+        found["sections"] = sections.address()
+    if len(model.feature):
+        from trsim.solve.features import meet
 
-def meets(mechanism: Mechanism) -> int:
-    """The address of what goes on behind corners of functions; 0 where there are none."""
-    if len(mechanism.model.feature) == 0:
-        return 0
-    from trsim.solve.features import meet
+        found["meet"] = meet.address()
+    if may_open(mechanism):
+        found["look"] = look.address()
+    if setting[rec.LOCATE] > 0.0 or len(model.watch):
+        from trsim.solve.search import search
 
-    return int(meet.address())
+        found["search"] = search.address()
+    if model.feature[:, READS].any():
+        from trsim.solve.sensed import beyond, corners_ahead, turn
 
-
-def cornered(mechanism: Mechanism) -> tuple[int, int, int]:
-    """The addresses of what finds the corners that sensors meet, tells how far beyond one a place
-    is, and goes on behind it; 0 where there are none."""
-    if not mechanism.model.feature[:, READS].any():
-        return 0, 0, 0
-    from trsim.solve.sensed import beyond, corners_ahead, turn
-
-    if len(mechanism.model.sensed) == 0:
-        return 0, 0, int(turn.address())
-    return int(corners_ahead.address()), int(beyond.address()), int(turn.address())
-
-
-def searcher(mechanism: Mechanism, setting: Array) -> int:
-    """The address of what finds events inside a step; 0 where there can be none."""
-    if setting[rec.LOCATE] == 0.0 and not len(mechanism.model.watch):
-        return 0
-    from trsim.solve.search import search  # compiled where it is needed
-
-    return int(search.address())
+        found["turn"] = turn.address()
+        if len(model.sensed):
+            found["corners"], found["beyond"] = corners_ahead.address(), beyond.address()
+    return found
 
 
 def most_points(mechanism: Mechanism, setting: Array) -> int:

@@ -73,20 +73,23 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
             extreme(r.peak[c], at, now[c])
             grow(s, r, c, now[c])
     if apart and known > 0:
-        b.found[0], share = 0.0, missed(setting)
-        rates(r, b, at)
+        b.found[0], share, told = 0.0, -1.0, False
         for c in range(now.size):
-            v, v0, p = now[c], last[c], r.peak[c]
+            v, v0, most, least = now[c], last[c], r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN]
             bend = abs(v - v0) + abs(v0 - older[c])
-            enough = share * (p[PEAK_MAX] - p[PEAK_MIN])
-            high, low = max(v, v0) + bend > p[PEAK_MAX], min(v, v0) - bend < p[PEAK_MIN]
-            if not (high or low) or bend <= enough or s.kin[c] < 0:
+            high, low = max(v, v0) + bend > most, min(v, v0) - bend < least
+            if not (high or low) or s.kin[c] < 0:
                 continue
-            enough = max(enough, ROUNDING * r.largest[s.kin[c]])
+            if share < 0.0:
+                share = missed(setting)
+            enough = max(share * (most - least), ROUNDING * r.largest[s.kin[c]])
             if bend <= enough:
                 continue
             if known >= SLOPES - 1:
-                high, low = turns(r, b, now, c, p[PEAK_MAX] + enough, p[PEAK_MIN] - enough)
+                if not told:
+                    rates(r, b, at)
+                    told = True
+                high, low = turns(r, b, now, c, most + enough, least - enough)
             if high:
                 built = search(
                     s, r, b, enough, method, t, h, at, now, c, 1.0, projected, built

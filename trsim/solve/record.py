@@ -204,7 +204,7 @@ class Buffers(Packed):
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
     turning1: A1
-    net: A2  # (8, n_q) control points of q over a step, where events are searched for   spread.py
+    net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
     curve: A2  # (14, 9) those of two frames on a part of it
     seen: A2  # (n_s, 4) ranges of sensors and of their rates, where they meet corners
     shown: A2  # (n_sensed, 2) what they show at both ends of a part of a step
@@ -246,7 +246,7 @@ def fresh_buffers(
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),
         turning1=np.zeros(max(model.n_s, 1)),
-        net=np.zeros((8, model.n_q if contacts + watched + len(model.sensed) else 0)),
+        net=np.zeros((9, model.n_q if contacts + watched + len(model.sensed) else 0)),
         seen=np.zeros((max(model.n_s, 1) if len(model.sensed) else 0, 4)),
         shown=np.zeros((len(model.sensed), 2)),
         box=np.zeros((model.slots, 4)),

@@ -21,26 +21,23 @@ from trsim.elements.scene import Scene
 from trsim.solve import record as rec
 from trsim.solve.anew import anew, begun_with
 from trsim.solve.blame import why
-from trsim.solve.calls import INTERPOLATE
+from trsim.solve.calls import INTERPOLATE, method_row
 from trsim.solve.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
 from trsim.solve.features import next_time
 from trsim.solve.march import begin
 from trsim.solve.mesh_error import Bends
 from trsim.solve.norm import weigh
-from trsim.solve.openings import looked_at, opened
+from trsim.solve.openings import opened
 from trsim.solve.outcome import (
     CRAWLS,
     Outcome,
-    cornered,
+    called_by,
     emptied,
     first_step,
     leapt,
-    locator,
-    meets,
     most_points,
     new_record,
     runaway,
-    searcher,
     settings,
     statistics,
 )
@@ -90,10 +87,15 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0)),
         points=most_points(mechanism, setting),
     )  # fmt: skip
-    called = (0, 0, interpolate.address(), complete.address())
-    about = (locator(mechanism), meets(mechanism), looked_at(mechanism))
-    found_by = (0, searcher(mechanism, setting), 0, NODES.size - 1, *cornered(mechanism))
-    method = np.array((*called, LAST, 1, 0, *about, *found_by, sample.address()), np.int64)
+    method = method_row(
+        interpolate=interpolate.address(),
+        complete=complete.address(),
+        last=LAST,
+        estimate=1,
+        degree=NODES.size - 1,
+        sample=sample.address(),
+        **called_by(mechanism, setting),
+    )
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)

@@ -15,26 +15,23 @@ from trsim.solve import record as rec
 from trsim.solve.act import act
 from trsim.solve.anew import anew, begun_with, resumed
 from trsim.solve.blame import why
-from trsim.solve.calls import METHOD_WIDTH
+from trsim.solve.calls import FIELDS
 from trsim.solve.checkpoint import State, begun_at, put_back, state
 from trsim.solve.features import put_back as put_back_held
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.mesh_error import Bends
-from trsim.solve.openings import looked_at, opened
+from trsim.solve.openings import opened
 from trsim.solve.outcome import (
     CRAWLS,
     Block,
     Outcome,
-    cornered,
+    called_by,
     emptied,
     first_step,
     leapt,
-    locator,
-    meets,
     most_points,
     new_record,
     runaway,
-    searcher,
     settings,
     statistics,
 )
@@ -152,10 +149,9 @@ def compiled(
     if sparse:
         r = sparse.record(r, scenario, mechanism, dense_rows)
         b = sparse.buffers(b, scenario, mechanism, work)
-    methods = np.zeros((len(used), METHOD_WIDTH), np.int64)
-    found_by = looked_at(mechanism), searcher(mechanism, setting)
-    called = (locator(mechanism), meets(mechanism), *found_by, cornered(mechanism))
-    methods[0] = method_table(used[0], *called)
+    methods = np.zeros((len(used), len(FIELDS)), np.int64)
+    called = called_by(mechanism, setting)
+    methods[0] = method_table(used[0], **called)
     clock0 = time.process_time()
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
@@ -189,7 +185,7 @@ def compiled(
             ended = ("failed", text) if text else None
         cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
-            methods[:] = [method_table(method, *called) for method in used]
+            methods[:] = [method_table(method, **called) for method in used]
             clock0 = time.process_time() - cpu
         block = emptied(r, b, recorded)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block

@@ -37,7 +37,7 @@ from trsim.solve.calls import (
 )
 from trsim.solve.record import DEGREE
 
-CUBIC = 3  # degree of the dense output of methods that do not tell its control points
+CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
 FRAME = 7  # rows of b.curve for one frame
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
@@ -51,7 +51,8 @@ def _to_bernstein(degree):
     return x, inverse(binomial * x[:, None] ** k * (1.0 - x[:, None]) ** (degree - k))
 
 
-NODES, FROM_NODES = _to_bernstein(CUBIC)
+NODES_CUBIC, FROM_CUBIC = _to_bernstein(CUBIC)
+NODES, FROM_NODES = _to_bernstein(MOST)
 
 
 # --- the dense output as control points ------------------------------------------------------
@@ -60,8 +61,9 @@ NODES, FROM_NODES = _to_bernstein(CUBIC)
 @internal
 def fill_net(s, r, b, method):
     """b.net[k] = k-th control points of q over the step, less q at its beginning."""
-    net, n = b.net, CUBIC + 1
-    r.count[DEGREE] = method[DEGREE_AT]
+    degree, net = method[DEGREE_AT], b.net
+    n = degree + 1
+    r.count[DEGREE] = degree
     if method[CONTROL_AT] > 0:
         call_control(method[CONTROL_AT], b.P, net)
         return
@@ -69,9 +71,10 @@ def fill_net(s, r, b, method):
         for c in range(s.n_q):
             net[k, c] = 0.0
     for m in range(n):
-        call_interpolate(method[INTERPOLATE_AT], b.P, r.y, NODES[m], b.y2)
+        node = NODES_CUBIC[m] if degree == CUBIC else NODES[m]
+        call_interpolate(method[INTERPOLATE_AT], b.P, r.y, node, b.y2)
         for k in range(n):
-            weight = FROM_NODES[k, m]
+            weight = FROM_CUBIC[k, m] if degree == CUBIC else FROM_NODES[k, m]
             for c in range(s.n_q):
                 net[k, c] += weight * (b.y2[c] - r.y[c])
 
@@ -255,10 +258,22 @@ def place_rates(s, f):
 
 
 @internal
+def flat(s, f):
+    """Whether a frame is that of a rigid body in a plane, or the ground's there."""
+    return s.d == 3 and f < s.n_r
+
+
+@internal
 def at_stages(s, r, b, f):
     """Angular velocity and acceleration of a frame, their largest at the stages, enlarged."""
     if f == 0:
         return 0.0, 0.0
+    if flat(s, f):
+        K, turn, fastest, largest = b.K, 3 * (f - 1) + 2, 0.0, 0.0
+        for k in SEEN:
+            fastest = max(fastest, abs(K[k, turn]))
+            largest = max(largest, abs(K[k, s.n_q + turn]))
+        return SAFE_RATE * fastest, SAFETY * largest
     q, places, attitude = coordinates_of(s, f)
     v, rigid = place_rates(s, f) + places, f < s.n_r
     rates = (1 if s.d == 3 else 3) if rigid else attitude
@@ -311,13 +326,41 @@ def apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j):
     """
     i, j, worst = s.con[e, I], s.con[e, J], 0.0
     p_i, p_j = points(s, e)
+    if flat(s, i) and flat(s, j):
+        return SAFETY * apart_in_plane(s, b, i, p_i, j, p_j) + slack_of(
+            s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j
+        )
     for k in SEEN:
         a_i, a_j = point_at_stage(s, b, k, i, p_i), point_at_stage(s, b, k, j, p_j)
         d = (a_j[0] - a_i[0], a_j[1] - a_i[1], a_j[2] - a_i[2])
         worst = max(worst, dot(d, d))
-    slack = sqrt(dot(p_i, p_i)) * slackness(s, i, h, spin_i, bend_i)
-    slack += sqrt(dot(p_j, p_j)) * slackness(s, j, h, spin_j, bend_j)
-    return SAFETY * sqrt(worst) + slack
+    return SAFETY * sqrt(worst) + slack_of(s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j)
+
+
+@internal
+def apart_in_plane(s, b, i, p_i, j, p_j):
+    """The largest |d''| at the stages, of points of two bodies in a plane."""
+    K, V, worst = b.K, s.V, 0.0
+    round_i, round_j = V[i, 5] * V[i, 5], V[j, 5] * V[j, 5]
+    x, y = round_i * p_i[0] - round_j * p_j[0], round_i * p_i[1] - round_j * p_j[1]
+    v_i, v_j = s.n_q + 3 * (i - 1), s.n_q + 3 * (j - 1)
+    for k in SEEN:
+        a, c = x, y
+        if i > 0:
+            a -= K[k, v_i] - K[k, v_i + 2] * p_i[1]
+            c -= K[k, v_i + 1] + K[k, v_i + 2] * p_i[0]
+        if j > 0:
+            a += K[k, v_j] - K[k, v_j + 2] * p_j[1]
+            c += K[k, v_j + 1] + K[k, v_j + 2] * p_j[0]
+        worst = max(worst, a * a + c * c)
+    return sqrt(worst)
+
+
+@internal
+def slack_of(s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j):
+    """What |d''| may change by as both arms turn."""
+    of_i = sqrt(dot(p_i, p_i)) * slackness(s, i, h, spin_i, bend_i)
+    return of_i + sqrt(dot(p_j, p_j)) * slackness(s, j, h, spin_j, bend_j)
 
 
 @internal
