@@ -385,6 +385,8 @@ REFUSED = {
     "a partial": function("def f(x): return g(x)", g=partial(one)),
     "a method": function("def f(x): return g(x)", g=[].append),
     "an array of objects": function("def f(x): return g", g=np.array([one])),
+    "a view with gaps": function("def f(x): return g", g=np.zeros((4, 4))[:, 1]),
+    "a large array": function("def f(x): return g", g=np.zeros(125_001)),
     "a class": function("def f(x): return g(x)", g=Colour.__mro__[-1].__class__("Own", (), {})),
     "a generator": function("def f(x): return g", g=(x for x in ())),
 }

@@ -35,6 +35,7 @@ COMPILER = (
 )  # fmt: skip
 # told by their names: they belong to Python, numpy or numba, whose versions are in every key
 OF_OTHERS = frozenset({"builtins", "cmath", "math", "operator", "numpy", "numba"})
+LARGEST = 10**6  # bytes of an array whose numbers numba puts into the machine code
 PLAIN = frozenset({bool, bytes, complex, float, int, range, str, type(None), type(...)})
 
 
@@ -195,6 +196,10 @@ def _value(value: Any, python: Callable, path: str, reached: list[FunctionType])
         return _function(function).digest
     if hasattr(kind, "tobytes") and not value.dtype.hasobject:
         order = value.flags.c_contiguous, value.flags.f_contiguous
+        if not any(order) or value.nbytes > LARGEST:
+            _refuse(
+                python, path, "is a view with gaps or larger than 1 MB: numba keeps its address"
+            )
         return f"{value.dtype.str} {value.shape} {order} {_digest(value.tobytes())}"
     parts = _parts(value)
     if parts is not None:
