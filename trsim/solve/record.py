@@ -38,12 +38,13 @@ from trsim.elements.scene import Model
     OFF_RATE,
     NOISY,  # 1/s, rounding of steps in units of the tolerance              rounding.py
     NOISY_AT,  # the entry of y that has it
+    PASSING,  # 1: it was seen where rows nearly depended on each other
     ROUNDED,  # largest rounding of an accepted step in these units, and the entry that had it
     ROUNDED_AT,
     ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
     LONGEST,  # s, the longest step since then, see LOOKED
     N_CLOCK,
-) = range(36)
+) = range(37)
 
 # count: integer state of the march
 (

@@ -15,11 +15,16 @@ certificate keeps above it.
 Where Newton's method fails because its increments do not fall below it, there is no end to look
 at; radau.py then takes the rounding of the derivative through its matrix.
 
+Where rows nearly depend on each other, d from where they do, rounding is felt 1/d^2 times: what was
+seen there is forgotten as soon as they are independent again, or longer steps behind would be
+judged by it.
+
 Steps that do not fail cost nothing: of those that do one is looked at in APART steps, where many
 fail, and where steps stay short: after a touch they grow again.
 """
 
 from trsim.assemble.equations import evaluate
+from trsim.assemble.linear import SOUND
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
@@ -35,6 +40,7 @@ from trsim.solve.record import (
     LOOKED,
     NOISY,
     NOISY_AT,
+    PASSING,
     RECORD,
     REJECTED,
     ROUNDED,
@@ -68,11 +74,13 @@ def look_closer(s, r, b, setting, method, h):
     copy_to(y1, b.y1)
     beside(s, r, setting, y, r.y, 1.0)
     evaluate(s, t, r.y, r.yd)
+    passing = s.m > 0 and s.status[0] != SOUND
     copy_to(b.K[0], r.yd)
     if call_step(method[0], s, r, b, setting, t, h) < NO_STEP:
         for c in range(y.size):
             y1[c] -= b.y1[c]
         noted(s, r, setting, y1, h)
+        r.clock[PASSING] = 1.0 if passing else 0.0
     copy_to(r.y, y)
     copy_to(r.yd, yd)
     s.status[1], s.status[2], s.status[3] = counted
@@ -161,6 +169,11 @@ def remember(s, r, setting, h):
     if rounded > r.clock[ROUNDED]:
         r.clock[ROUNDED], r.clock[ROUNDED_AT] = rounded, r.clock[NOISY_AT]
         r.clock[ROUNDED_BY] = r.noise[int(r.clock[NOISY_AT])] * h / MARGIN
+    if r.clock[PASSING] > 0.0 and s.status[0] == SOUND:
+        r.clock[NOISY] = r.clock[PASSING] = 0.0
+        for c in range(r.noise.size):
+            r.noise[c] = 0.0
+        return
     if (r.count[STEPS] - r.count[LOOKED]) % APART == 0:
         for c in range(r.noise.size):
             r.noise[c] *= FADES
