@@ -23,7 +23,7 @@ def main() -> None:
     read.add_argument("family", nargs="?", choices=list(FAMILIES), metavar="FAMILY")
     read.add_argument("seed", nargs="?", type=int)
     read.add_argument("--show", action="store_true", help="print the scene and its judgement")
-    read.add_argument("--count", type=int, default=105, help="scenes of each family")
+    read.add_argument("--count", type=int, default=106, help="scenes of each family")
     read.add_argument("--workers", type=int, default=2)
     read.add_argument("--commit", help="draw the scenes of another commit")
     read.add_argument("--table", action="store_true", help="write docs/truth.md of a ledger")
