@@ -8,7 +8,8 @@ from ..runs import run
 
 TURNS, RATE = 8, 20.0  # rad/s: sqrt(2 / 5e-3)
 # times the tolerance after 8 turns: about the sum of the local errors, each over its part of a turn
-MOST = {"dop853": 10.0, "radau": 10.0, "generalized_alpha": 50.0, "scipy:BDF": 25.0}
+MOST = {"dop853": 10.0, "radau": 10.0, "generalized_alpha": 50.0, "scipy:BDF": 25.0,
+        "scipy:RK45": 10.0}  # fmt: skip
 
 
 @pytest.mark.parametrize("method", MOST)
@@ -63,6 +64,30 @@ def test_stops_on_angles_are_the_same_in_any_unit_of_length():
         steps = other.outcome.statistics["steps"]
         assert steps == pytest.approx(one.outcome.statistics["steps"], abs=3)
         assert np.abs(other["a"] - one["a"]).max() < 1e-4  # ten tolerances
+
+
+def struck(speed, method, tolerance):
+    """A rod against a stop with damping, whose force has a kink where the stop would pull."""
+    return run(f"""
+bodies: {{rod: {{mass: 1, inertia: 0.1, at: [0.5, 0], velocity: [0, {0.5 * speed}, 0],
+               angular_velocity: [0, 0, {speed}]}}}}
+joints: {{O: {{type: revolute, bodies: [ground, rod], at: [0, 0]}}}}
+sensors: {{a: {{joint: O}}}}
+forces: {{stop: {{type: limit_stop, joint: O, lower: -1, upper: 0.3, stiffness: 3000, damping: 4,
+         ramp: 1e-3}}}}
+gravity: [0, -9.81]
+solver: {{end: 0.6, tolerance: {tolerance}, method: '{method}'}}
+output: {{every: 0.01}}
+""")
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
+@pytest.mark.parametrize("method", ["dop853", "scipy:RK45"])
+def test_a_kink_between_two_stages_stays_in_proportion_to_the_tolerance(method, tolerance):
+    """An error of a step is estimated from its stages, and a kink lies anywhere between them."""
+    for speed in np.linspace(2.0, 9.0, 15):
+        rough, tight = struck(speed, method, tolerance), struck(speed, "radau", 1e-3 * tolerance)
+        assert np.abs(rough["a"] - tight["a"]).max() < 10.0 * tolerance, speed
 
 
 TREMBLING = """
