@@ -24,6 +24,8 @@ PLAINLY = 1e-3  # the same, and of what forces do to free bodies: more than a ro
 TAKES_PART = 0.1  # of the largest entry of a self-stress
 MOST = 40  # motions that are looked at
 STARTS, STEPS = 16, 60  # of Newton's method; its steps
+IDLE = 8  # of them that do not halve what is left: it leads nowhere
+LAST = 1e-12  # of z: a step so short is the last
 
 
 def undecided(work: Scene, y: Array) -> list[int]:
@@ -144,14 +146,20 @@ def nearest_root(c: Array, b: Array, B: Array) -> Array | None:
     best = None
     for k in range(STARTS):
         z = np.zeros(n) if k == 0 else rng.normal(size=n) * reach
+        least, idle = np.inf, 0
         for _ in range(STEPS):
-            off = c + b @ z + np.einsum("i,wij,j->w", z, B, z)
-            slope = b + 2.0 * np.einsum("wij,j->wi", B, z)
+            by_z = B @ z
+            off = c + (b + by_z) @ z
+            left = np.abs(off).max()
+            least, idle = (left, 0) if left < 0.5 * least else (least, idle + 1)
+            if idle > IDLE:
+                break
+            slope = b + 2.0 * by_z
             step = np.linalg.lstsq(slope, -off, rcond=1e-12)[0]
             z = z + step
-            if np.linalg.norm(step) <= 1e-15 * np.linalg.norm(z):
+            if step @ step <= LAST * LAST * (z @ z):
                 break
-        off = c + b @ z + np.einsum("i,wij,j->w", z, B, z)
+        off = c + (b + B @ z) @ z
         solved = np.abs(off).max() <= 1e-10 * np.abs(c).max()
         if solved and (best is None or np.linalg.norm(z) < np.linalg.norm(best)):
             best = z
