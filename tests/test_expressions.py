@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trsim.errors import ScenarioError
-from trsim.expressions import DEEPEST, evaluate, names, parse, substitute
+from trsim.expressions import DEEPEST, degree, evaluate, names, parse, substitute
 
 
 def test_nodes():
@@ -44,6 +44,21 @@ def test_value(text, value):
     assert evaluate(parse(text), values) == pytest.approx(value, abs=1e-15)
     folded = substitute(parse(text), values)
     assert folded == ("number", evaluate(parse(text), values))
+
+
+@pytest.mark.parametrize(("text", "wanted"), [
+    ("3", 0), ("pi*2", 0), ("x", 1), ("-x + 2", 1), ("x*(y - 1)", 2), ("x**3/2", 3),
+    ("(x*y)**2", 4),
+    ("x**0", 0), ("x < 2", 0), ("(x < 2)*x", 1), ("min(x, y**2, 3)", 2), ("abs(x - 1)", 1),
+    ("smoothstep((x - 1)/3)", 3), ("step(x, 0, 0, 1, 5)", 3), ("step5(x, 0, 0, 1, 5)", 5),
+    ("2000*smoothstep((stroke - 0.15)/0.325)", 3),
+    ("exp(x)", math.inf), ("sin(50*x) > 0.99", math.inf), ("1/x", math.inf), ("x**0.5", math.inf),
+    ("x**-1", math.inf), ("2**x", math.inf), ("x**y", math.inf), ("sqrt(x)", math.inf),
+    ("step(x, y, 0, 1, 5)", math.inf), ("max(x, cos(x))", math.inf),
+])  # fmt: skip
+def test_degree(text, wanted):
+    """Of the polynomials that it is made of between its corners."""
+    assert degree(parse(text)) == wanted
 
 
 def test_names_and_substitute():
