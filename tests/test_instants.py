@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from trsim.errors import ScenarioError
 from trsim.expressions import parse, substitute
-from trsim.instants import instants
+from trsim.instants import instants, peaked
 
 from .runs import run
 
@@ -101,3 +101,37 @@ def test_pulses_of_any_shape_of_t(method, tolerance):
     r = run(text.replace("solver: {end: 10 s,", f"solver: {{end: 10 s, {solver},"))
     impulse = 1000 * 10 * math.acos(0.9999) / math.pi
     assert r.outcome.record.y[3] == pytest.approx(impulse / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "text, expected",
+    [
+        ("1/(1 + (t/1e-4)**2)", True),
+        ("cos(t)**1000", True),
+        ("0.5**(t**2)", True),
+        ("2*abs(t)**0.5", True),
+        ("1/(1 + exp(-t/1e-4))", False),
+        ("(t/3)**2*exp(-((t - 1)/1e-4)**2)", False),
+        ("sin(t)**2/7", False),
+        ("2**pi*t", False),
+    ],
+)
+def test_what_may_be_a_short_event_without_a_corner(text, expected):
+    assert peaked(parse(text)) is expected
+
+
+def test_a_check_names_loads_that_may_be_short_events():
+    from trsim.assemble.assemble import assemble
+    from trsim.solve.skipped import skipped
+    from trsim.spec.load import loads
+
+    for force, named in (("1/(1 + (t/1e-4)**2)", True), ("exp(-(t/1e-4)**2)", False)):
+        scenario = loads(
+            "bodies: {slider: {mass: 2, inertia: 1}}\n"
+            f"forces: {{kick: {{type: applied_load, body: slider, direction: [1, 0], "
+            f'force: "{force}"}}}}\n'
+            "solver: {end: 1 s}\noutput: {every: 1 s}\n",
+            (),
+        )
+        told = [text for text in skipped(scenario, assemble(scenario)) if "kick" in text]
+        assert bool(told) is named

@@ -31,6 +31,9 @@ _CHARACTERS = re.compile(r"[A-Za-z0-9_.,()+\-*/<>=!\s]*")
 
 _WITH_UNIT = re.compile(r"(?<![\w.])[0-9.]+(?:[eE][+-]?[0-9]+)? +[A-Za-z][\w*/]*")
 
+NOTHING, SOME = 37.0, 2.0  # exp(-37) = 8.5e-17, less than the rounding of 1; exp(-2) = 0.14
+EDGES = (-NOTHING, -SOME, SOME, NOTHING)  # u of exp(u) at which it has corners: laws/operations.py
+
 
 def _clipped(s: float) -> float:
     return min(max(s, 0.0), 1.0)

@@ -5,6 +5,7 @@
     min(a, b)  max(a, b)            a - b                0
     abs(a), atan2(a, b)             a                    0
     smoothstep(x), step, step5      x, (x-x0)/(x1-x0)    0 and 1
+    exp(a)                          a                    EDGES of expressions.py
 
 Roots of u are excluded or isolated, not sampled: an interval of t on which the enclosure of u
 (enclosures.py) does not hold the value has no root, one on which that of u' does not hold zero has
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 
 from trsim.enclosures import Interval, enclosure, values
 from trsim.errors import ScenarioError
-from trsim.expressions import Node, names
+from trsim.expressions import EDGES, Node, names
 
 Array = NDArray[np.float64]
 COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
@@ -28,6 +29,7 @@ RESOLUTION = 1e-12  # of the run: instants nearer to each other are one
 NEIGHBOURS = (
     1e-7  # of the run: nearer to each other, places that rounding cannot tell apart are one
 )
+LOW = 5  # whole powers up to it are no short events
 AT_ONCE = 1 << 15  # intervals enclosed in one go
 TRIED = 8_000_000  # intervals: more of them are not looked at
 ZERO, ONE = ("number", 0.0), ("number", 1.0)
@@ -73,10 +75,46 @@ def of_call(word: str, a: tuple[Node, ...]) -> Iterator[tuple[Node, tuple[float,
         yield a[0], (0.0,)
     elif word == "smoothstep":
         yield a[0], (0.0, 1.0)
+    elif word == "exp":
+        yield a[0], EDGES
     elif word in ("step", "step5"):
         x, x0, _, x1, _ = a
         yield ("binary", "-", x, x0), (0.0,)
         yield ("binary", "-", x, x1), (0.0,)
+
+
+def peaked(node: Node) -> bool:
+    """Whether an expression has quotients or powers that may be short events without a corner.
+
+    Those by exp alone are met by its edges.
+    """
+    match node:
+        case ("unary", _, operand):
+            return peaked(operand)
+        case ("binary", "/", left, right):
+            return varies(right) or peaked(left) or peaked(right)
+        case ("binary", "**", left, right):
+            low = right[0] == "number" and right[1] in range(LOW + 1)
+            return varies(right) or (varies(left) and not low) or peaked(left) or peaked(right)
+        case ("binary", _, left, right):
+            return peaked(left) or peaked(right)
+        case ("call", _, arguments):
+            return any(map(peaked, arguments))
+    return False
+
+
+def varies(node: Node) -> bool:
+    """Whether something beside the exponents of exp varies."""
+    match node:
+        case ("name", name):
+            return name != "pi"
+        case ("unary", _, operand):
+            return varies(operand)
+        case ("binary", _, left, right):
+            return varies(left) or varies(right)
+        case ("call", word, arguments):
+            return word != "exp" and any(map(varies, arguments))
+    return False
 
 
 def distinct(times: list[float], end: float) -> list[float]:

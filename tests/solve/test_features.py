@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from scipy.special import i0e
 
 from tests.runs import run
 from trsim.laws.functions import table, value
@@ -331,3 +332,83 @@ def test_an_implicit_step_does_not_rest_in_what_is_stiff_behind_a_corner(method)
     r = run(SLIDING.format(0.1, '"-2e4*(x - 0.06)*(t > 0.7)"', 0.8, method))
     t = 0.1 * 100  # omega is 100/s; it begins 0.01 m beside its middle, with 0.1 m/s
     assert speed(r) == pytest.approx(0.1 * math.cos(t) - math.sin(t), abs=20 * accuracy)
+
+
+# --- short events of smooth functions: exp ---------------------------------------------------
+
+WIDTHS = [1e-1, 1e-2, 1e-3, 1e-4]  # of the way
+LONG_STEPS = ["method: dop853", "method: radau", "method: auto", "method: 'scipy:RK45'",
+              "method: generalized_alpha"]  # fmt: skip
+
+
+def gauss(w, work, x="x", a=0.4321):
+    """A bump that does a work, or gives an impulse, wherever it is passed."""
+    return f"{work / (w * math.sqrt(math.pi))}*exp(-(({x} - {a})/{w})**2)"
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6])
+@pytest.mark.parametrize("w", WIDTHS)
+@pytest.mark.parametrize("method", LONG_STEPS)
+def test_a_bump_of_a_sensor(method, w, tolerance):
+    """Half of its work is done at its top, all of it behind; nothing else acts."""
+    solver = f"tolerance: {tolerance}, {method}"
+    r = run(SLIDING.format(1.0, f'"{gauss(w, 0.6)}"', 0.8, solver))
+    assert speed(r) == pytest.approx(math.sqrt(1.6), rel=10 * tolerance)
+    if "scipy" not in method:  # which have no events
+        ends = "events: {top: {when: x, value: 0.4321, do: {end: true}}}\n"
+        r = run(SLIDING.format(1.0, f'"{gauss(w, 0.6)}"', 0.8, solver) + ends)
+        assert speed(r) == pytest.approx(math.sqrt(1.3), rel=10 * tolerance)
+
+
+@pytest.mark.parametrize("w", WIDTHS)
+@pytest.mark.parametrize("method", LONG_STEPS)
+def test_a_hill_that_is_too_high(method, w):
+    """Of height 1.2 J, for a mass of 1 J: it goes back as fast as it came."""
+    hill = f'"{2 * 1.2 / w**2}*(x - 0.4321)*exp(-((x - 0.4321)/{w})**2)"'
+    r = run(SLIDING.format(1.0, hill, 1.2, f"tolerance: 1e-6, {method}"))
+    assert speed(r) == pytest.approx(-1.0, rel=1e-5)
+
+
+@pytest.mark.parametrize("w", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("method", LONG_STEPS)
+def test_a_bump_of_t(method, w):
+    """Its impulse, at any width."""
+    r = run(PUSHED.format(f'"{gauss(w, 3.0, "t", 4.321)}"', 10, f"tolerance: 1e-6, {method}"))
+    assert speed(r) == pytest.approx(1.5, rel=1e-5)
+
+
+@pytest.mark.parametrize("w", [1e-2, 1e-4])
+@pytest.mark.parametrize("method", LONG_STEPS)
+def test_bumps_of_other_shapes(method, w):
+    """A logistic switch on and off, and 1/cosh^2: works 0.5 J and 0.3 J, but for exp(-0.1/w)."""
+    on, off = (f"1/(1 + exp(({a} - x)/{w}))" for a in (0.3, 0.5))
+    pulse = f"2.5*({on} - {off})"
+    sech = f"4*{0.15 / w}/(exp((x - 0.7)/{w}) + exp((0.7 - x)/{w}))**2"
+    r = run(SLIDING.format(1.0, f'"{pulse} + {sech}"', 1.0, f"tolerance: 1e-6, {method}"))
+    assert r.outcome.record.y[0] > 0.9
+    assert speed(r) == pytest.approx(math.sqrt(1.8), rel=1e-5)
+
+
+@pytest.mark.parametrize("method", METHODS[:3])
+def test_a_detent_of_exp_on_every_turn(method):
+    """exp(k (cos(x - 1) - 1)) against the motion: 2 pi exp(-k) I_0(k) of work a turn."""
+    k, torque, omega, end = 4e6, 300.0, 20.0, 2.0
+    text = f'"-{torque}*exp({k}*(cos(x - 1) - 1))"'
+    r = run(TURNING.format(1, omega, "[0, 0, 1]", "[0, 0, 1]", text, end, method))
+    passed = 1 + math.floor((r.outcome.record.y[2] - 1.0) / (2 * math.pi))
+    assert passed > 2
+    work = 2 * math.pi * i0e(k) * torque
+    assert r.outcome.record.y[5] == pytest.approx(math.sqrt(omega**2 - 2 * passed * work), rel=1e-4)
+
+
+@pytest.mark.parametrize("method", METHODS[:2])
+@pytest.mark.parametrize("u", [-2.0, -2.0 - 1e-9, -1.999])
+def test_swings_to_the_edge_of_a_well_and_back(method, u):
+    """It turns back where exp has an edge: energy is kept, and no step is wasted there."""
+    w, a, depth = 1e-2, 0.0, 5.0
+    start = a + w * math.sqrt(-u)
+    well = f'"{-2 * depth / w**2}*(x - {start})*exp(-((x - {start})/{w})**2)"'
+    r = run(SLIDING.format(0.0, well, 0.05, method))
+    assert r.outcome.statistics["energy_residual_relative"] < 1e-4
+    assert abs(r.outcome.record.y[0] - start) <= w * math.sqrt(-u) * (1 + 1e-4)
+    assert r.outcome.statistics["steps"] < 5000

@@ -26,13 +26,15 @@ import math
 
 from trsim.laws import law
 from trsim.laws.operations import (
+    ABOVE,
     ADD,
     ATAN2,
+    BELOW,
     BINARY,
     CORNERED,
     DIV,
+    EXP,
     FREE,
-    INSIDE,
     MAX,
     MIN,
     MUL,
@@ -41,6 +43,7 @@ from trsim.laws.operations import (
     SMOOTHSTEP,
     SUB,
     UNARY,
+    beside,
     branch_at,
     branch_ends,
     operation,
@@ -330,9 +333,16 @@ def neighbour(tab, o, place, above):
         if above:
             return 1.0 if held < 0.0 else held + 1.0
         return held - 1.0 if held > 1.0 else -1.0
-    if int(tab[place - HELD]) in (SMOOTHSTEP, QUINTIC) and held != INSIDE:
-        return INSIDE
-    return 1.0 if above else -1.0
+    return beside(int(tab[place - HELD]), held, above)
+
+
+@law
+def brief(tab, o, place):
+    """Whether the piece that is held may be a short event: exp between its outer edges."""
+    held = tab[place]
+    if tab[o] == TABLE or int(tab[place - HELD]) != EXP:
+        return False
+    return held != FREE and held != BELOW and held != ABOVE
 
 
 CLEAR, MEETS, UNSURE = 0, 1, 2

@@ -10,10 +10,16 @@ branch: it is then drawn on beyond its ends, as a step needs it that ends at the
     u        a - b: comparisons, min, max      a: abs, atan2 (a of atan2(a, b))    a: smooth steps
     branch   BELOW u < 0, ABOVE u > 0          of a smooth step BELOW u < 0, INSIDE, ABOVE u > 1
     FREE     whatever a and b say
+
+exp is smooth, but beside 1 it is nothing below u = -37 and 1 is nothing beside it above 37: in the
+middle of a long run a bump exp(-((x - a)/w)^2) or a switch 1/(1 + exp(x/w)) is a short event.  It
+has corners too, though it is the same function on both sides: steps end at its edges, and none is
+passed over by one that begins before it and ends behind.
 """
 
 from math import atan2, cos, exp, inf, log, pi, sin, sqrt, tan
 
+from trsim.expressions import NOTHING, SOME
 from trsim.laws import law
 from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
 
@@ -25,8 +31,9 @@ BINARY |= {"<": LT, "<=": LE, ">": GT, ">=": GE, "==": EQ, "!=": NE}
 UNARY = {"abs": ABS, "sqrt": SQRT, "sin": SIN, "cos": COS, "tan": TAN, "exp": EXP, "log": LOG}
 UNARY |= {"smoothstep": SMOOTHSTEP}
 
-CORNERED = frozenset({MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE, ABS, SMOOTHSTEP, QUINTIC})
+CORNERED = frozenset({MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE, ABS, EXP, SMOOTHSTEP, QUINTIC})
 FREE, BELOW, INSIDE, ABOVE = 0.0, -1.0, 2.0, 1.0  # what such an operation is held on
+RISING, LARGE = 3.0, 4.0  # exp between its second and third edge, and up to its fourth
 
 
 @law
@@ -40,6 +47,10 @@ def branch_at(code, u):
     """The branch of an operation at u; at an end of it the one above."""
     if code in (SMOOTHSTEP, QUINTIC):
         return BELOW if u < 0.0 else INSIDE if u < 1.0 else ABOVE
+    if code == EXP:
+        if u < SOME:
+            return BELOW if u < -NOTHING else INSIDE if u < -SOME else RISING
+        return LARGE if u < NOTHING else ABOVE
     return BELOW if u < 0.0 else ABOVE
 
 
@@ -48,11 +59,41 @@ def branch_ends(code, held):
     """Between which u a branch lies."""
     if held == FREE:
         return -inf, inf
+    if code == EXP:
+        return edges_of(held)
     if held == INSIDE:
         return 0.0, 1.0
     if held == BELOW:
         return -inf, 0.0
     return 1.0 if code in (SMOOTHSTEP, QUINTIC) else 0.0, inf
+
+
+@law
+def edges_of(held):
+    """The same of exp."""
+    if held == BELOW:
+        return -inf, -NOTHING
+    if held == INSIDE:
+        return -NOTHING, -SOME
+    if held == RISING:
+        return -SOME, SOME
+    return (SOME, NOTHING) if held == LARGE else (NOTHING, inf)
+
+
+@law
+def beside(code, held, above):
+    """The branch next to one."""
+    if code == EXP:
+        if held == INSIDE:
+            return RISING if above else BELOW
+        if held == RISING:
+            return LARGE if above else INSIDE
+        if held == LARGE:
+            return ABOVE if above else RISING
+        return INSIDE if held == BELOW else LARGE
+    if code in (SMOOTHSTEP, QUINTIC) and held != INSIDE:
+        return INSIDE
+    return ABOVE if above else BELOW
 
 
 @law
@@ -84,9 +125,12 @@ def held_angle(a, b, held):
 
 @law
 def held_single(code, a, held):
-    """abs, or a smooth step, on a branch: value, first and second derivative in a."""
+    """abs, exp or a smooth step on a branch: value, first and second derivative in a."""
     if code == ABS:
         return held * a, held, 0.0
+    if code == EXP:
+        f = exp(a)
+        return f, f, f
     if held != INSIDE:
         return 0.0 if held == BELOW else 1.0, 0.0, 0.0
     if code == SMOOTHSTEP:

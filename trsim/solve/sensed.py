@@ -12,6 +12,10 @@ clear; one on which u' has one sign and u ends elsewhere has one root; every oth
 
 What is on a corner and at rest, or swings about one within the error allowed, is left free: the
 function is then evaluated as it is written, until it has gone away.
+
+The dense output of a long step says when a short event begins, but its stages may lie before and
+behind it.  A step that leaves a piece of exp (laws/operations.py) long before its end is therefore
+taken again, shorter: the stages of what is accepted lie on the piece, and its error is known.
 """
 
 from math import inf, isfinite
@@ -39,6 +43,7 @@ from trsim.laws.functions import (
     CLEAR,
     FREE,
     UNSURE,
+    brief,
     corner,
     enclosed,
     ends_of,
@@ -65,6 +70,7 @@ from trsim.solve.record import (
     FIXED_STEP,
     LENGTH,
     RECORD,
+    T_END,
     TOLERANCE,
     UNPROVED,
     H,
@@ -76,6 +82,8 @@ SAME = 1e-12  # of a step: corners nearer to each other are met at once
 FINEST = 1e-8  # of a step: no part is shorter
 LOOKS = 4000  # parts of one step that are looked at
 HIDDEN = 1e-3  # of the error allowed: how far beyond a corner is not looked for
+SEEN = 0.8  # of a step: a short event that fills less of it may lie between its stages
+BRIEF = 1e-9  # of a run: what is shorter is not looked for
 ROUNDING = 1e-15  # of the mechanism's size
 THETA, PLACE, NEXT = range(3)  # of b.met
 LAST, TIMES, FAR = range(3)  # of r.chatter
@@ -183,7 +191,8 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
         if found != CLEAR:
             first = roots(s, r, b, t, h, interpolate, low, high)
             if first <= 1.0:
-                return first
+                unseen = first < SEEN and first * h > BRIEF * setting[T_END]
+                return UNCERTAIN if again and unseen and leaves_brief(s, b) else first
         if high >= 1.0:
             return NONE
         step = 2.0 * (high - low)
@@ -219,6 +228,15 @@ def roots(s, r, b, t, h, interpolate, low, high):
         if b.met[n, THETA] > first + SAME:
             b.met[n, THETA] = NONE
     return first
+
+
+@internal
+def leaves_brief(s, b):
+    """Whether a corner in b.met ends a piece that may be a short event."""
+    for n in range(s.feature.shape[0]):
+        if b.met[n, THETA] <= 1.0 and brief(s.tab, s.feature[n, OFFSET], int(b.met[n, PLACE])):
+            return True
+    return False
 
 
 @internal

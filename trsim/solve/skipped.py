@@ -6,6 +6,8 @@ from typing import Any
 from trsim.assemble.layout import all_names
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.sections import without_play
+from trsim.fields import FunctionSpec
+from trsim.instants import peaked
 
 UNREAD = ("phases", "cases", "sweep")  # keys a scenario may have that `run` does not act on
 SHOWN = 4  # names of a list
@@ -13,7 +15,7 @@ SHOWN = 4  # names of a list
 
 def skipped(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """Sentences "what: why"."""
-    parts = (_rows, _bars, _contacts, _stabilisation, _start, _channels, _points, _keys)
+    parts = (_rows, _bars, _contacts, _stabilisation, _start, _peaks, _channels, _points, _keys)
     return tuple(text for part in parts for text in part(scenario, mechanism))
 
 
@@ -76,6 +78,22 @@ def _start(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
         yield "weight: `gravity` is not given"
     if not scenario.initial.settles:
         yield "static equilibrium: `initial` asks for none, the start is as drawn"
+
+
+def _peaks(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
+    """Smooth loads that may be short events which only the stages of steps see."""
+    found = [
+        name for name, load in scenario.forces.items() if any(map(_peaked, vars(load).values()))
+    ]
+    if found and scenario.solver.max_step is None:
+        yield (
+            f"a search inside steps for narrow peaks of {listed(found)}: quotients and powers of "
+            "what varies have no edges as exp has; `solver: {max_step: ...}` bounds the steps"
+        )
+
+
+def _peaked(value: Any) -> bool:
+    return isinstance(value, FunctionSpec) and value.kind == "expression" and peaked(value.node)
 
 
 def _channels(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
