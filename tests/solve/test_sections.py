@@ -108,9 +108,15 @@ def test_a_turn_short_of_zero_is_no_crossing():
     assert len(thrown(-0.250001, 1.0, -2.0)) == 0
 
 
-def test_a_start_at_zero_is_no_crossing():
-    """y = t (t - 0.5)"""
-    assert thrown(0.0, -0.5, 2.0)[:, 0] == pytest.approx([0.5], abs=1e-12)
+@pytest.mark.parametrize("rounding", [0.0, 1e-17, -1e-17])
+def test_a_start_at_zero_is_no_crossing(rounding):
+    """y = t (t - 0.5), as drawn or with what rounding leaves of a start at zero."""
+    assert thrown(rounding, -0.5, 2.0)[:, 0] == pytest.approx([0.5], abs=1e-12)
+
+
+def test_a_start_close_to_zero_is_followed_by_a_crossing():
+    """y = -1e-4 + t / 2 + t^2"""
+    assert thrown(-1e-4, 0.5, 2.0)[:, 0] == pytest.approx([2e-4], rel=1e-3)
 
 
 @pytest.mark.parametrize("force, at", [("(t > 0.5)*2 - 1", []), ("sin(8*t - 4)", [0.5])])

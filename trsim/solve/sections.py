@@ -73,6 +73,7 @@ AHEAD = 1e-4  # of a step: how far the rate of a channel looks
 JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
 TRIALS = 100
 RESOLUTION = 2.3e-16
+AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and rounding is left
 
 
 @compiled(SECTIONS)
@@ -264,6 +265,8 @@ def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
     for j in range(1, parts + 1):
         high = reach * j / parts
         f_high = value(s, r, b, k, interpolate, t, h, high, projected) if j < parts else b.out[when]
+        if t == 0.0 and j == 1 and abs(f_low) <= AT_START * abs(f_high):
+            side = 0.0
         new = side_of(f_high, side)
         if side * new < 0.0:
             crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, new, projected)
