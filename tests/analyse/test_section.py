@@ -41,6 +41,15 @@ def test_crossings_by_cubics(crosses, exact):
     assert stated[1] < 100.0 * worst[1]  # an error so large that it says nothing would cover all
 
 
+@pytest.mark.parametrize("left", [0.0, -1e-20, 1e-20])
+def test_a_start_on_zero_is_no_crossing(left):
+    """Whatever rounding leaves of it."""
+    time = np.linspace(0.0, 2.2, 111)
+    w = np.sin(2 * np.pi * time) * (-1.0 if left > 0.0 else 1.0)
+    w[0] = left
+    assert crossings(time, w, w, w, "both", NO_EVENTS)[0] == pytest.approx([0.5, 1.0, 1.5, 2.0])
+
+
 @pytest.mark.parametrize("shares", [(0.0, 1.0), (1.0, 0.0), (1.0, 1.0)], ids=str)
 def test_stated_errors_cover_the_scatter_of_rows(shares):
     """Rows tremble about a slow motion, and so does the motion where it crosses."""
