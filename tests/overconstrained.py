@@ -6,6 +6,16 @@ import numpy as np
 
 Z = (0.0, 0.0, 1.0)
 ORDINARY = np.eye(3)
+# how a run may be made, as --set words
+METHODS = {
+    "auto": (),
+    "dop853": ("solver.method=dop853",),
+    "radau": ("solver.method=radau",),
+    "ggl": ("solver.method=radau", "solver.formulation=ggl"),
+    "generalized_alpha": ("solver.method=generalized_alpha", "solver.tolerance=1e-6"),
+    "rk4": ("solver.method=rk4", "solver.step=1e-3"),
+    "scipy": ("solver.method=scipy:RK45", "solver.tolerance=1e-6"),
+}
 
 
 def rotation(axis, angle):

@@ -32,6 +32,7 @@ _CHARACTERS = re.compile(r"[A-Za-z0-9_.,()+\-*/<>=!\s]*")
 _WITH_UNIT = re.compile(r"(?<![\w.])[0-9.]+(?:[eE][+-]?[0-9]+)? +[A-Za-z][\w*/]*")
 
 NOTHING, SOME = 37.0, 2.0  # exp(-37) = 8.5e-17, less than the rounding of 1; exp(-2) = 0.14
+LOW = 5  # degree of a polynomial that has nothing short between two corners
 EDGES = (-NOTHING, -SOME, SOME, NOTHING)  # u of exp(u) at which it has corners: laws/operations.py
 
 

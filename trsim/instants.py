@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from trsim.enclosures import Interval, enclosure, values
 from trsim.errors import ScenarioError
-from trsim.expressions import EDGES, Node, names
+from trsim.expressions import EDGES, LOW, Node, names
 
 Array = NDArray[np.float64]
 COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
@@ -29,7 +29,6 @@ RESOLUTION = 1e-12  # of the run: instants nearer to each other are one
 NEIGHBOURS = (
     1e-7  # of the run: nearer to each other, places that rounding cannot tell apart are one
 )
-LOW = 5  # whole powers up to it are no short events
 AT_ONCE = 1 << 15  # intervals enclosed in one go
 TRIED = 8_000_000  # intervals: more of them are not looked at
 ZERO, ONE = ("number", 0.0), ("number", 1.0)

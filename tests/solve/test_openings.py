@@ -9,6 +9,7 @@ from trsim.solve.doubts import doubts
 from trsim.solve.simulate import simulate
 
 from ..overconstrained import (
+    METHODS,
     ORDINARY,
     TILTED,
     bennett,
@@ -22,15 +23,6 @@ from ..overconstrained import (
 from ..runs import run, scenario
 
 TURN = "drives: {motor: {joint: F0, velocity: 1}}"
-METHODS = {
-    "auto": (),
-    "dop853": ("solver.method=dop853",),
-    "radau": ("solver.method=radau",),
-    "ggl": ("solver.method=radau", "solver.formulation=ggl"),
-    "generalized_alpha": ("solver.method=generalized_alpha", "solver.tolerance=1e-6"),
-    "rk4": ("solver.method=rk4", "solver.step=1e-3"),
-    "scipy": ("solver.method=scipy:RK45", "solver.tolerance=1e-6"),
-}
 
 
 def three_cranks(longer, more=TURN, R=ORDINARY, end=1.0, angle=np.pi / 2):

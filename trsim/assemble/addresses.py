@@ -13,7 +13,7 @@ from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
-from trsim.expressions import degree, names
+from trsim.expressions import LOW, degree, names
 from trsim.frame import Frame
 from trsim.laws import functions
 from trsim.units import fits
@@ -34,7 +34,6 @@ class JointCoordinate(NamedTuple):
 
 
 UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
-LOW = 5  # degree of a polynomial that has nothing short between two corners
 
 
 @dataclass

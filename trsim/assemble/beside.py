@@ -23,6 +23,7 @@ from trsim.assemble.equations import (
     constraints,
     equation,
     free_accelerations,
+    in_world,
     poses,
     right_hand_side,
 )
@@ -141,7 +142,7 @@ def at(s, t, y, d):
 @equation
 def take(s, y, yd):
     """The limit into yd, A, lam and the power of the drives."""
-    found, X, A = s.aside[FOUND], s.X, s.A
+    found = s.aside[FOUND]
     for k in range(s.m):
         s.zd[DRIVES] += (found[s.n_v + k] - s.lam[k]) * s.phi_t[k]
         s.lam[k] = found[s.n_v + k]
@@ -150,13 +151,4 @@ def take(s, y, yd):
         o = s.d * (f - 1)
         for c in range(s.d):
             yd[s.n_q + o + c] = s.free[f, c] = found[o + c]
-        if s.d == 3:
-            A[f, 0], A[f, 1], A[f, 5] = found[o], found[o + 1], found[o + 2]
-            continue
-        for c in range(3):
-            A[f, c] = found[o + c]
-            A[f, 3 + c] = (
-                X[f, 3 + 3 * c] * found[o + 3]
-                + X[f, 4 + 3 * c] * found[o + 4]
-                + X[f, 5 + 3 * c] * found[o + 5]
-            )
+        in_world(s, f)

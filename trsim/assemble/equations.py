@@ -223,7 +223,7 @@ def right_hand_side(s):
 @equation
 def accelerations(s, y, yd):
     """V' = M^-1 (F - J^T x) into yd and, in world axes, into A; q' into yd."""
-    X, A, a = s.X, s.A, s.free
+    a = s.free
     for k in range(s.n_z):
         yd[s.n_q + s.n_v + k] = s.zd[k]
     if s.n_r < s.n:
@@ -236,7 +236,7 @@ def accelerations(s, y, yd):
             for c in range(3):
                 yd[q + c] = y[v + c]
                 yd[v + c] = a[f, c]
-            A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
+            in_world(s, f)
         return
     for f in range(1, s.n_r):
         pull(s, f, s.x)
@@ -245,10 +245,7 @@ def accelerations(s, y, yd):
             yd[q + c] = y[v + c]
             yd[v + c] = a[f, c]
             yd[v + 3 + c] = a[f, 3 + c]
-            A[f, c] = a[f, c]
-            A[f, 3 + c] = (
-                X[f, 3 + 3 * c] * a[f, 3] + X[f, 4 + 3 * c] * a[f, 4] + X[f, 5 + 3 * c] * a[f, 5]
-            )
+        in_world(s, f)
         # p' = p o (0, omega) / 2 with omega in body axes
         e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
         o0, o1, o2 = y[v + 3], y[v + 4], y[v + 5]
@@ -256,6 +253,20 @@ def accelerations(s, y, yd):
         yd[q + 4] = 0.5 * (e0 * o0 + e2 * o2 - e3 * o1)
         yd[q + 5] = 0.5 * (e0 * o1 + e3 * o0 - e1 * o2)
         yd[q + 6] = 0.5 * (e0 * o2 + e1 * o1 - e2 * o0)
+
+
+@equation
+def in_world(s, f):
+    """The accelerations of a rigid body, from the axes of the solve into A."""
+    X, A, a = s.X, s.A, s.free
+    if s.d == 3:
+        A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
+        return
+    for c in range(3):
+        A[f, c] = a[f, c]
+        A[f, 3 + c] = (
+            X[f, 3 + 3 * c] * a[f, 3] + X[f, 4 + 3 * c] * a[f, 4] + X[f, 5 + 3 * c] * a[f, 5]
+        )
 
 
 @compiled(AT)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, derivative, poses
+from trsim.assemble.linear import SOUND
 from trsim.assemble.reduce import all_rows, in_solve_axes, weights
 from trsim.elements.scene import Scene
 
@@ -37,13 +38,16 @@ def undecided(work: Scene, y: Array) -> list[int]:
     if not work.m or work.n > work.n_r:
         return []
     derivative(work, 0.0, y, np.zeros_like(y))
+    moving = np.any(work.V)
+    if moving or not (len(work.redundant) or work.status[0] != SOUND):
+        return []
     unit = np.tile([work.size] * 3 + [1.0] * 3, work.n - 1)
     push = np.abs(work.F[1:]).ravel() * weights(work) ** 2 / np.repeat(work.mass[1:], 6)
-    a, moving = np.nan_to_num(work.A[1:].ravel()), np.any(work.V)
+    a = np.nan_to_num(work.A[1:].ravel())
     rows = list(range(work.m + len(work.redundant)))
     branches = Branches(work, y, all_rows(work, y), rows)
     a = branches.motions @ (branches.free.T @ (a / branches.scale))
-    if moving or not np.max(np.abs(a) / unit) > PLAINLY * np.max(push / unit, initial=0.0):
+    if not np.max(np.abs(a) / unit) > PLAINLY * np.max(push / unit, initial=0.0):
         return []
     if not branches.stresses.shape[1]:
         return []

@@ -31,10 +31,10 @@ from trsim.solve.calls import (
     call_sections,
     call_step,
 )
-from trsim.solve.dense_output import build
+from trsim.solve.dense_output import build, measure_inside
 from trsim.solve.events import SAME
 from trsim.solve.features import call_meet
-from trsim.solve.land import evaluate_inside, land
+from trsim.solve.land import land
 from trsim.solve.norm import grow
 from trsim.solve.peaks import call_sample
 from trsim.solve.phases import change_phases, latch
@@ -296,11 +296,7 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
         if at_end(t_o, t1):
             copy_to(row[1:], b.out)
         else:
-            theta = (t_o - t) / h
-            call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
-            evaluate_inside(s, t_o, b.y2, b.K[1])
-            done = r.clock[WORK_PROJECTION] + theta * projected
-            measure(s, t_o, b.y2, done, r.clock[ENERGY_0])
+            measure_inside(s, r, b, method[INTERPOLATE_AT], t_o, (t_o - t) / h, projected)
             copy_to(row[1:], s.out)
             if method[LOOK_AT] > 0:
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2, 0)
@@ -315,10 +311,7 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
 @internal
 def look_inside(s, r, b, setting, method, t, h, at, projected):
     """A sample inside the step, for the extremes."""
-    theta = (at - t) / h
-    call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
-    evaluate_inside(s, at, b.y2, b.K[1])
-    measure(s, at, b.y2, r.clock[WORK_PROJECTION] + theta * projected, r.clock[ENERGY_0])
+    measure_inside(s, r, b, method[INTERPOLATE_AT], at, (at - t) / h, projected)
     call_sample(method[SAMPLE_AT], s, r, b, setting, method, t, h, at, s.out, projected, 1)
 
 

@@ -12,18 +12,15 @@ Samples on two sides of an event have nothing to do with each other: `restart`.
 
 from math import sqrt
 
-from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import internal
-from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT, call_interpolate
-from trsim.solve.dense_output import build
-from trsim.solve.land import evaluate_inside
+from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT
+from trsim.solve.dense_output import build, measure_inside
 from trsim.solve.record import (
     BUFFERS,
-    ENERGY_0,
     NEWEST,
     PEAK_MAX,
     PEAK_MAX_T,
@@ -33,7 +30,6 @@ from trsim.solve.record import (
     RECORD,
     SAMPLES,
     TOLERANCE,
-    WORK_PROJECTION,
 )
 
 SHARE = 0.3  # of the tolerance, times the range of a channel: what may be missed
@@ -223,11 +219,7 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
         if built == 0:
             build(s, r, b, method[DENSE_AT], t, h)
             built = 1
-        theta = (place - t) / h
-        call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
-        evaluate_inside(s, place, b.y2, b.K[1])
-        done = r.clock[WORK_PROJECTION] + theta * projected
-        measure(s, place, b.y2, done, r.clock[ENERGY_0])
+        measure_inside(s, r, b, method[INTERPOLATE_AT], place, (place - t) / h, projected)
         lengths(s, b.inside[k], s.out)
         b.found[0], b.found[1 + k] = k + 1.0, place
         for o in range(now.size):

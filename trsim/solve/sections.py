@@ -43,11 +43,10 @@ from trsim.solve.calls import (
     LAST_AT,
     SECTIONS,
     call_dense,
-    call_interpolate,
 )
+from trsim.solve.dense_output import measure_inside
 from trsim.solve.events import NONE, SAME
 from trsim.solve.illinois import between, narrowed
-from trsim.solve.land import evaluate_inside
 from trsim.solve.record import (
     END_RATE,
     ENERGY_0,
@@ -119,15 +118,6 @@ def point(s, r, b, k, t, values):
     r.count[POINT_ROWS] += 1
 
 
-@internal
-def measure_inside(s, r, b, interpolate, t, h, theta, projected):
-    """All channels at t + theta h into s.out."""
-    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-    evaluate_inside(s, t + theta * h, b.y2, b.K[1])
-    done = r.clock[WORK_PROJECTION] + theta * projected
-    measure(s, t + theta * h, b.y2, done, r.clock[ENERGY_0])
-
-
 # --- touches and instants --------------------------------------------------------------------
 
 
@@ -166,7 +156,8 @@ def strobes(s, r, b, k, interpolate, t, h, t1, projected):
         if at >= t1:
             point(s, r, b, k, at, b.out)
         else:
-            measure_inside(s, r, b, interpolate, t, h, max((at - t) / h, 0.0), projected)
+            theta = max((at - t) / h, 0.0)
+            measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
             point(s, r, b, k, at, s.out)
         r.section[k, NEXT] += 1.0
 
@@ -288,7 +279,7 @@ def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
 @internal
 def value(s, r, b, k, interpolate, t, h, theta, projected):
     """What section k looks at, inside the step."""
-    measure_inside(s, r, b, interpolate, t, h, theta, projected)
+    measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
     return s.out[s.section[k, WHEN]]
 
 
@@ -301,7 +292,7 @@ def crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, to, pro
     when = s.section[k, WHEN]
     theta = root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected)
     if theta >= 0.0:
-        measure_inside(s, r, b, interpolate, t, h, theta, projected)
+        measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
         point(s, r, b, k, min(t + theta * h, t1), s.out)
 
 
@@ -350,7 +341,7 @@ def root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected):
         if bracket[2] - bracket[0] <= finest:
             break
         middle = between(bracket, n)
-        measure_inside(s, r, b, interpolate, t, h, middle, projected)
+        measure_inside(s, r, b, interpolate, t + middle * h, middle, projected)
         f = s.out[when]
         if f == 0.0:
             return middle
