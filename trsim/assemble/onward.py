@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 
 DEPENDENT = 1e-9  # singular values, of the largest
 HOLDS = 1e-9  # of the largest term of gamma
+ROUNDING = 1e-14  # of the largest gamma, of rows of length one
 PLAINLY = 1e-3  # the same, and of what forces do to free bodies: more than a rounded drawing's
 TAKES_PART = 0.1  # of the largest entry of a self-stress
 MOST = 40  # motions that are looked at
@@ -111,8 +112,11 @@ class Branches:
     def goes_on(self, v: Array) -> bool:
         """Whether an acceleration exists."""
         off = self.left(v)
-        terms = np.abs(self.stresses) * np.abs(self.work.gamma[self.rows])[:, None]
-        return bool(np.all(np.abs(off) <= HOLDS * max(float(np.max(terms)), 1e-300)))
+        gamma = np.abs(self.work.gamma[self.rows])
+        terms = float(np.max(np.abs(self.stresses) * gamma[:, None]))
+        # rows across a motion in a plane have no gamma but what rounding leaves of the others'
+        rounding = ROUNDING * float(np.max(gamma / self.length))
+        return bool(np.all(np.abs(off) <= max(HOLDS * terms, rounding, 1e-300)))
 
     def quadratic(self, v: Array) -> tuple[Array, Array, Array]:
         """c (w), b (w, n), B (w, n, n) of w . gamma(v + N z) = c + b z + z B z."""

@@ -12,6 +12,8 @@ What the compiler must know of it is in compiler.py, imported when something is 
 
 from __future__ import annotations
 
+import itertools
+import math
 from typing import TYPE_CHECKING, Any
 
 from trsim.elements.signatures import KINDS, Kind
@@ -32,42 +34,79 @@ else:  # and to compiled code
 __all__ = ["A1", "A2", "I1", "I2", "WORDS", "Packed", "f8", "i8"]
 
 WORDS = 3  # per field
+LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
 
 
 class Packed:
     """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, f8 or i8."""
 
     kind: Kind  # what signatures call it
+    places: dict[str, int]  # of a field among the fields
 
     def __init_subclass__(cls) -> None:
         own = {k: v for k, v in vars(cls).get("__annotations__", {}).items() if k != "kind"}
         inherited = dict(cls.kind.fields) if hasattr(cls, "kind") else {}
         fields = {k: v if isinstance(v, Kind) else KINDS[v] for k, v in own.items()}
         cls.kind = Kind(cls.__name__, fields=tuple({**inherited, **fields}.items()))
+        cls.places = {name: k for k, (name, _) in enumerate(cls.kind.fields)}
 
-    def __init__(self, **values: Any) -> None:
+    def __init__(
+        self, like: Packed | None = None, room: dict[str, tuple[int, ...]] | None = None, /,
+        **values: Any,
+    ) -> None:  # fmt: skip
+        """like: a record whose fields are the first of these, taken over where they are not given;
+        room: shapes of arrays of zeros, made in one piece: asking each for its address is slow."""
         import numpy as np
 
-        fields = self.kind.fields
-        missing = {name for name, _ in fields} ^ set(values)
-        if missing:
-            raise TypeError(f"{type(self).__name__}: fields {sorted(missing)} missing or unknown")
-        self.words = np.zeros(WORDS * len(fields), np.int64)
-        for k, (name, kind) in enumerate(fields):
-            value = values[name]
-            if kind.dimensions:
-                if not _fits(value, kind):
-                    value = np.require(value, kind.dtype, ["C", "W"])
-                if value.ndim != kind.dimensions:
-                    raise TypeError(f"{name}: {value.ndim} dimensions instead of {kind.dimensions}")
-                self.words[WORDS * k] = value.ctypes.data
-                self.words[WORDS * k + 1 : WORDS * k + 1 + value.ndim] = value.shape
-            elif kind.dtype == "float64":
-                self.words[WORDS * k : WORDS * k + 1].view(np.float64)[0] = value
-            else:
-                self.words[WORDS * k] = value
-            setattr(self, name, value)
+        wrong = {*(room or {}), *values} - self.places.keys()
+        words = [0] * (WORDS * len(self.places))
+        if not wrong:
+            if like is not None:
+                self._share(like, words)
+            self._make(room or {}, words)
+            for name, value in values.items():
+                self._take(name, value, words)
+            wrong = self.places.keys() - vars(self).keys()
+        if wrong:
+            raise TypeError(f"{type(self).__name__}: fields {sorted(wrong)} missing or unknown")
+        self.words = np.array(words, np.int64)
         self.address = self.words.ctypes.data
+
+    def _share(self, like: Packed, words: list[int]) -> None:
+        """The first fields, as another record has them."""
+        names = [name for name, _ in zip(self.places, like.places, strict=False)]
+        words[: WORDS * len(names)] = like.words[: WORDS * len(names)].tolist()
+        vars(self).update((name, getattr(like, name)) for name in names)
+
+    def _make(self, room: dict[str, tuple[int, ...]], words: list[int]) -> None:
+        """Arrays of zeros."""
+        import numpy as np
+
+        sizes = [math.prod(shape) for shape in room.values()]
+        ends = [0, *itertools.accumulate(LINE * -(-size // LINE) for size in sizes)]
+        piece = np.zeros(ends[-1])
+        start = piece.ctypes.data
+        for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
+            vars(self)[name] = piece[begin : begin + size].reshape(shape)
+            word = WORDS * self.places[name]
+            words[word : word + 1 + len(shape)] = (start + piece.itemsize * begin, *shape)
+
+    def _take(self, name: str, value: Any, words: list[int]) -> None:
+        """A field."""
+        import numpy as np
+
+        kind, word = self.kind.fields[self.places[name]][1], WORDS * self.places[name]
+        if kind.dimensions:
+            if not _fits(value, kind):
+                value = np.require(value, kind.dtype, ["C", "W"])
+            if value.ndim != kind.dimensions:
+                raise TypeError(f"{name}: {value.ndim} dimensions instead of {kind.dimensions}")
+            words[word : word + 1 + value.ndim] = (value.ctypes.data, *value.shape)
+        elif kind.dtype == "float64":
+            words[word] = int(np.float64(value).view(np.int64))
+        else:
+            words[word] = value
+        vars(self)[name] = value
 
     def arrays(self) -> dict[str, Any]:
         """The arrays by name."""

@@ -116,8 +116,7 @@ class Model(Packed):
 
     def replaced(self, **changes: Any) -> Model:
         """A copy with some fields replaced."""
-        values = {name: getattr(self, name) for name, _ in Model.kind.fields}
-        return Model(**{**values, **changes})
+        return Model(self, **changes)
 
 
 class Scene(Model):
@@ -179,54 +178,55 @@ def scene(model: Model) -> Scene:
     n, m, n_x, slots = model.n, model.m, len(model.column_start) - 1, len(model.slot_row)
     rows = m + len(model.redundant)
     elements = int(np.sum(model.beam[:, 1] - 1))
-    X = np.zeros((n, 12))
-    X[:, [3, 7, 11]] = 1.0
-    X[:, 2] = model.depth
-    constants = {name: getattr(model, name) for name, _ in Model.kind.fields}
-    return Scene(
-        **{**constants, "tab": model.tab.copy()},  # scratch, and what functions are held on
-        X=X,
-        element=np.zeros((7, 12)),
-        tangent=np.zeros((12 * elements, 12)),
-        viscous=np.zeros((12 * elements, 12)),
-        G=np.zeros((n, 6)),
-        Q=np.zeros((n, 3)),
-        V=np.zeros((n, 6)),
-        A=np.zeros((n, 6)),
-        S=np.zeros((max(model.n_s, 1), 2)),
-        branch=np.zeros(max(model.n_s, 1)),
-        z=np.zeros(model.n_z),
-        zd=np.zeros(model.n_z),
-        mem=np.zeros((len(model.con), N_MEM)),
-        F=np.zeros((n, 6)),
-        phi=np.zeros(rows),
-        phi_t=np.zeros(rows),
-        J=np.zeros((rows, 12)),
-        gamma=np.zeros(rows),
-        lam=np.zeros(rows),
-        B=np.zeros((slots, 6)),
-        W=np.zeros((slots, 6)),
-        value=np.zeros(len(model.row)),
-        original=np.zeros(len(model.row)),
-        first=np.zeros(n_x),
-        through=np.zeros(m),
-        x=np.zeros(n_x),
-        r=np.zeros(n_x),
-        r2=np.zeros(n_x),
-        aside=np.zeros((7, max(model.n_q + model.n_v + model.n_z, model.n_v + m))),
-        moved=np.zeros((n, 6)),
-        free=np.zeros((n, 6)),
-        gap=np.zeros((len(model.con), 2)),
-        corner=np.full((len(model.con), 2), -1.0),
-        left=np.full(len(model.con), -1.0),
-        E=np.zeros(N_STORED),
-        out=np.zeros(max(model.n_out, 1)),
+    made = Scene(
+        model,
+        {
+            "X": (n, 12),
+            "element": (7, 12),
+            "tangent": (12 * elements, 12),
+            "viscous": (12 * elements, 12),
+            "G": (n, 6),
+            "Q": (n, 3),
+            "V": (n, 6),
+            "A": (n, 6),
+            "S": (max(model.n_s, 1), 2),
+            "branch": (max(model.n_s, 1),),
+            "z": (model.n_z,),
+            "zd": (model.n_z,),
+            "mem": (len(model.con), N_MEM),
+            "F": (n, 6),
+            "phi": (rows,),
+            "phi_t": (rows,),
+            "J": (rows, 12),
+            "gamma": (rows,),
+            "lam": (rows,),
+            "B": (slots, 6),
+            "W": (slots, 6),
+            "value": (len(model.row),),
+            "original": (len(model.row),),
+            "first": (n_x,),
+            "through": (m,),
+            "x": (n_x,),
+            "r": (n_x,),
+            "r2": (n_x,),
+            "aside": (7, max(model.n_q + model.n_v + model.n_z, model.n_v + m)),
+            "moved": (n, 6),
+            "free": (n, 6),
+            "gap": (len(model.con), 2),
+            "corner": (len(model.con), 2),
+            "left": (len(model.con),),
+            "E": (N_STORED,),
+            "out": (max(model.n_out, 1),),
+        },
+        tab=model.tab.copy(),  # scratch, and what functions are held on
         status=np.zeros(4, np.int64),
     )
+    made.X[:, [3, 7, 11]] = 1.0
+    made.X[:, 2] = model.depth
+    made.corner[...] = made.left[...] = -1.0
+    return made
 
 
 def carried(work: Scene, model: Model) -> Scene:
     """A scene of another stage of the same run: memory, branches and counters go on in it."""
-    fresh = scene(model)
-    values = {name: getattr(fresh, name) for name, _ in Scene.kind.fields}
-    return Scene(**{**values, "mem": work.mem, "branch": work.branch, "status": work.status})
+    return Scene(scene(model), mem=work.mem, branch=work.branch, status=work.status)

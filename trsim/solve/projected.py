@@ -1,6 +1,6 @@
 """What the start of a run changed in the drawing: residuals before and after, and how far."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import jacobian, world_rates
-from trsim.elements.scene import Model, scene
+from trsim.elements.scene import Model, workspace
 from trsim.solve.angles import follow
 from trsim.solve.start import Start
 
@@ -37,7 +37,8 @@ class Projected:
 
 def projected(mechanism: Mechanism, begun: Start) -> Projected:
     """Compare a start with the drawing."""
-    model = mechanism.model
+    model = workspace(mechanism.model)
+    mechanism = replace(mechanism, model=model)  # one workspace for all that follows
     as_drawn = follow(mechanism, mechanism.y0)
     n, end = model.n_q, model.n_q + model.n_v
     given = begun.y.copy()
@@ -87,7 +88,7 @@ def rates(model: Model, y: Array) -> Array:
 
 def placed(model: Model, y: Array) -> Array:
     """Positions and rotation matrices of the moving frames, (n - 1, 12)."""
-    w = scene(model)
+    w = workspace(model)
     poses(w, y)
     return w.X[1:].copy()
 
