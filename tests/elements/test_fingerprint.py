@@ -21,6 +21,7 @@ from trsim.elements import fingerprint, machine
 from trsim.elements.machine import Caller, Compiled
 from trsim.elements.signatures import f8, float64
 from trsim.laws import Lazy, law
+from trsim.sweep.slot import ONE_THREAD
 
 # --- every kernel of the package -----------------------------------------------------------------
 
@@ -228,6 +229,14 @@ def test_the_settings_of_numba_are_in_every_key(monkeypatch):
     before = fingerprint._surroundings.__wrapped__()
     monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
     assert fingerprint._surroundings.__wrapped__() != before
+
+
+def test_what_a_sweep_gives_its_processes_is_in_none(monkeypatch):
+    """They load what a run has compiled."""
+    before = fingerprint._surroundings.__wrapped__()
+    for name in ONE_THREAD:
+        monkeypatch.setenv(name, "7")
+    assert fingerprint._surroundings.__wrapped__() == before
 
 
 # --- ways to reach something ---------------------------------------------------------------------

@@ -74,7 +74,10 @@ def _surroundings() -> str:
 
     package = Path(__file__).parents[1]
     files = [_digest((package / name).read_bytes()) for name in COMPILER]
-    settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_"))
+    settings = sorted(
+        (name, value) for name, value in os.environ.items()
+        if name.startswith("NUMBA_") and name != "NUMBA_NUM_THREADS"  # nothing is parallel
+    )  # fmt: skip
     versions = sys.version, np.__version__, version("numba"), llvmlite.__version__
     processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     options = COMPILED, UNWRAPPED
