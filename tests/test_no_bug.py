@@ -186,7 +186,7 @@ def test_too_many_nodes_rows_and_entries(tmp_path):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     path = tmp_path_factory.mktemp("whole") / "run.h5"
-    small.run(path, "output.channels=[stroke, B, A]", "output.every=0.1 ms")
+    small.copy(path, "output.channels=[stroke, B, A]", "output.every=0.1 ms")
     return path
 
 

@@ -182,7 +182,7 @@ def test_a_twin_that_cannot_be_read_does_not_cost_the_run(scenario, answer, monk
 
 
 def test_a_file_that_is_no_twin_is_not_written_over(scenario, trsim):
-    small.run(scenario.parent / "runs/crank.twin.h5")
+    small.copy(scenario.parent / "runs/crank.twin.h5")
     before = (scenario.parent / "runs/crank.twin.h5").read_bytes()
     code, _, err = trsim("run", "crank.yaml", "--certify")
     assert code == 2 and "is no twin of a run" in err

@@ -89,7 +89,7 @@ WRONG = {  # exit code -> text of the scenario, and what it is replaced by
 @pytest.fixture
 def folder(scenario):
     """A scenario, its result file, and a sweep that did not begin, in the current folder."""
-    small.run(scenario.parent / "x.h5")
+    small.copy(scenario.parent / "x.h5")
     see = plan("crank.yaml", VARIED[1:2])
     (scenario.parent / "sweep").mkdir()
     write_plan(scenario.parent / "sweep", see, "")

@@ -3,10 +3,13 @@
 import dataclasses
 import errno
 import json
+import shutil
 
 import h5py
 import pytest
 
+from tests import small
+from trsim.cli import main
 from trsim.solve import simulate as solver
 from trsim.store import checkpoint, hdf5
 from trsim.store.checkpoint import load, store
@@ -16,9 +19,11 @@ from trsim.store.read import read
 LONG = ("--set", "output.every=0.2us")  # three chunks of rows
 
 
-@pytest.fixture
-def interrupted(scenario, trsim, monkeypatch):
-    """A run that was interrupted near its end; the path of its checkpoint."""
+@pytest.fixture(scope="module")
+def left(tmp_path_factory):
+    """What a run leaves that was interrupted near its end."""
+    folder = tmp_path_factory.mktemp("left")
+    (folder / "crank.yaml").write_text(small.SLIDER_CRANK)
     take = hdf5.Running.take
 
     def interrupt(run, block):
@@ -26,9 +31,18 @@ def interrupted(scenario, trsim, monkeypatch):
         if block.time > 2.5e-3:
             raise KeyboardInterrupt
 
-    with monkeypatch.context() as patch:
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(SystemExit) as ended:
+        patch.chdir(folder)
         patch.setattr(hdf5.Running, "take", interrupt)
-        assert trsim("run", "crank.yaml", *LONG)[0] == 130
+        main(["run", "crank.yaml", *LONG])
+    assert ended.value.code == 130
+    return folder / "runs"
+
+
+@pytest.fixture
+def interrupted(left, scenario):
+    """A run that was interrupted near its end; the path of its checkpoint."""
+    shutil.copytree(left, scenario.parent / "runs")
     return scenario.parent / "runs/crank.h5.checkpoint"
 
 

@@ -13,8 +13,6 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from trsim.solve.doubts import doubts
-from trsim.spec.lint import lint
 from trsim.statuses import Status
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION
@@ -125,6 +123,9 @@ def summary(
     run: Any, file: h5py.File, status: Status, reason: str, outcome: Any, found: list[Peak]
 ) -> dict[str, Any]:
     """The run in a few numbers."""
+    from trsim.solve.doubts import doubts  # who recovers a file needs no solver
+    from trsim.spec.lint import lint
+
     mechanism = run.mechanism
     late = doubts(run.scenario, mechanism, outcome) if outcome else ()
     names = [instance.name for instance in mechanism.instances]

@@ -15,7 +15,6 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.sections import without_play
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.store.grow import Field, Growing
@@ -80,6 +79,8 @@ class Impacts(NamedTuple):
 
 def plan(scenario: Any, mechanism: Any) -> Plan:
     """The portraits and sections of a run.  Raises ScenarioError for unknown channels."""
+    from trsim.assemble.sections import without_play  # nobody who reads a file needs mechanisms
+
     sizes = {column.name: column.size for column in mechanism.columns}
     portraits = [
         Portrait(name, _found(spec.x, sizes, ("phase_portraits", name, "x")),
