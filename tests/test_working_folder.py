@@ -134,7 +134,7 @@ def test_no_command_executes_one_with_an_empty_cache(words, folder, tmp_path):
     )  # fmt: skip
     until = time.monotonic() + PATIENCE
     while process.poll() is None and time.monotonic() < until and not kept(tmp_path / "cache"):
-        time.sleep(0.1)
+        time.sleep(0.01)
     compiles = process.poll() is None
     process.kill()
     process.wait()

@@ -78,7 +78,8 @@ def test_shards(scenario, trsim):
         (("-o", "."), 2, "a folder of other files"),
     ],
 )  # fmt: skip
-def test_refused(scenario, trsim, more, code, what):
+def test_refused(scenario, trsim, more, code, what, monkeypatch):
+    monkeypatch.setattr("trsim.sweep.dask.CONNECTING", 0.5)  # s; nobody answers there
     vary = ("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm]", *FAST)
     found, _, err = trsim(*vary, *more)
     assert (found, what in err) == (code, True), err
