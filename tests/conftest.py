@@ -1,7 +1,17 @@
 """What all tests share."""
 
+import compileall
+from pathlib import Path
+
 from hypothesis import settings
 
 # the first example of a law compiles it: a time says nothing about the law
 settings.register_profile("trsim", deadline=None)
 settings.load_profile("trsim")
+
+
+def pytest_configure(config):
+    """Keep the bytecode of trsim, also where Python is told to write none: hundreds of processes
+    begin in these tests, and without it half of the time of each goes into reading sources."""
+    if not hasattr(config, "workerinput"):
+        compileall.compile_dir(Path(__file__).parent.parent / "trsim", quiet=2)
