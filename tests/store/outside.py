@@ -73,9 +73,9 @@ def killed(process):
     return when
 
 
-def blocks_until(process, seconds):
+def blocks_until(process, seconds, told=None):
     """Simulated times and the wall times at which they were told, from the first block on."""
-    told = []
+    told = [] if told is None else told
     while not told or time.monotonic() - told[0][1] < seconds:
         line = process.stdout.readline()
         assert line, process.stderr.read()

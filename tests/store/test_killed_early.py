@@ -4,9 +4,10 @@ Folders are copied at every call of a function before which something in them ha
 a kill have left them.
 """
 
+import os
 import shutil
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import h5py
@@ -40,15 +41,26 @@ ENOUGH = 4096  # bytes: what is longer is a file with rows
 
 def looks(folder):
     """What tells two states of a folder apart: names, lengths of what is short, beginnings."""
-    found = []
-    for path in sorted(folder.rglob("*")):
-        try:
-            with path.open("rb") as file:
-                start = file.read(ENOUGH)
-                found.append((path.name, len(start), start[:64]))
-        except (IsADirectoryError, FileNotFoundError):
-            found.append((path.name, 0, b""))
-    return tuple(found)
+    found, folders = [], [folder]
+    for one in folders:
+        with os.scandir(one) as inside:
+            for entry in inside:
+                start = b""
+                with suppress(FileNotFoundError):
+                    if entry.is_dir():
+                        folders.append(entry.path)
+                    else:
+                        start = beginning(entry.path)
+                found.append((entry.path, len(start), start[:64]))
+    return tuple(sorted(found))
+
+
+def beginning(path):
+    """The first bytes of a file; this is called a hundred thousand times."""
+    file = os.open(path, os.O_RDONLY)
+    start = os.read(file, ENOUGH)
+    os.close(file)
+    return start
 
 
 @contextmanager

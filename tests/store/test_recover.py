@@ -1,5 +1,10 @@
 """A run that was killed is recovered; so is a file that was cut short or never closed."""
 
+import shutil
+import signal
+import time
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
@@ -12,7 +17,7 @@ from trsim.store.plain import Plain, checksum
 from trsim.store.read import read, verify
 from trsim.store.recover import copy, recover
 
-KILLS = np.random.default_rng(9).uniform(0.05, 1.6, size(10, 500))  # s after the first rows
+KILLS = np.random.default_rng(9).uniform(0.05, 1.6, (size(1, 50), 10))  # s after the first rows
 
 
 def whole(path):
@@ -30,13 +35,36 @@ def whole(path):
     return run
 
 
-@pytest.mark.parametrize("wait", KILLS)
-def test_killed_run(wait, tmp_path, record_property):
-    process = outside.begun(tmp_path)
-    told = outside.blocks_until(process, wait)
-    killed = outside.killed(process)
-    recover(tmp_path / "runs/crank.h5.part", tmp_path / "x.h5")
-    run = whole(tmp_path / "x.h5")
+def stopped(process, told, wait):
+    """Stop a process, `wait` s after its first rows; the wall time."""
+    outside.blocks_until(process, wait, told)
+    process.send_signal(signal.SIGSTOP)
+    when = time.monotonic()
+    while Path(f"/proc/{process.pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "T":
+        time.sleep(0.001)
+    return when
+
+
+@pytest.mark.parametrize("waits", KILLS, ids=str)
+def test_killed_run(waits, tmp_path, record_property):
+    """One process, stopped at each of some instants: its folder is what a kill would leave."""
+    here, told, killed = tmp_path / "here", [], {}
+    here.mkdir()
+    process = outside.begun(here)
+    for wait in sorted(waits):
+        killed[wait] = stopped(process, told, wait)
+        shutil.copytree(here, tmp_path / f"{wait}")
+        process.send_signal(signal.SIGCONT)
+    outside.killed(process)
+    for wait, when in killed.items():
+        lost = recovered(tmp_path / f"{wait}", [one for one in told if one[1] <= when], when)
+        record_property("lost", lost)
+
+
+def recovered(folder, told, killed):
+    """How many s of a killed run are lost, after looking at what is not."""
+    recover(folder / "runs/crank.h5.part", folder / "x.h5")
+    run = whole(folder / "x.h5")
     assert run.attributes["status"] == "recovered"
     assert verify(run.path)
     # no zero rows: the crank turns at a constant rate, the force book is never empty
@@ -44,11 +72,11 @@ def test_killed_run(wait, tmp_path, record_property):
     np.testing.assert_allclose(np.diff(run.time), 1e-5, rtol=1e-6)
     last = run.time[-1] if run.rows else -1.0
     lost = killed - next((wall for t, wall in told if t > last), killed)
-    record_property("lost", lost)
-    print(f"killed {wait:.2f} s after the first rows: {run.rows} rows, the last {lost:.2f} s lost")
+    print(f"killed at {folder.name} s: {run.rows} rows, the last {lost:.2f} s lost")
     assert lost < 2.0
-    assert not (tmp_path / "runs/crank.h5").exists()
-    assert {p.name for p in tmp_path.iterdir()} == {"crank.yaml", "runs", "x.h5"}
+    assert not (folder / "runs/crank.h5").exists()
+    assert {p.name for p in folder.iterdir()} == {"crank.yaml", "runs", "x.h5"}
+    return lost
 
 
 def test_interrupted_run(scenario, mechanism, tmp_path):

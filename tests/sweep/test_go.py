@@ -17,7 +17,7 @@ from tests import small
 from tests.sizes import size
 from trsim.errors import FileError, UsageError
 from trsim.store.read import verify
-from trsim.sweep import local
+from trsim.sweep import job, local
 from trsim.sweep.go import WHOLE, Shard, differing, engine, go, needs
 from trsim.sweep.ledger import entries
 from trsim.sweep.plan import plan
@@ -35,10 +35,16 @@ def scenario(tmp_path_factory):
     return path
 
 
-def made(scenario, folder, sets=SETS, by="one", jobs=1, shard=WHOLE):
-    """Make a sweep; the names of the cases that were run."""
+def here(tasks):
+    """Cases run in this process: a worker takes a second to start."""
+    return ((task, job.run(task, lambda: None)) for task in tasks)
+
+
+def made(scenario, folder, sets=SETS, by="one", jobs=0, shard=WHOLE):
+    """Make a sweep, with so many workers; the names of the cases that were run."""
     planned = plan(str(scenario), sets, by)
-    running = go(planned, folder, by, lambda tasks: local.run(tasks, jobs), shard)
+    runner = (lambda tasks: local.run(tasks, jobs)) if jobs else here
+    running = go(planned, folder, by, runner, shard)
     return [one.case for one in running if not isinstance(one, int)]
 
 
@@ -177,7 +183,7 @@ def test_shards_of_another_plan(scenario, tmp_path):
     """While one shard works no other plan comes into its folder, nor a sweep of all."""
     folder = tmp_path / "sweep"
     planned, other = plan(str(scenario), SETS, "one"), plan(str(scenario), FINE, "one")
-    running = go(planned, folder, "one", lambda tasks: local.run(tasks, 1), Shard(1, 2))
+    running = go(planned, folder, "one", here, Shard(1, 2))
     next(running)
     for wrong in (go(other, folder, "one", None, Shard(2, 2)), go(planned, folder, "one", None)):
         with pytest.raises(FileError, match="being written"):
@@ -252,7 +258,7 @@ def test_cases_that_fail(scenario, tmp_path):
 
 SWEEP = [sys.executable, "-m", "trsim", "sweep"]
 KILLS = size(10, 20)
-FINE = (f"{B}=lin(0.2 mm, 0.5 mm, 12)", "solver.end=2 ms")
+FINE = (f"{B}=lin(0.2 mm, 0.5 mm, 6)", "solver.end=2 ms")
 
 
 def children(pid):
@@ -304,13 +310,13 @@ def test_killed_at_any_time(scenario, tmp_path):
         process.wait()
         until = time.monotonic() + 5.0
         while alive(workers) and time.monotonic() < until:
-            time.sleep(0.05)
+            time.sleep(0.01)
         assert not alive(workers)
     again = subprocess.run(
         [*SWEEP, *arguments, "-o", str(stormy), "--json"], cwd=ROOT, check=True, capture_output=True
     )
     done = json.loads(again.stdout)
-    assert done["counts"] == {"done": 12}
+    assert done["counts"] == {"done": 6}
     assert contents(stormy) == contents(calm)
     left = sorted(path.name for path in (stormy / "cases").iterdir())
     assert left == sorted(path.name for path in (calm / "cases").iterdir())
@@ -325,7 +331,7 @@ def test_interrupted(scenario, tmp_path):
     )  # fmt: skip
     until = time.monotonic() + 60.0
     while len(entries(folder)) < 2 and time.monotonic() < until:
-        time.sleep(0.05)
+        time.sleep(0.01)
     workers = children(process.pid)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=10)

@@ -6,35 +6,42 @@ How a file was cut into chunks does not matter.
 """
 
 import hashlib
+import math
 from typing import Any
 
 import h5py
 import numpy as np
-from h5py import h5a, h5s
+from h5py import h5a, h5d, h5g, h5o, h5s, h5t
 
 UNCOVERED = {"provenance", "certificate"}  # groups
 OWN = {"content_sha256", "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}  # attributes
 PIECE = 1 << 20  # bytes read at a time
+TEXT = h5py.string_dtype()
+
+
+# h5py's low level throughout: its Group, Dataset and attributes cost more than what is read
 
 
 def content_hash(file: h5py.Group) -> str:
     """The sha256 of the contents of an open file, or of a group, in hexadecimal."""
     digest = hashlib.sha256()
-    _group(file, "", digest, {})
+    _group(file.id, "", digest, {})
     return digest.hexdigest()
 
 
-def _group(group: h5py.Group, path: str, digest: Any, seen: dict[Any, str]) -> None:
+def _group(group: Any, path: str, digest: Any, seen: dict[Any, str]) -> None:
     _say(digest, "group", path)
     _attributes(group, digest)
-    for name in sorted(group):
-        item, inner = group[name], f"{path}/{name}"
+    for link in sorted(group):
+        name = link.decode()
+        inner = f"{path}/{name}"
         if not path and name in UNCOVERED:
             continue
-        if isinstance(item, h5py.Group):
+        item = h5o.open(group, link)
+        if isinstance(item, h5g.GroupID):
             _group(item, inner, digest, seen)
             continue
-        address = h5py.h5o.get_info(item.id).addr
+        address = h5o.get_info(item).addr
         if address in seen:
             _say(digest, "link", inner, seen[address])
         else:
@@ -42,39 +49,47 @@ def _group(group: h5py.Group, path: str, digest: Any, seen: dict[Any, str]) -> N
             _dataset(item, inner, digest)
 
 
-def _dataset(item: h5py.Dataset, path: str, digest: Any) -> None:
-    text = h5py.check_string_dtype(item.dtype) is not None
-    _say(digest, "data", path, "text" if text else item.dtype.str, str(item.shape))
+def _dataset(item: Any, path: str, digest: Any) -> None:
+    if not isinstance(item, h5d.DatasetID):
+        raise TypeError(f"{path} holds no data")
+    dtype, shape = item.dtype, item.shape
+    text = h5py.check_string_dtype(dtype) is not None
+    _say(digest, "data", path, "text" if text else dtype.str, str(shape))
     _attributes(item, digest)
-    if item.shape == ():
-        digest.update(_bytes(item[()]))
+    if shape == ():
+        digest.update(_bytes(h5py.Dataset(item)[()]))
         return
-    width = max(1, item.dtype.itemsize * int(np.prod(item.shape[1:])))
+    width = max(1, dtype.itemsize * math.prod(shape[1:]))
     rows = max(1, PIECE // width)
-    if rows >= len(item) and item.dtype.kind == "f":  # most are, and h5py's own way is slow
-        whole = np.empty(item.shape, item.dtype)
-        item.id.read(h5s.ALL, h5s.ALL, whole)
+    if rows >= shape[0] and dtype.kind == "f":  # as most are
+        whole = np.empty(shape, dtype)
+        item.read(h5s.ALL, h5s.ALL, whole)
         digest.update(_bytes(whole))
         return
-    for k in range(0, len(item), rows):
-        digest.update(_bytes(item[k : k + rows]))
+    for k in range(0, shape[0], rows):
+        digest.update(_bytes(h5py.Dataset(item)[k : k + rows]))
 
 
 def _attributes(item: Any, digest: Any) -> None:
-    for name in sorted(item.attrs):
-        if name not in OWN:
-            _say(digest, "attribute", name)
-            digest.update(_bytes(_text(item, name)))
+    names: list[bytes] = []
+    h5a.iterate(item, names.append)
+    for name in sorted(names):
+        if name.decode() not in OWN:
+            _say(digest, "attribute", name.decode())
+            digest.update(_bytes(_value(item, name)))
 
 
-def _text(item: Any, name: str) -> Any:
-    """The value of an attribute; of most, which are texts, without h5py's long way to it."""
-    attribute = h5a.open(item.id, name.encode())
-    if attribute.shape != () or attribute.dtype.kind != "O":
-        return item.attrs[name]
-    value = np.empty((), h5py.string_dtype())
-    attribute.read(value)
-    return value[()] if isinstance(value[()], str | bytes) else item.attrs[name]
+def _value(item: Any, name: bytes) -> Any:
+    """The value of an attribute, as h5py gives it; most are texts."""
+    attribute = h5a.open(item, name)
+    kind = attribute.get_type()
+    if isinstance(kind, h5t.TypeStringID) and kind.is_variable_str() and attribute.shape == ():
+        value = np.empty((), TEXT)
+        attribute.read(value)
+        if isinstance(value[()], str | bytes):
+            return value[()]
+    high = h5py.Group if isinstance(item, h5g.GroupID) else h5py.Dataset
+    return high(item).attrs[name.decode()]
 
 
 def _bytes(value: Any) -> Any:

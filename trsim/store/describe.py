@@ -7,6 +7,7 @@ import platform
 import re
 import time
 from collections.abc import Sequence
+from functools import cache
 from pathlib import PurePath
 from typing import Any, NamedTuple
 
@@ -185,8 +186,6 @@ def summarised(file: h5py.File, told: dict[str, Any]) -> None:
 
 def provenance(command: str, clock: Clock, outcome: Any, resumed: Sequence[str]) -> dict[str, Any]:
     """Where, when, by what and how long; times are those since the run was last resumed."""
-    from importlib.metadata import version
-
     told = {
         "command": command,
         "machine": platform.node(),
@@ -201,11 +200,19 @@ def provenance(command: str, clock: Clock, outcome: Any, resumed: Sequence[str])
         "python": platform.python_version(),
         "hdf5": h5py.version.hdf5_version,
     }
-    for package in ("numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic"):
-        told[package] = version(package)
+    told |= versions()
     if outcome is not None and CPU in outcome.statistics:
         told[CPU] = outcome.statistics[CPU]
     return told
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Of the packages that have a part in results, as they were installed."""
+    from importlib.metadata import version
+
+    used = "numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic"
+    return {package: version(package) for package in used}
 
 
 def stamp(date: float) -> str:
