@@ -89,9 +89,9 @@ for k in range(int(begin), int(end)):
 
 @pytest.fixture(scope="module")
 def result(tmp_path_factory):
-    """A result with every kind of table, but few channels: it is read two thousand times."""
+    """A result with every kind of table, but few channels: it is read a thousand times."""
     path = tmp_path_factory.mktemp("damage") / "run.h5"
-    small.run(path, "output.channels=[stroke, B]")
+    small.run(path, "output.channels=[stroke, B.force, B.penetration]")
     return read(path)
 
 

@@ -1,6 +1,8 @@
 """Two processes and one result file: the second one is refused, and dead ones lock nothing."""
 
 import os
+import shutil
+import signal
 import subprocess
 import time
 
@@ -8,6 +10,7 @@ import pytest
 
 from tests import small
 from tests.store import outside
+from trsim.cli import main
 from trsim.errors import FileError
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.read import read
@@ -15,13 +18,29 @@ from trsim.store.read import read
 FAST = ("--set", "solver.end=1ms")
 
 
-@pytest.fixture
-def going(tmp_path):
-    """A run that is going on, into runs/crank.h5."""
-    process = outside.begun(tmp_path)
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory):
+    """A run that is going on, into runs/crank.h5, and its folder; it holds still meanwhile."""
+    folder = tmp_path_factory.mktemp("going")
+    process = outside.begun(folder)
     outside.blocks_until(process, 0.5)
-    yield process
+    process.send_signal(signal.SIGSTOP)
+    yield process, folder
     outside.killed(process)
+
+
+@pytest.fixture
+def going(begun, monkeypatch):
+    """The same, from inside its folder."""
+    monkeypatch.chdir(begun[1])
+    return begun[0]
+
+
+def trsim(words):
+    """The exit code of a command in this process, which is another one than that of the run."""
+    with pytest.raises(SystemExit) as ended:
+        main(list(words))
+    return ended.value.code
 
 
 @pytest.mark.parametrize(
@@ -33,32 +52,29 @@ def going(tmp_path):
         ("recover", "runs/crank.h5.part", "-o", "other.h5"),
     ],
 )
-def test_second_is_refused(words, going, tmp_path):
-    part = tmp_path / "runs/crank.h5.part"
-    size = part.stat().st_size
-    second = outside.trsim(tmp_path, *words)
-    _, err = second.communicate(timeout=60)
-    assert second.returncode == 7, err
+def test_second_is_refused(words, going, begun, capsys):
+    before = {path: path.read_bytes() for path in begun[1].rglob("*") if path.is_file()}
+    code = trsim(words)
+    err = capsys.readouterr().err
+    assert code == 7, err
     assert f"runs/crank.h5 is being written by process {going.pid}" in err
     assert going.poll() is None
-    assert part.stat().st_size >= size
-    assert not (tmp_path / "runs/crank.h5").exists() and not (tmp_path / "other.h5").exists()
+    assert {path: path.read_bytes() for path in begun[1].rglob("*") if path.is_file()} == before
 
 
-def test_recover_into_a_file_that_is_written(going, tmp_path):
+def test_recover_into_a_file_that_is_written(going, tmp_path, capsys):
     small.run(tmp_path / "x.h5")
-    second = outside.trsim(tmp_path, "recover", "x.h5", "-o", "runs/crank.h5")
-    assert "is being written by process" in second.communicate(timeout=60)[1]
-    assert second.returncode == 7
+    assert trsim(("recover", str(tmp_path / "x.h5"), "-o", "runs/crank.h5")) == 7
+    assert "is being written by process" in capsys.readouterr().err
 
 
-def test_the_dead_lock_nothing(going, tmp_path):
-    outside.killed(going)
+def test_the_dead_lock_nothing(running_part, tmp_path, monkeypatch):
+    shutil.copytree(running_part.parents[1], tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
     assert (tmp_path / "runs/crank.h5.lock").exists()
     refuse_if_written(tmp_path / "runs/crank.h5")
     for words in (("recover", "runs/crank.h5.part"), ("run", "crank.yaml", *FAST)):
-        process = outside.trsim(tmp_path, *words)
-        assert process.communicate(timeout=60) and process.returncode == 0
+        assert trsim(words) == 0
     assert not (tmp_path / "runs/crank.h5.lock").exists()
     assert read(tmp_path / "runs/crank.h5").attributes["status"] == "done"
 
@@ -154,10 +170,9 @@ def test_recover_that_is_ended_takes_its_helper_along(number, left, tmp_path):
     child = int(pid.read_text())
     process.send_signal(number)
     process.communicate(timeout=20)
-    for _ in range(100):
-        if not running(child):
-            break
-        time.sleep(0.05)
+    until = time.monotonic() + 5.0
+    while running(child) and time.monotonic() < until:
+        time.sleep(0.01)
     assert not running(child)
     found = {path.name for path in tmp_path.iterdir()} - {"slow", "pid", "x.h5"}
     assert found == ({"y.h5.lock", f"y.h5.{process.pid}"} if left else set())
