@@ -30,19 +30,20 @@ def drawn(path):
     return float(np.mean(np.any(picture < 0.9, axis=2)))
 
 
+@pytest.fixture(scope="module")
+def reports(paths, tmp_path_factory):
+    """What is written of one run, and of two."""
+    folder = tmp_path_factory.mktemp("figures")
+    return report(paths[0], folder / "one"), report(paths, folder / "two")
+
+
 @pytest.mark.parametrize("several", [False, True])
-def test_every_figure_is_drawn(several, paths, tmp_path):
-    written = report(paths if several else paths[0], tmp_path / "figures")
+def test_every_figure_is_drawn(several, reports):
+    written = reports[several]
     pictures = [path for path in written if path.suffix == ".png"]
     assert {path.stem for path in pictures} == EXPECTED
     for path in pictures:
         assert 0.005 < drawn(path) < 0.5, path.name
-
-
-def test_report_is_the_same_every_time(paths, tmp_path):
-    first = report(paths[0], tmp_path / "1")
-    second = report(paths[0], tmp_path / "2")
-    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
 
 
 def test_run_without_sensors_contacts_or_drives(tmp_path):
@@ -107,9 +108,8 @@ def test_contact_history_is_zero_in_flight(paths):
     assert force.max() == shown.run.steps("B")["contact_force"].max()
 
 
-def test_peak_loads(paths, tmp_path):
-    report(paths, tmp_path)
-    with (tmp_path / "peaks.csv").open() as file:
+def test_peak_loads(paths, reports):
+    with (reports[True][0].parent / "peaks.csv").open() as file:
         rows = list(csv.DictReader(file))
     [row] = [r for r in rows if r["element"] == "B" and r["run"].endswith("0.5mm")]
     [peak] = [p for p in read(paths[0]).peaks if p[:2] == ("B.contact_force", "largest")]
@@ -167,8 +167,8 @@ def test_what_cannot_be_reported_is_told(paths, tmp_path):
         report(paths[0], tmp_path / "file" / "folder")
 
 
-def test_a_report_needs_no_solver(paths, tmp_path):
-    """Nor pyplot, which would look for a screen."""
+def test_a_report_is_the_same_every_time_and_needs_no_solver(paths, reports, tmp_path):
+    """In a process of its own.  Nor pyplot, which would look for a screen."""
     code = (
         "import sys; from trsim.report import report; report(sys.argv[1], sys.argv[2]); "
         "assert not {'numba', 'pandas', 'matplotlib.pyplot', 'trsim.solve'} & set(sys.modules)"
@@ -176,3 +176,7 @@ def test_a_report_needs_no_solver(paths, tmp_path):
     root = Path(__file__).parents[2]
     command = [sys.executable, "-c", code, str(paths[0]), str(tmp_path)]
     subprocess.run(command, check=True, cwd=root)  # noqa: S603
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {path.name for path in reports[False]}
+    for path in reports[False]:
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes()
