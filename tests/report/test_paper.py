@@ -12,6 +12,7 @@ import yaml
 
 from tests import small
 from tests.report.test_figures import drawn
+from tests.sweep.test_go import here
 from trsim.analyse.fluctuation import fluctuation
 from trsim.analyse.outputs import scalar
 from trsim.cli import main
@@ -39,7 +40,6 @@ from trsim.report.paper.rules import (
 )
 from trsim.report.paper.runs import Member, Runs
 from trsim.store.read import read
-from trsim.sweep import local
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
 
@@ -176,7 +176,7 @@ def folder(tmp_path_factory):
     }
     (place / "short.yaml").write_text(yaml.safe_dump(text))
     planned = plan(str(place / "short.yaml"), (), "one")
-    list(go(planned, place.parent / "study", "one", lambda tasks: local.run(tasks, 2)))
+    list(go(planned, place.parent / "study", "one", here))
     return place.parent / "study"
 
 

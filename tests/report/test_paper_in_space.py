@@ -11,6 +11,7 @@ import pytest
 import yaml
 
 from tests.report.test_figures import drawn
+from tests.sweep.test_go import here
 from trsim.assemble.assemble import assemble
 from trsim.errors import UsageError
 from trsim.report.paper import paper
@@ -27,7 +28,6 @@ from trsim.solve.simulate import simulate
 from trsim.spec.load import load
 from trsim.store.hdf5 import write
 from trsim.store.read import read
-from trsim.sweep import local
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
 from trsim.sweep.study import study
@@ -68,7 +68,7 @@ def scene():
         "drives": actuators,
         "forces": {**rails, "load": load},
         "solver": {"end": "0.5/0.42", "tolerance": 1e-6},
-        "output": {"every": "0.5/0.42/200"},
+        "output": {"every": "0.5/0.42/200", "channels": ["stroke", *actuators]},
     }  # fmt: skip
 
 
@@ -100,7 +100,7 @@ def folder(tmp_path_factory):
     text = json.dumps({**scene(), "cases": cases()})  # which YAML reads, too
     (place / "space.yaml").write_text(text)
     planned = plan(str(place / "space.yaml"), (), "one")
-    list(go(planned, place / "study", "one", lambda tasks: local.run(tasks, 2)))
+    list(go(planned, place / "study", "one", here))
     return place / "study"
 
 

@@ -256,3 +256,16 @@ def test_folder_that_cannot_be_made(scenario, mechanism, tmp_path):
     for path in (tmp_path / "file" / "run.h5", tmp_path):
         with pytest.raises(FileError, match=str(tmp_path)):
             write(path, scenario, mechanism, simulate(scenario, mechanism))
+
+
+def test_an_event_records_where_few_channels_are_wanted(tmp_path):
+    text = (
+        small.SLIDER_CRANK
+        + "events: {m: {when: stroke, crosses: down, value: -1 mm, do: {record: true}}}\n"
+    )
+    small.run(tmp_path / "all.h5", text=text)
+    small.run(tmp_path / "few.h5", "output.channels=[O, stroke]", text=text)
+    one, few = read(tmp_path / "all.h5").recorded, read(tmp_path / "few.h5").recorded
+    assert {"stroke", "O.reaction"} < few.keys() < one.keys() and len(few["time"]) > 0
+    for name, values in few.items():
+        np.testing.assert_array_equal(values, one[name])

@@ -84,5 +84,5 @@ def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | No
         return None
     fields = [rows[0], Field("event", "", "which", 1, words=tuple(e.name for e in events))]
     fields += [field._replace(start=field.start + 1) for field in rows[1:]]
-    width = max(field.start + field.size for field in fields)
+    width = 2 + max((c.start + c.size for c in mechanism.columns), default=0)
     return Growing(file.create_group("recorded"), fields, width, EXPECTED)
