@@ -201,10 +201,12 @@ def edits(a: str, b: str) -> int:
     for i, x in enumerate(a):
         before, last, row = row, before, [i + 1]
         for j, y in enumerate(b):
-            cost = min(before[j] + (x != y), before[j + 1] + 1, row[j] + 1)
+            cost = before[j] if x == y else min(before[j], before[j + 1], row[j]) + 1
             if i and j and x == b[j - 1] and a[i - 1] == y:
                 cost = min(cost, last[j - 1] + 1)
             row.append(cost)
+        if min(row) > 2 and min(before) > 2:  # it only grows from here
+            return 3
     return min(row[-1], 3)
 
 
