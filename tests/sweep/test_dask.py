@@ -35,7 +35,7 @@ def cluster():
 
 def test_each_task_ends(cluster, tmp_path):
     what = ["end", "die once", "die", "sleep", "end"]
-    limits = Limits(time=3.0, retries=1)
+    limits = Limits(time=1.0, retries=1)
     found = ended(dask.run(tasks(tmp_path, *what), cluster.scheduler_address, limits, JOB))
     told = [(found[f"t{k}"]["status"], found[f"t{k}"]["attempts"]) for k in range(5)]
     assert told == [("done", 1), ("done", 2), ("crashed", 2), ("over time", 1), ("done", 1)]
