@@ -29,7 +29,7 @@ SHORT = 1e-9  # s: a step that Newton's method cannot fail
 @compiled(void(SCENE, rec.RECORD, rec.BUFFERS, A1))
 def weighed(s, r, b, setting):
     """The weights of the error norm at the state of the record."""
-    weights(s, r, b, setting)
+    weights(s, r, b, setting, r.clock[rec.H])
 
 
 class Stopped(NamedTuple):

@@ -51,6 +51,7 @@ from trsim.solve.record import (
     LARGEST_RESIDUAL,
     LENGTH,
     LOCATE,
+    MOST,
     NEXT_JACOBIAN,
     NEXT_ROW,
     OFF,
@@ -199,7 +200,7 @@ def strayed(s, r, setting, h):
         return False
     far = FAR * setting[TOLERANCE]
     return r.clock[OFF] > far * s.size or r.clock[OFF_RATE] > far * max(
-        r.clock[SPEED], s.size / setting[T_END]
+        r.clock[SPEED], r.clock[MOST], s.size / setting[T_END]
     )
 
 

@@ -184,14 +184,14 @@ def estimate(s, r, b, setting, h):
 
     Errors of order 3 at a distance h add up to one of order 2.  Steps held to a local error would
     leave tolerance^(2/3) times the turns at the end; held to this, it is the tolerance times them.
+    Since errors add up from turn to turn, the worst entry counts and not a mean over those at rest.
     Works feed nothing back, so theirs only add up.
     """
     K, weight = b.K, b.weight
-    total, counted = 0.0, 0
+    moved = 0.0
     for c in range(r.y.size):
         if weight[c] > 0.0:
-            counted += 1
-            total += (h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]) ** 2
+            moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
     ratio = h / r.clock[PAST_H] if r.count[HISTORY] > 0 else 0.0
     worst = size = 0.0
     for c in range(first_work(s), first_work(s) + N_BOOK):
@@ -201,7 +201,7 @@ def estimate(s, r, b, setting, h):
         worst = max(worst, abs(h / 12.0 * bend))
         size = max(size, 0.5 * h * (abs(K[NEW, c]) + abs(r.yd[c])))
     booked = works(r, setting, h, ADDS * worst, size)
-    return max(sqrt(total / max(counted, 1)), booked, 1e-10)
+    return max(moved, booked, 1e-10)
 
 
 @compiled(DENSE)

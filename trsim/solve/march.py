@@ -140,7 +140,7 @@ def march(s, r, b, setting, methods, most):
             return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
         if crawls(r, setting, h):
             return CRAWL
-        weights(s, r, b, setting)
+        weights(s, r, b, setting, h)
         blunted(s, r, b, h)
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):

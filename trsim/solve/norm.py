@@ -2,7 +2,13 @@
 
 Lengths are weighed by the smallest gap or penetration that matters, not by the distance from the
 origin; rotations by that length over the body's arm; velocities by that length times the frequency
-of the contact.  Without contacts the length is the reach of its largest body.
+of the contact.  Without contacts the length is the reach of its largest body, and the speed the
+largest met in the run, the end of the step as its start predicts it included:
+
+    speed = min(most, max(met, |v + h v'|))
+
+`most` is known at the start: its speeds, or what its accelerations give over that length,
+sqrt(a length), or that length per run.  A fall would get there; a stiff spring vibrates with less.
 """
 
 import numpy as np
@@ -14,19 +20,32 @@ from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.elements.vectors import internal
-from trsim.solve.record import BUFFERS, LENGTH, RECORD, SPEED, TOLERANCE
+from trsim.solve.record import BUFFERS, LENGTH, MET, MOST, RECORD, SPEED, TOLERANCE, H
 
 
 @internal
-def weights(s, r, b, setting):
-    """1 / (tolerance times unit) of every entry of y; zero outside the norm.
+def weights(s, r, b, setting, h):
+    """1 / (tolerance times unit) of every entry of y in a step h; zero outside the norm.
 
     Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
     the origin; rotations by that length over the body's arm; velocities by the matching speed.
     """
+    if r.clock[MET] < r.clock[MOST]:
+        follow(s, r, h)
     length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
     for c in range(b.weight.size):
         b.weight[c] = weighed(s, length, speed, tolerance, c)
+
+
+@internal
+def follow(s, r, h):
+    """Let the unit of velocities follow the speeds met, and those a step h leads to."""
+    met, ahead = r.clock[MET], 0.0
+    for c in range(s.n_q, s.n_q + s.n_v):
+        met = max(met, s.scale[c] * abs(r.y[c]))
+        ahead = max(ahead, s.scale[c] * abs(r.y[c] + h * r.yd[c]))
+    r.clock[MET] = met
+    r.clock[SPEED] = min(max(met, ahead), r.clock[MOST])
 
 
 @internal
@@ -76,10 +95,10 @@ def units(s, r):
         # the frequency of the contact at that depth turns the length into a speed
         speed = min(speed, depth * arm * np.sqrt(n * K * depth ** (n - 1.0) / mass))
     if length < 1e300:
-        r.clock[LENGTH], r.clock[SPEED] = length, speed
+        r.clock[LENGTH], r.clock[SPEED], r.clock[MOST] = length, speed, 0.0
 
 
 @compiled(types.void(SCENE, RECORD, BUFFERS, A1))
 def weigh(s, r, b, setting):
     """`weights`, for solvers outside."""
-    weights(s, r, b, setting)
+    weights(s, r, b, setting, r.clock[H])

@@ -163,7 +163,8 @@ def first_step(scenario: Any, record: Record) -> float:
     """A first step from the size of the derivative, a hundredth of the natural time scale."""
     if scenario.solver.first_step:
         return float(scenario.solver.first_step)
-    natural = record.clock[rec.LENGTH] / max(record.clock[rec.SPEED], 1e-300)
+    speed = max(record.clock[rec.SPEED], record.clock[rec.MOST], 1e-300)
+    natural = record.clock[rec.LENGTH] / speed
     return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
 
 
@@ -214,7 +215,8 @@ def new_record(
         worked=np.zeros((2, N_WORKED)),
     )
     record.clock[rec.WEAKEST] = 1.0
-    record.clock[rec.LENGTH], record.clock[rec.SPEED] = begun.length, begun.speed
+    record.clock[rec.LENGTH], record.clock[rec.MOST] = begun.length, begun.speed
+    record.clock[rec.SPEED] = record.clock[rec.MET] = begun.moving
     record.clock[rec.EXCHANGED] = LEAST * float(np.sum(model.mass)) * begun.speed**2
     return record
 

@@ -10,7 +10,9 @@ from trsim.elements.scene import Model
     T,  # s
     H,  # s, the step to try next
     LENGTH,  # m, unit of the error norm: the smallest gap or penetration that matters
-    SPEED,  # m/s, its unit for velocities
+    SPEED,  # m/s, its unit for velocities, of the next step
+    MET,  # m/s, the largest speed so far     norm.py
+    MOST,  # m/s, more is no unit for velocities
     WORK_PROJECTION,  # J, given to the mechanism by projecting back to the constraints
     ENERGY_0,  # J, total energy at the start
     WORST_PHI,  # m or rad, largest constraint residual met at an accepted point
@@ -44,7 +46,7 @@ from trsim.elements.scene import Model
     ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
     LONGEST,  # s, the longest step since then, see LOOKED
     N_CLOCK,
-) = range(37)
+) = range(39)
 
 # count: integer state of the march
 (

@@ -135,8 +135,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             s = anew(mechanism, s, r, b, setting)
         if outcome == SMOOTH_STEP and s is changed:
             nudge(solver, r)
-            solver.atol[books(s)] = unit_of_works(r, setting)
             r.clock[rec.H] = solver.t - solver.t_old
+            if r.clock[rec.MOST] > 0.0:
+                solver.atol = allowed(scenario, s, r, b, setting)
+            solver.atol[books(s)] = unit_of_works(r, setting)
         elif r.clock[rec.T] < setting[rec.T_END]:
             solver = restarted(scenario, s, r, b, setting)
         if r.count[rec.STEPS] >= limit and r.clock[rec.T] < setting[rec.T_END]:
@@ -174,24 +176,29 @@ def restarted(
     """A scipy solver at the state of the record, with the error units in force there."""
     import scipy.integrate
 
-    weigh(s, r, b, setting)
-    outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
-    absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
-    absolute *= ADDING.get(scenario.solver.method, 1.0)
-    absolute[books(s)] = unit_of_works(r, setting)
-
     def right_hand_side(t: float, y: Array) -> Array:
         yd = np.empty_like(y)
         derivative(s, t, np.ascontiguousarray(y), yd)
         return yd
 
+    atol = allowed(scenario, s, r, b, setting)
     make = getattr(scipy.integrate, scenario.solver.method.split(":", 1)[1])
     t = float(r.clock[rec.T])
     until = next_time(s, t, setting[rec.T_END])
     first = min(float(r.clock[rec.H]), until - t)
     longest = min(most, setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
     return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
-                max_step=longest, rtol=RELATIVE, atol=absolute)  # fmt: skip
+                max_step=longest, rtol=RELATIVE, atol=atol)  # fmt: skip
+
+
+def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) -> Array:
+    """The error allowed to every entry of y in the next step."""
+    weigh(s, r, b, setting)
+    outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
+    absolute *= ADDING.get(scenario.solver.method, 1.0)
+    absolute[books(s)] = unit_of_works(r, setting)
+    return absolute
 
 
 def books(s: Scene) -> slice:

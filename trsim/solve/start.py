@@ -41,6 +41,7 @@ from trsim.solve.velocities import velocities
 
 Array = NDArray[np.float64]
 
+CREEP = 1e-2  # of a body's reach: motion over less in a whole run counts as none
 SETBACKS = 25  # steps of the way to an initial position that may fail, one after the other or not
 
 
@@ -54,7 +55,8 @@ class Start:
     moved: float  # m or rad: largest constraint residual the projection removed
     residual: float  # N: static force left by the equilibrium, 0 where none was asked for
     length: float  # m, first unit of the error norm
-    speed: float  # m/s
+    speed: float  # m/s, the most its unit for velocities may be
+    moving: float  # m/s, the first
     depth: Array  # (n_contacts) penetration expected at the forces of the start, m
 
 
@@ -80,9 +82,9 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     mem = phases(model, y, located)
     check_finite(mechanism, y, mem)
     check_limits(mechanism, y)
-    length, speed, depth = units(model, y, mem, scenario)
+    length, moving, speed, depth = units(model, y, mem, scenario)
     remember(mechanism.model, y)
-    return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, depth)
+    return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, moving, depth)
 
 
 def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
@@ -317,13 +319,14 @@ def phases(model: Model, y: Array, located: bool) -> Array:
     return mem
 
 
-def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, float, Array]:
+def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, float, float, Array]:
     """First units of the error norm, and the penetration each contact may expect.
 
     With contacts: what the largest force at the start (or an impact at the slowest speed) would
     press in.  Without: the reach of a body (not of the mechanism: a chain of many links would be
-    held to less), the largest of its speeds, of the speed its accelerations give over that length,
-    and of that length per run.
+    held to less); the largest speed, or a part of that length per run; and the most it may be: the
+    largest of its speeds, of the speed its accelerations give over that length, and of that length
+    per run.
     """
     w, reach = workspace(model), model.reach
     yd = np.zeros_like(y)
@@ -332,14 +335,24 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
     reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
     force = max(force, float(max(reaction, default=0.0)))
-    speed = float(np.linalg.norm(w.V[:, :3], axis=1).max(initial=0.0))
-    speed = max(speed, float(np.abs(w.V[:, 3:]).max(initial=0.0)) * reach)
-    pull = float(np.linalg.norm(w.A[:, :3], axis=1).max(initial=0.0))
-    pull = max(pull, float(np.abs(w.A[:, 3:]).max(initial=0.0)) * reach)
-    speed = max(speed, np.sqrt(pull * reach), reach / max(scenario.solver.end, 1e-300))
+    end = max(scenario.solver.end, 1e-300)
+    moving = max(fastest(model, y), CREEP * reach / end)
+    speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)
     depth = []
     for K, n, mass, c, slowest, arm in model.contact_par:
         approach = min(max(slowest, 1e-3), speed) / arm
         touch = ((n + 1.0) * mass * approach**2 / (2.0 * K)) ** (1.0 / (n + 1.0))
         depth.append(min(max((force * arm / K) ** (1.0 / n), touch), c))
-    return reach, speed, np.array(depth)
+    return reach, min(moving, speed), speed, np.array(depth)
+
+
+def of_frames(rates: Array, reach: float) -> float:
+    """The largest of velocities (or accelerations), of turns at this arm."""
+    along = float(np.linalg.norm(rates[:, :3], axis=1).max(initial=0.0))
+    return max(along, float(np.abs(rates[:, 3:]).max(initial=0.0)) * reach)
+
+
+def fastest(model: Model, y: Array) -> float:
+    """The largest entry of the velocities, of turns at the arm of their body."""
+    rates = slice(model.n_q, model.n_q + model.n_v)
+    return float(np.max(model.scale[rates] * np.abs(y[rates]), initial=0.0))
