@@ -11,13 +11,14 @@ from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
-from trsim.solve.auto import choose
+from trsim.solve.auto import calm, choose
 from trsim.solve.calls import (
     COMPLETE_AT,
     ESTIMATE_AT,
     IMPLICIT_AT,
     NO_STEP,
     ROUNDING_AT,
+    STAGES_AT,
     STEP_AT,
     call_step,
     method_row,
@@ -184,7 +185,9 @@ def march(s, r, b, setting, methods, most):
         if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:
             shorten(r, setting, h)
         if methods.shape[0] > 1:
-            choose(s, r, b, h, outcome == WITH_EVENT)
+            choose(s, r, b, setting, h, outcome == WITH_EVENT)
+        elif method[STAGES_AT] > 0 and s.contact.size > 0:  # dop853
+            calm(s, r, b, setting, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
         if r.count[FIRED] > 0:

@@ -27,6 +27,7 @@ from trsim.elements.scene import Model
     CONTRACTION,  # of the matrix at hand, as far as it was measured
     NEWTON_RATE,  # contraction of the last Newton iterations
     JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
+    EXPLICIT_RATE,  # 1/s, how much the derivative changes with the state; 0: not known     auto.py
     EXCHANGED,  # J, largest work, or range of an energy, so far: the scale of works     works.py
     WORK_TRIAL,  # J, error of the works in the last trial step, as estimated
     WORK_ERROR,  # J, the sum of those accepted
@@ -46,7 +47,7 @@ from trsim.elements.scene import Model
     ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
     LONGEST,  # s, the longest step since then, see LOOKED
     N_CLOCK,
-) = range(39)
+) = range(40)
 
 # count: integer state of the march
 (
