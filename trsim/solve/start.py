@@ -336,7 +336,7 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
     force = max(force, float(max(reaction, default=0.0)))
     end = max(scenario.solver.end, 1e-300)
-    moving = max(fastest(model, y), CREEP * reach / end)
+    moving = max(of_frames(w.V, reach), CREEP * reach / end)
     speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)
     depth = []
     for K, n, mass, c, slowest, arm in model.contact_par:
@@ -350,9 +350,3 @@ def of_frames(rates: Array, reach: float) -> float:
     """The largest of velocities (or accelerations), of turns at this arm."""
     along = float(np.linalg.norm(rates[:, :3], axis=1).max(initial=0.0))
     return max(along, float(np.abs(rates[:, 3:]).max(initial=0.0)) * reach)
-
-
-def fastest(model: Model, y: Array) -> float:
-    """The largest entry of the velocities, of turns at the arm of their body."""
-    rates = slice(model.n_q, model.n_q + model.n_v)
-    return float(np.max(model.scale[rates] * np.abs(y[rates]), initial=0.0))
