@@ -16,6 +16,14 @@ d is halved until that no longer changes.  Forces are those of the place itself,
 not matter.  Reactions of the rows that depend on each other grow like 1/d with another sign on the
 other side; what is given is the mean of both.  Where nothing moves, or rows depend on each other
 beside the place too, nothing is changed.
+
+Close to such a place, delta from it, the same is done where the limit is plainly another.  J has
+its full rank there, but what a state is off the rows, as states inside a step are, is felt 1/delta
+times and rounding 1/delta^2 times: steps would shrink towards the place and end at rounding.
+Reactions are those of the state itself: they do grow like 1/delta.  Rows that only unequal masses
+make hard to tell apart are left alone.  States off the rows feel another derivative here than
+further away, which the error estimate of a step need not see: solve/complete.py looks at the energy
+of such steps.  Where nobody does, the limit is taken at the place alone.
 """
 
 from trsim.assemble.equations import (
@@ -27,33 +35,74 @@ from trsim.assemble.equations import (
     poses,
     right_hand_side,
 )
-from trsim.assemble.linear import SINGULAR, factorise, solve
+from trsim.assemble.linear import (
+    SINGULAR,
+    SMALL,
+    TINY,
+    diagonal,
+    eliminate,
+    factorise,
+    solve,
+)
 from trsim.assemble.projection import move_all, project_positions, project_velocities
-from trsim.assemble.schur import pull, rows
+from trsim.assemble.schur import plain_rows, pull, rows
 from trsim.elements.contract import DRIVES, compiled
+from trsim.elements.scene import PROJECTION
 
 FARTHEST, HALVED = 0.02, 8  # rad, or of the mechanism's size; how often
 NEWTON, CLOSED = 8, 1e-14  # steps; of the mechanism's size
 SURE = 1e-3  # of the accelerations: more than that, and there is no limit
+PLAINLY = 4.0  # times what is uncertain of a limit: an evaluation is not itself that
 SETTLED = 1e-11  # the same: nothing smaller is asked for
+UNWATCHED = -1  # in s.status[4]: nobody looks at the energy of steps
 PLACE, WAY, MEAN, BEFORE, LIMIT, NEWER, FOUND = range(7)  # rows of s.aside
 
 
 @compiled(DERIVATIVE)
 def beside(s, t, y, yd):
-    """Replace the accelerations and multipliers of a singular evaluation by their limits."""
-    fastest = speed(s)
+    """Replace the accelerations and multipliers of a singular evaluation by their limits.
+
+    Of one that is nearly singular the accelerations alone.  s.status[4] counts them in a step.
+    """
+    fastest, went, counted = speed(s), s.status[0], s.status[2]
     if s.n_r < s.n or not fastest > 0.0:
         return
-    counted = s.status[2]
-    best, scale = look_beside(s, t, y, fastest)
-    poses(s, y)
-    constraints(s, t)
+    best, scale = 1e300, 0.0
+    near = s.stabilisation == PROJECTION and s.status[4] != UNWATCHED
+    if went == SINGULAR or (near and not unequal_only(s)):
+        best, scale = look_beside(s, t, y, fastest)
+        poses(s, y)
+        constraints(s, t)
     rows(s)
     factorise(s)
     s.status[2] = counted
-    if best <= SURE * scale:
-        take(s, y, yd)
+    if best <= SURE * scale and (went == SINGULAR or apart(s, yd) > PLAINLY * best):
+        if s.status[4] != UNWATCHED:
+            s.status[4] += 1
+        take(s, y, yd, went == SINGULAR)
+
+
+@equation
+def unequal_only(s):
+    """Whether the rows are far from depending on each other, whatever the masses make of them."""
+    plain_rows(s)
+    diagonal(s)
+    return eliminate(s, TINY) > SMALL
+
+
+@equation
+def apart(s, yd):
+    """By how much the limit differs from accelerations in yd, rad/s^2 or sizes/s^2."""
+    most = 0.0
+    for i in range(s.n_v):
+        most = max(most, abs(s.aside[FOUND, i] - yd[s.n_q + i]) / unit(s, i))
+    return most
+
+
+@equation
+def unit(s, i):
+    """Of the i-th velocity: the mechanism's size or 1."""
+    return s.size if i % s.d < s.d // 2 + s.d % 2 else 1.0
 
 
 @equation
@@ -86,9 +135,8 @@ def look_beside(s, t, y, fastest):
             continue
         change = largest = 0.0
         for i in range(s.n_v):
-            unit = s.size if i % s.d < s.d // 2 + s.d % 2 else 1.0
-            change = max(change, abs(aside[NEWER, i] - aside[LIMIT, i]) / unit)
-            largest = max(largest, abs(aside[NEWER, i]) / unit)
+            change = max(change, abs(aside[NEWER, i] - aside[LIMIT, i]) / unit(s, i))
+            largest = max(largest, abs(aside[NEWER, i]) / unit(s, i))
         if change < best:
             best, scale = change, max(largest, fastest * fastest)
             for i in range(n):
@@ -140,12 +188,13 @@ def at(s, t, y, d):
 
 
 @equation
-def take(s, y, yd):
-    """The limit into yd, A, lam and the power of the drives."""
+def take(s, y, yd, reactions):
+    """The limit into yd, A and the power of the drives; with `reactions` into lam too."""
     found = s.aside[FOUND]
     for k in range(s.m):
         s.zd[DRIVES] += (found[s.n_v + k] - s.lam[k]) * s.phi_t[k]
-        s.lam[k] = found[s.n_v + k]
+        if reactions:
+            s.lam[k] = found[s.n_v + k]
     yd[s.n_q + s.n_v + DRIVES] = s.zd[DRIVES]
     for f in range(1, s.n_r):
         o = s.d * (f - 1)

@@ -176,6 +176,22 @@ def contradictory(s, x):
 
 
 @internal
+def smallest_pivot(s):
+    """Of the rows of the last factorisation, as a share of its diagonal.
+
+    The square of what is left of a row when those before it are taken out.
+    """
+    if s.status[0] == SINGULAR:
+        return 0.0
+    smallest = 1.0
+    for k in range(s.first.size):
+        place = s.column_start[k]
+        if s.row[place] < s.m:
+            smallest = min(smallest, s.value[place] / s.first[k])
+    return smallest
+
+
+@internal
 def independent(s):
     """Whether the rows whose J J^T was just filled into s.value do not depend on each other."""
     diagonal(s)

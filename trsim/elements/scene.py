@@ -219,7 +219,7 @@ def scene(model: Model) -> Scene:
             "out": (max(model.n_out, 1),),
         },
         tab=model.tab.copy(),  # scratch, and what functions are held on
-        status=np.zeros(4, np.int64),
+        status=np.zeros(5, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
     made.X[:, 2] = model.depth

@@ -3,7 +3,7 @@
 What is found on the interpolant is made exact; only then the record changes.
 """
 
-from trsim.assemble.equations import evaluate
+from trsim.assemble.equations import evaluate, kinetic
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
@@ -85,6 +85,7 @@ SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
 BRIEF = 1e-9  # of a run: no shorter step is asked for
 LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is looked at in
+LEAK = 1.0  # times the tolerance, of the kinetic energy
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
@@ -112,6 +113,9 @@ def complete(s, r, b, setting, method, h, built):
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
     if s.steep > 0 and strayed(s, r, setting, h):
+        r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+        return STRAYED
+    if s.status[4] > 0 and leaked(s, r, b, setting, t1, projected):
         r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
         return STRAYED
     if s.wound.size > 0 and too_far(s, r, b, h):
@@ -202,6 +206,20 @@ def strayed(s, r, setting, h):
     return r.clock[OFF] > far * s.size or r.clock[OFF_RATE] > far * max(
         r.clock[SPEED], r.clock[MOST], s.size / setting[T_END]
     )
+
+
+@internal
+def leaked(s, r, b, setting, t1, projected):
+    """Whether energy went astray in a step past a place where branches of the motion meet."""
+    if setting[FIXED_STEP] > 0.0:
+        return False
+    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+    lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
+    least = 0.0  # what velocities may be off by at rest
+    for f in range(1, s.n_r):
+        least += 0.5 * s.mass[f] * (setting[TOLERANCE] * r.clock[SPEED]) ** 2
+    T = max(kinetic(s, r.y), kinetic(s, b.y1))
+    return lost > LEAK * max(setting[TOLERANCE] * T, least)
 
 
 @internal

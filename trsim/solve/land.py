@@ -3,7 +3,7 @@
 from math import nan
 
 from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
-from trsim.assemble.linear import SOUND
+from trsim.assemble.linear import SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.assemble.schur import velocity_residual
@@ -16,6 +16,7 @@ PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be belo
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 NEWTON = 8
 CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
+DOUBTFUL = 1e-2  # a pivot, of its diagonal
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
@@ -37,7 +38,7 @@ def land(s, r, b, t, y, yd):
             worst = project_positions(s, t, y)
             if k == 0:
                 first = worst
-            if not worst > PHI_SMALL * s.size:
+            if not worst > (PHI_SMALL if s.status[0] == SOUND else CLOSED) * s.size:
                 break
         if not worst <= PHI_LOST * s.size:
             s.status[3] += 1
@@ -76,12 +77,13 @@ def land(s, r, b, t, y, yd):
 def evaluate_inside(s, t, y, yd):
     """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
 
-    With an eigenvalue of S of d^2 accelerations feel 1/d times what interpolation opens rows by;
+    With an eigenvalue of S of d^2 accelerations feel 1/d^2 times what interpolation opens rows by;
     redundant rows are held by others times their levers only.
     """
     evaluate(s, t, y, yd)
-    doubtful = s.redundant.shape[0] > 0 or s.status[0] != SOUND
-    if s.m == 0 or not doubtful or s.stabilisation != PROJECTION:
+    if s.m == 0 or s.stabilisation != PROJECTION:
+        return
+    if s.redundant.shape[0] == 0 and smallest_pivot(s) > DOUBTFUL:
         return
     for _ in range(NEWTON):
         if not project_positions(s, t, y) > CLOSED * s.size:

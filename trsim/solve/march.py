@@ -146,6 +146,7 @@ def march(s, r, b, setting, methods, most):
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
+        s.status[4] = 0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if not (error <= 1.0):
             r.count[REJECTED] += 1

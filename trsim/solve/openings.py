@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
-from trsim.assemble.linear import SINGULAR
+from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.mechanism import Instance, Mechanism
 from trsim.assemble.projection import project_positions
 from trsim.assemble.tables import turns_by
@@ -94,17 +94,8 @@ def look(s, r, b, setting, t, y, step):
 
 @internal
 def look_at_pivots(s, r):
-    """Ask for other rows where those of the solve come to depend on each other.
-
-    A pivot is the square of what is left of a row when those before it are taken out.
-    """
-    smallest = 1.0
-    for k in range(s.first.size):
-        place = s.column_start[k]
-        if s.row[place] < s.m:
-            smallest = min(smallest, s.value[place] / s.first[k])
-    if s.status[0] == SINGULAR:
-        smallest = 0.0
+    """Ask for other rows where those of the solve come to depend on each other."""
+    smallest = smallest_pivot(s)
     if smallest < FEEBLE and smallest <= FALLEN * r.clock[WEAKEST]:
         r.clock[WEAKEST] = smallest
         r.count[WEAK] = 1
