@@ -62,7 +62,7 @@ PLACE, WAY, MEAN, BEFORE, LIMIT, NEWER, FOUND = range(7)  # rows of s.aside
 def beside(s, t, y, yd):
     """Replace the accelerations and multipliers of a singular evaluation by their limits.
 
-    Of one that is nearly singular the accelerations alone.  s.status[4] counts them in a step.
+    Of one that is nearly singular the accelerations alone; s.status[4] counts those in a step.
     """
     fastest, went, counted = speed(s), s.status[0], s.status[2]
     if s.n_r < s.n or not fastest > 0.0:
@@ -77,7 +77,7 @@ def beside(s, t, y, yd):
     factorise(s)
     s.status[2] = counted
     if best <= SURE * scale and (went == SINGULAR or apart(s, yd) > PLAINLY * best):
-        if s.status[4] != UNWATCHED:
+        if went != SINGULAR:
             s.status[4] += 1
         take(s, y, yd, went == SINGULAR)
 

@@ -86,6 +86,7 @@ FAR = 100.0  # times the error allowed: what a step that saw its motion does not
 BRIEF = 1e-9  # of a run: no shorter step is asked for
 LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is looked at in
 LEAK = 1.0  # times the tolerance, of the kinetic energy
+FROM_REST = 0.01  # of the kinetic energy at the end of a step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
@@ -215,11 +216,10 @@ def leaked(s, r, b, setting, t1, projected):
         return False
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
-    least = 0.0  # what velocities may be off by at rest
-    for f in range(1, s.n_r):
-        least += 0.5 * s.mass[f] * (setting[TOLERANCE] * r.clock[SPEED]) ** 2
-    T = max(kinetic(s, r.y), kinetic(s, b.y1))
-    return lost > LEAK * max(setting[TOLERANCE] * T, least)
+    before, after = kinetic(s, r.y), kinetic(s, b.y1)
+    if before < FROM_REST * after:
+        return False  # which way it goes from there is not decided by where it stands
+    return lost > LEAK * setting[TOLERANCE] * max(before, after)
 
 
 @internal
