@@ -88,6 +88,27 @@ def test_a_row_exactly_where_branches_meet(method):
     assert r["motor.force"][there] == pytest.approx(-weight(3, 0.0), rel=max(1e-7, 1e3 * tolerance))
 
 
+@pytest.mark.parametrize("R", [ORDINARY, TILTED], ids=["plane", "tilted"])
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+def test_steps_go_past_where_branches_meet(method, R):
+    """Two cranks that turn about 25 times: no step ends close to a flat place because it is one,
+    and the energy is kept past all of them."""
+    sets = (f"solver.method={method}", "solver.tolerance=1e-9", "output.every=0.01")
+    r = run(flat(2, "", R, end=20.0), *turning(2, 8.0, R), *sets)
+    told = r.outcome.statistics
+    turned = np.sum(np.abs(r["crank0.angular_velocity"] @ R[:, 2])) * 0.01 / (2.0 * np.pi)
+    assert turned > 20.0
+    assert told["steps"] < (40 if method == "dop853" else 800) * turned
+    assert told["rejected_steps"] < 0.4 * told["steps"]
+    assert told["energy_residual_relative"] < 1e-7
+    v = r["plate.velocity"] @ R
+    theta = np.arctan2(-v[:, 0], v[:, 1])  # the plate goes round as the cranks' ends do
+    omega = r["crank0.angular_velocity"] @ R[:, 2]
+    theta = np.where(omega > 0.0, theta, theta + np.pi)
+    work = 2.0 * (GRAVITY[0] * (np.cos(theta) - 1.0) + GRAVITY[1] * np.sin(theta))
+    assert 0.5 * inertia(2, R) * (omega**2 - 64.0) == pytest.approx(work, abs=1e-5)
+
+
 def test_stiff_forces_do_not_matter_to_the_limit():
     """A spring far stiffer than the motion is fast: forces are those of the place itself."""
     more = "forces: {s: {type: torsion_spring, joint: F0, stiffness: 1e9, preload: 1e3}}"

@@ -83,7 +83,8 @@ def evaluate_inside(s, t, y, yd):
     evaluate(s, t, y, yd)
     if s.m == 0 or s.stabilisation != PROJECTION:
         return
-    if s.redundant.shape[0] == 0 and smallest_pivot(s) > DOUBTFUL:
+    past = s.status[4] > 0  # a place where branches meet: the interpolation may feel it
+    if s.redundant.shape[0] == 0 and not past and smallest_pivot(s) > DOUBTFUL:
         return
     for _ in range(NEWTON):
         if not project_positions(s, t, y) > CLOSED * s.size:
