@@ -50,7 +50,7 @@ from trsim.elements.contract import DRIVES, compiled
 from trsim.elements.scene import PROJECTION
 
 FARTHEST, HALVED = 0.02, 8  # rad, or of the mechanism's size; how often
-NEWTON, CLOSED = 8, 1e-14  # steps; of the mechanism's size
+NEWTON, CLOSED, REACHED = 8, 1e-14, 1e-9  # steps; of the mechanism's size
 SURE = 1e-3  # of the accelerations: more than that, and there is no limit
 PLAINLY = 4.0  # times what is uncertain of a limit: an evaluation is not itself that
 SETTLED = 1e-11  # the same: nothing smaller is asked for
@@ -150,7 +150,7 @@ def look_beside(s, t, y, fastest):
 def at(s, t, y, d):
     """Add half of the accelerations and multipliers at d from y along the motion to s.aside[MEAN].
 
-    Returns whether the rows are independent there.
+    Returns whether it gets there, and the rows are independent.
     """
     place, mean = s.aside[PLACE], s.aside[MEAN]
     for i in range(y.size):
@@ -160,12 +160,15 @@ def at(s, t, y, d):
     move_all(s, place, s.aside[WAY])
     for k in range(s.n_z):  # where drives are
         place[s.n_q + s.n_v + k] += d * s.zd[k]
+    worst = 0.0
     for _ in range(NEWTON):
         worst = project_positions(s, t + d, place)
         if s.status[0] == SINGULAR:
             return False
         if not worst > CLOSED * s.size:
             break
+    if not worst < REACHED * s.size:
+        return False  # the mechanism locks between
     poses(s, place)
     constraints(s, t + d)
     rows(s)
