@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
-from trsim.assemble.beside import beside
+from trsim.assemble.beside import beside, near
 from trsim.assemble.equations import derivative
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
@@ -296,6 +296,7 @@ def build(
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
         beside=beside.address(),
+        near=near(solver, rows, spans(at)),
         on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],
         alpha=baumgarte.alpha if baumgarte else 0.0,

@@ -23,8 +23,12 @@ times and rounding 1/delta^2 times: steps would shrink towards the place and end
 Reactions are those of the state itself: they do grow like 1/delta.  Rows that only unequal masses
 make hard to tell apart are left alone.  States off the rows feel another derivative here than
 further away, which the error estimate of a step need not see: solve/complete.py looks at the energy
-of such steps.  Where nobody does, the limit is taken at the place alone.
+of such steps.  Where nobody does (scipy's integrators), where rows are not projected, and in open
+chains, which have no such places, the limit is taken where rows do depend on each other only.
 """
+
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from trsim.assemble.equations import (
     DERIVATIVE,
@@ -42,20 +46,51 @@ from trsim.assemble.linear import (
     diagonal,
     eliminate,
     factorise,
+    smallest_pivot,
     solve,
 )
+from trsim.assemble.mechanism import RowName
 from trsim.assemble.projection import move_all, project_positions, project_velocities
 from trsim.assemble.schur import plain_rows, pull, rows
 from trsim.elements.contract import DRIVES, compiled
-from trsim.elements.scene import PROJECTION
 
 FARTHEST, HALVED = 0.02, 8  # rad, or of the mechanism's size; how often
 NEWTON, CLOSED, REACHED = 8, 1e-14, 1e-9  # steps; of the mechanism's size
 SURE = 1e-3  # of the accelerations: more than that, and there is no limit
 PLAINLY = 4.0  # times what is uncertain of a limit: an evaluation is not itself that
 SETTLED = 1e-11  # the same: nothing smaller is asked for
-UNWATCHED = -1  # in s.status[4]: nobody looks at the energy of steps
+NOISE = 1e-13  # 500 times rounding, which is a 500th of the tolerance at NOISE / tolerance
 PLACE, WAY, MEAN, BEFORE, LIMIT, NEWER, FOUND = range(7)  # rows of s.aside
+
+
+def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) -> float:
+    """The pivot of S below which accelerations are compared with their limit; 0: never.
+
+    A pivot is delta^2, and eps/delta^2 of an acceleration is rounding: further away it is below the
+    tolerance.  bars: first frame and number of nodes of each.
+    """
+    watched = solver.stabilisation == "projection" and not solver.method.startswith("scipy")
+    if not watched or not closes_a_loop(rows, bars):
+        return 0.0
+    return min(SMALL, NOISE / solver.tolerance)
+
+
+def closes_a_loop(rows: Sequence[RowName], bars: Iterable[tuple[int, int]] = ()) -> bool:
+    """Whether joints and drives join any two bodies in more than one way."""
+    above: dict[int, int] = {}
+
+    def top(f: int) -> int:
+        while f in above:
+            f = above[f]
+        return f
+
+    for first, nodes in bars:
+        above.update((f, first) for f in range(first + 1, first + nodes))
+    for _, (i, j) in sorted({(row.instance, row.frames) for row in rows}):
+        if top(i) == top(j):
+            return True
+        above[top(i)] = top(j)
+    return False
 
 
 @compiled(DERIVATIVE)
@@ -67,19 +102,26 @@ def beside(s, t, y, yd):
     fastest, went, counted = speed(s), s.status[0], s.status[2]
     if s.n_r < s.n or not fastest > 0.0:
         return
+    if went != SINGULAR and smallest_pivot(s) > s.near:
+        return
     best, scale = 1e300, 0.0
-    near = s.stabilisation == PROJECTION and s.status[4] != UNWATCHED
-    if went == SINGULAR or (near and not unequal_only(s)):
+    if went == SINGULAR or not unequal_only(s):
         best, scale = look_beside(s, t, y, fastest)
         poses(s, y)
         constraints(s, t)
-    rows(s)
-    factorise(s)
+    factors_again(s)
     s.status[2] = counted
     if best <= SURE * scale and (went == SINGULAR or apart(s, yd) > PLAINLY * best):
         if went != SINGULAR:
             s.status[4] += 1
         take(s, y, yd, went == SINGULAR)
+
+
+@equation
+def factors_again(s):
+    """Those of S at the poses at hand, which others have taken the place of."""
+    rows(s)
+    factorise(s)
 
 
 @equation

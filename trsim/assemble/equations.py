@@ -13,7 +13,14 @@ and the reactions on the bodies are -J^T lam.  `derivative` is the table of cont
 
 from math import cos, nan, sin
 
-from trsim.assemble.linear import POOR, SOUND, contradictory, factorise, independent, solve
+from trsim.assemble.linear import (
+    POOR,
+    SINGULAR,
+    contradictory,
+    factorise,
+    independent,
+    solve,
+)
 from trsim.assemble.on_beams import FREE, KINETIC, POSES, PULL, RATES, RIGHT, call_beams
 from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
 from trsim.elements.calls import call_kernel, caller
@@ -63,7 +70,7 @@ def derivative(s, t, y, yd):
                 pull(s, f, s.x)
         s.zd[DRIVES] += power
     accelerations(s, y, yd)
-    if s.m > 0 and s.status[0] != SOUND:
+    if s.m > 0 and (s.status[0] == SINGULAR or (s.status[0] == POOR and s.near > 0.0)):
         call_derivative(s.beside, s, t, y, yd)
 
 

@@ -80,6 +80,7 @@ class Model(Packed):
     target: I1  # (updates) the place that two entries of one column of L are taken from
     derivative: i8  # address of the equations of motion
     beside: i8  # address of what finds limits where rows depend on each other     beside.py
+    near: f8  # pivot below which it is asked; 0: where rows do depend on each other only
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
     beta: f8

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.beside import UNWATCHED
 from trsim.assemble.equations import derivative
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
@@ -99,7 +98,6 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         sample=sample.address(),
         **called_by(mechanism, setting),
     )
-    s.status[4] = UNWATCHED
     clock0 = time.process_time()
     begin(s, r, b, setting)
     r.clock[rec.H] = first_step(scenario, r)
