@@ -23,8 +23,8 @@ times and rounding 1/delta^2 times: steps would shrink towards the place and end
 Reactions are those of the state itself: they do grow like 1/delta.  Rows that only unequal masses
 make hard to tell apart are left alone.  States off the rows feel another derivative here than
 further away, which the error estimate of a step need not see: solve/complete.py looks at the energy
-of such steps.  Where nobody does (scipy's integrators), where rows are not projected, and in open
-chains, which have no such places, the limit is taken where rows do depend on each other only.
+of such steps.  Where nobody does (scipy's integrators), and in open chains, which have no such
+places, the limit is taken only where rows do depend on each other.
 """
 
 from collections.abc import Iterable, Sequence
@@ -69,8 +69,7 @@ def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) 
     A pivot is delta^2, and eps/delta^2 of an acceleration is rounding: further away it is below the
     tolerance.  bars: first frame and number of nodes of each.
     """
-    watched = solver.stabilisation == "projection" and not solver.method.startswith("scipy")
-    if not watched or not closes_a_loop(rows, bars):
+    if solver.method.startswith("scipy") or not closes_a_loop(rows, bars):
         return 0.0
     return min(SMALL, NOISE / solver.tolerance)
 
@@ -105,7 +104,7 @@ def beside(s, t, y, yd):
     if went != SINGULAR and smallest_pivot(s) > s.near:
         return
     best, scale = 1e300, 0.0
-    if went == SINGULAR or not unequal_only(s):
+    if went == SINGULAR or plain_pivot(s) <= SMALL:
         best, scale = look_beside(s, t, y, fastest)
         poses(s, y)
         constraints(s, t)
@@ -125,11 +124,12 @@ def factors_again(s):
 
 
 @equation
-def unequal_only(s):
-    """Whether the rows are far from depending on each other, whatever the masses make of them."""
+def plain_pivot(s):
+    """The smallest pivot of J J^T: how far rows are from depending on each other, whatever the
+    masses.  Takes the place of the factors of S."""
     plain_rows(s)
     diagonal(s)
-    return eliminate(s, TINY) > SMALL
+    return eliminate(s, TINY)
 
 
 @equation

@@ -20,22 +20,31 @@ TAKES_PART = 0.1  # of the largest entry of the dependent combination of rows
 
 def locked(mechanism: Mechanism, t: float, y: Array) -> str:
     """Which rows depend on each other at (t, y), in words; empty where none do."""
+    names, smallest = dependent(mechanism, t, y)
+    if smallest > NEARLY:
+        return ""
+    return (
+        f"the mechanism locks here: {', '.join(names)} leave it no way on (their rows depend on "
+        f"each other to {smallest:.1g}); start it elsewhere, drive another joint, or end "
+        "before"
+    )
+
+
+def dependent(mechanism: Mechanism, t: float, y: Array) -> tuple[list[str], float]:
+    """Joints and drives whose rows depend on each other most, and how nearly they do.
+
+    0 where they do, 1 where there are none or a value is not finite.
+    """
     model = mechanism.model
     if model.m == 0 or not np.all(np.isfinite(y)):
-        return ""
+        return [], 1.0
     J = jacobian(model, t, y)[2] / np.tile([1.0] * 3 + [model.size] * 3, model.n - 1)
     length = np.linalg.norm(J, axis=1, keepdims=True)
     if not np.all(np.isfinite(J)) or not np.all(length > 0.0):
-        return ""
+        return [], 1.0
     u, s, _ = np.linalg.svd(J / length)
     smallest = float(s[-1]) if len(s) == model.m else 0.0
-    if smallest > NEARLY * s[0]:
-        return ""
     part = np.abs(u[:, -1])
     rows = [n for n, x in zip(mechanism.rows, part, strict=True) if x > TAKES_PART * part.max()]
     names = dict.fromkeys(name.rpartition(".")[0] for name in rows)
-    return (
-        f"the mechanism locks here: {', '.join(names)} leave it no way on (their rows depend on "
-        f"each other to {smallest / s[0]:.1g}); start it elsewhere, drive another joint, or end "
-        "before"
-    )
+    return list(names), smallest / float(s[0])

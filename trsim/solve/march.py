@@ -39,6 +39,7 @@ from trsim.solve.peaks import restart, sample
 from trsim.solve.phases import evaluate_all
 from trsim.solve.record import (
     ACT,
+    ADRIFT,
     AFTER_REJECTION,
     BUFFERS,
     CHATTER,
@@ -58,6 +59,7 @@ from trsim.solve.record import (
     JACOBIAN,
     LEAPT,
     LOAD,
+    LOST,
     METHOD,
     NEXT_ROW,
     NOT_FINITE,
@@ -124,7 +126,7 @@ def march(s, r, b, setting, methods, most):
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
     Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN,
-    CRAWL, LEAPT or WINDS.
+    ADRIFT, CRAWL, LEAPT or WINDS.
     """
     accepted = tried = 0
     while r.clock[T] < setting[T_END]:
@@ -181,6 +183,8 @@ def march(s, r, b, setting, methods, most):
             return TOO_FAST
         if r.count[OPENED] > 0:
             return OPEN
+        if r.count[LOST] > 0:
+            return ADRIFT
         cut = outcome in (WITH_EVENT, WITH_CORNER)
         control(r, setting, method, h, error, cut)
         if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:

@@ -126,6 +126,10 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
         found["meet"] = meet.address()
     if may_open(mechanism):
         found["look"] = look.address()
+    if model.stabilisation != PROJECTION and model.m > 0:
+        from trsim.solve.adrift import look_at_drift
+
+        found["look"] = look_at_drift.address()
     if setting[rec.LOCATE] > 0.0 or len(model.watch):
         from trsim.solve.search import search
 

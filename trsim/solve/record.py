@@ -79,6 +79,7 @@ from trsim.elements.scene import Model
     OPEN_ROW,  # element row e and row of it that APART is of
     OPEN_INDEX,
     JOLTS,  # jumps of the rate of a rigid drive
+    LOST,  # 1: without projection, rows are open by as much as branches are apart     adrift.py
     TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
     UNPROVED,  # searches for an event in a step that gave up
     DEGREE,  # of the polynomials in `net`
@@ -87,7 +88,7 @@ from trsim.elements.scene import Model
     NEWEST,  # which of the last samples of the channels is the newest, and how many there are
     SAMPLES,
     N_COUNT,
-) = range(36)
+) = range(37)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -112,6 +113,7 @@ CRAWL = 8  # so many steps so short that the end will not be reached
 TOO_FAST = 7  # a body is faster than FASTEST
 CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
+ADRIFT = 13  # without projection, where branches of the motion meet
 OPEN = 10  # a row that was dropped as redundant is not
 WINDS = 12  # a fixed step turns a joint by more than is sure to be counted, see solve/turns.py
 LEAPT = 11  # the place of a rigid drive jumps, see TORN

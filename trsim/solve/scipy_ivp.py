@@ -19,6 +19,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
 from trsim.solve import record as rec
+from trsim.solve.adrift import lost_its_way
 from trsim.solve.anew import anew, begun_with
 from trsim.solve.blame import why
 from trsim.solve.calls import INTERPOLATE, method_row
@@ -122,6 +123,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         if r.count[rec.OPENED]:
             status, reason = "failed", opened(scenario, mechanism, r)
             break
+        if r.count[rec.LOST]:
+            status, reason = "failed", lost_its_way(scenario, mechanism, r)
+            break
         if r.count[rec.TORN]:
             status, reason = "failed", leapt(mechanism, r)
             break
@@ -151,7 +155,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
         at = mechanism.stages.mechanism(mechanism, r.stage, r.left_out)
-        known = r.count[rec.OPENED] or r.count[rec.TORN]
+        known = r.count[rec.OPENED] or r.count[rec.LOST] or r.count[rec.TORN]
         reason = reason if known else why(scenario, at, r) or reason
     bends = Bends(mechanism)
     bends.look(float(r.clock[rec.T]), r.y)

@@ -13,6 +13,7 @@ from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
+from trsim.solve.adrift import lost_its_way
 from trsim.solve.anew import anew, begun_with, resumed
 from trsim.solve.blame import why
 from trsim.solve.calls import FIELDS
@@ -211,6 +212,8 @@ def ending(
         return ("failed", text) if text else ("done", "")
     if reason == rec.OPEN:
         return "failed", opened(scenario, mechanism, r)
+    if reason == rec.ADRIFT:
+        return "failed", lost_its_way(scenario, mechanism, r)
     if reason == rec.LEAPT:
         return "failed", leapt(mechanism, r)
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:

@@ -1,0 +1,77 @@
+"""Without projection: past places where branches meet on the right branch, or not at all.
+
+Cranks of length 1 that carry a plate and turn by theta as one, as in test_branches.py:
+
+    (I + sum of m p'^2) theta'' = weight(theta)
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from ..overconstrained import cranks, text
+from ..runs import run
+from .test_branches import inertia, weight
+
+BEGIN, END, RATE = 1.0, 3.0, 10.0
+
+
+def drifting(rates):
+    return ["solver.stabilisation=baumgarte", f"solver.baumgarte={{alpha: {rates}, beta: {rates}}}"]
+
+
+def turned(number, rate, *sets, tolerance=1e-8, mass=None, fails=False):
+    """Cranks that pass their flat position twice a turn."""
+    parts = cranks([1.0] * number, np.cumsum([0.0, 0.7, 0.9])[:number], BEGIN, top=0.0)
+    scene = text(parts, "gravity: [2, -5, 0]", planar="true", end=END, tolerance=tolerance)
+    way = np.array([-np.sin(BEGIN), np.cos(BEGIN), 0.0])
+    given = [f"bodies.plate.velocity={[float(x) for x in rate * way]}"]
+    for k in range(number):
+        given += [f"bodies.crank{k}.velocity={[float(x) for x in rate / 2 * way]}"]
+        given += [f"bodies.crank{k}.angular_velocity={[0, 0, rate]}"]
+    if mass is not None:
+        given += [f"bodies.crank0.mass={mass}", f"bodies.crank0.inertia={0.1 * mass}"]
+    return run(scene, *given, "output.every=0.01", *sets, fails=fails)
+
+
+def off(r, number, rate):
+    """Largest error of the cranks' rate, rad/s, beside the one equation of theta."""
+
+    def motion(t, x):
+        return [x[1], weight(number, x[0]) / inertia(number)]
+
+    true = solve_ivp(motion, (0, END), [BEGIN, rate], t_eval=r.t, rtol=1e-12, atol=1e-12)
+    return np.abs(r["crank0.angular_velocity"][:, 2] - true.y[1]).max()
+
+
+@pytest.mark.parametrize("number", [2, 3])
+@pytest.mark.parametrize("method", ["auto", "radau", "scipy:RK45"])
+def test_rows_open_by_more_than_branches_are_apart_end_a_run(method, number):
+    r = turned(number, RATE, f"solver.method={method}", *drifting(5), tolerance=1e-6, fails=True)
+    assert "branches of the motion meet" in r.outcome.reason
+    assert "F0, T0" in r.outcome.reason and "stabilisation: projection" in r.outcome.reason
+
+
+def test_without_any_stabilisation_it_is_the_same():
+    r = turned(2, RATE, "solver.stabilisation=none", tolerance=1e-6, fails=True)
+    assert "branches of the motion meet" in r.outcome.reason
+    assert "baumgarte" not in r.outcome.reason
+
+
+@pytest.mark.parametrize("number", [2, 3])
+@pytest.mark.parametrize("method", ["auto", "radau"])
+def test_rows_that_are_held_well_pass(method, number):
+    r = turned(number, RATE, f"solver.method={method}", *drifting(100))
+    assert off(r, number, RATE) < 100 * 1e-8 * RATE
+
+
+@pytest.mark.parametrize("rates", [20, 50])
+def test_output_rows_next_to_the_place_are_as_right(rates):
+    """Two of them were off by 100 times the tolerance: a stage of their step lay on the place."""
+    r = turned(2, 3.0, *drifting(rates), tolerance=1e-6)
+    assert off(r, 2, 3.0) < 1e-5 * 5.0
+
+
+def test_pivots_that_unequal_masses_make_small_say_nothing():
+    r = turned(2, 3.0, *drifting(5), "solver.end=0.3", mass=1e-9, tolerance=1e-3)
+    assert r.outcome.status == "done"
