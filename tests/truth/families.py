@@ -1117,3 +1117,14 @@ def bars(rng: Any) -> Drawn:
         return Drawn(s, by=TIGHT_RUN)
     # in space a weld to a body would hold the twist, and a hinge too: such bars have none
     return Drawn(s, by=INVALID if kind in ("twist", "pendulum", "crank") else TIGHT_RUN)
+
+
+@family
+def drifting(rng: Any) -> Drawn:
+    """Baumgarte's stabilisation instead of projection, from far too slow to nearly stiff rates."""
+    kind = pick(rng, "chain_planar", "chain_spatial", "loop", "loop", "redundant", "singular")
+    drawn = FAMILIES[kind](rng)
+    rate = decades(rng, 3.0, 300.0)
+    drawn.scene.rates = rate, rate * pick(rng, 1.0, 1.0, 0.5, 2.0)
+    drawn.scene.settings.pop("formulation", None)  # ggl has a stabilisation of its own
+    return drawn

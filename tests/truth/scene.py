@@ -280,6 +280,7 @@ class Scene:
     method: str = "auto"
     tolerance: float = 1e-6
     step: float | None = None
+    rates: tuple[float, float] | None = None  # alpha and beta of Baumgarte's stabilisation, 1/s
     settings: dict[str, Any] = field(default_factory=dict)
     initial: dict[str, float] = field(default_factory=dict)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -365,6 +366,10 @@ class Writer:
             solver["step"] = self.n(s.step, 0, 0, 1)
         else:
             solver["tolerance"] = s.tolerance
+        if s.rates is not None:
+            alpha, beta = (self.n(rate, 0, 0, -1) for rate in s.rates)
+            solver["stabilisation"] = "baumgarte"
+            solver["baumgarte"] = {"alpha": alpha, "beta": beta}
         for key, value in s.settings.items():
             timed = key in ("max_step", "first_step")
             solver[key] = self.n(value, 0, 0, 1) if timed else value

@@ -11,7 +11,7 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.beside import beside, near
-from trsim.assemble.equations import derivative
+from trsim.assemble.equations import derivative, without_feedback
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
 from trsim.assemble.jumps import find_jumps, steep
@@ -296,6 +296,7 @@ def build(
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
         beside=beside.address(),
+        plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
         near=near(solver, rows, spans(at)),
         on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],

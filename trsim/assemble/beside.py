@@ -221,7 +221,7 @@ def at(s, t, y, d):
     poses(s, place)
     constraints(s, t + d)
     free_accelerations(s)
-    right_hand_side(s)
+    right_hand_side(s, False)
     solve(s, s.x)
     for k in range(s.m):
         mean[s.n_v + k] += 0.5 * s.x[k]

@@ -16,6 +16,7 @@ from math import cos, nan, sin
 from trsim.assemble.linear import (
     POOR,
     SINGULAR,
+    SOUND,
     contradictory,
     factorise,
     independent,
@@ -53,7 +54,7 @@ def derivative(s, t, y, yd):
             s.lam[k] = 0.0
         power = 0.0
         for again in range(2):
-            right_hand_side(s)
+            right_hand_side(s, s.stabilisation == BAUMGARTE)
             solve(s, s.x)
             if contradictory(s, s.x) and masses_too_unequal(s):
                 s.status[3] += 1
@@ -72,6 +73,26 @@ def derivative(s, t, y, yd):
     accelerations(s, y, yd)
     if s.m > 0 and (s.status[0] == SINGULAR or (s.status[0] == POOR and s.near > 0.0)):
         call_derivative(s.beside, s, t, y, yd)
+
+
+@compiled(DERIVATIVE)
+def without_feedback(s, t, y, yd):
+    """lam, A and yd of the last evaluation, which was at (t, y), without Baumgarte's feedback.
+
+    It brings the state back to the constraints and is no force of the mechanism: at rates far above
+    those of the motion, and inside steps, where interpolation opens rows, it is many times what a
+    reaction is wrong by otherwise.  Accelerations that are a limit (beside.py) have none.
+    """
+    if s.status[0] != SOUND:
+        return
+    free_accelerations(s)
+    if s.n_r < s.n:
+        call_beams(s.on_beams[FREE], s, y, yd, 0)
+    right_hand_side(s, False)
+    solve(s, s.x)
+    for k in range(s.m):
+        s.lam[k] = s.x[k]
+    accelerations(s, y, yd)
 
 
 @equation
@@ -210,12 +231,12 @@ def masses_too_unequal(s):
 
 
 @equation
-def right_hand_side(s):
+def right_hand_side(s, feedback):
     """x = J M^-1 F - gamma, with Baumgarte's terms where asked for."""
     B, free, x = s.B, s.free, s.x
     for k in range(s.m):
         x[k] = -s.gamma[k]
-        if s.stabilisation == BAUMGARTE:
+        if feedback:
             x[k] += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
     if s.n_r < s.n:
         call_beams(s.on_beams[RIGHT], s, x, x, 0)

@@ -9,7 +9,7 @@ The reaction of a joint is what its rows put on body j, as force and moment abou
 In a planar scene the out-of-plane components are those of the planar problem: zero.
 """
 
-from trsim.assemble.equations import call_all, equation, kinetic, stored_energy
+from trsim.assemble.equations import call_all, call_derivative, equation, kinetic, stored_energy
 from trsim.elements.contract import BOOK, N_BOOK, STORED
 from trsim.elements.frames import arm
 from trsim.elements.scene import N_STORED
@@ -30,6 +30,8 @@ def energy_columns(jumps):
 @equation
 def measure(s, t, y, work_projection, energy_0):
     """Fill s.out; uses the last evaluation, which was at (t, y)."""
+    if s.plain != 0:
+        call_derivative(s.plain, s, t, y, s.aside[0])
     call_all(s, s.measure, t)
     for k in range(s.joint_out.shape[0]):
         reaction(s, k)

@@ -7,7 +7,7 @@ from trsim.assemble.linear import SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import normalise, project_positions, project_velocities
 from trsim.assemble.schur import velocity_residual
-from trsim.elements.scene import PROJECTION
+from trsim.elements.scene import NONE, PROJECTION
 from trsim.elements.vectors import internal
 from trsim.solve.record import OFF, OFF_RATE, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.watch import watch
@@ -78,10 +78,11 @@ def evaluate_inside(s, t, y, yd):
     """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
 
     With an eigenvalue of S of d^2 accelerations feel 1/d^2 times what interpolation opens rows by;
-    redundant rows are held by others times their levers only.
+    redundant rows are held by others times their levers only.  With Baumgarte's stabilisation too:
+    what interpolation opens is not drift.  Without any it would hide the drift.
     """
     evaluate(s, t, y, yd)
-    if s.m == 0 or s.stabilisation != PROJECTION:
+    if s.m == 0 or s.stabilisation == NONE:
         return
     past = s.status[4] > 0  # a place where branches meet: the interpolation may feel it
     if s.redundant.shape[0] == 0 and not past and smallest_pivot(s) > DOUBTFUL:
