@@ -6,7 +6,7 @@ from importlib import import_module
 NAMES = (
     *("startup", "memory", "reverser", "rods", "skipping", "sweeps"),
     *("slider_crank", "andrews", "pendulum", "windows", "chain", "stiff_chain", "chains"),
-    *("flexible_pendulum", "spatial"),
+    *("flexible_pendulum", "spatial", "turns"),
 )
 
 

@@ -118,6 +118,7 @@ def stated(r: Ran) -> float:
     for text in r.warnings:
         if "energy book does not close" in text:
             told += [float(x) / 100 for x in re.findall(r"by ([0-9.e+-]+) %", text)]
+        told += [float(x) for x in re.findall(r"joints were open by up to ([0-9.e+-]+)", text)]
     return max(told)
 
 
