@@ -133,7 +133,8 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
     """The verdict, written into v."""
     v.exit, v.warnings = r.exit, r.warnings
     if r.exit in (3, 4, 5):
-        v.verdict, v.why = REFUSED, r.reason
+        chance = scene.rates is not None and "branches of the motion meet" in r.reason
+        v.verdict, v.why = TOLD if chance else REFUSED, r.reason
         return v
     if r.exit:
         v.verdict, v.why = CRASH, r.reason
