@@ -29,10 +29,9 @@ crossing (event, touch, point of a section) missed that goes deeper than 10 tole
 The bound grows with what a small change of the start grows by, divided by 20; where it passes the
 whole scale, the horizon of prediction is passed and nothing more is judged. Of rk4, whose step is
 chosen, the tolerance is 1e-6 at 200 steps a turn. What is refused is counted: a scene that is valid
-is to run. `told` are scenes that have no motion, or whose way is chance without projection, and were
-refused as they must be. Not compared are
-reactions of joints with redundant rows, which no rigid body determines, and the angle of a hinge in
-space that came apart, which is a convention.
+is to run. `told` are scenes that have no motion, or whose way is chance without projection: they
+were refused as they must be. Not compared are reactions of joints with redundant rows, which no
+rigid body determines, and the angle of a hinge in space that came apart, which is a convention.
 
 `tests/truth/test_broken.py` breaks the bound of events, the look at dropped rows and the rule for
 the turns of angles in a copy of trsim, one at a time, and sees that the scenes find each of them.
