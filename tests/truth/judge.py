@@ -5,9 +5,10 @@ wrong: ended well, with a number off by more than
     bound = min(WHOLE, max(100 tolerance, 10 stated error)) growth
 
 of its scale; growth is by how much more than EASY times a small change of the start has grown by
-then (1 at least), by the reference itself.  Nothing is judged where the bound is above WHOLE by its
-growth: beyond the horizon of prediction.  Times of rows may be off by what their places may.
-Missed crossings are wrong where they are deeper than 10 tolerances.
+then (1 at least), by the reference itself, in places and speeds; where a channel has grown by more
+at a row, as forces do in contacts, its growth there is taken.  Nothing is judged where the bound is
+above WHOLE by its growth: beyond the horizon of prediction.  Times of rows may be off by what their
+places may.  Missed crossings are wrong where they are deeper than 10 tolerances.
 """
 
 import re
@@ -157,6 +158,7 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
         off = abs(r.time / scene.unit((0, 0, 1)) - t.ended)
         allowed = float(bound[-1]) * t.size / top["speed"] + 1e-9 * scene.end
         worst.append((off / allowed, f"ended at {r.time:.6g}, {off:.3g} from {t.ended:.6g}"))
+    share = min(WHOLE, least) / EASY  # of what a small change has grown to
     k = np.arange(len(t.times))[use]
     missing = [i for i in k if not len(near(r, t.times[i] * scene.unit((0, 0, 1))))]
     if missing:
@@ -165,7 +167,7 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
     at = np.array([near(r, t.times[i] * scene.unit((0, 0, 1)))[0] for i in k], int)
     for name, c in t.channels.items():
         if name in r.place and len(k):
-            worst.append(compared(scene, t, r, name, c, top, bound, k, at))
+            worst.append(compared(scene, t, r, name, c, top, bound, k, at, share))
     crossings(scene, t, r, tolerance, bound, use, top, worst)
     v.ratio, v.what = max(worst, key=lambda x: x[0] if x[0] == x[0] else np.inf)
     v.grazing = len(t.grazing)
@@ -182,7 +184,7 @@ def near(r: Ran, time: float) -> np.ndarray:
 
 def compared(
     scene: Scene, t: Truth, r: Ran, name: str, c: Channel, top: dict[str, float],
-    bound: np.ndarray, k: np.ndarray, at: np.ndarray,
+    bound: np.ndarray, k: np.ndarray, at: np.ndarray, share: float,
 ) -> tuple[float, str]:  # fmt: skip
     """The worst of a channel over its bound, and where."""
     unit = scene.unit(c.dims)  # type: ignore[arg-type]
@@ -199,6 +201,8 @@ def compared(
     for one in t.about:
         soft = np.fmax(soft, np.abs(one[name].values[k] - want))
     allowed = bound[k, None] * top[c.kind] + soft
+    if name in t.felt:
+        allowed = np.fmax(allowed, share * t.felt[name][k])
     error = np.abs(got - want)
     ratio = np.where(np.isfinite(got), error / np.maximum(allowed, 1e-300), np.inf)
     ratio = np.where(np.isfinite(want), ratio, 0.0)

@@ -429,6 +429,7 @@ class Truth:
     ended: float | None = None
     sure: np.ndarray = field(default_factory=lambda: np.zeros(0))  # at each row, of the scales
     growth: np.ndarray = field(default_factory=lambda: np.ones(0))  # of a small change at the start
+    felt: dict[str, np.ndarray] = field(default_factory=dict)  # the same of every channel and row
     about: list[dict[str, Channel]] = field(default_factory=list)  # a little before and after
     steps: int = 0
     size: float = 1.0
@@ -713,6 +714,7 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
     t.size, t.mass, t.gravity, t.end = rough.size, rough.mass, g, scene.end
     t.top = scales(replace(t, channels=all_of))
     t.sure, t.growth = spread(t, other, 1.0), spread(t, apart, APART)
+    t.felt = felt(t, apart, APART)
     t.crossings = list(listed(scene, main))
     return t
 
@@ -748,6 +750,19 @@ def spread(t: Truth, other: Course, by: float) -> np.ndarray:
         worst[:k] = np.fmax(worst[:k], d)
         worst[k:] = np.inf
     return np.maximum.accumulate(worst) / by
+
+
+def felt(t: Truth, other: Course, by: float) -> dict[str, np.ndarray]:
+    """How far another run is from every channel at every row, over `by`; 0 where it has ended."""
+    out = {}
+    for name, c in other.channels().items():
+        if name not in t.channels:
+            continue
+        want = t.channels[name].values
+        k = min(len(c.values), len(want))
+        out[name] = np.zeros_like(want)
+        out[name][:k] = np.nan_to_num(np.abs(c.values[:k] - want[:k]) / by)
+    return out
 
 
 def scales(t: Truth) -> dict[str, float]:

@@ -39,7 +39,6 @@ from trsim.solve.record import (
     SWITCHES,
     TO_EXPLICIT,
     TO_IMPLICIT,
-    TOLERANCE,
     H,
     T,
 )
@@ -49,22 +48,20 @@ EXPLICIT, IMPLICIT = 0, 1  # rows of `methods`
 STABLE = 6.1  # h rho of DOP853 on the negative real axis
 STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
 DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
-# h rho: where steps of DOP853 are watched, and what they are held to; where nothing takes over
-NEAR, CALM, NEAR_ALONE, CALM_ALONE = 4.0, 5.0, 3.0, 3.5
+NEAR, CALM = 3.0, 3.5  # h rho: where steps of DOP853 on contacts are watched, what they are held to
 EASY = 3.0  # h rho at which the explicit method takes steps of the same length
-LOOSE = 5e-5  # a tolerance of 1.8e-4: below, forces tremble by 3 % of the largest or less
 ITERATIONS = 12  # of the vector iteration
 
 
 @internal
-def choose(s, r, b, setting, h, event):
+def choose(s, r, b, h, event):
     """Change r.count[METHOD] where the steps so far say so; leaves a line among the events."""
     if r.count[METHOD] == EXPLICIT:
         if event:
             forget(r)
             return
         rate = explicit_rate(s, r, b, h)
-        load, held = h * rate, calmed(s, r, setting, h, rate, NEAR, CALM)
+        load, held = h * rate, calmed(s, r, h, rate)
         if load > STABLE or held:
             r.count[STIFF] += 2 if held else 1
             r.count[NOT_STIFF] = 0
@@ -87,12 +84,12 @@ def choose(s, r, b, setting, h, event):
 
 
 @internal
-def calm(s, r, b, setting, h, event):
+def calm(s, r, b, h, event):
     """The same of DOP853 alone: it keeps its steps stable."""
     if event:
         forget(r)
-    elif setting[TOLERANCE] > LOOSE:
-        calmed(s, r, setting, h, explicit_rate(s, r, b, h), NEAR_ALONE, CALM_ALONE)
+    else:
+        calmed(s, r, h, explicit_rate(s, r, b, h))
 
 
 @internal
@@ -102,20 +99,18 @@ def forget(r):
 
 
 @internal
-def calmed(s, r, setting, h, rate, near, most):
+def calmed(s, r, h, rate):
     """Whether the next step is shortened to where it is stable, after a step h at this rate.
 
-    Only where something touches, at LOOSE tolerances, and by the lesser of two rates in a row.
-    Between 5 and 6.1 on the real axis the error estimate sees down to an eighth of the error: what
-    is stiff trembles there by many times the error allowed, and the damping of a light touch makes
-    forces of it.
+    Only where something touches, and by the lesser of two rates in a row.  Between 5 and 6.1 on the
+    real axis the error estimate sees down to an eighth of the error: what is stiff trembles there
+    by many times the error allowed, and the damping of a light touch makes forces of it.
     """
     sure = min(rate, r.clock[EXPLICIT_RATE])
     r.clock[EXPLICIT_RATE] = rate
-    loose = s.contact.size > 0 and setting[TOLERANCE] > LOOSE
-    if not loose or h * sure <= near or r.clock[H] * sure <= most:
+    if s.contact.size == 0 or h * sure <= NEAR or r.clock[H] * sure <= CALM:
         return False
-    r.clock[H] = most / sure
+    r.clock[H] = CALM / sure
     return True
 
 

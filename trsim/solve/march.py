@@ -190,9 +190,9 @@ def march(s, r, b, setting, methods, most):
         if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:
             shorten(r, setting, h)
         if methods.shape[0] > 1:
-            choose(s, r, b, setting, h, outcome == WITH_EVENT)
+            choose(s, r, b, h, outcome == WITH_EVENT)
         elif method[STAGES_AT] > 0 and s.contact.size > 0:  # dop853
-            calm(s, r, b, setting, h, outcome == WITH_EVENT)
+            calm(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:
             return CHATTER
         if r.count[FIRED] > 0:
