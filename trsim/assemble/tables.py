@@ -299,7 +299,7 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
 def contact_numbers(
     at: Addresses, instances: list[Instance], contacts: list[int], arms: list[float]
 ) -> Array:
-    """K, exponent, effective mass, clearance, slowest impact and arm of every contact.
+    """K, exponent, effective mass, clearance, slowest impact, arm and damping of every contact.
 
     A stop on an angle has an inertia for a mass, that of its bodies at the larger of their arms;
     the arm turns its depth, an angle, into the length that errors are weighed with.
@@ -313,8 +313,8 @@ def contact_numbers(
         c = row.contact
         arm = max(arms[f] for f in (i, j) if f) if row.turns else 1.0
         mass = arm**2 / inverse
-        rows.append((c.stiffness, c.exponent, mass, c.clearance, c.slowest_impact, arm))
-    return np.array(rows, float).reshape(-1, 6)
+        rows.append((c.stiffness, c.exponent, mass, c.clearance, c.slowest_impact, arm, c.damping))
+    return np.array(rows, float).reshape(-1, 7)
 
 
 def contact_states(instances: list[Instance], contacts: list[int]) -> NDArray[np.int64]:

@@ -156,7 +156,7 @@ def pack(name, spec, at):
         law.slowest_impact,
         *friction,
     )
-    contact = Contact(light, exponent, spec.clearance, law.slowest_impact)
+    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi)
     return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
 
 

@@ -101,6 +101,7 @@ class Contact(NamedTuple):
     exponent: float
     clearance: float  # m; inf where the contact has none
     slowest_impact: float  # m/s
+    damping: float  # chi: of the elastic force at the rate at which the contact began
 
 
 class Limit(NamedTuple):

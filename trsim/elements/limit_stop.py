@@ -108,7 +108,7 @@ UNBOUNDED = 1e300
 
 def pack(name, spec, at):
     law = (spec.stiffness, spec.damping, spec.ramp)
-    contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0)
+    contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0, 0.0)
     if spec.joint is None:
         if spec.wall.body == spec.point.body:
             raise ScenarioError(

@@ -14,7 +14,7 @@ sqrt(a length), or that length per run.  A fall would get there; a stiff spring 
 import numpy as np
 
 from trsim.elements import signatures as types
-from trsim.elements.contract import SCENE, compiled
+from trsim.elements.contract import IMPACT_SPEED, SCENE, compiled
 from trsim.elements.packed import A1
 from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
@@ -32,9 +32,27 @@ def weights(s, r, b, setting, h):
     """
     if r.clock[MET] < r.clock[MOST]:
         follow(s, r, h)
-    length, speed, tolerance = r.clock[LENGTH], r.clock[SPEED], setting[TOLERANCE]
+    length, tolerance = r.clock[LENGTH], setting[TOLERANCE]
+    speed = min(r.clock[SPEED], felt(s, r))
     for c in range(b.weight.size):
         b.weight[c] = weighed(s, length, speed, tolerance, c)
+
+
+@internal
+def felt(s, r):
+    """The unit of velocities that forces of loaded contacts ask for: F_e chi dv/d0' is then as much
+    of the largest force met as the unit of lengths makes.
+
+    A contact that began with a light touch, small d0', turns velocities into more force than one
+    that began with a hard one; where it comes to carry a load that counts.
+    """
+    speed = 1e300
+    for c in range(s.contact.size):
+        depth, first, chi = r.gap[c, 0], r.mem[s.contact[c], IMPACT_SPEED], s.contact_par[c, 6]
+        if depth > 0.0 and first > 0.0 and chi > 0.0:
+            share = (depth / max(r.impact[c], depth)) ** s.contact_par[c, 1]
+            speed = min(speed, s.contact_par[c, 5] * first / (chi * share))
+    return speed
 
 
 @internal

@@ -152,7 +152,7 @@ def contact_scales(
     unit = {column.name: column.unit for column in mechanism.columns}
     for c, e in enumerate(mechanism.model.contact.tolist()):
         instance = mechanism.instances[e]
-        K, n, alone, _, slowest, _ = w.contact_par[c].tolist()
+        K, n, alone, _, slowest, *_ = w.contact_par[c].tolist()
         d = float(begun.depth[c])
         if instance.element.key == "clearance_joint":
             poses(w, begun.y)

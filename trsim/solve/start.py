@@ -339,7 +339,7 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     moving = max(of_frames(w.V, reach), CREEP * reach / end)
     speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)
     depth = []
-    for K, n, mass, c, slowest, arm in model.contact_par:
+    for K, n, mass, c, slowest, arm, _ in model.contact_par:
         approach = min(max(slowest, 1e-3), speed) / arm
         touch = ((n + 1.0) * mass * approach**2 / (2.0 * K)) ** (1.0 / (n + 1.0))
         depth.append(min(max((force * arm / K) ** (1.0 / n), touch), c))
