@@ -58,8 +58,6 @@ from trsim.solve.record import (
     OFF_RATE,
     OPENED,
     PAST_H,
-    PEAK_MAX,
-    PEAK_MIN,
     RECORD,
     ROWS,
     SAME_TIME,
@@ -360,11 +358,11 @@ def accept(s, r, b, t1, projected, last):
                     line[2 + k] = b.out[s.wanted[e] + k] if s.wanted[e] + k < s.n_out else 0.0
                 r.count[STEP_ROWS] += 1
     if s.column_energy >= 0:
+        exchanged(s, r, b)
         for c in range(s.column_energy, s.n_out - 1):
             size = abs(b.out[c])
             if c == s.column_energy + 1 + GRAVITY:  # counted from the origin, wherever that is
-                size = max(ORIGIN * size, r.peak[c, PEAK_MAX] - r.peak[c, PEAK_MIN])
+                size = max(ORIGIN * size, r.book[1 + GRAVITY, 1] - r.book[1 + GRAVITY, 0])
             r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], size)
-        exchanged(s, r, b)
         residual = abs(b.out[s.n_out - 1])
         r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)

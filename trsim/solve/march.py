@@ -302,6 +302,8 @@ def begin(s, r, b, setting):
     copy_to(b.rows[0, 1:], b.out)
     r.count[ROWS] = 1
     r.count[NEXT_ROW] = 1
+    for k in range(r.book.shape[0]):
+        r.book[k, 0] = r.book[k, 1] = b.out[s.column_energy + k]
     clear_table(r.peak)
     for c in range(s.kin.size):
         r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN] = -1e300, 1e300

@@ -198,6 +198,7 @@ def new_record(
         clock=np.zeros(rec.N_CLOCK),
         count=np.zeros(rec.N_COUNT, np.int64),
         peak=np.zeros((len(model.kin), rec.N_PEAK)),
+        book=np.zeros((1 + N_STORED, 2)),
         sampled=np.zeros(rec.POINTS),
         largest=np.zeros(len(model.kin)),
         sample=np.zeros((rec.POINTS, len(model.kin))),

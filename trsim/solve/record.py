@@ -151,6 +151,7 @@ class Record(Packed):
     clock: A1
     count: I1
     peak: A2  # (n_c, N_PEAK) extremes of channels and magnitudes
+    book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
     sample: A2  # (POINTS, n_c) their last values
     sampled: A1  # (POINTS) when those were taken
     largest: A1  # (n_c) size of the channels of one unit, see `kin` of the scene

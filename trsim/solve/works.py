@@ -9,8 +9,9 @@ made, and a step is as good as the worse of the two.
     unit of a work = tolerance times the largest energy exchanged so far, this step included
     exchanged      = the largest of |works| and of the ranges of kinetic and stored energies
 
-Nothing is asked for below the rounding of the energies themselves, nor of steps so short that
-the works in them are none: a load that jumps does so at one point of time.
+Energies are those at the ends of steps: their peaks inside depend on the rows asked for, and steps
+must not.  Nothing is asked for below the rounding of the energies themselves, nor of steps so short
+that the works in them are none: a load that jumps does so at one point of time.
 """
 
 from trsim.elements.contract import N_BOOK
@@ -19,8 +20,6 @@ from trsim.elements.vectors import copy_to, internal
 from trsim.solve.record import (
     EXCHANGED,
     LARGEST_ENERGY,
-    PEAK_MAX,
-    PEAK_MIN,
     T_END,
     TOLERANCE,
     WORK_ERROR,
@@ -63,8 +62,10 @@ def exchanged(s, r, b):
     """Take an accepted step into what has been exchanged, and its error into the sum."""
     r.clock[WORK_ERROR] += r.clock[WORK_TRIAL]
     first, most = s.column_energy, r.clock[EXCHANGED]
-    for c in range(first, first + 1 + N_STORED):
-        most = max(most, r.peak[c, PEAK_MAX] - r.peak[c, PEAK_MIN])
+    for k in range(r.book.shape[0]):
+        energy = b.out[first + k]
+        r.book[k, 0], r.book[k, 1] = min(r.book[k, 0], energy), max(r.book[k, 1], energy)
+        most = max(most, r.book[k, 1] - r.book[k, 0])
     for c in range(first + 1 + N_STORED, s.n_out - 1):
         most = max(most, abs(b.out[c]))
     r.clock[EXCHANGED] = most
