@@ -225,13 +225,16 @@ def test_a_start_beyond_the_stall_force_is_refused():
 RELEASED = """
 sensors: {{x: {{joint: slide}}}}
 events: {{off: {{when: t, value: 0.3, do: {{release: [jack]}}}},
-          on: {{when: t, value: 0.5, do: {{set: {{jack: {{velocity: 0.02}}}}}}}}}}
+          on: {{when: t, value: 0.5, do: {{set: {{jack: {{{motion}}}}}}}}}}}
 """
 
 
-def test_a_supply_is_booked_when_its_actuator_lets_go_and_takes_hold():
-    keys = f"velocity: 0.02, stiffness: 1e5, damping: 50, {SUPPLY}"
-    there = run(PRESS.format(keys, 1) + RELEASED.format())
+@pytest.mark.parametrize(("motion", "after"), [
+    ("velocity: 0.02", "velocity: 0.02"), ("position: 0.02*t", "position: 0.02*t"),
+])  # fmt: skip
+def test_a_supply_is_booked_when_its_actuator_lets_go_and_takes_hold(motion, after):
+    keys = f"{motion}, stiffness: 1e5, damping: 50, {SUPPLY}"
+    there = run(PRESS.format(keys, 1) + RELEASED.format(motion=after))
     assert np.abs(there["energy.residual"]).max() < 1e-7
     k = np.flatnonzero(there.t >= 0.5)[1]
     assert abs(there["jack.force"][k]) < 50.0  # no shock: the piston is where its end is

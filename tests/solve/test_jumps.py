@@ -198,6 +198,20 @@ def test_a_piston_keeps_its_speed_where_its_supply_jumps():
     assert abs(r["energy.work.events"][-1]) < 1e-9
 
 
+@pytest.mark.parametrize(("motion", "after"), [
+    ("velocity: 0.1", "velocity: 0.3"), ('position: "0.1*t"', 'position: "0.05 + 0.3*t"'),
+])  # fmt: skip
+def test_a_piston_keeps_its_speed_where_an_event_sets_its_drive(motion, after):
+    """The same motion as that whose velocity jumps by itself."""
+    text = SUPPLIED.replace('velocity: "0.1 + 0.2*(t > 0.5)"', motion)
+    r = run(f"{text}events: {{on: {{when: t, value: 0.5, do: {{set: {{line: {{{after}}}}}}}}}}}\n")
+    same = run(SUPPLIED)
+    assert energy_error(r) < 1e-8
+    assert r["energy.work.events"][-1] == pytest.approx(0.0, abs=1e-9)
+    assert r["line.piston"] == pytest.approx(same["line.piston"], abs=1e-9)
+    assert r["line.force"] == pytest.approx(same["line.force"], abs=1e-4)
+
+
 def test_a_rigid_actuator_whose_stroke_jumps_is_refused():
     text = SUPPLIED.replace('velocity: "0.1 + 0.2*(t > 0.5)", stiffness: 1e5, damping: 100,',
                             'position: "0.1*(t > 0.5)"}')  # fmt: skip

@@ -134,7 +134,8 @@ def instance_of(mechanism: Any, section: str, name: str) -> tuple[int, Any]:
 def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before: int) -> None:
     """Begin the motion of drive switch n: its time is zero now, its place that of the joint.
 
-    A drive that held on goes on from the place it prescribed; `work` is the scene before.
+    A drive that held on goes on from the place it prescribed, and its piston, which has a mass, at
+    the speed it has; `work` is the scene before.
     """
     name = mechanism.stages.switches.names[n][1]
     e, instance = instance_of(mechanism, "drives", name)
@@ -143,22 +144,33 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
     if new >= 0:
         if before == LOOSE:
             r.y[first + new] = work.S[instance.row.con[ENTRY], 0]
-            take_along(work, model, r, e, instance)
         elif old < 0:
             prescribed = np.zeros(3)
             rates_at(work.tab, int(work.con[e, MOTION]), t - float(r.mem[e, SINCE]), prescribed)
             r.y[first + new] = prescribed[0]
+    if piston_of(instance) >= 0:
+        slip = int(model.con[e, SLIP])
+        if before == LOOSE:
+            take_along(work, model, r, e, instance)
+        else:
+            r.y[first + slip] += prescribed_rate(work, e, t - float(r.mem[e, SINCE]))
+        r.y[first + slip] -= prescribed_rate(model, e, 0.0)
     r.mem[e, SINCE] = t
 
 
 def take_along(work: Scene, model: Any, r: Record, e: int, instance: Any) -> None:
-    """The piston of an actuator that takes hold again is where its end is, and as fast."""
-    if piston_of(instance) < 0:
-        return
-    entry, first, prescribed = instance.row.con[ENTRY], work.n_q + work.n_v, np.zeros(3)
-    rates_at(model.tab, int(model.con[e, MOTION]), 0.0, prescribed)
+    """The piston of an actuator that takes hold again is where its end is, and as fast: its speed,
+    not yet less that of the motion."""
+    entry, first = instance.row.con[ENTRY], work.n_q + work.n_v
     r.y[first + model.con[e, PLACE]] = work.S[entry, 0]
-    r.y[first + model.con[e, SLIP]] = work.S[entry, 1] - prescribed[0]
+    r.y[first + model.con[e, SLIP]] = work.S[entry, 1]
+
+
+def prescribed_rate(model: Any, e: int, since: float) -> float:
+    """Of the motion drive e follows, that long after its begin."""
+    prescribed = np.zeros(3)
+    rates_at(model.tab, int(model.con[e, MOTION]), since, prescribed)
+    return float(prescribed[0 if model.con[e, STATE] >= 0 else 1])
 
 
 def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64]) -> None:
