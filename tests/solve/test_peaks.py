@@ -236,3 +236,42 @@ def test_rows_at_the_ends_of_fixed_steps():
     r = run(PENDULUM.format(solver="method: rk4, step: 10 ms", tolerance=1e-6, every=0.01))
     energy = r["energy.kinetic"] + r["energy.stored.gravity"]
     assert np.abs(energy - energy[0]).max() < 1e-5
+
+
+@pytest.mark.parametrize("before", [0.05, 0.15, 0.3])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
+def test_an_extreme_next_to_an_event(tolerance, before):
+    """In the first step behind an event nothing is known but its two ends."""
+    w, zeta = 10.0, 0.05
+    damped = w * sqrt(1 - zeta * zeta)
+    r = run(f"""
+bodies: {{mass: {{mass: 1, inertia: 1, velocity: [1, 0]}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, mass], axis: [1, 0, 0]}}}}
+sensors: {{x: {{joint: slide}}}}
+forces: {{spring: {{type: spring_damper, bodies: [ground, mass], points: [[-1, 0], [0, 0]],
+          stiffness: 100, damping: 1}}}}
+events: {{mark: {{when: t, value: {(pi / 2 - before) / w!r}, do: {{record: true}}}}}}
+solver: {{end: 3, tolerance: {tolerance}}}
+output: {{every: 1.5}}
+""")
+    t = np.arctan2(damped, zeta * w) / damped
+    most = np.exp(-zeta * w * t) * np.sin(damped * t) / damped
+    assert extremes(r, "x")[0] == pytest.approx(most, rel=max(tolerance, 1e-7))
+
+
+@pytest.mark.parametrize(("frequency", "tolerance"), [(90, 1e-4), (110, 1e-4), (400, 1e-4),
+                                                      (200, 1e-3), (300, 1e-3)])  # fmt: skip
+def test_no_extreme_is_beyond_what_there_is(frequency, tolerance):
+    """Sampled a few times in a period, the last term of a polynomial passes zero by chance."""
+    r = run(f"""
+bodies: {{mass: {{mass: 1, inertia: 1}}}}
+joints: {{slide: {{type: prismatic, bodies: [ground, mass], axis: [1, 0, 0]}}}}
+forces:
+  spring: {{type: spring_damper, bodies: [ground, mass], points: [[-1, 0], [0, 0]], stiffness: 100}}
+  shaker: {{type: applied_load, body: mass, direction: [1, 0],
+           force: "0.5*sin(2*pi*{frequency}*t + 0.3)"}}
+solver: {{end: 1, tolerance: {tolerance}}}
+output: {{every: 10 ms}}
+""")
+    most, _, least, _ = extremes(r, "shaker.magnitude")
+    assert max(most, -least) <= 0.5 * (1 + 10 * tolerance)

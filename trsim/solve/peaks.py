@@ -36,6 +36,8 @@ SHARE = 0.3  # of the tolerance, times the range of a channel: what may be misse
 HALF, EASY, PROPORTION = 0.5, 1e-2, 7.0 / 8.0  # from the tolerance of a step to that
 SURE = 0.2  # of that: a polynomial that doubts no more is believed
 ROUNDING = 1e-12  # of the largest channel of its unit: less is no extreme
+BEFORE = 10.0  # times that: the same of the term before the last
+YOUNG = 2  # samples since an event: with fewer the middle between two is looked at in any case
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
 DOUBT = 0.25  # of the last term of a polynomial: its error
@@ -70,9 +72,13 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
             grow(s, r, c, now[c])
     if apart and known > 0:
         b.found[0], share, told = 0.0, -1.0, False
+        if known < YOUNG:
+            built = look(s, r, b, method, t, h, 0.5 * (r.sampled[head] + at), projected, built)
         for c in range(now.size):
             v, v0, most, least = now[c], last[c], r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN]
             bend = abs(v - v0) + abs(v0 - older[c])
+            if known < YOUNG:
+                bend += abs(v - b.inside[0, c]) + abs(b.inside[0, c] - v0)
             high, low = max(v, v0) + bend > most, min(v, v0) - bend < least
             if not (high or low) or s.kin[c] < 0:
                 continue
@@ -210,21 +216,36 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
         if not promised > best + enough or known_place(b, start, at, place):
             break
         said = polynomial(b.node[0], b.node[2], n, place, 0.0)
-        if n == POINTS and promised - said < SURE * enough:
+        if n == POINTS and promised - said < SURE * enough and settled(b, place, enough):
             extreme(p, place, sign * said)
             break
-        k = int(b.found[0])
-        if k + 1 >= b.found.size:
+        if int(b.found[0]) + 1 >= b.found.size:
             break
-        if built == 0:
-            build(s, r, b, method[DENSE_AT], t, h)
-            built = 1
-        measure_inside(s, r, b, method[INTERPOLATE_AT], place, (place - t) / h, projected)
-        lengths(s, b.inside[k], s.out)
-        b.found[0], b.found[1 + k] = k + 1.0, place
-        for o in range(now.size):
-            extreme(r.peak[o], place, b.inside[k, o])
+        built = look(s, r, b, method, t, h, place, projected, built)
     return built
+
+
+@internal
+def look(s, r, b, method, t, h, place, projected, built):
+    """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
+    if built == 0:
+        build(s, r, b, method[DENSE_AT], t, h)
+    k = int(b.found[0])
+    measure_inside(s, r, b, method[INTERPOLATE_AT], place, (place - t) / h, projected)
+    lengths(s, b.inside[k], s.out)
+    b.found[0], b.found[1 + k] = k + 1.0, place
+    for o in range(r.sample.shape[1]):
+        extreme(r.peak[o], place, b.inside[k, o])
+    return 1
+
+
+@internal
+def settled(b, place, enough):
+    """Whether the last but one term of the polynomial is small too: of a channel that swings faster
+    than it is sampled the last one passes zero by chance."""
+    with_it = polynomial(b.node[0], b.node[2], POINTS - 1, place, 0.0)
+    without = polynomial(b.node[0], b.node[2], POINTS - 2, place, 0.0)
+    return DOUBT * abs(with_it - without) < BEFORE * SURE * enough
 
 
 @internal
