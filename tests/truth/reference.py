@@ -166,6 +166,8 @@ class Builder:
             values = [p[1], p[2]]
         elif fn.kind == "tent":
             values = [p[1] - p[2], p[1], p[1] + p[2]]
+        elif fn.kind == "bell":  # smooth, but nothing to a step that begins and ends beside it
+            values = [p[1] + k * p[2] for k in (-6.0, -2.0, 0.0, 2.0, 6.0)]
         elif fn.kind == "area":
             p[3] = 1.0
         elif fn.kind == "pulses":
