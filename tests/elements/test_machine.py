@@ -15,7 +15,7 @@ from trsim.elements import fingerprint, machine
 from trsim.elements.contract import compiled
 from trsim.elements.machine import Compiled, folder
 from trsim.elements.packed import Packed
-from trsim.elements.signatures import A1, A2, Kind, f8, float64, i8, int64, void
+from trsim.elements.signatures import A1, A2, T3, Kind, f8, float64, i8, int64, void
 from trsim.elements.vectors import internal
 from trsim.laws import law
 
@@ -202,6 +202,23 @@ def test_the_key_follows_the_fields_of_records():
         One(a=np.zeros(2))
     with pytest.raises(TypeError, match="dimensions"):
         One(a=np.zeros((2, 2)), n=1)
+
+
+def test_tables_are_as_wide_as_code_takes_them_to_be():
+    class Table(Packed):
+        a: T3
+
+    @compiled(float64(Table.kind))
+    def corner(table):
+        return table.a[1, 2]
+
+    values = np.arange(6.0).reshape(2, 3)
+    assert corner(Table(a=values)) == 5.0
+    assert corner(Table(None, {"a": (2, 3)})) == 0.0
+    with pytest.raises(TypeError, match="2 columns instead of 3"):
+        Table(a=np.zeros((3, 2)))
+    with pytest.raises(TypeError, match="2 columns instead of 3"):
+        Table(None, {"a": (3, 2)})
 
 
 def test_no_index_counts_from_the_end():

@@ -114,6 +114,7 @@ class PackedType(types.Type):
 
     def __init__(self, kind: Kind) -> None:
         self.fields = tuple((field, numba_type(inner)) for field, inner in kind.fields)
+        self.columns = tuple(inner.columns for _, inner in kind.fields)
         self.index = {field: k for k, (field, _) in enumerate(self.fields)}
         listed = ",".join(f"{field}:{inner.name}" for field, inner in kind.fields)
         digest = hashlib.sha256(listed.encode()).hexdigest()[:8]  # it stands in every symbol
@@ -141,7 +142,7 @@ class PackedAttribute(AttributeTemplate):
 @lower_getattr_generic(PackedType)
 def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
     place = typ.index[attr]
-    kind = typ.fields[place][1]
+    kind, columns = typ.fields[place][1], typ.columns[place]
     word_type = ir.IntType(64)
     base = builder.inttoptr(value, ir.PointerType(word_type))
 
@@ -155,6 +156,8 @@ def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str)
         return builder.bitcast(word(0), ir.DoubleType()) if kind == types.float64 else word(0)
     array = context.make_array(kind)(context, builder)
     shape = [word(1 + k) for k in range(kind.ndim)]
+    if columns:
+        shape[1] = ir.Constant(word_type, columns)
     size = ir.Constant(word_type, 8)
     strides = [size] if kind.ndim == 1 else [builder.mul(shape[1], size), size]
     populate_array(

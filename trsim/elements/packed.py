@@ -26,19 +26,27 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     i8 = int
     A1 = NDArray[np.float64]
     A2 = NDArray[np.float64]
+    T2 = NDArray[np.float64]
+    T3 = NDArray[np.float64]
+    T6 = NDArray[np.float64]
+    T9 = NDArray[np.float64]
+    T12 = NDArray[np.float64]
     I1 = NDArray[np.int64]
     I2 = NDArray[np.int64]
 else:  # and to compiled code
-    from trsim.elements.signatures import A1, A2, I1, I2, f8, i8
+    from trsim.elements.signatures import A1, A2, I1, I2, T2, T3, T6, T9, T12, f8, i8
 
-__all__ = ["A1", "A2", "I1", "I2", "WORDS", "Packed", "f8", "i8"]
+__all__ = [
+    "A1", "A2", "I1", "I2", "T2", "T3", "T6", "T9", "T12", "WORDS", "Packed", "f8", "i8",
+]  # fmt: skip
 
 WORDS = 3  # per field
 LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
 
 
 class Packed:
-    """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, f8 or i8."""
+    """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, f8 or i8, or
+    with T2 to T12, tables of so many columns."""
 
     kind: Kind  # what signatures call it
     places: dict[str, int]  # of a field among the fields
@@ -88,6 +96,7 @@ class Packed:
         start = piece.ctypes.data
         for (name, shape), size, begin in zip(room.items(), sizes, ends, strict=False):
             vars(self)[name] = piece[begin : begin + size].reshape(shape)
+            self._check(name, shape)
             word = WORDS * self.places[name]
             words[word : word + 1 + len(shape)] = (start + piece.itemsize * begin, *shape)
 
@@ -99,14 +108,21 @@ class Packed:
         if kind.dimensions:
             if not _fits(value, kind):
                 value = np.require(value, kind.dtype, ["C", "W"])
-            if value.ndim != kind.dimensions:
-                raise TypeError(f"{name}: {value.ndim} dimensions instead of {kind.dimensions}")
+            self._check(name, value.shape)
             words[word : word + 1 + value.ndim] = (value.ctypes.data, *value.shape)
         elif kind.dtype == "float64":
             words[word] = int(np.float64(value).view(np.int64))
         else:
             words[word] = value
         vars(self)[name] = value
+
+    def _check(self, name: str, shape: tuple[int, ...]) -> None:
+        """Raise TypeError where an array is not as compiled code takes it to be."""
+        kind = self.kind.fields[self.places[name]][1]
+        if len(shape) != kind.dimensions:
+            raise TypeError(f"{name}: {len(shape)} dimensions instead of {kind.dimensions}")
+        if kind.columns and shape[1] != kind.columns:
+            raise TypeError(f"{name}: {shape[1]} columns instead of {kind.columns}")
 
     def arrays(self) -> dict[str, Any]:
         """The arrays by name."""

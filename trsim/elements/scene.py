@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from trsim.elements.packed import A1, A2, I1, I2, Packed, f8, i8
+from trsim.elements.packed import A1, A2, I1, I2, T2, T3, T6, T9, T12, Packed, f8, i8
 
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
@@ -44,10 +44,10 @@ class Model(Packed):
     size: f8  # m, the mechanism's
     reach: f8  # m, the largest arm of a body
     mass: A1  # (n)
-    inertia: A2  # (n, 9) body axes
+    inertia: T9  # (n, 9) body axes
     mass_inverse: A1  # (n) 0 for the ground
-    inertia_inverse: A2  # (n, 9) body axes; planar: [8] is 1 / Izz
-    axes: A2  # (n, 9) rotation of a node of a beam as drawn, row by row
+    inertia_inverse: T9  # (n, 9) body axes; planar: [8] is 1 / Izz
+    axes: T9  # (n, 9) rotation of a node of a beam as drawn, row by row
     depth: A1  # (n) z of the centre of mass in a planar scene, m
     on_beams: I1  # addresses of what the equations ask of beams; 0 without  on_beams.py
     beam: I2  # (n_beams, 4) first frame, nodes, first row of band, first element  beams.py
@@ -127,25 +127,25 @@ class Scene(Model):
     element: A2  # (7, 12) coordinates, rates and forces of one element of a beam; room
     tangent: A2  # (12 n_elements, 12) its stiffness against places and slopes
     viscous: A2  # (12 n_elements, 12) its damping against their rates
-    G: A2  # (n, 6) slope of a node, and its rate; world axes
-    Q: A2  # (n, 3) elastic force along the slope of a node, N*m
-    X: A2  # (n, 12) position of the centre of mass, rotation matrix row by row
-    V: A2  # (n, 6) velocity, angular velocity, world axes
-    A: A2  # (n, 6) their rates
-    S: A2  # (n_s, 2) joint coordinates and sensors: value and rate
+    G: T6  # (n, 6) slope of a node, and its rate; world axes
+    Q: T3  # (n, 3) elastic force along the slope of a node, N*m
+    X: T12  # (n, 12) position of the centre of mass, rotation matrix row by row
+    V: T6  # (n, 6) velocity, angular velocity, world axes
+    A: T6  # (n, 6) their rates
+    S: T2  # (n_s, 2) joint coordinates and sensors: value and rate
     branch: A1  # (n_s) value at the last accepted point: which turn an angle is on
     z: A1  # (n_z) quadratures and element states
     zd: A1  # (n_z) their rates
     mem: A2  # (N, n_mem) what elements remember; part of the record of a run
-    F: A2  # (n, 6) force, moment about the centre of mass, world axes
+    F: T6  # (n, 6) force, moment about the centre of mass, world axes
     # of the m rows of the solve, then of the redundant ones, which are only looked at
     phi: A1  # (m+n_d)
     phi_t: A1  # (m+n_d)
-    J: A2  # (m+n_d, 12) against the twists of frames i and j
+    J: T12  # (m+n_d, 12) against the twists of frames i and j
     gamma: A1  # (m+n_d)
     lam: A1  # (m+n_d) multipliers; 0 of the redundant
-    B: A2  # (slots, 6) rows of J in the axes of the solve
-    W: A2  # (slots, 6) M^-1 B^T
+    B: T6  # (slots, 6) rows of J in the axes of the solve
+    W: T6  # (slots, 6) M^-1 B^T
     value: A1  # (places) S = J M^-1 J^T, then its factors
     original: A1  # (places) S
     first: A1  # (n_x) its diagonal, in elimination order
@@ -154,10 +154,10 @@ class Scene(Model):
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
     aside: A2  # (7, n_y or n_v+m) states and accelerations beside this one   beside.py
-    moved: A2  # (n, 6) what multipliers do to the bodies, axes of the solve
-    free: A2  # (n, 6) accelerations without constraints, axes of the solve
-    gap: A2  # (N, 2) penetration and its rate
-    corner: A2  # (N, 2) how far an element has left its branch, and the branch it goes to
+    moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
+    free: T6  # (n, 6) accelerations without constraints, axes of the solve
+    gap: T2  # (N, 2) penetration and its rate
+    corner: T2  # (N, 2) how far an element has left its branch, and the branch it goes to
     left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
     out: A1  # (n_out) one output row
