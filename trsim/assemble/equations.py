@@ -50,8 +50,6 @@ def derivative(s, t, y, yd):
         constraints(s, t)
         rows(s)
         factorise(s)
-        for k in range(s.m):
-            s.lam[k] = 0.0
         power = 0.0
         for again in range(2):
             right_hand_side(s, s.stabilisation == BAUMGARTE)
@@ -60,7 +58,7 @@ def derivative(s, t, y, yd):
                 s.status[3] += 1
                 s.x[0] = nan
             for k in range(s.m):  # what follows in x is the motion of hubs
-                s.lam[k] += s.x[k]
+                s.lam[k] = s.x[k] if again == 0 else s.lam[k] + s.x[k]
                 # a moving constraint is a drive: the power it gives to the mechanism
                 power += s.x[k] * s.phi_t[k]
             if again == 1 or s.status[0] != POOR or s.unequal == 0 or s.n_r < s.n:
@@ -264,7 +262,7 @@ def accelerations(s, y, yd):
             for c in range(3):
                 yd[q + c] = y[v + c]
                 yd[v + c] = a[f, c]
-            in_world(s, f)
+            s.A[f, 0], s.A[f, 1], s.A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
         return
     for f in range(1, s.n_r):
         pull(s, f, s.x)

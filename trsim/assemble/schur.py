@@ -170,6 +170,14 @@ def pull(s, f, x):
     """free -= M^-1 J^T x of one rigid body, in the axes of the solve."""
     W, a = s.W, s.free
     a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
+    if s.d == 3:
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            x_k = x[s.slot_row[p]]
+            a0 -= W[p, 0] * x_k
+            a1 -= W[p, 1] * x_k
+            a2 -= W[p, 2] * x_k
+        a[f, 0], a[f, 1], a[f, 2] = a0, a1, a2
+        return
     a3, a4, a5 = a[f, 3], a[f, 4], a[f, 5]
     for p in range(s.frame_start[f], s.frame_start[f + 1]):
         x_k = x[s.slot_row[p]]

@@ -111,13 +111,15 @@ def separation(X, i, p_i, j, p_j):
 @helper
 def _fill(J, k, sign, f, p):
     """Row k, columns of one frame: the force direction f at the arm p, times sign."""
+    _put(J, k, sign, f, cross(p, f))
+
+
+@helper
+def _put(J, k, sign, f, m):
+    """Row k, columns of one frame: the force f and the moment m, times sign."""
     o = 6 if sign > 0.0 else 0
-    J[k, o] = sign * f[0]
-    J[k, o + 1] = sign * f[1]
-    J[k, o + 2] = sign * f[2]
-    J[k, o + 3] = sign * (p[1] * f[2] - p[2] * f[1])
-    J[k, o + 4] = sign * (p[2] * f[0] - p[0] * f[2])
-    J[k, o + 5] = sign * (p[0] * f[1] - p[1] * f[0])
+    J[k, o], J[k, o + 1], J[k, o + 2] = sign * f[0], sign * f[1], sign * f[2]
+    J[k, o + 3], J[k, o + 4], J[k, o + 5] = sign * m[0], sign * m[1], sign * m[2]
 
 
 @helper
@@ -129,16 +131,16 @@ def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
     c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
     if kx >= 0:
         phi[kx], phi_t[kx], gamma[kx] = d[0], 0.0, c_i[0] - c_j[0]
-        _fill(J, kx, -1.0, (1.0, 0.0, 0.0), p_i)
-        _fill(J, kx, 1.0, (1.0, 0.0, 0.0), p_j)
+        _put(J, kx, -1.0, (1.0, 0.0, 0.0), (0.0, p_i[2], -p_i[1]))
+        _put(J, kx, 1.0, (1.0, 0.0, 0.0), (0.0, p_j[2], -p_j[1]))
     if ky >= 0:
         phi[ky], phi_t[ky], gamma[ky] = d[1], 0.0, c_i[1] - c_j[1]
-        _fill(J, ky, -1.0, (0.0, 1.0, 0.0), p_i)
-        _fill(J, ky, 1.0, (0.0, 1.0, 0.0), p_j)
+        _put(J, ky, -1.0, (0.0, 1.0, 0.0), (-p_i[2], 0.0, p_i[0]))
+        _put(J, ky, 1.0, (0.0, 1.0, 0.0), (-p_j[2], 0.0, p_j[0]))
     if kz >= 0:
         phi[kz], phi_t[kz], gamma[kz] = d[2], 0.0, c_i[2] - c_j[2]
-        _fill(J, kz, -1.0, (0.0, 0.0, 1.0), p_i)
-        _fill(J, kz, 1.0, (0.0, 0.0, 1.0), p_j)
+        _put(J, kz, -1.0, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0))
+        _put(J, kz, 1.0, (0.0, 0.0, 1.0), (p_j[1], -p_j[0], 0.0))
 
 
 @helper
