@@ -9,6 +9,7 @@ What numba does for every function and ours do not need is left out:
 * where each variable dies.  Only what is counted is released there.
 * the question, at every look into an array, whether the index is negative.  Ours never are.
 * copies of loops whose length is not known: ours are short, and the copies never run.
+* calls of the C library in place of loops that clear or copy: a call takes longer than they do.
 * the overloads of an operator, tried one after the other, for types they were tried for before.
 
 What is compiled is the same program: without `fastmath` no optimisation changes a number.
@@ -47,7 +48,10 @@ from numba.core.untyped_passes import (
 )
 from numba.np import arrayobj
 
-llvm.set_option("trsim", "-unroll-runtime=false")  # the only way to say it, for all of the process
+# the only way to say it, for all of the process
+llvm.set_option("trsim", "-unroll-runtime=false")
+llvm.set_option("trsim", "-disable-loop-idiom-memset")
+llvm.set_option("trsim", "-disable-loop-idiom-memcpy")
 
 
 class Library(JITCodeLibrary):
