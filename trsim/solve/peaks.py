@@ -212,6 +212,9 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
     for _ in range(TRIES):
         best = p[PEAK_MAX] if sign > 0.0 else -p[PEAK_MIN]
         n = nodes(r, b, at, now, c, sign)
+        differences(b.node, n)
+        if not highest(b.node, n) > best + enough:
+            break
         place, promised = top(b.node, n, start, at)
         if not promised > best + enough or known_place(b, start, at, place):
             break
@@ -285,17 +288,41 @@ def nodes(r, b, at, now, c, sign):
 
 
 @internal
-def top(node, n, start, end):
-    """Where the polynomial through n nodes may be largest between two times, and how large.
-
-    Newton's form; the last term, which another node changed, counts as its error.  Uses node[2].
-    """
+def differences(node, n):
+    """Newton's form of the polynomial through n nodes, into node[2]."""
     times, slope = node[0], node[2]
     for i in range(n):
         slope[i] = node[1, i]
     for j in range(1, n):
         for i in range(n - 1, j - 1, -1):
             slope[i] = (slope[i] - slope[i - 1]) / (times[i] - times[i - j])
+
+
+@internal
+def highest(node, n):
+    """What the polynomial does not exceed between its first two nodes, with what `top` adds.
+
+    Between them |(x - t0) (x - t1)| is a quarter of the square of their distance at most, and x is
+    no further from another node than the further one of them is.
+    """
+    times, slope = node[0], node[2]
+    most, h = max(node[1, 0], node[1, 1]), times[0] - times[1]
+    if n == 2:
+        return most + DOUBT * abs(slope[1]) * h
+    term = 0.25 * h * h
+    for i in range(2, n):
+        most += (1.0 + (DOUBT if i == n - 1 else 0.0)) * abs(slope[i]) * term
+        term *= max(abs(times[0] - times[i]), abs(times[1] - times[i]))
+    return most
+
+
+@internal
+def top(node, n, start, end):
+    """Where the polynomial of `differences` may be largest between two times, and how large.
+
+    The last term, which another node changed, counts as its error.
+    """
+    times, slope = node[0], node[2]
     place, best, low, high = start, -1e300, start, end
     for _ in range(ROUNDS):
         width = (high - low) / PARTS
