@@ -80,6 +80,13 @@ def centripetal(V, i, p):
 
 
 @helper
+def inward(V, i, p):
+    """The same where nothing leaves the plane."""
+    o2 = V[i, 5] * V[i, 5]
+    return (-p[0] * o2, -p[1] * o2, 0.0)
+
+
+@helper
 def push(F, i, p, f):
     """Apply the force f to body i at the end of the arm p."""
     F[i, 0] += f[0]
@@ -128,7 +135,10 @@ def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
     X, V = scene.X, scene.V
     phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
     d = separation(X, i, p_i, j, p_j)
-    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
+    if scene.d == 3:
+        c_i, c_j = inward(V, i, p_i), inward(V, j, p_j)
+    else:
+        c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
     if kx >= 0:
         phi[kx], phi_t[kx], gamma[kx] = d[0], 0.0, c_i[0] - c_j[0]
         _put(J, kx, -1.0, (1.0, 0.0, 0.0), (0.0, p_i[2], -p_i[1]))
@@ -151,17 +161,28 @@ def along_row(scene, i, p_i, u, j, p_j, k):
     X, V = scene.X, scene.V
     phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
     d = separation(X, i, p_i, j, p_j)
+    # the direction turns with body i, so its lever on i reaches to the point on j
+    reach = (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2])
+    _fill(J, k, -1.0, u, reach)
+    _fill(J, k, 1.0, u, p_j)
+    phi_t[k] = 0.0
+    if scene.d == 3:
+        o_i, o_j = V[i, 5], V[j, 5]
+        v_x = V[j, 0] - o_j * p_j[1] - (V[i, 0] - o_i * p_i[1])
+        v_y = V[j, 1] + o_j * p_j[0] - (V[i, 1] + o_i * p_i[0])
+        c_i, c_j, u_c = inward(V, i, p_i), inward(V, j, p_j), inward(V, i, u)
+        phi[k] = u[0] * d[0] + u[1] * d[1]
+        gamma[k] = (
+            u[0] * c_i[0] + u[1] * c_i[1] - (u[0] * c_j[0] + u[1] * c_j[1])
+            - 2.0 * (o_i * u[0] * v_y - o_i * u[1] * v_x) - (u_c[0] * d[0] + u_c[1] * d[1])
+        )  # fmt: skip
+        return
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
     u_dot = cross(spin(V, i), u)
     c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
     phi[k] = dot(u, d)
-    phi_t[k] = 0.0
     gamma[k] = dot(u, c_i) - dot(u, c_j) - 2.0 * dot(u_dot, d_dot) - dot(centripetal(V, i, u), d)
-    # the direction turns with body i, so its lever on i reaches to the point on j
-    reach = (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2])
-    _fill(J, k, -1.0, u, reach)
-    _fill(J, k, 1.0, u, p_j)
 
 
 @helper
