@@ -75,12 +75,14 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
         if known < YOUNG:
             built = look(s, r, b, method, t, h, 0.5 * (r.sampled[head] + at), projected, built)
         for c in range(now.size):
+            if s.kin[c] < 0:
+                continue
             v, v0, most, least = now[c], last[c], r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN]
             bend = abs(v - v0) + abs(v0 - older[c])
             if known < YOUNG:
                 bend += abs(v - b.inside[0, c]) + abs(b.inside[0, c] - v0)
             high, low = max(v, v0) + bend > most, min(v, v0) - bend < least
-            if not (high or low) or s.kin[c] < 0:
+            if not (high or low):
                 continue
             if share < 0.0:
                 share = missed(setting)
