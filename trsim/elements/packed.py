@@ -31,13 +31,14 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     T6 = NDArray[np.float64]
     T9 = NDArray[np.float64]
     T12 = NDArray[np.float64]
+    T14 = NDArray[np.float64]
     I1 = NDArray[np.int64]
     I2 = NDArray[np.int64]
 else:  # and to compiled code
-    from trsim.elements.signatures import A1, A2, I1, I2, T2, T3, T6, T9, T12, f8, i8
+    from trsim.elements.signatures import A1, A2, I1, I2, T2, T3, T6, T9, T12, T14, f8, i8
 
 __all__ = [
-    "A1", "A2", "I1", "I2", "T2", "T3", "T6", "T9", "T12", "WORDS", "Packed", "f8", "i8",
+    "A1", "A2", "I1", "I2", "T2", "T3", "T6", "T9", "T12", "T14", "WORDS", "Packed", "f8", "i8",
 ]  # fmt: skip
 
 WORDS = 3  # per field
@@ -46,7 +47,7 @@ LINE = 8  # words: where one array ends and the next begins, there is a new line
 
 class Packed:
     """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, f8 or i8, or
-    with T2 to T12, tables of so many columns."""
+    with T2 to T14, tables of so many columns."""
 
     kind: Kind  # what signatures call it
     places: dict[str, int]  # of a field among the fields

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trsim.elements.packed import A1, A2, I1, I2, Packed
+from trsim.elements.packed import A1, A2, I1, I2, T14, Packed
 from trsim.elements.scene import Model
 
 # clock: floating-point state of the march
@@ -212,7 +212,7 @@ class Buffers(Packed):
     branch1: A1
     turning1: A1
     net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
-    curve: A2  # (14, 9) those of two frames on a part of it
+    curve: T14  # (9, 14) those of two frames on a part of it
     seen: A2  # (n_s, 4) ranges of sensors and of their rates, where they meet corners
     shown: A2  # (n_sensed, 2) what they show at both ends of a part of a step
     box: A2  # (slots, 4) ranges of the parts of a function
@@ -259,7 +259,7 @@ def fresh_buffers(
         box=np.zeros((model.slots, 4)),
         before=np.zeros(len(model.held)),
         met=np.zeros((len(model.feature), 3)),
-        curve=np.zeros((14, 9)),
+        curve=np.zeros((9, 14)),
     )
 
 

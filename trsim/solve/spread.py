@@ -38,7 +38,7 @@ from trsim.solve.calls import (
 from trsim.solve.record import DEGREE
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
-FRAME = 7  # rows of b.curve for one frame
+FRAME = 7  # columns of b.curve for one frame
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
 
@@ -80,19 +80,19 @@ def fill_net(s, r, b, method):
 
 
 @internal
-def part(net, n, column, low, high, curve, row):
-    """Control points of one coordinate on [low, high], into curve[row].      de Casteljau"""
-    for k in range(n):
-        curve[row, k] = net[k, column]
+def cut(curve, n, low, high):
+    """From control points over the step to those on [low, high], of both frames.  de Casteljau"""
     if high < 1.0:
         for m in range(1, n):
             for k in range(n - 1, m - 1, -1):
-                curve[row, k] += (1.0 - high) * (curve[row, k - 1] - curve[row, k])
+                for c in range(2 * FRAME):
+                    curve[k, c] += (1.0 - high) * (curve[k - 1, c] - curve[k, c])
     if low > 0.0:
         at = low / high
         for m in range(1, n):
             for k in range(n - m):
-                curve[row, k] += at * (curve[row, k + 1] - curve[row, k])
+                for c in range(2 * FRAME):
+                    curve[k, c] += at * (curve[k + 1, c] - curve[k, c])
 
 
 @internal
@@ -108,18 +108,20 @@ def coordinates_of(s, f):
 
 
 @internal
-def fill_curve(s, b, n, f, low, high, first):
-    """The control points of a frame on [low, high], in rows of b.curve: places, then attitude."""
+def fill_curve(s, b, n, f, first):
+    """The control points of a frame, in columns of b.curve: places, then attitude."""
+    net, curve = b.net, b.curve
+    for k in range(n):
+        for c in range(first, first + FRAME):
+            curve[k, c] = 0.0
     if f == 0:
-        for row in range(first, first + FRAME):
-            for k in range(n):
-                b.curve[row, k] = 0.0
         return
     q, places, attitude = coordinates_of(s, f)
-    for c in range(places):
-        part(b.net, n, q + c, low, high, b.curve, first + c)
-    for c in range(attitude):
-        part(b.net, n, q + places + c, low, high, b.curve, first + 3 + c)
+    for k in range(n):
+        for c in range(places):
+            curve[k, first + c] = net[k, q + c]
+        for c in range(attitude):
+            curve[k, first + 3 + c] = net[k, q + places + c]
 
 
 @internal
@@ -131,16 +133,16 @@ def turning(s, r, b, n, f, first, length):
     once, twice, off = 0.0, 0.0, 0.0
     size, curve = 0.0, b.curve
     for c in range(attitude):
-        centre = curve[first + 3 + c, n // 2] + r.y[q + places + c]
+        centre = curve[n // 2, first + 3 + c] + r.y[q + places + c]
         size += centre * centre
     for k in range(n):
         a1 = a2 = away = 0.0
-        for row in range(first + 3, first + 3 + attitude):
-            away += (curve[row, k] - curve[row, n // 2]) ** 2
+        for c in range(first + 3, first + 3 + attitude):
+            away += (curve[k, c] - curve[n // 2, c]) ** 2
             if k < n - 1:
-                a1 += (curve[row, k + 1] - curve[row, k]) ** 2
+                a1 += (curve[k + 1, c] - curve[k, c]) ** 2
             if k < n - 2:
-                a2 += (curve[row, k + 2] - 2.0 * curve[row, k + 1] + curve[row, k]) ** 2
+                a2 += (curve[k + 2, c] - 2.0 * curve[k + 1, c] + curve[k, c]) ** 2
         once, twice, off = max(once, a1), max(twice, a2), max(off, away)
     rate = (n - 1) * sqrt(once) / length
     bend = (n - 1) * (n - 2) * sqrt(twice) / length**2
@@ -163,8 +165,8 @@ def apart(b, n, length):
         square = 0.0
         for c in range(3):
             i, j = c, FRAME + c
-            bend_i = curve[i, k + 2] - 2.0 * curve[i, k + 1] + curve[i, k]
-            bend_j = curve[j, k + 2] - 2.0 * curve[j, k + 1] + curve[j, k]
+            bend_i = curve[k + 2, i] - 2.0 * curve[k + 1, i] + curve[k, i]
+            bend_j = curve[k + 2, j] - 2.0 * curve[k + 1, j] + curve[k, j]
             square += (bend_j - bend_i) ** 2
         worst = max(worst, square)
     return (n - 1) * (n - 2) * sqrt(worst) / length**2
@@ -191,12 +193,9 @@ def spread_of(s, r, b, kind, e, sign, low, high, h):
         return 1.0, 0.0
     i, j, length = s.con[e, I], s.con[e, J], (high - low) * h
     n = r.count[DEGREE] + 1
-    fill_curve(s, b, n, i, low, high, 0)
-    fill_curve(s, b, n, j, low, high, FRAME)
-    # the first place rows of a planar frame are two
-    if s.d == 3:
-        for k in range(n):
-            b.curve[2, k] = b.curve[FRAME + 2, k] = 0.0
+    fill_curve(s, b, n, i, 0)
+    fill_curve(s, b, n, j, FRAME)
+    cut(b.curve, n, low, high)
     spin_i, bend_i = turning(s, r, b, n, i, 0, length)
     spin_j, bend_j = turning(s, r, b, n, j, FRAME, length)
     return from_motion(
