@@ -9,10 +9,14 @@ import numpy as np
 import pytest
 from scipy.special import ellipk
 
+from trsim.assemble.reduce import displaced, jacobian, moves
+from trsim.elements.scene import workspace
 from trsim.errors import ModelError, ScenarioError
 from trsim.solve.bars import places
 from trsim.solve.modes import modes
+from trsim.solve.softening import Parts, tangent
 from trsim.solve.start import start
+from trsim.solve.statics import static_forces
 from trsim.spec.load import load
 
 from ..mechanisms import DATA
@@ -273,3 +277,43 @@ initial: {equilibrium: all}
     found = [mode.frequency for mode in vibrations(scenario(text, "solver.end=1"))[1][:3]]
     exact = np.arange(1, 4) / 2 * np.sqrt(100.0 / 1.001)
     assert found == pytest.approx(exact, rel=5e-4)
+
+
+HELD_AND_LOADED = """
+planar: PLANAR
+bodies:
+  bar: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, section: {diameter: 10 mm},
+        youngs_modulus: 2 MPa, density: 7850 kg/m^3, damping: 1 ms}
+  car: {type: rigid_body, mass: 1, inertia: [0.1, 0.1, 0.1], at: [1, -0.2]}
+gravity: [0, -9.81, 0]
+joints:
+  a: {type: spherical, bodies: [ground, bar], at: [0, 0]}
+  b: {type: fixed, bodies: [bar, car], at: [1, 0]}
+forces:
+  up: {type: spring_damper, bodies: [ground, car], points: [[1, 1], [1.1, 0.1]], stiffness: 300,
+       free_length: 0.5, damping: 10}
+  twist: {type: applied_load, body: bar, at: [0.5, 0], direction: [0, 0, 1], torque: 3}
+solver: {end: 1 s}
+"""
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_the_tangent_is_that_of_all_forces(planar):
+    """Against differences in which the elastic forces take part, far from equilibrium."""
+    mechanism = assemble(scenario(HELD_AND_LOADED.replace("PLANAR", planar)))
+    work = workspace(mechanism.model)
+    there = np.flatnonzero(moves(work, planar == "true"))
+    dice = np.random.default_rng(5)
+    dx, size = np.zeros(6 * (work.n - 1)), 1e-6
+    dx[there] = 0.02 * dice.normal(size=there.size)
+    y, lam = displaced(work, mechanism.y0, dx), dice.normal(size=work.m)
+    parts = Parts(mechanism, work, 0.5)
+    K = tangent(parts, y, lam)
+    for k in there:
+        ends = []
+        for sign in (1.0, -1.0):
+            near = displaced(work, y, sign * size * np.eye(dx.size)[k])
+            J = jacobian(work, 0.0, near)[2]
+            ends.append(static_forces(parts.work, near) - J.T @ lam)
+        wanted = (ends[1] - ends[0]) / (2.0 * size)
+        assert K[there, k] == pytest.approx(wanted[there], abs=1e-7 * np.abs(K).max())

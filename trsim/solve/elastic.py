@@ -32,6 +32,13 @@ def bars_alone(mechanism: Mechanism, work: Scene) -> Scene:
     return carried(work, work.replaced(force=np.array(rows, np.int64).reshape(-1, 3), par=par))
 
 
+def without_bars(work: Scene) -> Scene:
+    """The scene with no forces of bars, nor their weight, which is the same everywhere."""
+    own = work.stiffness[:, 1:].tolist()
+    rows = [row for row in work.force.tolist() if row[1:] not in own]
+    return carried(work, work.replaced(force=np.array(rows, np.int64).reshape(-1, 3)))
+
+
 def bars(mechanism: Mechanism) -> list[int]:
     """Rows of the flexible bars among the elements."""
     return [e for e, i in enumerate(mechanism.instances) if i.element.key == "ancf_cable"]
@@ -49,16 +56,19 @@ def elastic_stiffness(work: Scene, y: Array) -> Array:
     return K
 
 
-def acted_on(mechanism: Mechanism) -> NDArray[np.int64]:
+def acted_on(mechanism: Mechanism, at_rest: bool = False) -> NDArray[np.int64]:
     """World-axes rates on which more than the elastic forces of bars may depend.
 
-    All there are of rigid bodies and of nodes with a joint or a load, and of damped bars.
+    All there are of rigid bodies and of nodes with a joint or a load, and of damped bars unless
+    they are at rest.
     """
     model = mechanism.model
     frames = set[int]()
     for instance in mechanism.instances:
         if instance.section in ("joints", "drives", "sensors", "forces", "events"):
             frames |= instance.element.acts_on(instance.row)
+        elif at_rest:
+            continue
         elif instance.element.key == "ancf_cable" and instance.row.par[BETA] > 0.0:
             first, nodes = instance.row.con[:2]
             frames |= set(range(first, first + nodes))

@@ -13,16 +13,26 @@ with the tangent of the bars as it is, and of all else by differences.  A step t
 motions unstable is too long: beyond, a bar has buckled.
 """
 
+from math import prod
+
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.equations import constraints, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import displaced, jacobian, moves
+from trsim.assemble.projection import move_all
+from trsim.assemble.reduce import along_rates, displaced, in_solve_axes, jacobian, moves
 from trsim.elements.scene import Scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.angles import remember
-from trsim.solve.elastic import acted_on, bars_alone, elastic_stiffness, softened_bars
-from trsim.solve.statics import check_stable, free_motions, probe, static_forces
+from trsim.solve.elastic import acted_on, elastic_stiffness, softened_bars, without_bars
+from trsim.solve.statics import (
+    check_stable,
+    free_motions,
+    probe,
+    static_forces,
+    wrenches_at_rest,
+)
 
 Array = NDArray[np.float64]
 
@@ -32,6 +42,7 @@ ITERATIONS = 15
 CLOSE = 1e-9  # of the mechanism's size, and rad: quadratic from here, the next step is rounding
 HELD = 1e-14  # of the largest stiffness, added: what nothing holds and nothing pushes stays
 NEGLIGIBLE = 1e-12  # of the largest eigenvalue
+ORDER = 3  # of the polynomial that tells where a step begins
 SHORTEST = 1e-7  # of the way from rigid to soft
 
 
@@ -43,11 +54,10 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
     work = workspace(mechanism.model)
     lam: Array = np.zeros(work.m)
     done, ahead, allowed, failed = 0.0, FIRST, work.n_v, False
-    rate = np.zeros_like(y)  # of the way, with s
+    way = [(done, y)]
     while done < 1.0:
         to = min(1.0, done + ahead)
-        begin = y + (to - done) * rate
-        found = balanced(Parts(mechanism, work, to), begin, lam, allowed)
+        found = balanced(Parts(mechanism, work, to), drawn_on(way, to), lam, allowed)
         if isinstance(found, float):
             ahead, failed = found * (to - done), True
             if ahead < SHORTEST:
@@ -60,12 +70,29 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
                     ("initial", "equilibrium"),
                 )
             continue
-        rate = (found[0] - y) / (to - done) if done else rate
-        y, lam, allowed = found
-        done, ahead = to, 1.0 if not done else (to - done) * (1.0 if failed else 2.0)
-        failed = False
+        y, lam, allowed, turns = found
+        way = [*way[-ORDER:], (to, y)] if done else [(to, y)]
+        ahead = (to - done) * growth(turns, failed) if done else 1.0
+        done, failed = to, False
         remember(work, y)
     return y, checked(mechanism, work, y, lam)
+
+
+def drawn_on(way: list[tuple[float, Array]], s: float) -> Array:
+    """Where the polynomial through the last equilibria is at s."""
+    found = np.zeros_like(way[0][1])
+    for a, y in way:
+        found += y * prod((s - b) / (a - b) for b, _ in way if b != a)
+    return found
+
+
+def growth(turns: int, failed: bool) -> float:
+    """Of a step after one that took so many turns of Newton's method.
+
+    Where it is nearly too long, twice as long would be tried in vain each time.
+    """
+    allowed = {6: 1.5, 7: 1.2, 8: 1.0}.get(turns, 2.0 if turns < 6 else 0.7)
+    return min(allowed, 1.0) if failed else allowed
 
 
 class Parts:
@@ -73,13 +100,15 @@ class Parts:
 
     def __init__(self, mechanism: Mechanism, work: Scene, s: float) -> None:
         self.work = softened_bars(mechanism, work, s)
-        self.bars = bars_alone(mechanism, self.work)
-        self.acted = acted_on(mechanism)
+        self.others = without_bars(self.work)
+        self.acted = acted_on(mechanism, at_rest=True)
 
 
-def balanced(parts: Parts, y: Array, lam: Array, allowed: int) -> tuple[Array, Array, int] | float:
-    """y and lam in equilibrium, and how many motions are unstable there, at most `allowed`;
-    or which part of the way to try instead."""
+def balanced(
+    parts: Parts, y: Array, lam: Array, allowed: int
+) -> tuple[Array, Array, int, int] | float:
+    """y and lam in equilibrium, how many motions are unstable there, at most `allowed`, and the
+    turns it took; or which part of the way to try instead."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
@@ -106,7 +135,7 @@ def balanced(parts: Parts, y: Array, lam: Array, allowed: int) -> tuple[Array, A
         y, lam = displaced(work, y, dq), x[len(x) - work.m :]
         if far < CLOSE:
             count = unstable(K, J)
-            return (y, lam, count) if count <= allowed else 0.5
+            return (y, lam, count, turn + 1) if count <= allowed else 0.5
         if turn > 4 and far > last:
             return 0.5
         last = far
@@ -135,15 +164,29 @@ def checked(mechanism: Mechanism, work: Scene, y: Array, lam: Array) -> float:
 
 def tangent(parts: Parts, y: Array, lam: Array) -> Array:
     """-d(F_e + F - J^T lam)/dq against the world-axes rates (6 (n-1), 6 (n-1))."""
-    work = parts.work
-    K, size = elastic_stiffness(work, y), probe(work)
-    for k in parts.acted:
-        change = np.zeros(len(K))
-        change[k] = size
+    K, size = elastic_stiffness(parts.work, y), probe(parts.work)
+    others = parts.others
+    poses(others, y)
+    for k, step in zip(parts.acted, steps_along(others, parts.acted, size), strict=True):
         ends = []
         for sign in (1.0, -1.0):
-            near = displaced(work, y, sign * change)
-            others = static_forces(work, near) - static_forces(parts.bars, near)
-            ends.append(others - jacobian(work, 0.0, near)[2].T @ lam)
+            near = y.copy()
+            move_all(others, near, sign * step)
+            ends.append(unbalanced(others, near, lam))
         K[:, k] -= (ends[0] - ends[1]) / (2.0 * size)
     return K
+
+
+def steps_along(work: Scene, rates: NDArray[np.int64], size: float) -> list[Array]:
+    """Displacements along world-axes rates in the axes of the solve, at the poses there are."""
+    return [in_solve_axes(work, change) for change in size * np.eye(6 * (work.n - 1))[rates]]
+
+
+def unbalanced(work: Scene, y: Array, lam: Array) -> Array:
+    """F - J^T lam at rest along the world-axes rates (6 (n-1))."""
+    F = wrenches_at_rest(work, y).copy()
+    constraints(work, 0.0)
+    for end in (0, 1):
+        pull = work.J[: work.m, 6 * end : 6 * end + 6] * lam[:, None]
+        np.subtract.at(F, work.row_frame[:, end], pull)
+    return along_rates(work, F)

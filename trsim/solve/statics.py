@@ -17,7 +17,7 @@ from trsim.assemble.equations import forces, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import along_rates, closest, displaced, jacobian, moves
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
-from trsim.elements.scene import Model, workspace
+from trsim.elements.scene import Model, Scene, workspace
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -34,12 +34,17 @@ INDIFFERENT = 1e-6  # of the largest eigenvalue scale: see `equilibrium`
 def static_forces(model: Model, y: Array) -> Array:
     """Forces along the world-axes rates of the moving frames at rest, N and N*m, one vector."""
     w = workspace(model)
+    return along_rates(w, wrenches_at_rest(w, y))
+
+
+def wrenches_at_rest(w: Scene, y: Array) -> Array:
+    """Forces and moments on the frames (n, 6), of the workspace, with all velocities zero."""
     w.mem[:, PHASE], w.mem[:, IMPACT_SPEED] = UNLOCATED, 1.0
     still = y.copy()
-    still[model.n_q : model.n_q + model.n_v] = 0.0
+    still[w.n_q : w.n_q + w.n_v] = 0.0
     poses(w, still)
     forces(w, 0.0)
-    return along_rates(w, w.F)
+    return w.F
 
 
 def mass_matrix(model: Model, y: Array) -> Array:
