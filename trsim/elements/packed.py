@@ -83,9 +83,10 @@ class Packed:
 
     def _share(self, like: Packed, words: list[int]) -> None:
         """The first fields, as another record has them."""
-        names = [name for name, _ in zip(self.places, like.places, strict=False)]
-        words[: WORDS * len(names)] = like.words[: WORDS * len(names)].tolist()
-        vars(self).update((name, getattr(like, name)) for name in names)
+        number = min(len(self.places), len(like.places))
+        words[: WORDS * number] = like.words[: WORDS * number].tolist()
+        there = vars(like)
+        vars(self).update({name: there[name] for name in itertools.islice(self.places, number)})
 
     def _make(self, room: dict[str, tuple[int, ...]], words: list[int]) -> None:
         """Arrays of zeros."""

@@ -21,6 +21,8 @@ MOST = 20_000  # scalars, lists and mappings
 
 Path = tuple[str | int, ...]
 LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+NODES = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent, yaml.AliasEvent)
+ENDS = (yaml.MappingEndEvent, yaml.SequenceEndEvent)
 
 _UNPRINTABLE = re.compile(r"[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _CONSTANTS = {"": None, "~": None} | {
@@ -118,34 +120,41 @@ def read(text: str, file: str = "<text>", mapping: bool = True) -> Tree:
 
 def _events(text: str, place: Any) -> Iterator[Any]:
     """The nodes of the one document, as YAML events; everything outside our grammar refused."""
+
+    def at(event: Any) -> Place:
+        found: Place = place(event.start_mark.line, event.start_mark.column)
+        return found
+
     documents = 0
     try:
-        for count, event in enumerate(yaml.parse(text, Loader=LOADER)):
-            mark: Any = event.start_mark
-            at = (mark.line, mark.column)
-            if isinstance(event, yaml.NodeEvent):
-                if event.anchor or isinstance(event, yaml.AliasEvent):
+        following = LOADER(text).get_event
+        for count, event in enumerate(iter(following, None)):
+            kind = type(event)
+            if kind in NODES:
+                if event.anchor or kind is yaml.AliasEvent:
                     what = "anchors and aliases are not allowed"
                     hint = "Use `parameters` or `extends`."
-                    raise ScenarioError(what, hint, place=place(*at))
-            elif isinstance(event, yaml.DocumentStartEvent):
+                    raise ScenarioError(what, hint, place=at(event))
+                if event.tag:
+                    what = f"tags are not allowed: {described(event.tag)}"
+                    hint = "Quote a text that starts with '!'."
+                    raise ScenarioError(what, hint, place=at(event))
+            elif kind is yaml.DocumentStartEvent:
                 documents += 1
                 if documents > 1:
                     what, hint = "a second document starts here", "Put it into a file of its own."
-                    raise ScenarioError(what, hint, place=place(*at))
+                    raise ScenarioError(what, hint, place=at(event))
                 continue
-            elif not isinstance(event, yaml.CollectionEndEvent):
+            elif kind is yaml.StreamEndEvent:
+                return
+            elif kind not in ENDS:
                 continue
-            tag = getattr(event, "tag", None)
-            if tag:
-                what = f"tags are not allowed: {described(tag)}"
-                raise ScenarioError(what, "Quote a text that starts with '!'.", place=place(*at))
             if count > MOST:
                 hint = "Long tables belong into CSV files: `table: name.csv`."
-                raise ScenarioError(f"more than {MOST} values", hint, place=place(*at))
+                raise ScenarioError(f"more than {MOST} values", hint, place=at(event))
             yield event
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
+        mark: Any = error.problem_mark or error.context_mark
         if error.context_mark and mark.line >= len(text.splitlines()):
             mark = error.context_mark  # where it was opened says more than the end of the file
         where = place(mark.line, mark.column) if mark else None
@@ -162,24 +171,26 @@ def _events(text: str, place: Any) -> Iterator[Any]:
 
 def _node(event: Any, events: Iterator[Any], tree: Tree, path: Path, place: Any) -> Any:
     """The data of the node that `event` begins; its marks go into the tree."""
-    where = place(event.start_mark.line, event.start_mark.column)
+    mark, kind = event.start_mark, type(event)
+    where = place(mark.line, mark.column)
     if len(path) > DEEPEST:
         raise ScenarioError(f"nested more than {DEEPEST} deep", place=where)
-    if isinstance(event, yaml.ScalarEvent):
+    if kind is yaml.ScalarEvent:
         tree.marks[path] = where
         return _scalar(event, path, where)
-    if isinstance(event, yaml.SequenceStartEvent):
+    if kind is yaml.SequenceStartEvent:
         tree.marks[path] = where
         items: list[Any] = []
-        while not isinstance(event := next(events), yaml.SequenceEndEvent):
+        while type(event := next(events)) is not yaml.SequenceEndEvent:
             items.append(_node(event, events, tree, (*path, len(items)), place))
         return items
     # what is wrong with a mapping is shown at its key, not at the first key inside
     tree.marks[path] = tree.keys.get(path, where)
     mapping: dict[str, Any] = {}
-    while not isinstance(event := next(events), yaml.MappingEndEvent):
-        at = place(event.start_mark.line, event.start_mark.column)
-        if not isinstance(event, yaml.ScalarEvent):
+    while type(event := next(events)) is not yaml.MappingEndEvent:
+        mark = event.start_mark
+        at = place(mark.line, mark.column)
+        if type(event) is not yaml.ScalarEvent:
             hint = "Quote a text that starts with a bracket."
             raise ScenarioError("a key must be a word", hint, path, at)
         key = event.value
