@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import compileall
+import sys
 from pathlib import Path
 
 from hypothesis import settings
@@ -8,6 +9,8 @@ from hypothesis import settings
 # the first example of a law compiles it: a time says nothing about the law
 settings.register_profile("trsim", deadline=None)
 settings.load_profile("trsim")
+# each worker rewrites the assertions of all tests, five seconds; pytest keeps them where it may
+sys.dont_write_bytecode = False
 
 
 def pytest_configure(config):
