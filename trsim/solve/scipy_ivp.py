@@ -56,7 +56,7 @@ LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
-ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.1}
+ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
 
