@@ -287,3 +287,20 @@ solver: {end: 1 ms}
     assert held == pytest.approx([0.5, 0.0, 0.0], abs=1e-12)
     assert free[0] == pytest.approx(0.5)
     assert abs(free[1]) > 0.01
+
+
+@pytest.mark.parametrize("place", [-5.0, 3.2, 8.0])
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_a_drive_holds_a_joint_on_any_turn(planar, place):
+    r = run(f"""
+planar: {planar}
+bodies: {{arm: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [0.2, 0]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, arm], at: [0, 0]}}}}
+drives: {{motor: {{joint: hinge, position: "{place} + 3*t"}}}}
+sensors: {{angle: {{joint: hinge}}}}
+solver: {{end: 4}}
+""")
+    turned = place + 3 * r.t
+    assert r["angle"] == pytest.approx(turned, abs=1e-7)
+    way = 0.2 * np.column_stack([np.cos(turned), np.sin(turned)])
+    assert r["arm.position"][:, :2] == pytest.approx(way, abs=1e-7)

@@ -1,5 +1,6 @@
 """What goes with positions: the turn every angle is on, and the states that follow a joint."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -28,6 +29,24 @@ def remember(model: Any, y: Array) -> None:
     """Let angles unwrap from their values at y on."""
     poses(model, y)
     model.branch[:] = model.S[:, 0]
+
+
+def held_at(mechanism: Mechanism) -> Iterator[tuple[int, float]]:
+    """Entries of angles in space that rigid drives hold at t = 0, and where.
+
+    On the turn on which a drive holds a joint its angle begins: seen from another one a joint would
+    be full turns away from its place, and nothing would bring it nearer.
+    """
+    model = mechanism.model
+    for instance in mechanism.instances:
+        row = instance.row
+        rigid = instance.section == "drives" and instance.element.key == "drive"
+        if not rigid or row.is_force or row.con[OWN_STATE] >= 0:
+            continue
+        if row.con[ENTRY] in model.wound:
+            place = np.zeros(3)
+            rates_at(model.tab, row.con[OWN_MOTION], 0.0, place)
+            yield row.con[ENTRY], float(place[0])
 
 
 def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float]:

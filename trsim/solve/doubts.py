@@ -61,7 +61,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_waves(mechanism, outcome),
         *of_rounding(scenario, mechanism, outcome),
-        *of_books(mechanism, outcome),
+        *of_books(scenario, mechanism, outcome),
         *of_rows(mechanism, outcome),
         *of_events(outcome),
     )
@@ -193,7 +193,7 @@ def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterat
     )
 
 
-def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """An open energy book, work of the projection, open joints; nothing of what is at rest."""
     numbers = outcome.statistics
     natural = float(np.sum(mechanism.model.mass)) * outcome.start.speed**2
@@ -201,11 +201,11 @@ def of_books(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     lost = numbers.get("energy_residual_relative", 0.0)
     if lost > LOST:
         hidden = "rounding_of_tolerance" in numbers
-        remedy = "rounding has its part in it" if hidden else "tighten `tolerance`"
-        driven = any(instance.section == "drives" for instance in mechanism.instances)
+        smaller = "make `step` smaller" if scenario.solver.step else "tighten `tolerance`"
+        remedy = "rounding has its part in it" if hidden else smaller
         yield (
             f"the energy book does not close, by {100 * lost:.2g} % of the largest energy "
-            f"exchanged; {remedy}" + ("; does the velocity of a drive jump?" * driven)
+            f"exchanged; {remedy}"
         )
     off = numbers.get("work_error_relative", 0.0)
     if outcome.record is not None and np.any(outcome.record.worked) and off > WORKS:

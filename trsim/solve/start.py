@@ -31,7 +31,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
-from trsim.solve.angles import follow, remember, strained, with_scene
+from trsim.solve.angles import follow, held_at, remember, strained, with_scene
 from trsim.solve.bars import as_flexible, as_rigid
 from trsim.solve.blame import refuse_no_number
 from trsim.solve.openings import check_closed
@@ -70,6 +70,8 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     model = mechanism.model
     for name, x in mechanism.coordinates.items():
         model.branch[x.entry] = angles.get(name, x.drawn)
+    for entry, place in held_at(mechanism):
+        model.branch[entry] = place
     refuse_no_number(mechanism, follow(mechanism, y), np.zeros((len(model.con), N_MEM)))
     phi = jacobian(model, 0.0, follow(mechanism, y))[0]
     moved = float(np.max(np.abs(phi), initial=0.0))
@@ -92,8 +94,9 @@ def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
     largest = float(phi.max())
     rows = [mechanism.rows[k] for k in np.argsort(-phi) if phi[k] > 0.1 * largest]
     joints = [row.split(".")[0] for row in rows if row.split(".")[0] in scenario.joints]
+    what = f"{', '.join(rows)} {'stays' if len(rows) == 1 else 'stay'} open"
     return ModelError(
-        f"the joints cannot be closed: {', '.join(rows)} stay open by up to {largest:.3g}",
+        f"the joints cannot be closed: {what} by up to {largest:.3g} m or rad",
         "check the points of the joints and the drives' positions at t = 0",
         ("joints", joints[0]) if joints else (),
     )
