@@ -1,6 +1,7 @@
 """What a run needs around its march, whatever makes the steps: settings, record, outcome."""
 
 from collections.abc import Mapping
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,12 +57,23 @@ CRAWLS = (
 SPEEDS = ("the velocity", "the angular velocity")
 SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
+EXPLICIT = ("auto", "dop853", "scipy:RK45")
+# h times the fastest rate of Baumgarte's feedback, inside the stability of these.  What rounding
+# opens rows by grows in steps beyond it, which their error estimate sees too late: stages and the
+# dense output come before the end
+FEEDBACK = 3.0
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
 CROSSINGS = 256.0  # of a step, at most, see WHOLE of turns.py
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 MOST_ROWS = 10_000  # output rows one fixed step may span
+
+
+def fastest_feedback(model: Any) -> float:
+    """The fastest rate of Phi'' + 2 alpha Phi' + beta^2 Phi = 0, 1/s."""
+    alpha, beta = float(model.alpha), float(model.beta)
+    return alpha + sqrt(alpha**2 - beta**2) if alpha > beta else beta
 
 
 def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
@@ -90,6 +102,8 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     if mechanism.timed and not solver.max_step:
         # what is smooth and short between two stages of a long step would not be seen at all
         s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
+    if solver.stabilisation == "baumgarte" and solver.method in EXPLICIT:
+        s[rec.H_MAX] = min(s[rec.H_MAX], FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
     s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
     if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
         raise ScenarioError(
