@@ -20,7 +20,8 @@ beside the place too, nothing is changed.
 Close to such a place, delta from it, the same is done where the limit is plainly another.  J has
 its full rank there, but what a state is off the rows, as states inside a step are, is felt 1/delta
 times and rounding 1/delta^2 times: steps would shrink towards the place and end at rounding.
-Reactions are those of the state itself: they do grow like 1/delta.  Rows that only unequal masses
+Reactions are those of the state itself: they do grow like 1/delta; forces of drives do not, and
+are limits too.  Rows that only unequal masses
 make hard to tell apart are left alone.  States off the rows feel another derivative here than
 further away, which the error estimate of a step need not see: solve/complete.py looks at the energy
 of such steps.  Where nobody does (scipy's integrators), and in open chains, which have no such
@@ -110,10 +111,12 @@ def beside(s, t, y, yd):
         constraints(s, t)
     factors_again(s)
     s.status[2] = counted
-    if best <= SURE * scale and (went == SINGULAR or apart(s, yd) > PLAINLY * best):
-        if went != SINGULAR:
-            s.status[4] += 1
-        take(s, y, yd, went == SINGULAR)
+    if best <= SURE * scale:
+        if went == SINGULAR or apart(s, yd) > PLAINLY * best:
+            if went != SINGULAR:
+                s.status[4] += 1
+            take(s, y, yd, went == SINGULAR)
+        drives(s)
 
 
 @equation
@@ -230,6 +233,15 @@ def at(s, t, y, d):
         for c in range(s.d):
             mean[s.d * (f - 1) + c] += 0.5 * s.free[f, c]
     return True
+
+
+@equation
+def drives(s):
+    """The limit into the multipliers of what moves: the power of a drive is finite, so they do not
+    grow like 1/delta, and rounding makes eps v^2/delta^3 of them."""
+    for k in range(s.m):
+        if s.phi_t[k] != 0.0:
+            s.lam[k] = s.aside[FOUND, s.n_v + k]
 
 
 @equation

@@ -57,5 +57,5 @@ def lost_its_way(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 REMEDY = {
     "none": "use `stabilisation: projection`",
-    "baumgarte": "use `stabilisation: projection`, or larger rates of `baumgarte` and shorter steps",
+    "baumgarte": "use `stabilisation: projection`, or larger rates and shorter steps",
 }
