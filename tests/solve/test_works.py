@@ -162,7 +162,9 @@ def test_fixed_steps_tell_the_error_of_their_works():
             error = abs(r["energy.work.loads"][-1] - work)
             told = r.outcome.statistics["work_error_relative"] * abs(work)
             assert error <= 1.5 * told + 1e-10
-            said = [text for text in of_books(r.scenario, r.mechanism, r.outcome) if "works" in text]
+            said = [
+                text for text in of_books(r.scenario, r.mechanism, r.outcome) if "works" in text
+            ]
             assert bool(said) == (r.outcome.statistics["work_error_relative"] > 1e-3)
 
 
