@@ -20,12 +20,12 @@ beside the place too, nothing is changed.
 Close to such a place, delta from it, the same is done where the limit is plainly another.  J has
 its full rank there, but what a state is off the rows, as states inside a step are, is felt 1/delta
 times and rounding 1/delta^2 times: steps would shrink towards the place and end at rounding.
-Reactions are those of the state itself: they do grow like 1/delta; forces of drives do not, and
-are limits too.  Rows that only unequal masses
-make hard to tell apart are left alone.  States off the rows feel another derivative here than
-further away, which the error estimate of a step need not see: solve/complete.py looks at the energy
-of such steps.  Where nobody does (scipy's integrators), and in open chains, which have no such
-places, the limit is taken only where rows do depend on each other.
+Reactions are those of the state itself: they do grow like 1/delta; forces of drives do not, and are
+limits too.  Rows that only unequal masses make hard to tell apart are left alone.  States off the
+rows feel another derivative here than further away, which the error estimate of a step need not
+see: solve/complete.py looks at the energy of such steps.  Where nobody does (scipy's integrators),
+and in open chains, which have no such places, the limit is taken only where rows do depend on each
+other.
 """
 
 from collections.abc import Iterable, Sequence

@@ -162,7 +162,8 @@ class Scene(Model):
     E: A1  # (N_STORED) stored energy
     out: A1  # (n_out) one output row
     # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
-    # [3] evaluations with contradictory constraints since the last accepted step
+    # [3] evaluations with contradictory constraints since the last accepted step,
+    # [4] evaluations of the step at hand that took a limit where branches meet
     status: I1
 
 

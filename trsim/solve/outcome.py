@@ -57,12 +57,11 @@ CRAWLS = (
 SPEEDS = ("the velocity", "the angular velocity")
 SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
-EXPLICIT = ("auto", "dop853", "scipy:RK45")
-# h times the fastest rate of Baumgarte's feedback, inside the stability of these.  What rounding
-# opens rows by grows in steps beyond it, which their error estimate sees too late: stages and the
-# dense output come before the end
-FEEDBACK = 3.0
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
+EXPLICIT = ("auto", "dop853", "scipy:RK45")
+# h times the fastest rate of Baumgarte's feedback, inside the stability of these.  In longer steps
+# what rounding opens rows by grows from stage to stage, and the dense output is made of stages
+FEEDBACK = 3.0
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
 CROSSINGS = 256.0  # of a step, at most, see WHOLE of turns.py
@@ -138,12 +137,12 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
         from trsim.solve.features import meet
 
         found["meet"] = meet.address()
-    if may_open(mechanism):
-        found["look"] = look.address()
     if model.stabilisation != PROJECTION and model.m > 0:
         from trsim.solve.adrift import look_at_drift
 
         found["look"] = look_at_drift.address()
+    elif may_open(mechanism):
+        found["look"] = look.address()
     if setting[rec.LOCATE] > 0.0 or len(model.watch):
         from trsim.solve.search import search
 
