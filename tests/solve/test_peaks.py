@@ -1,12 +1,17 @@
 """Extremes of channels are those of the motion: against closed forms, never below a row, the same
 with rows far apart and close together."""
 
-from math import pi, sqrt
+from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 import pytest
 
+from trsim.analyse.trajectory import changed, marched
+from trsim.assemble.assemble import assemble
+from trsim.spec.load import loads
+
 from ..runs import run
+from ..truth.trial import made
 
 METHODS = {
     "dop853": ("method: dop853", 1.0),
@@ -275,3 +280,70 @@ output: {{every: 10 ms}}
 """)
     most, _, least, _ = extremes(r, "shaker.magnitude")
     assert max(most, -least) <= 0.5 * (1 + 10 * tolerance)
+
+
+def four_bar(rocker, tolerance, every):
+    """A driven crank of 0.3 m, a coupler and a ground link of 1 m, and a rocker."""
+    a, b, d, start = 0.3, 1.0, 1.0, 1.0
+    x, y = a * cos(start), a * sin(start)
+    far = hypot(d - x, y)
+    # where the circles of coupler and rocker meet, above the line between their centres
+    along = (far**2 + b**2 - rocker**2) / (2 * far)
+    across = sqrt(b**2 - along**2)
+    u, w = (d - x) / far, -y / far
+    bx, by = x + along * u - across * w, y + along * w + across * u
+    return f"""
+bodies:
+  crank: {{mass: 1, inertia: 0.01, at: [{x / 2!r}, {y / 2!r}]}}
+  coupler: {{mass: 1, inertia: 0.1, at: [{(x + bx) / 2!r}, {(y + by) / 2!r}]}}
+  rocker: {{mass: 1, inertia: 0.01, at: [{(d + bx) / 2!r}, {by / 2!r}]}}
+joints:
+  O: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  A: {{type: revolute, bodies: [crank, coupler], at: [{x!r}, {y!r}]}}
+  B: {{type: revolute, bodies: [coupler, rocker], at: [{bx!r}, {by!r}]}}
+  D: {{type: revolute, bodies: [ground, rocker], at: [{d}, 0]}}
+drives: {{m: {{joint: O, velocity: 5}}}}
+solver: {{end: 1.885, tolerance: {tolerance}}}
+output: {{every: {every}}}
+"""
+
+
+# many channels turn in few long steps; one is met where another was looked for
+DRAWN = [("chain_planar", 0), ("chain_planar", 2), ("loop", 0), ("loop", 9), ("loop", 13),
+         ("chain_spatial", 0), ("starts", 11), ("events", 0)]  # fmt: skip
+
+
+@pytest.mark.parametrize(("family", "seed"), DRAWN)
+def test_as_of_forty_times_as_many_rows(family, seed):
+    """Steps are the same whatever the rows; the extremes of what lies between them are too."""
+    scenario = loads(made(family, seed).scene.text(), [])
+    every, found = scenario.output.every, []
+    for rows in (min(4 * every, scenario.solver.end), every / 40):
+        same = changed(scenario, "output", every=rows, channels=("*",))
+        mechanism = assemble(same)
+        found.append(marched(same, mechanism)[1])
+    few, many = found
+    assert few.statistics["steps"] == many.statistics["steps"]
+    kin, allowed = mechanism.model.kin, 10 * scenario.solver.tolerance
+    low, high = many.peaks[:, 2], many.peaks[:, 0]
+    sizes = np.maximum(abs(high), abs(low))
+    for group in set(kin[kin >= 0].tolist()):
+        largest = sizes[kin == group].max()
+        if largest < 1e-9 * sizes.max():
+            continue  # moments where there are none
+        for c in np.flatnonzero(kin == group).tolist():
+            scale = max(high[c] - low[c], 1e-3 * largest)
+            assert few.peaks[c, 0] >= high[c] - allowed * scale, c
+            if c < mechanism.model.n_out:
+                assert few.peaks[c, 2] <= low[c] + allowed * scale, c
+
+
+@pytest.mark.parametrize(("rocker", "tolerance"), [(0.4, 1e-6), (0.301, 1e-4)])
+def test_force_of_a_drive_near_dead_centres(rocker, tolerance):
+    """A peak much narrower than a step: the same with rows that lie close."""
+    found = []
+    for every in (0.3, 0.0005):
+        r = run(four_bar(rocker, tolerance, every))
+        found.append(extremes(r, "m.force"))
+    (high, _, low, _), (most, _, least, _) = found
+    assert (high, low) == pytest.approx((most, least), abs=10 * tolerance * (most - least))

@@ -13,6 +13,7 @@ from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 
 NOT_BY_DEFAULT = ("*.rotation",)
+WITH_PEAKS = ("joints", "drives", "forces", "sensors")  # sections whose channels' extremes are told
 
 
 def matches(name: str, patterns: tuple[str, ...]) -> bool:
@@ -36,9 +37,6 @@ def points_of(scenario: Any) -> set[str]:
     sections = [(spec.when or "", *spec.plot) for spec in scenario.poincare.values()]
     named = {channel for group in (*portraits, *sections) for channel in group}
     return named | {channel[:-2] for channel in named if channel[-2:] in COMPONENTS}
-
-
-OF_STEPS = ("projection", "residual")  # of the energy book
 
 
 def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Model, list[Column]]:
@@ -93,27 +91,33 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
         joint_out=np.array(joints, np.int64).reshape(-1, 4),
         column_energy=energy,
         n_out=width,
-        **compared(columns, energy),
+        **compared(columns, of_peaks(instances)),
     )
     return filled, columns
 
 
-def compared(columns: list[Column], energy: int) -> dict[str, Any]:
+def of_peaks(instances: Iterable[Instance]) -> set[str]:
+    """The elements whose channels have a line in the table of peaks."""
+    return {instance.name for instance in instances if instance.section in WITH_PEAKS}
+
+
+def compared(columns: list[Column], told: set[str]) -> dict[str, Any]:
     """Vectors whose magnitudes have extremes of their own, and which channels are of one kind.
 
-    What projection and rounding leave in the energy book has extremes at samples only: it belongs
-    to the steps, not to the motion.
+    told: elements whose extremes are looked for between samples.  Those of the others, which nobody
+    is told, are of the samples.
     """
     units: dict[str, int] = {}
     kin: list[int] = []
+
+    def number(column: Column) -> int:
+        sought = column.name.split(".")[0] in told and not column.for_points
+        return units.setdefault(column.unit, len(units)) if sought else -1
+
     for column in columns:
-        apart = column.start >= energy and (
-            not column.wanted or column.name.rsplit(".", 1)[1] in OF_STEPS
-        )
-        number = -1 if apart else units.setdefault(column.unit, len(units))
-        kin += [number] * column.size
+        kin += [number(column)] * column.size
     vectors = [column for column in columns if is_vector(column)]
-    kin += [units[column.unit] for column in vectors]
+    kin += [number(column) for column in vectors]
     starts = [column.start for column in vectors]
     return {"vector": np.array(starts, np.int64), "kin": np.array(kin, np.int64)}
 

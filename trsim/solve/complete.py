@@ -3,6 +3,8 @@
 What is found on the interpolant is made exact; only then the record changes.
 """
 
+from math import sqrt
+
 from trsim.assemble.equations import evaluate, kinetic
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
@@ -88,7 +90,10 @@ FROM_REST = 0.01  # of the kinetic energy at the end of a step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
+ROUNDING = 1e-15  # of the mechanism's size: a gap is not known better
 NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
+SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
+AS_ONE = 1.0  # times the tolerance, of a step: with so little no stage needs to move
 
 #                       scene   record  buffers  settings method h built
 COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
@@ -136,15 +141,16 @@ def complete(s, r, b, setting, method, h, built):
         event, corner = sooner(b, theta, other)
         theta = min(theta, other)
         if theta < 1.0:
-            shorter = exact(s, r, b, setting, method, t, h, theta)
+            shorter, beyond, projected = exact(s, r, b, setting, method, t, h, theta)
             if shorter > 0.0:
-                h, built = shorter, 0
-                t1 = reached(setting, t + h)
+                # from here on h is the length that the dense output is made with
+                h, built = shorter, 1 if beyond != 0.0 else 0
+                t1 = reached(setting, t + h + beyond)
             else:
                 call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
                 t1 = reached(setting, t + theta * h)
-            projected = land(s, r, b, t1, b.y1, b.K[last])
+                projected = land(s, r, b, t1, b.y1, b.K[last])
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     copy_to(b.out, s.out)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
@@ -250,39 +256,54 @@ def exact(s, r, b, setting, method, t, h, theta):
 
     A gap, what is watched, or u of a corner of a function is brought to zero at its end by Newton's
     method; a corner of friction is good enough as found.
-    Returns its length, its end in b.y1; 0 where the interpolant serves: also where Newton's method
-    does not come nearer, as where what is watched turns back close to its value.
+    Where it ends close to the event it is not made again: its end moves on along its tangent,
+    which is off by (late / h)^2 of what changes in it.  Its stages do not, so that its dense output
+    would be off by late / h: beyond the tolerance it is built before.
+    Returns the length of the step, how much further its end is where the dense output is built, and
+    the work of the projection there; a length of 0 where the interpolant serves: also where
+    Newton's method does not come nearer, as where what is watched turns back close to its value.
     """
     if method[STEP_AT] == 0:
-        return 0.0
-    gap_of = -1
+        return 0.0, 0.0, 0.0
+    gap_of, last = -1, method[LAST_AT]
     for c in range(b.root.size):
         if b.root[c] <= theta:
             gap_of = c
     h1, before = theta * h, 1e300
+    close = max(PRECISE * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
-            return 0.0
+            return 0.0, 0.0, 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
         if not error < NO_STEP:
-            return 0.0
+            return 0.0, 0.0, 0.0
+        projected = land(s, r, b, t + h1, b.y1, b.K[last])
         if gap_of < 0:
             if method[BEYOND_AT] == 0:
-                return h1
-            land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
+                return h1, 0.0, projected
             late = call_beyond(method[BEYOND_AT], s, b, t + h1)
             if abs(late) <= SMALLEST * 2.2e-16 * max(abs(t), h1) or k == EXACT - 1:
-                return h1
+                return h1, 0.0, projected
             h1 -= late
             continue
-        land(s, r, b, t + h1, b.y1, b.K[method[LAST_AT]])
         gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
-        if abs(gap) <= PRECISE * setting[TOLERANCE] * r.clock[LENGTH]:
-            return h1
+        if abs(gap) <= close:
+            return h1, 0.0, projected
         if rate == 0.0 or not abs(gap) < NEARER * before:
-            return 0.0
-        h1, before = h1 - gap / rate, abs(gap)
-    return 0.0
+            return 0.0, 0.0, 0.0
+        late, before = gap / rate, abs(gap)
+        if h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[TOLERANCE]) * h1:
+            beyond = 0.0
+            if abs(late) > AS_ONE * setting[TOLERANCE] * h1:
+                build(s, r, b, method[DENSE_AT], t, h1)
+                beyond = -late
+            for i in range(b.y1.size):
+                b.y1[i] -= late * b.K[last, i]
+            projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])
+            if abs(b.gap1[gap_of, 0]) <= close:
+                return (h1, beyond, projected) if beyond != 0.0 else (h1 - late, 0.0, projected)
+        h1 -= late
+    return 0.0, 0.0, 0.0
 
 
 @internal

@@ -215,6 +215,7 @@ def new_record(
         sampled=np.zeros(rec.POINTS),
         largest=np.zeros(len(model.kin)),
         sample=np.zeros((rec.POINTS, len(model.kin))),
+        slope=np.zeros((len(model.kin), rec.POINTS)),
         impact=begun.depth.copy(),
         by_place=np.zeros((n_w, n_v)),
         by_rate=np.zeros((n_w, n_w)),

@@ -12,15 +12,18 @@ Samples on two sides of an event have nothing to do with each other: `restart`.
 
 from math import sqrt
 
+from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import internal
-from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT
+from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT, LAST_AT
 from trsim.solve.dense_output import build, measure_inside
+from trsim.solve.land import evaluate_inside
 from trsim.solve.record import (
     BUFFERS,
+    ENERGY_0,
     NEWEST,
     PEAK_MAX,
     PEAK_MAX_T,
@@ -30,6 +33,7 @@ from trsim.solve.record import (
     RECORD,
     SAMPLES,
     TOLERANCE,
+    WORK_PROJECTION,
 )
 
 SHARE = 0.3  # of the tolerance, times the range of a channel: what may be missed
@@ -40,8 +44,7 @@ BEFORE = 10.0  # times that: the same of the term before the last
 YOUNG = 2  # samples since an event: with fewer the middle between two is looked at in any case
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
-DOUBT = 0.25  # of the last term of a polynomial: its error
-SLOPES = 4  # samples whose polynomials tell the rates at both ends
+DOUBT = 1.0  # of the last term of a polynomial: its error
 PARTS, ROUNDS = 8, 3  # in which the top of a polynomial is looked for
 TRIES = 6  # evaluations for one extreme of one channel
 
@@ -63,7 +66,6 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
     before = (head + POINTS - 1) % POINTS
     apart = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[before])
     new = (head + 1) % POINTS if apart else head
-    last, older = r.sample[head], r.sample[before] if known > 1 else r.sample[head]
     now = r.sample[new]
     lengths(s, now, values)
     for c in range(now.size):
@@ -71,40 +73,88 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
             extreme(r.peak[c], at, now[c])
             grow(s, r, c, now[c])
     if apart and known > 0:
-        b.found[0], share, told = 0.0, -1.0, False
+        b.found[0] = 0.0
         if known < YOUNG:
-            built = look(s, r, b, method, t, h, 0.5 * (r.sampled[head] + at), projected, built)
-        for c in range(now.size):
-            if s.kin[c] < 0:
-                continue
-            v, v0, most, least = now[c], last[c], r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN]
-            bend = abs(v - v0) + abs(v0 - older[c])
-            if known < YOUNG:
-                bend += abs(v - b.inside[0, c]) + abs(b.inside[0, c] - v0)
-            high, low = max(v, v0) + bend > most, min(v, v0) - bend < least
-            if not (high or low):
-                continue
-            if share < 0.0:
-                share = missed(setting)
-            enough = max(share * (most - least), ROUNDING * r.largest[s.kin[c]])
-            if bend <= enough:
-                continue
-            if known >= SLOPES - 1:
-                if not told:
-                    rates(r, b, at)
-                    told = True
-                high, low = turns(r, b, now, c, most + enough, least - enough)
-            if high:
-                built = search(
-                    s, r, b, enough, method, t, h, at, now, c, 1.0, projected, built
-                )  # fmt: skip
-            if low:
-                built = search(
-                    s, r, b, enough, method, t, h, at, now, c, -1.0, projected, built
-                )  # fmt: skip
+            if built == 0:
+                guess(s, r, b, method, t, h, projected)
+            else:
+                built = look(s, r, b, method, t, h, 0.5 * (r.sampled[head] + at), projected, built)
+        take(s, r, b, at, now, known)
+        built = between(s, r, b, setting, method, t, h, at, now, projected, built)
     r.count[NEWEST], r.sampled[new] = new, at
     if apart:
         r.count[SAMPLES] = min(known + 1, POINTS)
+    else:
+        anew(s, r, b)
+    return built
+
+
+@internal
+def take(s, r, b, at, now, known):
+    """Divided differences of all channels with a new sample: f[t0], f[t0, t1], ... newest first.
+
+    known: samples before it.  Also, into b.node[4] and [5], what the product (x - t0) ...
+    (x - tk-1) and its rate do not exceed between the two newest: the first two factors a quarter of
+    the square of their distance, each other one the distance of the further one.
+    """
+    head, n = r.count[NEWEST], min(known + 1, POINTS)
+    inverse, most, steep = b.node[3], b.node[4], b.node[5]
+    h = at - r.sampled[head]
+    most[1], term, rate = h, 0.25 * h * h, h
+    for k in range(1, n):
+        apart = at - r.sampled[(head + POINTS + 1 - k) % POINTS]
+        inverse[k] = 1.0 / apart
+        if k > 1:
+            most[k], steep[k] = term, rate
+            rate = rate * apart + term
+            term *= apart
+    for c in range(now.size):
+        if s.kin[c] < 0:
+            continue
+        d = r.slope[c]
+        before = d[0]
+        d[0] = now[c]
+        for k in range(1, n):
+            old = d[k]
+            d[k] = (d[k - 1] - before) * inverse[k]
+            before = old
+
+
+@internal
+def anew(s, r, b):
+    """The divided differences made again, where the newest sample was replaced."""
+    head, known = r.count[NEWEST], r.count[SAMPLES]
+    for k in range(known):
+        j = (head + POINTS + 1 - known + k) % POINTS
+        r.count[NEWEST] = (j + POINTS - 1) % POINTS
+        take(s, r, b, r.sampled[j], r.sample[j], k)
+    r.count[NEWEST] = head
+
+
+@internal
+def between(s, r, b, setting, method, t, h, at, now, projected, built):
+    """Look for the extremes of all channels between the newest sample and `at`."""
+    share, last = missed(setting), r.sample[r.count[NEWEST]]
+    n, most, steep = min(r.count[SAMPLES] + 1, POINTS), b.node[4], b.node[5]
+    for c in range(now.size):
+        if s.kin[c] < 0:
+            continue
+        high, low, d = r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN], r.slope[c]
+        bend, turn = DOUBT * abs(d[n - 1]) * most[n - 1], DOUBT * abs(d[n - 1]) * steep[n - 1]
+        for k in range(2, n):
+            bend += abs(d[k]) * most[k]
+            turn += abs(d[k]) * steep[k]
+        if n > 2 and turn < abs(d[1]) and b.found[0] == 0.0:
+            continue  # it goes one way all the time
+        above, below = max(now[c], last[c]), min(now[c], last[c])
+        for k in range(int(b.found[0])):
+            above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
+        bend += above - below if b.found[0] > 0.0 else 0.0
+        enough = max(share * (high - low), ROUNDING * r.largest[s.kin[c]])
+        if above + bend > high + enough:
+            built = search(s, r, b, enough, method, t, h, at, now, c, 1.0, projected, built)
+        if below - bend < low - enough:
+            built = search(s, r, b, enough, method, t, h, at, now, c, -1.0, projected, built)
     return built
 
 
@@ -134,57 +184,6 @@ def lengths(s, now, values):
 
 
 @internal
-def rates(r, b, at):
-    """Weights of the newest SLOPES values, `at` included, into b.node: of their polynomial's rate
-    at the last sample and at `at`, and of the divided difference of order SLOPES - 1, times what
-    it adds to either rate."""
-    if r.count[SAMPLES] < SLOPES - 1:
-        return
-    head, times = r.count[NEWEST], b.node[0]
-    times[0] = at
-    for k in range(1, SLOPES):
-        times[k] = r.sampled[(head + POINTS + 1 - k) % POINTS]
-    h, old = at - times[1], times[1] - times[2]
-    for j in range(SLOPES):
-        product = 1.0
-        for i in range(SLOPES):
-            if i != j:
-                product *= times[j] - times[i]
-        b.node[3, j] = 1.0 / product
-    # what the cubic term (x - t0)(x - t1)(x - t2) adds to the rate at t0 = at and at t1
-    b.node[4, 0], b.node[4, 1] = h * (h + old), -h * old
-    b.node[4, 2], b.node[4, 3] = h, old
-
-
-@internal
-def turns(r, b, now, c, most, least):
-    """Whether channel c may rise beyond `most` and turn, and whether it may fall below `least`,
-    between the newest sample and the present: a parabola, with the cubic term for its doubt."""
-    head = r.count[NEWEST]
-    v0, v1 = now[c], r.sample[head, c]
-    v2 = r.sample[(head + POINTS - 1) % POINTS, c]
-    v3 = r.sample[(head + POINTS - 2) % POINTS, c]
-    h, old = b.node[4, 2], b.node[4, 3]
-    third = b.node[3, 0] * v0 + b.node[3, 1] * v1 + b.node[3, 2] * v2 + b.node[3, 3] * v3
-    rise = (v0 - v1) / h
-    second = (rise - (v1 - v2) / old) / (h + old)
-    end, start = rise + second * h, rise - second * h
-    off_end, off_start = abs(third * b.node[4, 0]), abs(third * b.node[4, 1])
-    up, down = start + off_start, off_end - end
-    above = up > 0.0 and down > 0.0 and max(v0, v1) + arch(up, down, h) > most
-    up, down = off_start - start, end + off_end
-    below = up > 0.0 and down > 0.0 and min(v0, v1) - arch(up, down, h) < least
-    return above, below
-
-
-@internal
-def arch(up, down, h):
-    """How far a curve that starts with one slope and ends with the other rises above the higher of
-    its ends: at most what the tangents allow."""
-    return h * up * down / (up + down)
-
-
-@internal
 def extreme(p, t, value):
     """Take a value into a channel's extremes."""
     if value > p[PEAK_MAX]:
@@ -200,6 +199,8 @@ def restart(s, r, t):
     for c in range(r.sample.shape[1]):
         extreme(r.peak[c], t, r.sample[0, c])
         grow(s, r, c, r.sample[0, c])
+    for c in range(r.sample.shape[1]):
+        r.slope[c, 0] = r.sample[0, c]
     r.count[NEWEST], r.count[SAMPLES], r.sampled[0] = 0, 1, t
 
 
@@ -210,20 +211,25 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
     sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
     surer than that is taken at its word.
     """
-    p, start = r.peak[c], r.sampled[r.count[NEWEST]]
+    p = r.peak[c]
     for _ in range(TRIES):
         best = p[PEAK_MAX] if sign > 0.0 else -p[PEAK_MIN]
         n = nodes(r, b, at, now, c, sign)
         differences(b.node, n)
         if not highest(b.node, n) > best + enough:
             break
-        place, promised = top(b.node, n, start, at)
-        if not promised > best + enough or known_place(b, start, at, place):
+        low, high = b.node[0, 1], b.node[0, 0]
+        place, promised = top(b.node, n, low, high)
+        if not promised > best + enough or known_place(b, low, high, place):
             break
         said = polynomial(b.node[0], b.node[2], n, place, 0.0)
         if n == POINTS and promised - said < SURE * enough and settled(b, place, enough):
             extreme(p, place, sign * said)
             break
+        if built == 0 and b.found[0] > 0.0:  # that was a guess
+            b.found[0] = 0.0
+            built = look(s, r, b, method, t, h, 0.5 * (low + high), projected, built)
+            continue
         if int(b.found[0]) + 1 >= b.found.size:
             break
         built = look(s, r, b, method, t, h, place, projected, built)
@@ -242,6 +248,20 @@ def look(s, r, b, method, t, h, place, projected, built):
     for o in range(r.sample.shape[1]):
         extreme(r.peak[o], place, b.inside[k, o])
     return 1
+
+
+@internal
+def guess(s, r, b, method, t, h, projected):
+    """The channels in the middle of the step, of the cubic through both ends and their rates,
+    into b.inside: what tells whether the dense output is worth building."""
+    last = method[LAST_AT]
+    for k in range(b.y2.size):
+        b.y2[k] = 0.5 * (r.y[k] + b.y1[k]) + 0.125 * h * (r.yd[k] - b.K[last, k])
+    middle = t + 0.5 * h
+    evaluate_inside(s, middle, b.y2, b.rough[0])
+    measure(s, middle, b.y2, r.clock[WORK_PROJECTION] + 0.5 * projected, r.clock[ENERGY_0])
+    lengths(s, b.inside[0], s.out)
+    b.found[0], b.found[1] = 1.0, middle
 
 
 @internal
@@ -270,14 +290,17 @@ def nodes(r, b, at, now, c, sign):
     """Fill b.node with times and values of sign times channel c; how many there are.
 
     Both samples around come first, then what was found between them, then older samples: the last
-    one is what the polynomial may do without.
+    one is what the polynomial may do without.  Where more was found than it can go through, it
+    goes through the places around the best one, the two next to it first.
     """
     times, values = b.node[0], b.node[1]
     head, found = r.count[NEWEST], int(b.found[0])
     times[0], values[0] = at, sign * now[c]
     times[1], values[1] = r.sampled[head], sign * r.sample[head, c]
+    if found > POINTS - 2:
+        return around_best(b, found, c, sign)
     n = 2
-    for k in range(max(0, found - POINTS + 3), found):
+    for k in range(found):
         times[n], values[n] = b.found[1 + k], sign * b.inside[k, c]
         n += 1
     for k in range(1, r.count[SAMPLES]):
@@ -287,6 +310,47 @@ def nodes(r, b, at, now, c, sign):
         times[n], values[n] = r.sampled[old], sign * r.sample[old, c]
         n += 1
     return n
+
+
+@internal
+def around_best(b, found, c, sign):
+    """Replace the nodes, both ends of an interval, by those around the best place known in it."""
+    times, values = b.node[0], b.node[1]
+    end, start, last, first = times[0], times[1], values[0], values[1]
+    place, best = (end, last) if last > first else (start, first)
+    for k in range(found):
+        if sign * b.inside[k, c] > best:
+            place, best = b.found[1 + k], sign * b.inside[k, c]
+    low, high = start, end
+    for k in range(found):
+        x = b.found[1 + k]
+        low = x if low < x < place else low
+        high = x if place < x < high else high
+    n = 0
+    for k in range(-2, found):
+        x = end if k == -2 else start if k == -1 else b.found[1 + k]
+        value = last if k == -2 else first if k == -1 else sign * b.inside[k, c]
+        # those of the interval first, then the others by their distance to its middle
+        at = min(n, POINTS)
+        while at > 0 and further(times[at - 1], x, low, high):
+            if at < POINTS:
+                times[at], values[at] = times[at - 1], values[at - 1]
+            at -= 1
+        if at < POINTS:
+            times[at], values[at] = x, value
+            n += 1 if n < POINTS else 0
+    return n
+
+
+@internal
+def further(one, other, low, high):
+    """Whether a node is to stand behind another: the end of the interval first, then its start."""
+    if high in (one, other):
+        return other == high
+    if low in (one, other):
+        return other == low
+    middle = 0.5 * (low + high)
+    return abs(one - middle) > abs(other - middle)
 
 
 @internal

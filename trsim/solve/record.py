@@ -120,7 +120,7 @@ LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
 JOLTS_KEPT = 8
-FOUND = 12  # places between two samples where extremes are looked for
+FOUND = 200  # places between two samples where extremes are looked for
 
 # columns of the event buffer
 (
@@ -154,6 +154,7 @@ class Record(Packed):
     book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
     sample: A2  # (POINTS, n_c) their last values
     sampled: A1  # (POINTS) when those were taken
+    slope: A2  # (n_c, POINTS) their divided differences, newest first
     largest: A1  # (n_c) size of the channels of one unit, see `kin` of the scene
     impact: A1  # (n_contacts) largest penetration so far
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
@@ -206,7 +207,7 @@ class Buffers(Packed):
     corner1: A1  # (n_contacts)
     inside: A2  # (FOUND, n_c) channels where an extreme was looked for           peaks.py
     found: A1  # (1 + FOUND) how often, and when
-    node: A2  # (5, POINTS) of polynomials: times, values, slopes; weights of rates
+    node: A2  # (6, POINTS) of polynomials: times, values, slopes; see `take` of peaks.py
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
@@ -248,7 +249,7 @@ def fresh_buffers(
         corner1=np.zeros(contacts),
         inside=np.zeros((FOUND, len(model.kin))),
         found=np.zeros(1 + FOUND),
-        node=np.zeros((5, POINTS)),
+        node=np.zeros((6, POINTS)),
         root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from trsim.store.grow import Array
 
-SECTIONS = ("joints", "drives", "forces", "sensors")
 LETTERS = "xyz"
 ROWS = 1 << 16
 
@@ -57,7 +56,9 @@ def table(
     mechanism: Any, extremes: NDArray[np.float64] | None, magnitudes: Magnitudes
 ) -> list[Peak]:
     """The peaks of a run, without their strokes; `extremes` is what the solver kept."""
-    names = {i.name for i in mechanism.instances if i.section in SECTIONS}
+    from trsim.assemble.layout import of_peaks
+
+    names = of_peaks(mechanism.instances)
     peaks, width = [], mechanism.model.n_out
     for column in mechanism.columns:
         if column.name.split(".")[0] not in names or column.for_points:
