@@ -109,6 +109,17 @@ def test_windows(n, tolerance):
     assert place == pytest.approx([np.sin(at), np.cos(at)], abs=max(1e-5, 2 * tolerance))
 
 
+def test_rows_inside_steps_past_singular_positions():
+    """P4: every row has the acceleration of its angle, and the rate of its energy."""
+    k, tolerance = 11.445, 1e-7
+    r = run(windows(2), f"solver.tolerance={tolerance}")
+    theta, rate = r["theta"], r["theta.rate"]
+    off = r["theta.acceleration"] - k * np.sin(theta)
+    assert np.abs(off).max() < 30 * tolerance * k
+    lost = 0.5 * rate**2 + k * np.cos(theta) - 0.5 - k
+    assert np.abs(lost).max() < tolerance * 2 * k
+
+
 # --- chains ------------------------------------------------------------------------------------
 
 

@@ -298,6 +298,7 @@ def build(
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
         near=near(solver, rows, spans(at)),
+        tolerance=solver.tolerance,
         on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],
         alpha=baumgarte.alpha if baumgarte else 0.0,

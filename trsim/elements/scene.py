@@ -81,6 +81,7 @@ class Model(Packed):
     derivative: i8  # address of the equations of motion
     beside: i8  # address of what finds limits where rows depend on each other     beside.py
     near: f8  # pivot below which it is asked; 0: where rows do depend on each other only
+    tolerance: f8  # asked for, of the units of the error norm
     plain: i8  # address of what leaves Baumgarte's feedback out of what is measured, or 0
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0

@@ -21,5 +21,5 @@ def measure_inside(s, r, b, interpolate, at, theta, projected):
     projected: the work of the projection at the step's end.
     """
     call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-    evaluate_inside(s, at, b.y2, b.K[1])
+    evaluate_inside(s, r, at, b.y2, b.K[1])
     measure(s, at, b.y2, r.clock[WORK_PROJECTION] + theta * projected, r.clock[ENERGY_0])

@@ -9,7 +9,7 @@ from trsim.assemble.projection import normalise, project_positions, project_velo
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
 from trsim.elements.vectors import internal
-from trsim.solve.record import OFF, OFF_RATE, WORST_PHI, WORST_PHI_DOT
+from trsim.solve.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
@@ -74,7 +74,7 @@ def land(s, r, b, t, y, yd):
 
 
 @internal
-def evaluate_inside(s, t, y, yd):
+def evaluate_inside(s, r, t, y, yd):
     """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
 
     With an eigenvalue of S of d^2 accelerations feel 1/d^2 times what interpolation opens rows by;
@@ -85,14 +85,36 @@ def evaluate_inside(s, t, y, yd):
     if s.m == 0 or s.stabilisation == NONE:
         return
     past = s.status[4] > 0  # a place where branches meet: the interpolation may feel it
-    if s.redundant.shape[0] == 0 and not past and smallest_pivot(s) > DOUBTFUL:
-        return
+    if s.redundant.shape[0] == 0 and not past:
+        pivot = smallest_pivot(s)
+        if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
+            return
     for _ in range(NEWTON):
         if not project_positions(s, t, y) > CLOSED * s.size:
             break
     poses(s, y)
     project_velocities(s, y)
     evaluate(s, t, y, yd)
+
+
+@internal
+def off_the_rows(s, r, pivot):
+    """Whether what the last state is off the rows by is felt beyond the tolerance.
+
+    Stages of a long step past a place where branches meet feel what they are off the rows by.  The
+    end of the step is brought back; what is interpolated is off along the other branch, and of that
+    the rows see the less the nearer it is.
+    """
+    if s.near == 0.0 or s.stabilisation != PROJECTION:
+        return False
+    allowed = s.tolerance * pivot / s.size
+    length, speed = allowed * r.clock[LENGTH], allowed * r.clock[SPEED]
+    for k in range(s.m):
+        if abs(s.phi[k]) > length * s.row_unit[k]:
+            return True
+        if abs(velocity_residual(s, k)) > speed * s.row_unit[k]:
+            return True
+    return False
 
 
 @internal
