@@ -6,12 +6,14 @@ dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1
 import numpy as np
 
 from trsim.assemble.equations import constraints, equation, poses
-from trsim.assemble.linear import factorise, solve
+from trsim.assemble.linear import factorise, smallest_pivot, solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, rows, velocity_residual
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.signatures import A1, f8, float64, void
 from trsim.elements.vectors import clear_table
+
+DOUBTFUL = 1e-2  # a pivot, of its diagonal
 
 
 @compiled(void(SCENE, A1, A1))
@@ -82,6 +84,22 @@ def project_positions(s, t, y):
         for k in range(s.n_v - s.v_node):
             y[s.q_node + k] += dx[s.n_r + k // s.d_node, k % s.d_node]
     return worst
+
+
+@compiled(void(SCENE, f8, A1))
+def poses_and_rows(s, t, y):
+    """The poses of y, for its velocities; where rows nearly depend on each other its rows too.
+
+    Those of the last Newton step are of the place before it.  Such a step moves bodies by many
+    times what rows are open by, rounding included, and velocities off the rows by as much are felt
+    as many times over again.  In open chains only masses make pivots small.
+    """
+    poses(s, y)
+    if s.near == 0.0 or smallest_pivot(s) > DOUBTFUL:
+        return
+    constraints(s, t)
+    rows(s)
+    factorise(s)
 
 
 @compiled(float64(SCENE, A1))

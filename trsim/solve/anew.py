@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.linear import SINGULAR
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.projection import project_positions
+from trsim.assemble.projection import project_positions, project_velocities
 from trsim.elements.scene import Model, Scene, carried, scene
 from trsim.errors import FileError
 from trsim.solve import record as rec
@@ -18,6 +19,9 @@ from trsim.solve.record import Buffers, Record
 from trsim.solve.start import Start
 
 Array = NDArray[np.float64]
+
+NEWTON, CLOSED = 8, 1e-14  # steps; of the mechanism's size
+AT_END = 2e-15  # of the time of a step's end: an output row there
 
 
 def begun_with(mechanism: Mechanism, begun: Start) -> tuple[Scene, NDArray[np.int64]]:
@@ -57,8 +61,14 @@ def feeble(work: Scene, y: Array) -> bool:
     return bool(work.status[0] == SINGULAR or np.min(shares, initial=1.0) < FEEBLE)
 
 
-def anew(mechanism: Mechanism, work: Scene, r: Record, b: Buffers, setting: Any) -> Scene:
-    """The scene to go on with: of the same stage, its rows those that hold best here."""
+def anew(
+    mechanism: Mechanism, work: Scene, r: Record, b: Buffers, setting: Any, acted: bool = False
+) -> Scene:
+    """The scene to go on with: of the same stage, its rows those that hold best here.
+
+    What weak rows let go of is closed by them, without projection too: it is no drift.  An output
+    row at the end of the step is that of the new ones; not one before an event that `acted`.
+    """
     r.count[rec.WEAK] = 0
     stages = mechanism.stages
     left_out = stages.anew(r.stage, r.left_out, work, r.y)
@@ -66,5 +76,26 @@ def anew(mechanism: Mechanism, work: Scene, r: Record, b: Buffers, setting: Any)
         return work
     r.left_out[:] = left_out
     work = carried(work, stages.choice(r.stage, left_out).model)
+    before = total_energy(work, r)
+    project(work, float(r.clock[rec.T]), r.y)
+    r.clock[rec.WORK_PROJECTION] += total_energy(work, r) - before
     settle(work, r, b, setting)
+    last = int(r.count[rec.ROWS]) - 1
+    if not acted and last >= 0 and b.rows[last, 0] >= r.clock[rec.T] * (1.0 - AT_END):
+        b.rows[last, 1:] = work.out
     return work
+
+
+def project(work: Scene, t: float, y: Array) -> None:
+    """Positions and velocities to the rows, nearest in M."""
+    for _ in range(NEWTON):
+        if not project_positions(work, t, y) > CLOSED * work.size:
+            break
+    poses(work, y)
+    project_velocities(work, y)
+
+
+def total_energy(work: Scene, r: Record) -> float:
+    """Kinetic and stored, J."""
+    poses(work, r.y)
+    return float(kinetic(work, r.y) + stored_energy(work, float(r.clock[rec.T])))

@@ -2,10 +2,16 @@
 
 from math import nan
 
-from trsim.assemble.equations import corners, evaluate, gaps, kinetic, poses
+from trsim.assemble.equations import corners, evaluate, gaps, kinetic
 from trsim.assemble.linear import SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
-from trsim.assemble.projection import normalise, project_positions, project_velocities
+from trsim.assemble.projection import (
+    DOUBTFUL,
+    normalise,
+    poses_and_rows,
+    project_positions,
+    project_velocities,
+)
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
 from trsim.elements.vectors import internal
@@ -16,7 +22,6 @@ PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be belo
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 NEWTON = 8
 CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
-DOUBTFUL = 1e-2  # a pivot, of its diagonal
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
@@ -47,7 +52,7 @@ def land(s, r, b, t, y, yd):
             r.clock[WORST_PHI] = max(r.clock[WORST_PHI], first)
         r.clock[OFF] = first
         T0 = kinetic(s, y)
-        poses(s, y)
+        poses_and_rows(s, t, y)
         worst = r.clock[OFF_RATE] = project_velocities(s, y)
         r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
         done += kinetic(s, y) - T0
@@ -92,7 +97,7 @@ def evaluate_inside(s, r, t, y, yd):
     for _ in range(NEWTON):
         if not project_positions(s, t, y) > CLOSED * s.size:
             break
-    poses(s, y)
+    poses_and_rows(s, t, y)
     project_velocities(s, y)
     evaluate(s, t, y, yd)
 

@@ -177,7 +177,7 @@ def compiled(
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
             if r.count[rec.WEAK] and ended is None:
-                work = anew(mechanism, work, r, b, setting)
+                work = anew(mechanism, work, r, b, setting, acted=work is not before)
             if work is not before:
                 b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
         bends.look(float(r.clock[rec.T]), r.y)
