@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
-from trsim.assemble.beside import beside, near
+from trsim.assemble.beside import beside, near, near_rows
 from trsim.assemble.equations import derivative, without_feedback
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
@@ -298,6 +298,7 @@ def build(
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
         near=near(solver, rows, spans(at)),
+        near_rows=near_rows(solver, rows, spans(at)),
         tolerance=solver.tolerance,
         on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],

@@ -23,9 +23,9 @@ times and rounding 1/delta^2 times: steps would shrink towards the place and end
 Reactions are those of the state itself: they do grow like 1/delta; forces of drives do not, and are
 limits too.  Rows that only unequal masses make hard to tell apart are left alone.  States off the
 rows feel another derivative here than further away, which the error estimate of a step need not
-see: solve/complete.py looks at the energy of such steps.  Where nobody does (scipy's integrators),
-and in open chains, which have no such places, the limit is taken only where rows do depend on each
-other.
+see: solve/complete.py looks at the energy of such steps.  Where nobody does (scipy's integrators)
+stages take the limit only where rows do depend on each other, and what is measured takes it as
+elsewhere; in open chains, which have no such places, all do.
 """
 
 from collections.abc import Iterable, Sequence
@@ -70,9 +70,14 @@ def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) 
     A pivot is delta^2, and eps/delta^2 of an acceleration is rounding: further away it is below the
     tolerance.  bars: first frame and number of nodes of each.
     """
-    if solver.method.startswith("scipy") or not closes_a_loop(rows, bars):
+    if solver.method.startswith("scipy"):
         return 0.0
-    return min(SMALL, NOISE / solver.tolerance)
+    return near_rows(solver, rows, bars)
+
+
+def near_rows(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) -> float:
+    """The same of what is measured; 0 in open chains."""
+    return min(SMALL, NOISE / solver.tolerance) if closes_a_loop(rows, bars) else 0.0
 
 
 def closes_a_loop(rows: Sequence[RowName], bars: Iterable[tuple[int, int]] = ()) -> bool:
@@ -102,7 +107,7 @@ def beside(s, t, y, yd):
     fastest, went, counted = speed(s), s.status[0], s.status[2]
     if s.n_r < s.n or not fastest > 0.0:
         return
-    if went != SINGULAR and smallest_pivot(s) > s.near:
+    if went != SINGULAR and smallest_pivot(s) > (s.near_rows if s.status[5] > 0 else s.near):
         return
     best, scale = 1e300, 0.0
     if went == SINGULAR or plain_pivot(s) <= SMALL:
@@ -113,7 +118,7 @@ def beside(s, t, y, yd):
     s.status[2] = counted
     if best <= SURE * scale:
         if went == SINGULAR or apart(s, yd) > PLAINLY * best:
-            if went != SINGULAR:
+            if went != SINGULAR and s.near > 0.0:
                 s.status[4] += 1
             take(s, y, yd, went == SINGULAR)
         drives(s)

@@ -69,7 +69,8 @@ def derivative(s, t, y, yd):
                 pull(s, f, s.x)
         s.zd[DRIVES] += power
     accelerations(s, y, yd)
-    if s.m > 0 and (s.status[0] == SINGULAR or (s.status[0] == POOR and s.near > 0.0)):
+    near = s.near > 0.0 or s.status[5] > 0
+    if s.m > 0 and (s.status[0] == SINGULAR or (s.status[0] == POOR and near)):
         call_derivative(s.beside, s, t, y, yd)
 
 

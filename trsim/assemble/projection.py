@@ -95,7 +95,9 @@ def poses_and_rows(s, t, y):
     as many times over again.  In open chains only masses make pivots small.
     """
     poses(s, y)
-    if s.near == 0.0 or smallest_pivot(s) > DOUBTFUL:
+    if s.near == 0.0 and s.redundant.shape[0] == 0:
+        return
+    if smallest_pivot(s) > DOUBTFUL:
         return
     constraints(s, t)
     rows(s)

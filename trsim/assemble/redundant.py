@@ -14,13 +14,14 @@ from trsim.assemble.dense import least_squares, product
 from trsim.assemble.equations import poses
 from trsim.assemble.onward import Branches
 from trsim.assemble.rank import DEPENDENT, dependent_rows
-from trsim.assemble.reduce import closest, displaced, jacobian, weights
+from trsim.assemble.reduce import closest, displaced, jacobian, weights, world_rates
 from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]
 
 NEARLY = 1e-6  # the same at nearby positions, where an error of the drawing has grown
 SAMPLES = 4
+ROUNDING = 1e-9  # of the rates given
 SPREAD = 0.03  # of the mechanism's size and rad: how far positions are perturbed
 
 
@@ -80,11 +81,12 @@ def nearby(
 ) -> Iterator[Array]:
     """Consistent positions around y, SPREAD away in the world-axes rates `keep`.
 
-    geometric: the rows positions keep to.  At most SAMPLES; always the same ones.  They are reached
+    geometric: the rows positions keep to.  At most one on the way of the velocities given and of
+    drives, which is the branch that counts, and SAMPLES; always the same ones.  They are reached
     along motions the rows allow, and that go on where branches meet: from elsewhere Newton follows
     the nearly dependent directions of redundant rows far away, to where these rows happen to be
     independent.  Where such a motion ends at once (a dead centre, nothing moves) they are reached
-    from anywhere.
+    from anywhere, but for the first.
     """
     work = workspace(model)
     rng = np.random.default_rng(0)
@@ -94,15 +96,16 @@ def nearby(
     J = whole[:, keep]
     branches = Branches(work, y, whole, geometric, moving=keep)
     size = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)[keep]
-    for _ in range(SAMPLES):
-        way = SPREAD * rng.normal(size=size.size) * size
+    ways = [SPREAD * rng.normal(size=size.size) * size for _ in range(SAMPLES)]
+    for along, way in ((True, begun(model, y, keep, size)), *((False, way) for way in ways)):
         free = way - scale * least_squares(J * scale, product(J, way), DEPENDENT)
         if model.n == model.n_r:
             goes = np.zeros(keep.size)
             goes[keep] = free
             free = branches.onward(goes, at_rest=False)[keep]
         far = np.max(np.abs(free / size))
-        for step in (free * (SPREAD / max(far, 1e-3 * SPREAD)), way):
+        moving = free * (SPREAD / max(far, 1e-3 * SPREAD))
+        for step in (moving,) if along else (moving, way):
             dx = np.zeros(keep.size)
             dx[keep] = step
             near, left = closest(model, 0.0, displaced(model, y, dx), rows, keep)
@@ -110,6 +113,20 @@ def nearby(
             if left <= 1e-9 * model.size and (moved > 0.1 * SPREAD or step is way):
                 yield near
                 break
+
+
+def begun(model: Model, y: Array, keep: NDArray[np.bool_], size: Array) -> Array:
+    """The rates `keep` nearest to those given that rows and drives allow, made as long as SPREAD;
+    zero where nothing moves."""
+    _, phi_t, J = jacobian(model, 0.0, y)
+    scale, J = weights(model)[keep], J[:, keep]
+    given = world_rates(model, y)[keep]
+    off = product(J, given) + phi_t
+    rates = np.asarray(given - scale * least_squares(J * scale, off, DEPENDENT))
+    far = float(np.max(np.abs(rates / size), initial=0.0))
+    if far <= ROUNDING * float(np.max(np.abs(given / size), initial=0.0)):
+        return np.zeros_like(given)
+    return rates * (SPREAD / far)
 
 
 def distance(model: Model, y: Array, near: Array) -> float:

@@ -81,6 +81,7 @@ class Model(Packed):
     derivative: i8  # address of the equations of motion
     beside: i8  # address of what finds limits where rows depend on each other     beside.py
     near: f8  # pivot below which it is asked; 0: where rows do depend on each other only
+    near_rows: f8  # the same of what is measured
     tolerance: f8  # asked for, of the units of the error norm
     plain: i8  # address of what leaves Baumgarte's feedback out of what is measured, or 0
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
@@ -164,7 +165,8 @@ class Scene(Model):
     out: A1  # (n_out) one output row
     # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
     # [3] evaluations with contradictory constraints since the last accepted step,
-    # [4] evaluations of the step at hand that took a limit where branches meet
+    # [4] evaluations of the step at hand that took a limit where branches meet,
+    # [5] 1: what is evaluated is the end of a step or will be measured
     status: I1
 
 
@@ -223,7 +225,7 @@ def scene(model: Model) -> Scene:
             "out": (max(model.n_out, 1),),
         },
         tab=model.tab.copy(),  # scratch, and what functions are held on
-        status=np.zeros(5, np.int64),
+        status=np.zeros(6, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
     made.X[:, 2] = model.depth
