@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError
+from trsim.solve.locked import locked
 
 from ..runs import run
 
@@ -126,3 +127,38 @@ def test_a_crank_that_cannot_turn_through(method):
         assert "motor" in r.outcome.reason and "D" in r.outcome.reason
     else:
         assert "jams" in r.outcome.reason or "locks" in r.outcome.reason
+
+
+NEARLY_EQUAL = """
+bodies:
+  crank: {{mass: 1, inertia: 0.01, at: {}}}
+  coupler: {{mass: 1, inertia: 0.1, at: {}}}
+  rocker: {{mass: 1, inertia: 0.01, at: {}}}
+joints:
+  O: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  A: {{type: revolute, bodies: [crank, coupler], at: {}}}
+  B: {{type: revolute, bodies: [coupler, rocker], at: {}}}
+  D: {{type: revolute, bodies: [ground, rocker], at: [1, 0]}}
+drives: {{motor: {{joint: O, velocity: 5 rad/s}}}}
+solver: {{end: {}, tolerance: 1e-8}}
+"""
+
+
+def test_a_place_where_branches_nearly_meet_is_not_said_to_lock():
+    """Cranks of 0.3 and 0.3000003 m: at 2 pi the second turns back within a thousandth rad."""
+    short, long, gap = 0.3, 0.3 * (1 + 1e-6), 1.4e-3
+    A = short * np.array([np.cos(1.0), np.sin(1.0)])
+    D = np.array([1.0, 0.0])
+    B = meet(A, 1.0, D, long)
+    at = [x.tolist() for x in (A / 2, (A + B) / 2, (B + D) / 2, A, B)]
+    r = run(NEARLY_EQUAL.format(*at, (2 * np.pi - 1.0 - gap) / 5.0))
+    said = locked(r.mechanism, r.outcome.time, r.outcome.record.y)
+    assert "nearly meet" in said and "the motion goes on" in said and "locks" not in said
+
+
+def meet(P, r, Q, s):
+    """Where circles about P and Q meet, to the left of the way from Q to P."""
+    way = Q - P
+    d = np.hypot(*way)
+    x = (d * d + r * r - s * s) / (2 * d)
+    return P + (x * way + np.sqrt(r * r - x * x) * np.array([-way[1], way[0]])) / d

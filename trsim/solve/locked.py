@@ -9,12 +9,16 @@ taken times the mechanism's size.
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.equations import derivative, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import jacobian
+from trsim.assemble.reduce import closest, displaced, jacobian, world_rates
+from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]
 
 NEARLY = 1e-3  # smallest singular value, of the largest: a place that steps were too short to pass
+AHEAD = 0.02  # rad, or of the mechanism's size: how far is looked for a way on
+CLOSED, PARTLY = 1e-9, 0.5  # of the mechanism's size; of that way
 TAKES_PART = 0.1  # of the largest entry of the dependent combination of rows
 
 
@@ -23,11 +27,36 @@ def locked(mechanism: Mechanism, t: float, y: Array) -> str:
     names, smallest = dependent(mechanism, t, y)
     if smallest > NEARLY:
         return ""
+    if goes_on(mechanism.model, t, y):
+        return (
+            "steps became too short to pass a place where branches of the motion nearly meet "
+            f"(rows of {', '.join(names)} depend on each other to {smallest:.1g}): the motion goes "
+            "on, but as sharply as these are apart; draw lengths that are to be equal to more "
+            "digits, or take another `method`"
+        )
     return (
         f"the mechanism locks here: {', '.join(names)} leave it no way on (their rows depend on "
         f"each other to {smallest:.1g}); start it elsewhere, drive another joint, or end "
         "before"
     )
+
+
+def goes_on(model: Model, t: float, y: Array) -> bool:
+    """Whether there are positions ahead, as far on as a dead centre would show."""
+    if model.n > model.n_r:
+        return False
+    w, yd = workspace(model), np.zeros_like(y)
+    derivative(w, t, y, yd)
+    before, rates = w.X[1:, :3].copy(), world_rates(model, y)
+    unit = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)
+    d = AHEAD / max(float(np.max(np.abs(rates / unit), initial=0.0)), 1e-300)
+    ahead = displaced(model, y, d * rates)
+    ahead[model.n_q + model.n_v :] += d * yd[model.n_q + model.n_v :]  # where drives are
+    near, left = closest(model, t + d, ahead)
+    poses(w, near)
+    wanted = d * rates.reshape(-1, 6)[:, :3]
+    along = float(np.sum((w.X[1:, :3] - before) * wanted))
+    return left <= CLOSED * model.size and along > PARTLY * float(np.sum(wanted * wanted))
 
 
 def dependent(mechanism: Mechanism, t: float, y: Array) -> tuple[list[str], float]:
