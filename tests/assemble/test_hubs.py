@@ -303,9 +303,10 @@ def test_redundant_rows(forced, bodies):
 
 # --- runs -------------------------------------------------------------------------------------
 
+# with the ramp the stop's force is never cut at 0, a corner that steps pass by chance
 STOPPED = """
   buffer: {type: limit_stop, point: {body: fairing, at: [0.5, 0, 0.7]}, stiffness: 1e6,
-           wall: {body: ground, at: [0.51, 0, 0.7], normal: [-1, 0, 0]}, damping: 800}
+           wall: {body: ground, at: [0.51, 0, 0.7], normal: [-1, 0, 0]}, damping: 800, ramp: 5 mm}
   air: {type: applied_load, body: door2, frame: door2, direction: [0, 0, 1], force: 300*sin(60*t)}
 """
 RUNS = {

@@ -10,6 +10,7 @@ from trsim.solve.statics import static_forces
 from trsim.spec.load import load
 
 from ..linkages import REVERSER, four_bar, slider_crank
+from ..overconstrained import ORDINARY, TILTED, numbers
 from ..runs import assemble, run
 
 HANGING = """
@@ -304,3 +305,56 @@ solver: {{end: 4}}
     assert r["angle"] == pytest.approx(turned, abs=1e-7)
     way = 0.2 * np.column_stack([np.cos(turned), np.sin(turned)])
     assert r["arm.position"][:, :2] == pytest.approx(way, abs=1e-7)
+
+
+COPIES = [(ORDINARY, "true"), (ORDINARY, "false"), (TILTED, "false")]
+IN_ALL_COPIES = pytest.mark.parametrize(("R", "planar"), COPIES, ids=["plane", "space", "tilted"])
+
+
+def two_rods(R, planar, more="", out=0.5):
+    """A double pendulum of unequal rods, its bodies given velocities that its hinges forbid.
+
+    out: moments of inertia of the rods about other axes than that of the hinges.
+    """
+
+    def rod(name, mass, inertia, at, v, omega):
+        I = R @ np.diag([out, 2.0 * out, inertia]) @ R.T
+        I = numbers([*np.diag(I), I[0, 1], I[0, 2], I[1, 2]])
+        at, v, omega = (numbers(R @ np.array(x, float)) for x in (at, v, (0, 0, omega)))
+        return (
+            f"  {name}: {{mass: {mass}, inertia: {I if planar == 'false' else inertia}, at: {at}, "
+            f"velocity: {v}, angular_velocity: {omega}}}\n"
+        )
+
+    axis, knee = (numbers(R @ np.array(x, float)) for x in ((0, 0, 1), (1, 0, 0)))
+    return (
+        f"planar: {planar}\nbodies:\n"
+        + rod("upper", 3.0, 0.02, (0.5, 0, 0), (0.3, -0.4, 0), 5.0)
+        + rod("lower", 0.2, 0.7, (1, 0.5, 0), (0, 1, 0), -2.0)
+        + "joints:\n"
+        f"  top: {{type: revolute, bodies: [ground, upper], at: [0, 0, 0], axis: {axis}}}\n"
+        f"  knee: {{type: revolute, bodies: [upper, lower], at: {knee}, axis: {axis}}}\n"
+        f"sensors: {{a: {{joint: top}}, b: {{joint: knee}}}}\n{more}\nsolver: {{end: 0.01}}\n"
+    )
+
+
+@pytest.mark.parametrize("out", [1e-3, 0.5, 40.0])
+@IN_ALL_COPIES
+def test_velocities_are_the_nearest_in_the_metric_of_the_masses(R, planar, out):
+    """What no joint allows is a plastic impact: the motions allowed keep their momentum."""
+    r = run(two_rods(R, planar, out=out))
+    M = np.diag([3.0, 3.0, 0.02, 0.2, 0.2, 0.7])
+    given = np.array([0.3, -0.4, 5.0, 0.0, 1.0, -2.0])
+    # x', y', turn of upper, then of lower, per unit of the rates of top and of knee
+    ways = np.array([[0, 0.5, 1, -0.5, 1, 1], [0, 0, 0, -0.5, 0, 1]], float)
+    rates = np.linalg.solve(ways @ M @ ways.T, ways @ M @ given)
+    assert (r["a.rate"][0], r["b.rate"][0]) == pytest.approx(tuple(rates), rel=1e-12)
+
+
+@IN_ALL_COPIES
+def test_bodies_that_initial_leaves_free_move_least(R, planar):
+    """A joint put elsewhere: the same places in the plane, in space and tilted."""
+    r = run(two_rods(R, planar, more="initial: {top: 0.3}"))
+    plane = run(two_rods(ORDINARY, "true", more="initial: {top: 0.3}"))
+    assert r["a"][0] == pytest.approx(0.3, abs=1e-12)
+    assert r["b"][0] == pytest.approx(plane["b"][0], abs=1e-10)

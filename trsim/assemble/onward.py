@@ -64,10 +64,11 @@ class Branches:
 
     def __init__(
         self, work: Scene, y: Array, J: Array, rows: list[int], wishes: Array | None = None,
-        moving: NDArray[np.bool_] | None = None,
+        moving: NDArray[np.bool_] | None = None, C: Array | None = None,
     ) -> None:  # fmt: skip
         """J: against the world-axes rates, of these rows of the workspace; wishes: gradients of
-        rates that stay as they are; moving: rates that there are."""
+        rates that stay as they are; moving: rates that there are; C: `roots`, where the nearest
+        is that in the metric of M."""
         self.work, self.y, self.rows = work, y.copy(), rows
         self.moving = np.ones(J.shape[1], bool) if moving is None else moving
         self.scale = weights(work)[self.moving]
@@ -84,6 +85,11 @@ class Branches:
         self.free = vt[rank:].T
         self.motions = np.zeros((J.shape[1], self.free.shape[1]))
         self.motions[self.moving] = self.scale[:, None] * self.free
+        if C is not None and self.stresses.shape[1]:
+            # the same motions, orthonormal in M: C^-1 motions = Q U
+            at = np.linalg.pinv(C, 1e-100) @ self.motions.reshape(*C.shape[:2], -1)
+            U = np.linalg.qr(at.reshape(self.motions.shape))[1]
+            self.motions = np.linalg.solve(U.T, self.motions.T).T
 
     def onward(self, v: Array, at_rest: bool = True) -> Array:
         """The world-axes rates nearest to v that the rows allow, and that go on.

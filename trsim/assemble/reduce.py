@@ -4,6 +4,9 @@ Derivatives of rows are against world-axes rates, six of each moving frame: see 
 Which rows are redundant: redundant.py.  Whether motion stays in a plane: planar.py.
 """
 
+from collections.abc import Callable
+from math import tan
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +19,8 @@ Array = NDArray[np.float64]
 
 IN_PLANE = [0, 1, 5]  # of the six world-axes rates of a rigid body
 NODE_IN_PLANE = [0, 1, 3, 4]  # and of a node of a beam, see `world_rates`
+STEPS = 60  # of Newton's method
+INDEPENDENT = 1e-10  # of the largest row: what must be left of one to be independent of others
 
 
 def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
@@ -90,17 +95,78 @@ def world_rates(model: Model, y: Array) -> Array:
 
 
 def weights(model: Model) -> Array:
-    """sqrt(M^-1) of the world-axes rates, nearly: positions moved by it cost equal energy."""
+    """Units of the world-axes rates in which rows are judged: a length, a turn by a body's arm."""
     trace = np.maximum(model.inertia[1:, 0] + model.inertia[1:, 4] + model.inertia[1:, 8], 1e-300)
     arm = np.sqrt(trace / np.maximum(model.mass[1:], 1e-300))
     return np.stack([np.ones_like(arm)] * 3 + [1.0 / np.maximum(arm, 1e-9)] * 3, axis=1).ravel()
 
 
+def roots(model: Model, y: Array, planar: bool) -> Array:
+    """C (n-1, 6, 6) with C C^T = M^-1 against the world-axes rates, in the plane or all.
+
+    Steps C x are compared by |x|.  The mass of a node of a beam is taken as lumped.
+    """
+    work = workspace(model)
+    poses(work, y)
+    C = np.zeros((work.n - 1, 6, 6))
+    bodies, nodes = C[: work.n_r - 1], C[work.n_r - 1 :]
+    place, turn = np.arange(3), np.arange(3, 6)
+    C[:, place, place] = 1.0 / np.sqrt(work.mass[1:, None])
+    nodes[:, turn, turn] = 1.0 / np.sqrt(work.inertia[work.n_r :, 0::4])
+    R = work.X[1 : work.n_r, 3:].reshape(-1, 3, 3)
+    if planar:
+        I = work.inertia[1 : work.n_r].reshape(-1, 3, 3)
+        bodies[:, 5, 5] = 1.0 / np.sqrt(np.einsum("fi,fij,fj->f", R[:, 2], I, R[:, 2]))
+        there = moves(model, True).reshape(-1, 6)
+        return C * (there[:, :, None] & there[:, None, :])
+    inverse = work.inertia_inverse[1 : work.n_r].reshape(-1, 3, 3)
+    bodies[:, 3:, 3:] = np.einsum("fij,fjk->fik", R, lower(inverse))
+    return C
+
+
+def lower(A: Array) -> Array:
+    """L with L L^T = A of positive definite matrices (k, 3, 3), lower triangular."""
+    L = np.zeros_like(A)
+    for i in range(3):
+        for j in range(i + 1):
+            left = A[:, i, j] - np.sum(L[:, i, :j] * L[:, j, :j], axis=1)
+            if i == j:  # rounding must not make it negative
+                L[:, i, i] = np.sqrt(np.maximum(left, 1e-16 * A[:, i, i]))
+            else:
+                L[:, i, j] = left / L[:, j, j]
+    return L
+
+
+def times_roots(J: Array, C: Array) -> Array:
+    """J C, of rows against world-axes rates (k, 6 (n-1))."""
+    return np.einsum("kfi,fij->kfj", J.reshape(len(J), *C.shape[:2]), C).reshape(J.shape)
+
+
+def shortest(J: Array, C: Array, rate: Array) -> Array:
+    """The step nearest to none, in the metric of M, with J dx = rate; C: `roots`."""
+    rows = times_roots(J, C)
+    length = np.sqrt(np.sum(rows * rows, axis=1))
+    # rows of heavy bodies count like others; those of nothing that moves remain nothing
+    length[length <= INDEPENDENT * length.max(initial=0.0)] = 1.0
+    x = least_squares(rows / length[:, None], rate / length, INDEPENDENT)
+    return np.einsum("fij,fj->fi", C, x.reshape(C.shape[:2])).ravel()
+
+
 def displaced(model: Model, y: Array, dx: Array) -> Array:
-    """y after small displacements dx (6 (n-1)) along the world-axes rates of the moving frames."""
+    """y after displacements dx (6 (n-1)) along the world-axes rates of the moving frames.
+
+    Turns are those of dx, below half a turn, in space as in the plane.
+    """
     y = y.copy()
     w = workspace(model)
     poses(w, y)
+    if w.d == 6:
+        dx = dx.reshape(-1, 6).copy()
+        turns = dx[: w.n_r - 1, 3:]
+        half = 0.5 * np.sqrt(np.sum(turns * turns, axis=1))
+        # `move` turns by twice the arc tangent of half of what it is given
+        turns *= np.array([tan(x) / x if x else 1.0 for x in half.tolist()])[:, None]
+        dx = dx.ravel()
     move_all(w, y, in_solve_axes(w, dx))
     return y
 
@@ -116,33 +182,49 @@ def in_solve_axes(work: Scene, dx: Array) -> Array:
     return np.concatenate([turned.ravel(), nodes.ravel()])
 
 
-def closest(
-    model: Model,
-    t: float,
-    y: Array,
-    active: NDArray[np.int64] | None = None,
-    free: NDArray[np.bool_] | None = None,
-    steps: int = 60,
-) -> tuple[Array, float]:
-    """Newton with least squares onto the constraints; works with redundant rows.
+def closest(model: Model, t: float, y: Array) -> tuple[Array, float]:
+    """Newton onto the constraints by the nearest way in the metric of M; works with redundant rows.
 
-    free: world-axes rates that may move.  Returns y and the largest residual left.
+    Returns y and the largest residual left.
     """
-    scale = weights(model)
-    free = moves(model, False) if free is None else free
-    for _ in range(steps):
+
+    def step(y: Array, J: Array, phi: Array) -> Array:
+        return shortest(J, roots(model, y, model.d == 3), phi)
+
+    return _newton(model, t, y, None, step)
+
+
+def closed(
+    model: Model, y: Array, rows: NDArray[np.int64], free: NDArray[np.bool_]
+) -> tuple[Array, float]:
+    """The same onto some rows by motions along the rates `free`, the nearest in the units of
+    `weights`: for rows that are judged, whatever the inertias."""
+    scale = weights(model)[free]
+
+    def step(_: Array, J: Array, phi: Array) -> Array:
+        dx = np.zeros(free.size)
+        dx[free] = scale * least_squares(J[:, free] * scale, phi, INDEPENDENT)
+        return dx
+
+    return _newton(model, 0.0, y, rows, step)
+
+
+def _newton(
+    model: Model, t: float, y: Array, rows: NDArray[np.int64] | None,
+    step: Callable[[Array, Array, Array], Array],
+) -> tuple[Array, float]:  # fmt: skip
+    """y with Phi = 0, or nearly, of some rows or of all; and the largest residual left."""
+    some = slice(None) if rows is None else rows
+    for _ in range(STEPS):
         phi, _, J = jacobian(model, t, y)
-        if active is not None:
-            phi, J = phi[active], J[active]
+        phi, J = phi[some], J[some]
         worst = float(np.max(np.abs(phi), initial=0.0))
         if worst < 1e-14 * model.size:
             break
-        dx = np.zeros(free.size)
-        dx[free] = -scale[free] * least_squares(J[:, free] * scale[free], phi, 1e-10)
+        dx = -step(y, J, phi)
         # a far start must not overshoot: at most 0.3 rad, or 0.3 of the mechanism's size
         parts = np.abs(dx).reshape(-1, 6)
         far = max(float(np.max(parts[:, :3])) / model.size, float(np.max(parts[:, 3:])))
         y = displaced(model, y, dx * (0.3 / max(far, 0.3)))
-    phi = jacobian(model, t, y)[0]
-    phi = phi if active is None else phi[active]
+    phi = jacobian(model, t, y)[0][some]
     return y, float(np.max(np.abs(phi), initial=0.0))

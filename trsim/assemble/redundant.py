@@ -14,7 +14,7 @@ from trsim.assemble.dense import least_squares, product
 from trsim.assemble.equations import poses
 from trsim.assemble.onward import Branches
 from trsim.assemble.rank import DEPENDENT, dependent_rows
-from trsim.assemble.reduce import closest, displaced, jacobian, weights, world_rates
+from trsim.assemble.reduce import closed, displaced, jacobian, weights, world_rates
 from trsim.elements.scene import Model, workspace
 
 Array = NDArray[np.float64]
@@ -108,7 +108,7 @@ def nearby(
         for step in (moving,) if along else (moving, way):
             dx = np.zeros(keep.size)
             dx[keep] = step
-            near, left = closest(model, 0.0, displaced(model, y, dx), rows, keep)
+            near, left = closed(model, displaced(model, y, dx), rows, keep)
             moved = distance(model, y, near)
             if left <= 1e-9 * model.size and (moved > 0.1 * SPREAD or step is way):
                 yield near

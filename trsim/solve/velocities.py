@@ -9,12 +9,21 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.assemble import assemble
-from trsim.assemble.dense import least_squares, length, product, spaces
+from trsim.assemble.dense import length, product, spaces
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import Branches
 from trsim.assemble.projection import project_velocities
-from trsim.assemble.reduce import all_rows, in_solve_axes, jacobian, weights, world_rates
+from trsim.assemble.reduce import (
+    all_rows,
+    in_solve_axes,
+    jacobian,
+    moves,
+    roots,
+    shortest,
+    weights,
+    world_rates,
+)
 from trsim.elements.bushing import ROTATIONAL, STIFFNESS
 from trsim.elements.prescribed import rates_at
 from trsim.elements.scene import Model, scene, workspace
@@ -90,8 +99,10 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     J = np.vstack([J, *(wishes[k][0] for k in kept)])
     rate = np.append(rate, [wishes[k][1] for k in kept])
     v = world_rates(model, y_ideal)
+    planar = model.d == 3
+    C = roots(model, y_ideal, planar)
     if len(J):
-        v = v + scale * least_squares(J * scale, rate - product(J, v), 1e-10)
+        v = v + shortest(J, C, rate - product(J, v))
     left = np.max(np.abs(J @ v - rate), initial=0.0)
     if left > 1e-6 * max(1.0, np.max(np.abs(rate), initial=0.0)):
         raise ModelError(
@@ -101,7 +112,9 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     if ideal.beams or not len(J):
         return np.asarray(v)
     rows = list(range(model.m + len(model.redundant)))
-    branches = Branches(model, y_ideal, all_rows(model, y_ideal), rows, J[model.m :])
+    branches = Branches(
+        model, y_ideal, all_rows(model, y_ideal), rows, J[model.m :], moves(model, planar), C
+    )
     return branches.onward(np.asarray(v))
 
 
