@@ -278,3 +278,55 @@ def test_a_bearing_without_play_has_no_section():
     assert done.mechanism.sections == ()
     told = skipped(done.scenario, done.mechanism)
     assert "section 'journal': the clearance of B is 0" in told
+
+
+# --- channels that swing faster than bodies turn ------------------------------------------------
+
+SPINNING = """
+planar: {planar}
+bodies:
+  disc: {{mass: 1, inertia: [0.5, 0.5, 0.5], velocity: [2, 0], angular_velocity: [0, 0, 3]}}
+sensors: {{x: {{type: displacement, bodies: [ground, disc], at: [0, 0], axis: [1, 0, 0]}}}}
+forces:
+  hum: {{type: applied_load, body: disc, direction: [0, 0, 1], torque: "1e-9*({torque})"}}
+solver: {{end: 1.1, tolerance: 1e-6}}
+output: {{every: 1.1}}
+poincare: {{zero: {{when: {when}, crosses: both, plot: [x, x.rate]}}}}
+"""
+
+
+@pytest.mark.parametrize("when", ["hum.magnitude", "disc.angular_acceleration.z"])
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("method", ["auto", "radau", "scipy:RK45"])
+@pytest.mark.parametrize(
+    "torque", ["sin(200*x + 1)", "sin(6*sin(60*x))", "sin(90*x)*cos(70*x)", "0.3 + cos(80*x)**5"]
+)
+def test_waves_of_a_load_are_not_passed_over(torque, method, planar, when):
+    """A body that flies along x = 2 t: its steps are as long as the run, and it turns little."""
+    text = SPINNING.format(planar=planar, torque=torque, when=when)
+    points = run(text, f"solver.method={method}").section("zero")
+    t = np.linspace(0.0, 1.1, 400_001)
+    wave = eval(torque, {"x": 2.0 * t, "sin": np.sin, "cos": np.cos})  # noqa: S307
+    passed = np.flatnonzero(wave[:-1] * wave[1:] < 0.0)
+    assert len(points) == len(passed)
+    assert points[:, 0] == pytest.approx(t[passed], abs=1e-5)
+
+
+def test_waves_of_a_prescribed_motion_are_not_passed_over():
+    r = run("""
+bodies: {disc: {mass: 2, inertia: 1}}
+joints: {pin: {type: revolute, bodies: [ground, disc], at: [0, 0]}}
+drives: {motor: {joint: pin, velocity: "1 + 1e-9*sin(3000*t)"}}
+sensors: {angle: {joint: pin}}
+solver: {end: 1, tolerance: 1e-4}
+poincare: {beat: {when: motor.force, plot: [angle, angle.rate]}}
+""")
+    t = (np.arange(477) + 0.75) * 2 * np.pi / 3000  # the torque is in proportion to cos(3000 t)
+    assert r.section("beat")[:, 0] == pytest.approx(t, abs=1e-9)
+
+
+@pytest.mark.parametrize("when", ["x", "x.rate", "disc.position.y", "disc.angular_velocity.z"])
+def test_what_steps_follow_costs_nothing_more(when):
+    assert not built(
+        SPINNING.format(planar="false", torque="sin(200*x)", when=when)
+    ).model.wave.size

@@ -55,6 +55,7 @@ class Addresses:
     switches: Any = None  # of user events, once all elements are packed
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
+    waves: list[int] = field(default_factory=list)  # offsets of those that have sines
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
@@ -282,6 +283,8 @@ class Addresses:
                 self.functions += cornered(spec, code, offset, self.end)
             except ScenarioError as error:
                 raise error.at(*path) from None
+        if functions.waves(code):
+            self.waves.append(offset)
         self.tab.extend(code)
         return offset
 

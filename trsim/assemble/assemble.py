@@ -30,7 +30,7 @@ from trsim.assemble.rows import (
     dropped,
     reactions,
 )
-from trsim.assemble.sections import sections
+from trsim.assemble.sections import N_SECTION, sections
 from trsim.assemble.stages import Choice, Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
@@ -323,7 +323,8 @@ def build(
         **features(at, instances),
         steep=steep(at, instances),
         **travels(instances, contacts, at.switches),
-        section=np.zeros((0, 5), np.int64),
+        section=np.zeros((0, N_SECTION), np.int64),
+        wave=np.array(at.waves, np.int64),
         section_at=np.zeros((0, 2)),
         size=size,
         reach=min(size, max(arms[1:], default=size)),

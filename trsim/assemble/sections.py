@@ -12,9 +12,11 @@ from trsim.errors import ScenarioError, known
 
 # kinds of surface, and columns of model.section and of model.section_at
 CROSSING, STROBE, TOUCH = 0, 1, 2
-KIND, WHEN, DIRECTION, X, Y = range(5)  # WHEN: an output column, or the row of a contact
+# WHEN: an output column, or the row of a contact; WAVES: 1 where loads and drives make it swing
+KIND, WHEN, DIRECTION, X, Y, WAVES, N_SECTION = range(7)
 AFTER, EVERY = range(2)
 SECTION = "poincare"  # of a scenario
+SMOOTH = ("m", "m/s", "rad", "rad/s", "-")  # units of what loads move by its accelerations only
 
 
 def sections(
@@ -26,23 +28,37 @@ def sections(
     joint.  Raises ScenarioError for channels and contacts that do not exist.
     """
     there = {column.name: column for column in columns}
+    driven = tuple(f"{i.name}." for i in instances if i.section == "drives")
     rows, at, found = [], [], []
     for name, spec in scenario.poincare.items():
         if without_play(scenario, (spec.when, spec.at_onset, *spec.plot)):
             continue
         x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
         kind, when = surface(scenario, name, spec, instances, there)
-        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y))
+        swings = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], driven)
+        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(swings)))
         at.append((spec.after, spec.every or 0.0))
         units = [there[stored(c, there)[0]].unit for c in spec.plot]
         crosses = spec.crosses if spec.when else ""
         found.append(Section(name, spec.when or "", crosses, spec.every or 0.0, spec.at_onset or "",
                              spec.after, *spec.plot, *units))  # fmt: skip
+    section = np.array(rows, np.int64).reshape(-1, N_SECTION)
     filled = model.replaced(
-        section=np.array(rows, np.int64).reshape(-1, 5),
+        section=section,
+        wave=model.wave[: len(model.wave) if np.any(section[:, WAVES]) else 0].copy(),
         section_at=np.array(at, float).reshape(-1, 2),
     )
     return filled, tuple(found)
+
+
+def smooth(column: Column, driven: tuple[str, ...]) -> bool:
+    """Whether steps follow a channel: a place, a velocity or an energy, but not what is prescribed.
+
+    However fast a load swings, these are its integrals.
+    """
+    if column.name.startswith("energy."):
+        return True
+    return column.unit in SMOOTH and not column.name.startswith(driven)
 
 
 def without_play(scenario: Any, channels: Iterable[str | None]) -> str:

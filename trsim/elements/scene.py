@@ -113,7 +113,8 @@ class Model(Packed):
     on_features: I1  # address of what holds functions on their pieces; 0 without such functions
     travel: I2  # (n_contacts + n_w, 2) kind of each gap, the instance it lies at   travel.py
     kink: A1  # (n_contacts + n_w) |gap| from which on it may be on another branch
-    section: I2  # (n_sections, 5) Poincare sections              assemble/sections.py
+    section: I2  # (n_sections, 6) Poincare sections              assemble/sections.py
+    wave: I1  # offsets in tab of functions with sines, where a section looks at what they move
     section_at: A2  # (n_sections, 2) s: before it no points; period, or 0
     jumps: i8  # entry of z with the work done at user events, or -1
     column_energy: i8  # first output column of the energy book

@@ -32,6 +32,7 @@ from trsim.laws.operations import (
     BELOW,
     BINARY,
     CORNERED,
+    COS,
     DIV,
     EXP,
     FREE,
@@ -40,14 +41,17 @@ from trsim.laws.operations import (
     MUL,
     NEG,
     QUINTIC,
+    SIN,
     SMOOTHSTEP,
     SUB,
+    TAN,
     UNARY,
     beside,
     branch_at,
     branch_ends,
     operation,
     operation_rates,
+    swinging,
     switching,
 )
 from trsim.laws.ranges import ranged
@@ -58,6 +62,7 @@ HEAD = 5  # numbers before the sensors of an expression
 OF_TABLE, HELD_OF_TABLE = 4, 3  # numbers before the points of a table; among them what is held
 WIDTH, WATCHED, HELD = 5, 3, 4  # numbers of an operation; among them these
 UNWATCHED, BY_TIME, BY_SENSORS = 0, 1, 2
+BETWEEN = 1.6  # of its mean rate: the largest of half a wave is pi/2 of it
 
 
 def constant(c):
@@ -409,6 +414,49 @@ def enclosed(tab, o, t0, t1, S, seen, box):
         box[k, 0], box[k, 1], box[k, 2], box[k, 3] = f[0], f[1], f[2], f[3]
         p += WIDTH
     return worst
+
+
+def waves(code):
+    """Whether a function, as numbers for `tab`, has a sine, a cosine or a tangent."""
+    if code[0] != EXPRESSION:
+        return False
+    first = HEAD + int(code[1])
+    return any(code[p] in (SIN, COS, TAN) for p in range(first, int(code[3]), WIDTH))
+
+
+@law
+def swing(tab, o, t, length, S0, rate0, S1, rate1):
+    """How fast an expression may swing from t on, in rad/s of the fastest wave in it.
+
+    Of every slot a bound m of its size, one L of its rate and the rate w of its waves: a wave of
+    the phase u has w = L_u + w_u, a product the sum of both.  So is that of waves of waves one.
+
+    Parameters
+    ----------
+    tab, o                   as in `value`
+    t, length : float        s
+    S0, rate0, S1, rate1 : (n_s,)   what the sensors show, and its rate, at t and `length` later
+    """
+    first, n_in = o + int(tab[o + 3]), int(tab[o + 1])
+    tab[first], tab[first + 1], tab[first + 2] = t, 1.0, 0.0
+    for i in range(n_in):
+        k, slot = int(tab[o + HEAD + i]), first + 3 * (i + 1)
+        mean = abs(S1[k] - S0[k]) / length
+        # what begins and ends at rest goes faster between
+        rate = max(abs(rate0[k]), abs(rate1[k]), BETWEEN * mean)
+        tab[slot], tab[slot + 1], tab[slot + 2] = S1[k], rate, 0.0
+    run(tab, o)
+    p, out = o + HEAD + n_in, first + 3 * (1 + n_in)
+    for _ in range(int(tab[o + 2])):
+        a, b = o + int(tab[p + 1]), o + int(tab[p + 2])
+        tab[out], tab[out + 1], tab[out + 2] = swinging(
+            int(tab[p]), tab[out], abs(tab[a]), tab[a + 1], tab[a + 2],
+            abs(tab[b]), tab[b + 1], tab[b + 2],
+        )  # fmt: skip
+        p += WIDTH
+        out += 3
+    w = tab[o + int(tab[o + 4]) + 2]
+    return w if w < math.inf else 0.0
 
 
 @law

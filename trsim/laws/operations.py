@@ -264,3 +264,49 @@ def operation_rates(code, a, a1, a2, b, b1, b2, held):
         f, f_a, f_aa = single_rates(code, a) if held == FREE else held_single(code, a, held)
         return chain(f, f_a, f_aa, a1, a2)
     return operation(code, a, b, held), 0.0, 0.0
+
+
+@law
+def swinging(code, f, a, a1, aw, b, b1, bw):
+    """Bounds of an operation's size and rate, and the rate of its waves, from those of a and b.
+
+    f: its value, which stands for the size and the slope of what is no wave.
+    """
+    w = max(aw, bw)
+    if code in (ADD, SUB):
+        return a + b, a1 + b1, w
+    if code == MUL:
+        return a * b, a1 * b + a * b1, aw + bw
+    if code in (SIN, COS):
+        return 1.0, a1, a1 + aw
+    if code == TAN:
+        return abs(f), (1.0 + f * f) * a1, a1 + aw
+    if code in (NEG, ABS):
+        return a, a1, aw
+    if code in (MIN, MAX):
+        return max(a, b), max(a1, b1), w
+    return (
+        abs(f),
+        slope(code, f, a, a1, b, b1),
+        w * (max(b, 1.0) if code == POW and b1 == 0.0 else 1.0),
+    )
+
+
+@law
+def slope(code, f, a, a1, b, b1):
+    """About the rate of an operation that is no wave."""
+    if a1 == 0.0 and b1 == 0.0:
+        return 0.0
+    if code == DIV:
+        return (a1 + abs(f) * b1) / b
+    if code == POW:
+        return abs(f) * (b * a1 / a + abs(log(a)) * b1)
+    if code == SQRT:
+        return 0.5 * a1 / abs(f)
+    if code == EXP:
+        return abs(f) * a1
+    if code == LOG:
+        return a1 / a
+    if code == ATAN2:
+        return (b * a1 + a * b1) / (a * a + b * b)
+    return 2.0 * a1 if code in (SMOOTHSTEP, QUINTIC) else 0.0

@@ -5,11 +5,13 @@
     touch     the end of a step that a contact ends by touching
 
 A crossing lies between two neighbours of different sign among the ends of the step and points
-inside it: PARTS - 1, and as many again for every TURN that the fastest body turns by.  These are
-looked at where the sign changed, where bodies turn so far, or where the cubic through values and
-rates of the channel at both ends comes near zero.  Where three neighbours of one sign dip towards
-zero the bottom is looked for too: so two crossings in one step are two points, however close.
-Channels are of every kind, forces among them, so this is sampled, not bounded as events are.
+inside it: PARTS - 1, and as many again for every TURN that the fastest body turns by, or every WAVE
+of the fastest sine in a function (turns.py) where the channel may swing with it: a force, an
+acceleration, what a drive prescribes.  These are looked at where the sign changed, where bodies or
+waves turn so far, or where the cubic through values and rates of the channel at both ends comes
+near zero.  Where three neighbours of one sign dip towards zero the bottom is looked for too: so two
+crossings in one step are two points, however close.  Channels are of every kind, forces among them,
+so this is sampled, not bounded as events are.
 The root is found to the resolution of the time.
 
 Like the phase of a contact the side `when` is on is a discrete state: zero is on the side it came
@@ -31,6 +33,7 @@ from trsim.assemble.sections import (
     KIND,
     STROBE,
     TOUCH,
+    WAVES,
     WHEN,
     X,
     Y,
@@ -62,10 +65,10 @@ from trsim.solve.record import (
     RATE,
     WORK_PROJECTION,
 )
-from trsim.solve.turns import WHOLE, fastest
+from trsim.solve.turns import MOST_WAVES, WHOLE, fastest, swings
 
 PARTS = 8  # of a step that is looked at, for each TURN
-TURN = 0.5  # rad
+TURN, WAVE = 0.5, 2.0  # rad
 DIPS = 12  # looks at the bottom of a dip
 NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
 AHEAD = 1e-4  # of a step: how far the rate of a channel looks
@@ -86,9 +89,11 @@ def sections(s, r, b, method, t, h, t1, projected, built, event):
     factorisations, contradictory = s.status[2], s.status[3]
     interpolate = method[INTERPOLATE_AT]
     ends_known(s, r, b, t, t1, method[LAST_AT], built, event)
-    parts = parts_of(s, r, b, t1 - t, method[LAST_AT])
+    still = parts_of(s, r, b, t1 - t, method[LAST_AT])
+    swinging = waves_of(s, r, b, t, t1)
     for k in range(s.section.shape[0]):
         kind = s.section[k, KIND]
+        parts = max(still, swinging) if s.section[k, WAVES] > 0 else still
         if kind == TOUCH:
             if event > 0 and touches(s, r, b, s.section[k, WHEN]):
                 point(s, r, b, k, t1, b.out)
@@ -245,6 +250,15 @@ def parts_of(s, r, b, length, last):
     """In how many parts a step is looked at."""
     fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
     return PARTS * (1 + int(min(fast * length, 2.0 * WHOLE) / TURN))
+
+
+@internal
+def waves_of(s, r, b, t, t1):
+    """In how many parts it is looked at where a channel swings with a function."""
+    if s.wave.size == 0:
+        return PARTS
+    w = swings(s, t, t1 - t, r.branch, r.turning, b.branch1, b.turning1)
+    return PARTS * (1 + int(min(w * (t1 - t), 2.0 * MOST_WAVES) / WAVE))
 
 
 @internal

@@ -13,10 +13,13 @@ Angles of bodies in the plane are sums of coordinates and have no such bound.
 from math import sqrt
 
 from trsim.elements.vectors import internal
+from trsim.laws.functions import swing
+from trsim.solve.record import T
 from trsim.solve.spread import coordinates_of
 
 MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
 WHOLE = 50.0  # rad: the most a body turns by in a step where points of sections are looked for
+MOST_WAVES = 200.0  # rad: the same of waves in functions that make a section's channel swing
 NEXT = 0.9  # of MOST: what the next step may turn a joint by at its present rate
 
 
@@ -42,9 +45,21 @@ def longest_turn(s, r):
     longest = 1e300
     if s.section.shape[0] > 0:
         longest = WHOLE / max(fastest(s, r.y, r.yd), 1e-300)
+    if s.wave.size > 0:
+        w = swings(s, r.clock[T], 1.0, r.branch, r.turning, r.branch, r.turning)
+        longest = min(longest, MOST_WAVES / max(w, 1e-300))
     for n in range(s.wound.size):
         longest = min(longest, NEXT * MOST / max(abs(r.turning[s.wound[n]]), 1e-300))
     return longest
+
+
+@internal
+def swings(s, t, length, S0, rate0, S1, rate1):
+    """The fastest wave, rad/s, in what makes channels of sections swing: between two instants."""
+    most = 0.0
+    for k in range(s.wave.size):
+        most = max(most, swing(s.tab, s.wave[k], t, length, S0, rate0, S1, rate1))
+    return most
 
 
 @internal
