@@ -8,6 +8,8 @@ For a prescribed velocity the state holds the prescribed place, its integral fro
 the motion began; f is the velocity then.
 """
 
+import numpy as np
+
 from trsim.elements.contract import compiled
 from trsim.elements.frames import helper
 from trsim.elements.signatures import A1, f8, i8, void
@@ -19,9 +21,17 @@ K, C, SIGN = 9, 10, 11  # of par
 
 
 @compiled(void(A1, i8, f8, A1))
-def rates_at(tab, offset, t, out):
+def write_rates(tab, offset, t, out):
     """out = f, f', f'' of a function of tab at t."""
     out[0], out[1], out[2] = motion(tab, offset, t)
+
+
+def rates_at(tab: np.ndarray, offset: int, t: float) -> tuple[float, float, float]:
+    """f, f', f'' of a function of tab at t."""
+    out = np.zeros(3)
+    write_rates(tab, offset, t, out)
+    f, f_dot, f_ddot = out.tolist()
+    return f, f_dot, f_ddot
 
 
 @helper

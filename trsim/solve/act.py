@@ -145,9 +145,8 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
         if before == LOOSE:
             r.y[first + new] = work.S[instance.row.con[ENTRY], 0]
         elif old < 0:
-            prescribed = np.zeros(3)
-            rates_at(work.tab, int(work.con[e, MOTION]), t - float(r.mem[e, SINCE]), prescribed)
-            r.y[first + new] = prescribed[0]
+            since = t - float(r.mem[e, SINCE])
+            r.y[first + new] = rates_at(work.tab, int(work.con[e, MOTION]), since)[0]
     if piston_of(instance) >= 0:
         slip = int(model.con[e, SLIP])
         if before == LOOSE:
@@ -168,9 +167,8 @@ def take_along(work: Scene, model: Any, r: Record, e: int, instance: Any) -> Non
 
 def prescribed_rate(model: Any, e: int, since: float) -> float:
     """Of the motion drive e follows, that long after its begin."""
-    prescribed = np.zeros(3)
-    rates_at(model.tab, int(model.con[e, MOTION]), since, prescribed)
-    return float(prescribed[0 if model.con[e, STATE] >= 0 else 1])
+    f, f_dot, _ = rates_at(model.tab, int(model.con[e, MOTION]), since)
+    return f if model.con[e, STATE] >= 0 else f_dot
 
 
 def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64]) -> None:

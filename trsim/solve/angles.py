@@ -44,9 +44,7 @@ def held_at(mechanism: Mechanism) -> Iterator[tuple[int, float]]:
         if not rigid or row.is_force or row.con[OWN_STATE] >= 0:
             continue
         if row.con[ENTRY] in model.wound:
-            place = np.zeros(3)
-            rates_at(model.tab, row.con[OWN_MOTION], 0.0, place)
-            yield row.con[ENTRY], float(place[0])
+            yield row.con[ENTRY], rates_at(model.tab, row.con[OWN_MOTION], 0.0)[0]
 
 
 def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float]:
@@ -64,12 +62,11 @@ def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float
         row, rest = instance.row, resting.get(instance.name)
         if instance.section != "drives" or not row.is_force or rest is None:
             continue
-        f = np.zeros(3)
         if rest.con[OWN_STATE] >= 0:
-            f[0] = y[model.n_q + model.n_v + rest.con[OWN_STATE]]
+            f = float(y[model.n_q + model.n_v + rest.con[OWN_STATE]])
         else:
-            rates_at(model.tab, rest.con[OWN_MOTION], 0.0, f)
-        gap = float(f[0] - w.S[rest.con[ENTRY], 0])
+            f, _, _ = rates_at(model.tab, rest.con[OWN_MOTION], 0.0)
+        gap = f - float(w.S[rest.con[ENTRY], 0])
         if row.con[OWN_STATE] >= 0:
             found[row.con[OWN_STATE]] = gap
         if (piston := piston_of(instance)) >= 0:

@@ -149,10 +149,9 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
         if instance.section != "drives" or not instance.row.is_force:
             continue
         i, j, entry, state, _, offset = instance.row.con[:6]
-        prescribed = np.zeros(3)
-        rates_at(mechanism.model.tab, offset, 0.0, prescribed)
+        f, f_dot, _ = rates_at(mechanism.model.tab, offset, 0.0)
         gradient = rate_of_entry(mechanism.model, y, entry, (i, j))
-        found.append((gradient, float(prescribed[0 if state >= 0 else 1])))
+        found.append((gradient, f if state >= 0 else f_dot))
     return found
 
 
