@@ -358,3 +358,47 @@ def test_bodies_that_initial_leaves_free_move_least(R, planar):
     plane = run(two_rods(ORDINARY, "true", more="initial: {top: 0.3}"))
     assert r["a"][0] == pytest.approx(0.3, abs=1e-12)
     assert r["b"][0] == pytest.approx(plane["b"][0], abs=1e-10)
+
+
+CRANKED = """
+planar: {planar}
+bodies:
+  crank: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [0.1, 0]}}
+  rod: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [0.6, 0]}}
+  piston: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [1, 0]}}
+joints:
+  pin: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  knee: {{type: revolute, bodies: [crank, rod], at: [0.2, 0]}}
+  wrist: {{type: revolute, bodies: [rod, piston], at: [1, 0]}}
+  guide: {{type: prismatic, bodies: [ground, piston], axis: [1, 0, 0]}}
+sensors: {{angle: {{joint: pin}}}}
+{more}
+solver: {{end: 0.1}}
+"""
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize(
+    "more",
+    ["initial: {{pin: {}}}", 'drives: {{motor: {{joint: pin, position: "{} + 0*t"}}}}'],
+    ids=["initial", "drive"],
+)
+@pytest.mark.parametrize("place", [3.3, 20.0, -100.0, 1000.0])
+def test_a_start_on_any_turn(place, more, planar):
+    """Angles of joints count turns; alone, and in a linkage that goes round."""
+    r = run(CRANKED.format(planar=planar, more=more.format(place)))
+    assert r["angle"][0] == pytest.approx(place, abs=1e-9)
+    at = 0.2 * np.cos(place) + np.sqrt(0.64 - (0.2 * np.sin(place)) ** 2)
+    assert r["piston.position"][0, 0] == pytest.approx(at, abs=1e-9)
+    assert r["crank.position"][0, :2] == pytest.approx(
+        [0.1 * np.cos(place), 0.1 * np.sin(place)], abs=1e-9
+    )
+
+
+@IN_ALL_COPIES
+@pytest.mark.parametrize("more", ["initial: {top: 30}", "drives: {m: {joint: top, position: 30}}"])
+def test_starts_many_turns_away_are_alike(R, planar, more):
+    r = run(two_rods(R, planar, more=more))
+    plane = run(two_rods(ORDINARY, "true", more=more))
+    assert r["a"][0] == pytest.approx(30.0, abs=1e-9)
+    assert r["b"][0] == pytest.approx(plane["b"][0], abs=1e-8)

@@ -223,8 +223,8 @@ def _newton(
             break
         dx = -step(y, J, phi)
         # a far start must not overshoot: at most 0.3 rad, or 0.3 of the mechanism's size
-        parts = np.abs(dx).reshape(-1, 6)
-        far = max(float(np.max(parts[:, :3])) / model.size, float(np.max(parts[:, 3:])))
+        ways = np.sqrt(np.sum(np.square(dx.reshape(-1, 2, 3)), axis=2))
+        far = max(float(np.max(ways[:, 0])) / model.size, float(np.max(ways[:, 1])))
         y = displaced(model, y, dx * (0.3 / max(far, 0.3)))
     phi = jacobian(model, t, y)[0][some]
     return y, float(np.max(np.abs(phi), initial=0.0))

@@ -1,7 +1,7 @@
 """What goes with positions: the turn every angle is on, and the states that follow a joint."""
 
-from collections.abc import Iterator
 from dataclasses import replace
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -31,20 +31,51 @@ def remember(model: Any, y: Array) -> None:
     model.branch[:] = model.S[:, 0]
 
 
-def held_at(mechanism: Mechanism) -> Iterator[tuple[int, float]]:
-    """Entries of angles in space that rigid drives hold at t = 0, and where.
+def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
+    """y with every angle that a rigid drive holds at t = 0 on the turn on which it is held.
 
-    On the turn on which a drive holds a joint its angle begins: seen from another one a joint would
-    be full turns away from its place, and nothing would bring it nearer.
+    Seen from another one a joint would be full turns away from its place, and nothing would bring
+    it nearer.  In space that is the branch of the angle; in the plane the bodies behind the joint
+    are turned round, as often as it takes.
     """
-    model = mechanism.model
+    model: Any = mechanism.model
+    y = y.copy()
+    sign_of = {int(entry): int(sign) for entry, _, _, sign in model.turn}
     for instance in mechanism.instances:
         row = instance.row
         rigid = instance.section == "drives" and instance.element.key == "drive"
         if not rigid or row.is_force or row.con[OWN_STATE] >= 0:
             continue
-        if row.con[ENTRY] in model.wound:
-            yield row.con[ENTRY], rates_at(model.tab, row.con[OWN_MOTION], 0.0)[0]
+        (i, j), entry = row.con[:2], row.con[ENTRY]
+        place, _, _ = rates_at(model.tab, row.con[OWN_MOTION], 0.0)
+        if entry in model.wound:
+            model.branch[entry] = place
+        elif entry in sign_of:
+            work = workspace(model)
+            poses(work, y)
+            turns = round((place - float(work.S[entry, 0])) / (2.0 * pi)) * sign_of[entry]
+            frames, way = behind(mechanism, i, j)
+            for f in frames if turns else ():
+                y[3 * (f - 1) + 2] += way * turns * 2.0 * pi
+    return y
+
+
+def behind(mechanism: Mechanism, i: int, j: int) -> tuple[frozenset[int], int]:
+    """The frames that turn about frame i when the joint between i and j does, and their way; if
+    they hang on the ground those on its other side, the other way; of a loop frame j only."""
+    joints = [x.row.con[:2] for x in mechanism.instances if x.section == "joints"]
+    for first, other, way in ((j, i, 1), (i, j, -1)):
+        found = {first}
+        while more := {
+            b
+            for pair in joints
+            for a, b in (pair, pair[::-1])
+            if a in found and b not in found and {a, b} != {i, j}
+        }:
+            found |= more
+        if not found & {0, other}:
+            return frozenset(found), way
+    return (frozenset({j}), 1) if j > 0 else (frozenset({i}), -1)
 
 
 def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float]:

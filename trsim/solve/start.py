@@ -31,7 +31,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
-from trsim.solve.angles import follow, held_at, remember, strained, with_scene
+from trsim.solve.angles import follow, on_turns_of_drives, remember, strained, with_scene
 from trsim.solve.bars import as_flexible, as_rigid
 from trsim.solve.blame import refuse_no_number
 from trsim.solve.openings import check_closed
@@ -42,6 +42,7 @@ from trsim.solve.velocities import velocities
 Array = NDArray[np.float64]
 
 CREEP = 1e-2  # of a body's reach: motion over less in a whole run counts as none
+FARTHEST = 1.0  # rad: what a joint is turned by in a step of the way to its initial position
 SETBACKS = 25  # steps of the way to an initial position that may fail, one after the other or not
 
 
@@ -70,8 +71,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     model = mechanism.model
     for name, x in mechanism.coordinates.items():
         model.branch[x.entry] = angles.get(name, x.drawn)
-    for entry, place in held_at(mechanism):
-        model.branch[entry] = place
+    y = on_turns_of_drives(mechanism, y)
     refuse_no_number(mechanism, follow(mechanism, y), np.zeros((len(model.con), N_MEM)))
     phi = jacobian(model, 0.0, follow(mechanism, y))[0]
     moved = float(np.max(np.abs(phi), initial=0.0))
@@ -263,7 +263,10 @@ def approach(
     model = held.model
     place = {s: model.n_q + model.n_v + N_BOOK + k for k, s in enumerate(held.follows) if s >= 0}
     begin = {s: y[place[s]] for s in targets}
-    done, step, residual, failed = 0.0, 1.0 / 64.0, 0.0, 0
+    angles = {x.entry for x in held.coordinates.values() if x.kind == "angle"}
+    turn = max((abs(targets[s] - begin[s]) for s in angles & targets.keys()), default=0.0)
+    most = min(1.0 / 16.0, FARTHEST / max(turn, 1e-300))
+    done, step, residual, failed = 0.0, min(1.0 / 64.0, most), 0.0, 0
     while done < 1.0:
         ahead = min(1.0, done + step)
         trial = y.copy()
@@ -278,7 +281,7 @@ def approach(
         except ModelError as error:
             step *= 0.5
             failed += 1
-            if step < 1e-5 or failed > SETBACKS:
+            if step < 1e-4 * most or failed > SETBACKS:
                 raise ModelError(
                     f"the mechanism cannot be moved to its initial position: {error.what} after "
                     f"{100 * done:.1f} % of the way",
@@ -287,7 +290,7 @@ def approach(
                 ) from None
             continue
         remember(model, trial)
-        y, done, step = trial, ahead, min(2.0 * step, 1.0 / 16.0)
+        y, done, step = trial, ahead, min(2.0 * step, most)
     return y, residual
 
 
@@ -298,7 +301,7 @@ def carried(mechanism: Mechanism, other: Mechanism) -> Array:
     n = mechanism.model.n_q + mechanism.model.n_v
     y = np.zeros(n + other.model.n_z)
     y[:n] = mechanism.y0[:n]
-    return y
+    return on_turns_of_drives(other, y)
 
 
 def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
