@@ -258,7 +258,7 @@ def guess(s, r, b, method, t, h, projected):
     for k in range(b.y2.size):
         b.y2[k] = 0.5 * (r.y[k] + b.y1[k]) + 0.125 * h * (r.yd[k] - b.K[last, k])
     middle = t + 0.5 * h
-    evaluate_inside(s, middle, b.y2, b.rough[0])
+    evaluate_inside(s, r, middle, b.y2, b.rough[0])
     measure(s, middle, b.y2, r.clock[WORK_PROJECTION] + 0.5 * projected, r.clock[ENERGY_0])
     lengths(s, b.inside[0], s.out)
     b.found[0], b.found[1] = 1.0, middle
