@@ -8,7 +8,7 @@ For a prescribed velocity the state holds the prescribed place, its integral fro
 the motion began; f is the velocity then.
 """
 
-import numpy as np
+from typing import Any
 
 from trsim.elements.contract import compiled
 from trsim.elements.frames import helper
@@ -26,8 +26,10 @@ def write_rates(tab, offset, t, out):
     out[0], out[1], out[2] = motion(tab, offset, t)
 
 
-def rates_at(tab: np.ndarray, offset: int, t: float) -> tuple[float, float, float]:
+def rates_at(tab: Any, offset: int, t: float) -> tuple[float, float, float]:
     """f, f', f'' of a function of tab at t."""
+    import numpy as np
+
     out = np.zeros(3)
     write_rates(tab, offset, t, out)
     f, f_dot, f_ddot = out.tolist()

@@ -1,7 +1,7 @@
 """What goes with positions: the turn every angle is on, and the states that follow a joint."""
 
 from dataclasses import replace
-from math import pi
+from math import isfinite, pi
 from typing import Any
 
 import numpy as np
@@ -48,6 +48,8 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
             continue
         (i, j), entry = row.con[:2], row.con[ENTRY]
         place, _, _ = rates_at(model.tab, row.con[OWN_MOTION], 0.0)
+        if not isfinite(place):
+            continue  # refused where the drive is first evaluated
         if entry in model.wound:
             model.branch[entry] = place
         elif entry in sign_of:

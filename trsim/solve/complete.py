@@ -93,7 +93,7 @@ PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 ROUNDING = 1e-15  # of the mechanism's size: a gap is not known better
 NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
 SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
-AS_ONE = 1.0  # times the tolerance, of a step: with so little no stage needs to move
+AS_ONE = 1e-3  # times the tolerance, of a step: with so little no stage needs to move
 
 #                       scene   record  buffers  settings method h built
 COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
@@ -147,6 +147,10 @@ def complete(s, r, b, setting, method, h, built):
                 h, built = shorter, 1 if beyond != 0.0 else 0
                 t1 = reached(setting, t + h + beyond)
             else:
+                if shorter < 0.0:  # the dense output is that of another step by now
+                    call_step(method[STEP_AT], s, r, b, setting, t, h)
+                    land(s, r, b, t + h, b.y1, b.K[last])
+                    build(s, r, b, method[DENSE_AT], t, h)
                 call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
                 t1 = reached(setting, t + theta * h)
@@ -260,7 +264,8 @@ def exact(s, r, b, setting, method, t, h, theta):
     which is off by (late / h)^2 of what changes in it.  Its stages do not, so that its dense output
     would be off by late / h: beyond the tolerance it is built before.
     Returns the length of the step, how much further its end is where the dense output is built, and
-    the work of the projection there; a length of 0 where the interpolant serves: also where
+    the work of the projection there; a length of 0, or of -1 where the dense output was built anew,
+    where the interpolant serves: also where
     Newton's method does not come nearer, as where what is watched turns back close to its value.
     """
     if method[STEP_AT] == 0:
@@ -269,14 +274,14 @@ def exact(s, r, b, setting, method, t, h, theta):
     for c in range(b.root.size):
         if b.root[c] <= theta:
             gap_of = c
-    h1, before = theta * h, 1e300
+    h1, before, nothing = theta * h, 1e300, 0.0
     close = max(PRECISE * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
-            return 0.0, 0.0, 0.0
+            return nothing, 0.0, 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
         if not error < NO_STEP:
-            return 0.0, 0.0, 0.0
+            return nothing, 0.0, 0.0
         projected = land(s, r, b, t + h1, b.y1, b.K[last])
         if gap_of < 0:
             if method[BEYOND_AT] == 0:
@@ -290,20 +295,21 @@ def exact(s, r, b, setting, method, t, h, theta):
         if abs(gap) <= close:
             return h1, 0.0, projected
         if rate == 0.0 or not abs(gap) < NEARER * before:
-            return 0.0, 0.0, 0.0
+            return nothing, 0.0, 0.0
         late, before = gap / rate, abs(gap)
-        if h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[TOLERANCE]) * h1:
+        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[TOLERANCE]) * h1
+        if near and gap_of < s.contact.size:
             beyond = 0.0
             if abs(late) > AS_ONE * setting[TOLERANCE] * h1:
                 build(s, r, b, method[DENSE_AT], t, h1)
-                beyond = -late
+                beyond, nothing = -late, -1.0
             for i in range(b.y1.size):
                 b.y1[i] -= late * b.K[last, i]
             projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])
             if abs(b.gap1[gap_of, 0]) <= close:
                 return (h1, beyond, projected) if beyond != 0.0 else (h1 - late, 0.0, projected)
         h1 -= late
-    return 0.0, 0.0, 0.0
+    return nothing, 0.0, 0.0
 
 
 @internal
