@@ -24,8 +24,8 @@ Reactions are those of the state itself: they do grow like 1/delta; forces of dr
 limits too.  Rows that only unequal masses make hard to tell apart are left alone.  States off the
 rows feel another derivative here than further away, which the error estimate of a step need not
 see: solve/complete.py looks at the energy of such steps.  Where nobody does (scipy's integrators)
-stages take the limit only where rows do depend on each other, and what is measured takes it as
-elsewhere; in open chains, which have no such places, all do.
+stages take the limit only where rows do depend on each other, and what is measured inside
+steps takes it as elsewhere; in open chains, which have no such places, all do.
 """
 
 from collections.abc import Iterable, Sequence

@@ -167,7 +167,7 @@ class Scene(Model):
     # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
     # [3] evaluations with contradictory constraints since the last accepted step,
     # [4] evaluations of the step at hand that took a limit where branches meet,
-    # [5] 1: what is evaluated is the end of a step or will be measured
+    # [5] 1: what is evaluated lies inside a step, and will be measured
     status: I1
 
 

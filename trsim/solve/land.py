@@ -57,7 +57,7 @@ def land(s, r, b, t, y, yd):
         r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
         done += kinetic(s, y) - T0
     flush(y)
-    evaluate_to_measure(s, t, y, yd)
+    evaluate(s, t, y, yd)
     if s.stabilisation == PROJECTION and s.m > 0:
         done += position_work(s, b.y2, y)
     else:
@@ -104,7 +104,10 @@ def evaluate_inside(s, r, t, y, yd):
 
 @internal
 def evaluate_to_measure(s, t, y, yd):
-    """`evaluate`; next to a place where branches meet the limit is taken by every method."""
+    """`evaluate`; next to a place where branches meet the limit is taken by every method.
+
+    Not at the end of a step: scipy takes differences of that derivative and others, for a Jacobian.
+    """
     s.status[5] = 1
     evaluate(s, t, y, yd)
     s.status[5] = 0
