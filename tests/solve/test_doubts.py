@@ -114,3 +114,23 @@ def test_an_open_energy_book_is_told():
 def test_sections_that_a_run_does_not_read_are_told():
     (found,) = told(SOFT + "sweep: {bodies.rod.mass: [1, 2]}")
     assert found.startswith("`sweep`: one run takes the scenario as it stands")
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("recorded", ["*", "b.velocity"])
+@pytest.mark.parametrize(
+    "speed, stiffness, beyond",
+    # the largest turn is speed sqrt(I/k)
+    [(20, 1.0, True), (5, 1e-9, True), (400, 1e-3, True), (9.95, 1.0, True), (9.0, 1.0, False)],
+)
+def test_bushings_turned_over_are_told(speed, stiffness, beyond, recorded, planar):
+    found = told(f"""
+planar: {planar}
+bodies: {{b: {{mass: 1, inertia: [0.1, 0.1, 0.1], angular_velocity: [0, 0, {speed}]}}}}
+forces:
+  mount: {{type: bushing, bodies: [ground, b], at: [0, 0, 0], stiffness: [1, 1, 1],
+          rotational_stiffness: [{stiffness}, {stiffness}, {stiffness}]}}
+output: {{every: 2, channels: ["{recorded}"]}}
+solver: {{end: 2, tolerance: 1e-5}}
+""")
+    assert any("forces.mount: turned by" in text for text in found) == beyond

@@ -8,6 +8,7 @@ import numpy as np
 
 from trsim.assemble.mechanism import Column, Instance
 from trsim.assemble.outputs import energy_columns
+from trsim.elements.bushing import TURN
 from trsim.elements.contract import FIRST_ROW
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
@@ -65,7 +66,8 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
         names = [f"{instance.name}.{c.name}" if c.name else instance.name for c in channels]
         # contacts are always measured: their peaks and steps are part of every result
         anyway = any(map(asked, names)) or instance.row.contact
-        if names and (anyway or any(map(needed, names))):
+        judged = instance.element.judged(instance.row)
+        if names and (anyway or judged or any(map(needed, names))):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
                 add(name, channel.unit, channel.meaning, channel.size, extra=not anyway)
@@ -116,10 +118,18 @@ def compared(columns: list[Column], told: set[str]) -> dict[str, Any]:
 
     for column in columns:
         kin += [number(column)] * column.size
-    vectors = [column for column in columns if is_vector(column)]
+    vectors = [c for c in columns if is_vector(c)]
     kin += [number(column) for column in vectors]
+    turns = [c for c in columns if is_turn(c)]  # judged in any run: behind those that are told
+    kin += [units.setdefault(column.unit, len(units)) for column in turns]
+    vectors += turns
     starts = [column.start for column in vectors]
     return {"vector": np.array(starts, np.int64), "kin": np.array(kin, np.int64)}
+
+
+def is_turn(column: Column) -> bool:
+    """Whether a channel is a turn about any axis, whose angle the run is judged by (doubts.py)."""
+    return column.size == 3 and column.name.endswith(f".{TURN}")
 
 
 def is_vector(column: Column) -> bool:

@@ -9,7 +9,7 @@ A_i are the axes of the stiffnesses, fixed in the first body, A_j the same ones 
 omega is the angular velocity of body j against body i in A_i, theta' = H omega.  Both forces act
 along one line, so angular momentum is kept whatever the slide, and f and m are the gradient of
 (d^T K d + theta^T K_r theta)/2.  theta is that of a turn below pi; beyond, it jumps to the turn
-from the other side.  A rail is a bushing without stiffness and damping along it.
+from the other side, and the run says so (doubts.py).  A rail is a bushing without stiffness and damping along it.
 """
 
 from typing import Annotated, ClassVar
@@ -26,6 +26,7 @@ from trsim.frame import across
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
 NONE = (0.0, 0.0, 0.0)
+TURN = "rotation_vector"
 STIFFNESS, DAMPING, ROTATIONAL = 24, 27, 30  # par, after the arms and the axes in both bodies
 
 
@@ -169,6 +170,11 @@ def measure(t, scene, a, b):
             out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
 
 
+def turns_against(row):
+    """Whether something acts against turns, which has a meaning below half a turn only."""
+    return any(row.par[ROTATIONAL : ROTATIONAL + 3])
+
+
 def reach(row):
     """Its matrices of stiffness and damping; each acts in the plane where it couples no z to it."""
     i, j = row.con[:2]
@@ -192,11 +198,12 @@ ELEMENT = Element(
     spec=Bushing,
     pack=pack,
     reach=reach,
+    judged=turns_against,
     channels=(
         Channel("force", "N", "on the second body at its point, world axes", 3),
         Channel("moment", "N*m", "on the second body, world axes", 3),
         Channel("displacement", "m", "of the second body's point, in the axes of the first", 3),
-        Channel("rotation_vector", "rad", "of the second body, in the same axes", 3),
+        Channel(TURN, "rad", "of the second body, in the same axes", 3),
     ),
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""

@@ -166,6 +166,8 @@ class Element:
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
+    # (row) -> whether its channels are measured in any run, recorded or not: something is judged
+    judged: Callable[[Row], bool] = lambda _: False
     n_mem: int = 0
     n_state: int = 0  # entries of z an instance owns
     kernels: dict[str, Compiled] = field(default_factory=dict)

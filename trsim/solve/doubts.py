@@ -4,6 +4,7 @@ start      a position or a velocity is not the one that was given
 contacts   pressed in by more than their law is made for: a half width of the contact of half the
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                          solve/strained.py
+bushings   turned to half a turn, beyond which theirs is the one from the other side
 meshes     of bars bent further than their elements follow                   solve/mesh_error.py
 waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
@@ -12,7 +13,7 @@ rows       that were left out as redundant are open, though not so far that the 
 """
 
 from collections.abc import Iterator
-from math import pi
+from math import degrees, pi
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import undecided
 from trsim.assemble.reduce import world_rates
+from trsim.elements.bushing import TURN
 from trsim.elements.contract import STORED
 from trsim.elements.scene import PROJECTION, scene
 from trsim.solve.bar_scales import largest
@@ -41,6 +43,7 @@ MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits
 VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
 CHANGED = 1e-3  # of a speed that was given
 OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
+NEXT_TO_HALF = 0.1  # rad: so near to half a turn a bushing is told
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
 GIVEN = 1e-2  # of it: more done by projection says so too
@@ -57,6 +60,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *unread(scenario),
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
+        *of_bushings(mechanism, outcome.peaks),
         *of_meshes(scenario, mechanism, outcome.bent),
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_waves(mechanism, outcome),
@@ -141,6 +145,22 @@ def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
                 f"{when:.4g} s, {depth / c:.2g} of the clearance ({1e3 * c:.3g} mm){radius}; its "
                 f"law holds to about {OF_CLEARANCE:g} and {OF_RADIUS:g} of them: check stiffness, "
                 "moduli and loads"
+            )
+
+
+def of_bushings(mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """Bushings whose moment jumps, or is about to: turns in space cannot be counted."""
+    model, column = mechanism.model, {c.name: c.start for c in mechanism.columns}
+    for instance in mechanism.instances:
+        if instance.element.key != "bushing" or not instance.element.judged(instance.row):
+            continue
+        at = model.vector.tolist().index(column[f"{instance.name}.{TURN}"])
+        angle, when = peaks[model.n_out + at, :2].tolist()
+        if angle > pi - NEXT_TO_HALF:
+            yield (
+                f"forces.{instance.name}: turned by {degrees(angle):.4g} deg at {when:.4g} s; from "
+                "half a turn on its moment is that of the turn from the other side, since turns "
+                "about any axis cannot be counted: a torsion_spring on a hinge counts them"
             )
 
 
