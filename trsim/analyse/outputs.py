@@ -8,7 +8,8 @@ all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of 
                          window of rows, of the steps of a contact, and of the extremes of the run
                          that lie in it
     range                peak - least
-    mean, rms, std       of the rows
+    mean, rms, std       of the rows, each counting alike: sums over n rows by n, no integral over
+                         time, in which the first and the last row count half
     fluctuation          rms of what is faster than 10 ms (fluctuation.py)
     final                last row
     dispersion:SECTION   sqrt(var x + var y) of the points of a section; SECTION.x, SECTION.y: one

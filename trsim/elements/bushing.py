@@ -9,7 +9,8 @@ A_i are the axes of the stiffnesses, fixed in the first body, A_j the same ones 
 omega is the angular velocity of body j against body i in A_i, theta' = H omega.  Both forces act
 along one line, so angular momentum is kept whatever the slide, and f and m are the gradient of
 (d^T K d + theta^T K_r theta)/2.  theta is that of a turn below pi; beyond, it jumps to the turn
-from the other side, and the run says so (doubts.py).  A rail is a bushing without stiffness and damping along it.
+from the other side, and the run says so (doubts.py).  A rail is a bushing without stiffness and
+damping along it.
 """
 
 from typing import Annotated, ClassVar
