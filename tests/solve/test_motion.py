@@ -106,3 +106,22 @@ def test_result_does_not_depend_on_the_order_of_bodies_or_on_the_place():
     moved = here["b.position"][:, :2] @ R.T + shift
     assert there["b.position"][:, :2] == pytest.approx(moved, abs=1e-8)
     assert there["A.reaction"][:, :2] == pytest.approx(here["A.reaction"][:, :2] @ R.T, abs=1e-5)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("motion", ['velocity: "0*t"', 'position: "smoothstep(t)"'])
+def test_what_rests_is_not_stiff(motion, planar):
+    """A pendulum that hangs still, and a slide that a drive holds against a part of its weight."""
+    r = run(f"""
+planar: {planar}
+gravity: [0, -9.81, 0]
+bodies:
+  pendulum: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, -0.5]}}
+  sledge: {{mass: 1, inertia: [0.1, 0.1, 0.1], at: [2, 0]}}
+joints:
+  hinge: {{type: revolute, bodies: [ground, pendulum], at: [0, 0]}}
+  slide: {{type: prismatic, bodies: [ground, sledge], axis: [1, 0.3, 0]}}
+drives: {{motor: {{joint: slide, {motion}}}}}
+solver: {{end: 30, tolerance: 1e-6}}
+""")
+    assert r.outcome.statistics["method_switches"] == 0

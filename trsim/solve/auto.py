@@ -50,6 +50,7 @@ STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
 DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
 NEAR, CALM = 3.0, 3.5  # h rho: where steps of DOP853 on contacts are watched, what they are held to
 EASY = 3.0  # h rho at which the explicit method takes steps of the same length
+SEEN = 1e-4  # of the error allowed: steps at the limit of stability change by about all of it
 ITERATIONS = 12  # of the vector iteration
 
 
@@ -133,7 +134,10 @@ def change(s, r, b, method, load):
 
 @internal
 def explicit_rate(s, r, b, h):
-    """rho, 1/s: how much the derivative changes with the state, in the units of the error."""
+    """rho, 1/s: how much the derivative changes with the state, in the units of the error.
+
+    0 where what changes is SEEN by no tolerance: of bodies at rest a quotient of two roundings.
+    """
     K, weight = b.K, b.weight
     top = bottom = 0.0
     for c in range(r.y.size):
@@ -144,7 +148,7 @@ def explicit_rate(s, r, b, h):
                 away += (A[12, k] - A[11, k]) * K[k, c]
             top += ((K[12, c] - K[11, c]) * weight[c]) ** 2
             bottom += (h * away * weight[c]) ** 2
-    return sqrt(top / bottom) if bottom > 0.0 else 0.0
+    return sqrt(top / bottom) if bottom > 0.0 and h * sqrt(top) > SEEN else 0.0
 
 
 @internal
