@@ -448,3 +448,43 @@ def test_what_cannot_be_done_ends_the_run(do, reason):
     r = run(text + "drives: {motor: {joint: slide, velocity: 2}}", fails=True)
     assert r.outcome.reason.startswith("event 'e'") and reason in r.outcome.reason
     assert r.outcome.time == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("compliance", ["", ", compliance: {stiffness: 1e4, damping: 10}"])
+@pytest.mark.parametrize("motion", ["velocity: 3", 'position: "3*t"'])
+def test_a_released_drive_goes_with_its_joint(motion, compliance):
+    """Until it takes hold again: nothing is prescribed in between."""
+    r = run(f"""
+gravity: [0, -9.81, 0]
+bodies: {{rod: {{mass: 1, inertia: 0.1, at: [0.5, 0]}}}}
+joints: {{pin: {{type: revolute, bodies: [ground, rod], at: [0, 0]}}}}
+drives: {{motor: {{joint: pin, {motion}{compliance}}}}}
+sensors: {{angle: {{joint: pin}}}}
+events:
+  go: {{when: t, value: 0.25, do: {{release: [motor]}}}}
+  stop: {{when: t, value: 0.75, do: {{set: {{motor: {{velocity: 2}}}}}}}}
+output: {{every: 0.01}}
+solver: {{end: 1, tolerance: 1e-9}}
+""")
+    loose, after = (r.t > 0.251) & (r.t < 0.749), r.t > 0.751
+    for channel, of in (("motor.position", "angle"), ("motor.velocity", "angle.rate")):
+        np.testing.assert_array_equal(r[channel][loose], r[of][loose])
+    assert np.all(r["motor.force"][loose] == 0.0) and np.all(r["motor.power"][loose] == 0.0)
+    begun = r.at("angle", 0.75)
+    assert r["motor.position"][after] == pytest.approx(begun + 2 * (r.t[after] - 0.75), abs=1e-7)
+
+
+def test_the_line_of_a_released_actuator_may_be_as_short_as_it_likes():
+    """What it would have prescribed, -0.5 m at the end, is no length of a line."""
+    r = run("""
+bodies: {sled: {mass: 1, inertia: 0.1, at: [0.5, 0]}}
+joints: {rail: {type: prismatic, bodies: [ground, sled], axis: [1, 0, 0]}}
+drives: {jack: {type: actuator, bodies: [ground, sled], points: [[0, 0], [0.5, 0]], velocity: -1,
+                stiffness: 1e5, damping: 100}}
+forces: {stop: {type: spring_damper, bodies: [ground, sled], points: [[2, 0], [0.5, 0]],
+                stiffness: 0, damping: 50}}
+events: {go: {when: t, value: 0.2, do: {release: [jack]}}}
+solver: {end: 1, tolerance: 1e-8}
+""")
+    loose = r.t > 0.201
+    np.testing.assert_array_equal(r["jack.position"][loose], r["jack.stroke"][loose])

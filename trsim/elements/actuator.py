@@ -32,7 +32,7 @@ from trsim.elements.contract import (
     kernel,
 )
 from trsim.elements.frames import distance_row, helper, line, push
-from trsim.elements.prescribed import MOTION, SIGN, STATE, C, K, prescribed
+from trsim.elements.prescribed import MOTION, SIGN, STATE, C, K, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
 
@@ -158,23 +158,26 @@ def constraint(t, scene, a, b):
 
 @helper
 def state_of(t, scene, e):
-    """Thrust, force of the supply on the piston, piston u and u', f' and f'' of instance e.
+    """Thrust, force of the supply on the piston, piston u and u', f, f' and f'' of instance e.
 
-    Reads the stroke and its rate from S.  Without a supply the piston is where f puts it.
+    Reads the stroke and its rate from S.  Without a supply the piston is where f puts it, and once
+    it is released f where the stroke is; a supply goes on driving a piston that was released.
     """
     S, z, con, par, mem = scene.S, scene.z, scene.con, scene.par, scene.mem
     f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, scene.tab, con[e, STATE], con[e, MOTION])
+    s = con[e, 2]
+    if con[e, PLACE] < 0 and not holds(con, par, e):
+        f, f_dot, f_ddot = S[s, 0], S[s, 1], 0.0
     u, u_dot = f, f_dot
     if con[e, PLACE] >= 0:
         u, u_dot = z[con[e, PLACE]], f_dot + z[con[e, SLIP]]
-    s = con[e, 2]
     if par[e, LENGTH] + u <= 0.0:
         u = nan  # no line has such a length: the run ends here, and says whose it is
     P = -par[e, K] * (S[s, 0] - u) - par[e, C] * (S[s, 1] - u_dot)
     behind = -par[e, SUPPLY] * (u - f) - par[e, SUPPLY_DAMPING] * (u_dot - f_dot)
     if con[e, PLACE] < 0:
         behind = P
-    return P, behind, u, u_dot, f_dot, f_ddot
+    return P, behind, u, u_dot, f, f_dot, f_ddot
 
 
 @kernel
@@ -183,7 +186,7 @@ def force(t, scene, a, b):
         scene.X, scene.V, scene.S, scene.con, scene.par, scene.F, scene.zd,
     )  # fmt: skip
     for e in range(a, b):
-        P, behind, _, u_dot, f_dot, f_ddot = state_of(t, scene, e)
+        P, behind, _, u_dot, _, f_dot, f_ddot = state_of(t, scene, e)
         if con[e, STATE] >= 0:
             zd[con[e, STATE]] = f_dot
         if con[e, PLACE] >= 0:
@@ -206,7 +209,7 @@ def force(t, scene, a, b):
 def gap(t, scene, a, b):
     S, con, par, g = scene.S, scene.con, scene.par, scene.gap
     for e in range(a, b):
-        _, behind, _, u_dot, f_dot, _ = state_of(t, scene, e)
+        _, behind, _, u_dot, _, f_dot, _ = state_of(t, scene, e)
         sign = 1.0 if behind > 0.0 else -1.0
         g[e, 0] = sign * behind - par[e, STALL]
         # of the spring alone: that of the damper takes accelerations
@@ -232,15 +235,12 @@ def energy(t, scene, a, b):
 @kernel
 def measure(t, scene, a, b):
     X, V, S, lam, con, par = scene.X, scene.V, scene.S, scene.lam, scene.con, scene.par
-    col, out, mem = scene.wanted, scene.out, scene.mem
+    col, out = scene.wanted, scene.out
     for e in range(a, b):
         o = col[e]
         if o < 0:
             continue
-        P, behind, u, _, f_dot, _ = state_of(t, scene, e)
-        f, _, _ = prescribed(
-            t - mem[e, SINCE], scene.z, scene.tab, con[e, STATE], con[e, MOTION]
-        )  # fmt: skip
+        P, behind, u, _, f, f_dot, _ = state_of(t, scene, e)
         if con[e, 3] >= 0:
             P = -lam[con[e, 3]]
             behind = P
@@ -259,7 +259,7 @@ CHANNELS = (
     Channel("reaction", "N", "force on the second body, world axes", 3),
     Channel("stroke", "m", "how much longer it is than drawn"),
     Channel("stroke_rate", "m/s", "its rate"),
-    Channel("position", "m", "prescribed stroke"),
+    Channel("position", "m", "prescribed stroke; its own once released"),
     Channel("velocity", "m/s", "its rate"),
     Channel("power", "W", "given to the mechanism"),
 )

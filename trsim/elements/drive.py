@@ -24,7 +24,7 @@ from trsim.elements.contract import (
     kernel,
 )
 from trsim.elements.frames import along_row, arm, cross, dot, helper, push, separation, spin, twist
-from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, prescribed
+from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, holds, prescribed
 from trsim.fields import Function, Spec, Unit
 
 
@@ -153,7 +153,7 @@ def force(t, scene, a, b):
             continue
         f, f_dot, _ = prescribed(t - mem[e, SINCE], z, tab, state, con[e, MOTION])
         if state >= 0:
-            zd[state] = f_dot
+            zd[state] = f_dot if holds(con, par, e) else 0.0
         if k > 0.0:
             i, j, s = con[e, 0], con[e, 1], con[e, 2]
             slip = S[s, 1] - f_dot
@@ -201,6 +201,8 @@ def measure(t, scene, a, b):
             continue
         f, f_dot, _ = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
         s = con[e, 2]
+        if not holds(con, par, e):
+            f, f_dot = S[s, 0], S[s, 1]
         if con[e, 3] >= 0:
             pull = -lam[con[e, 3]]
         else:
@@ -219,7 +221,9 @@ ELEMENT = Element(
     rows=("motion",),
     channels=(
         Channel("force", "drive", "sign times the force or torque on the second body"),
-        Channel("position", "coordinate", "prescribed coordinate of the joint"),
+        Channel(
+            "position", "coordinate", "prescribed coordinate of the joint; its own once released"
+        ),
         Channel("velocity", "coordinate/s", "its rate"),
         Channel("power", "W", "given to the mechanism"),
     ),
