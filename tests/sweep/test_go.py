@@ -16,6 +16,7 @@ import pytest
 from tests import small
 from tests.sizes import size
 from trsim.errors import FileError, UsageError
+from trsim.store.lock import writing
 from trsim.store.read import verify
 from trsim.sweep import job, local
 from trsim.sweep.go import WHOLE, Shard, differing, engine, go, needs
@@ -320,6 +321,24 @@ def test_killed_at_any_time(scenario, tmp_path):
     assert contents(stormy) == contents(calm)
     left = sorted(path.name for path in (stormy / "cases").iterdir())
     assert left == sorted(path.name for path in (calm / "cases").iterdir())
+
+
+def test_what_a_killed_sweep_left_unfinished_is_removed(copy, scenario):
+    """Plans and indices are written under another name: it is the kill that leaves them."""
+    plan_text, index = (copy / "plan.json").read_bytes(), (copy / "index.csv").read_bytes()
+    left = {"plan.json.4711": plan_text[:50], "plan.json.4711-1": plan_text, "plan.json.12": b"",
+            "index.csv.99": index[:5], "index.csv.98-2": index}  # fmt: skip
+    others = {"plan.json.2": b"mine", "plan.json.old": plan_text, "index.csv.7": b"other,table\n"}
+    for name, text in (left | others).items():
+        (copy / name).write_bytes(text)
+    (copy / "plan.json.3").symlink_to(copy / "plan.json")
+    with writing(copy / "ledger-2of2.jsonl"):  # another shard, which may be writing them
+        made(scenario, copy, shard=Shard(1, 2))
+    assert all((copy / name).exists() for name in left)
+    made(scenario, copy)
+    assert not any((copy / name).exists() for name in left)
+    assert all((copy / name).read_bytes() == text for name, text in others.items())
+    assert (copy / "plan.json.3").is_symlink()
 
 
 def test_interrupted(scenario, tmp_path):

@@ -6,19 +6,23 @@ import json
 import os
 import re
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError, UsageError
+from trsim.store.own import remove
 from trsim.store.target import Kind, fresh, headed, replaceable
 from trsim.sweep.ledger import WORD, Entry, in_a_line
 from trsim.sweep.plan import CASE, Plan
 from trsim.sweep.values import value
 
 FORMAT, VERSION = "trsim sweep", 1
+NUMBERED = re.compile(r"\.\d+(-\d+)?")
 STARTED = re.compile(r"ledger(-\d+of\d+)?\.jsonl(\.lock)?|plan\.json\.\d+(-\d+)?")
-INDEX = headed("name", "status", "reason")
-PLAN = Kind("plan of a sweep", lambda start: start.startswith(b'{"format": "trsim sweep"'))
+TITLES, FIRST = ("name", "status", "reason"), b'{"format": "trsim sweep"'
+INDEX = headed(*TITLES)
+PLAN = Kind("plan of a sweep", lambda start: start.startswith(FIRST))
 NEEDED = {"version", "source", "engine", "keys", "units", "method", "samples", "seed", "cases"}
 KINDS = {"source": str, "engine": str, "keys": list, "units": dict, "written": dict, "method": str,
          "samples": int, "seed": int, "cases": list}  # fmt: skip
@@ -39,6 +43,27 @@ def see_usable(folder: Path) -> None:
         raise UsageError(what, "Name another one with -o.")
     for name, kind in (("index.csv", INDEX), ("plan.json", PLAN)):
         replaceable(folder / name, kind)
+
+
+def begun(what: str, first: bytes) -> Kind:
+    """Files that begin so, or were left before they did."""
+    return Kind(f"{what} that was begun", lambda start: first.startswith(start[: len(first)]))
+
+
+# under another name until they are complete (store/target.py)
+UNFINISHED = {
+    "plan.json": begun("plan", FIRST),
+    "index.csv": begun("index", ",".join(TITLES).encode()),
+}
+
+
+def remove_unfinished(folder: Path) -> None:
+    """Remove plans and indices whose writers were killed.  Only for who is alone in the folder."""
+    for name, kind in UNFINISHED.items():
+        for path in folder.glob(f"{name}.*"):
+            if NUMBERED.fullmatch(path.name.removeprefix(name)):
+                with suppress(FileError):  # something else with such a name stays
+                    remove(path, kind)
 
 
 def _of_a_start(path: Path) -> bool:

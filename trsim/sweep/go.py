@@ -11,7 +11,13 @@ from trsim.store.checkpoint import sources
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.own import remove
 from trsim.store.target import LOCK, make, told
-from trsim.sweep.folder import read_plan, see_usable, write_index, write_plan
+from trsim.sweep.folder import (
+    read_plan,
+    remove_unfinished,
+    see_usable,
+    write_index,
+    write_plan,
+)
 from trsim.sweep.job import task
 from trsim.sweep.ledger import Entry, Ledger, entries, stamp
 from trsim.sweep.needed import Need, need
@@ -62,7 +68,7 @@ def go(
     mine = folder / f"ledger{shard.name and '-'}{shard.name}.jsonl"
     with writing(mine):
         see_alone(plan, folder, shard, mine)
-        sweep_out(folder)
+        sweep_out(folder, mine)
         write_plan(folder, plan, engine)
         with told(folder):
             ledger = Ledger(folder, shard.name)
@@ -85,8 +91,14 @@ def see_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
             refuse_if_written(other)
 
 
-def sweep_out(folder: Path) -> None:
-    """Remove what processes that were killed left beside results that are complete: locks."""
+def sweep_out(folder: Path, mine: Path) -> None:
+    """Remove what processes that were killed left: locks beside results that are complete, and
+    unfinished plans and indices, unless another shard may be writing one."""
+    with suppress(FileError):
+        for lock in folder.glob("ledger*.jsonl.lock"):
+            if (other := lock.with_name(lock.name.removesuffix(".lock"))) != mine:
+                refuse_if_written(other)
+        remove_unfinished(folder)
     for lock in (folder / "cases").glob("*.h5.lock"):
         with suppress(FileError):  # of a case that is being run, or no lock
             refuse_if_written(lock.with_name(lock.name.removesuffix(".lock")))
