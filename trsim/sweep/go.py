@@ -91,7 +91,7 @@ def see_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
             refuse_if_written(other)
 
 
-def sweep_out(folder: Path, mine: Path) -> None:
+def sweep_out(folder: Path, mine: Path | None = None) -> None:
     """Remove what processes that were killed left: locks beside results that are complete, and
     unfinished plans and indices, unless another shard may be writing one."""
     with suppress(FileError):
