@@ -310,7 +310,8 @@ output: {{every: {every}}}
 
 # many channels turn in few long steps; one is met where another was looked for
 DRAWN = [("chain_planar", 0), ("chain_planar", 2), ("loop", 0), ("loop", 9), ("loop", 13),
-         ("chain_spatial", 0), ("starts", 11), ("events", 0)]  # fmt: skip
+         ("chain_spatial", 0), ("starts", 11), ("events", 0), ("clearance", 2),
+         ("stops", 4)]  # fmt: skip
 
 
 @pytest.mark.parametrize(("family", "seed"), DRAWN)

@@ -319,6 +319,8 @@ def build(
         n_out=0,
         vector=np.zeros(0, np.int64),
         kin=np.zeros(0, np.int64),
+        least=np.zeros(0),
+        shared=np.zeros(0, np.int64),
         **watched(at.switches, size),
         **features(at, instances),
         steep=steep(at, instances),

@@ -9,7 +9,7 @@ import numpy as np
 from trsim.assemble.mechanism import Column, Instance
 from trsim.assemble.outputs import energy_columns
 from trsim.elements.bushing import TURN
-from trsim.elements.contract import FIRST_ROW
+from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 
@@ -56,9 +56,10 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
     def needed(name: str) -> bool:
         return asked(name) or name in shown
 
-    def add(name: str, unit: str, meaning: str, size: int, extra: bool = False) -> None:
+    def add(name: str, channel: Channel, extra: bool = False) -> None:
         nonlocal width
-        columns.append(Column(name, unit, meaning, width, size, asked(name), extra))
+        _, unit, meaning, size, least = channel
+        columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least))
         width += size
 
     for e, instance in enumerate(instances):
@@ -70,17 +71,17 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
         if names and (anyway or judged or any(map(needed, names))):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
-                add(name, channel.unit, channel.meaning, channel.size, extra=not anyway)
+                add(name, channel, extra=not anyway)
     for e, instance in enumerate(instances):
         names = [f"{instance.name}.{c.name}" for c in instance.element.reactions]
         if any(map(needed, names)):
             extra = not any(map(asked, names))
             joints.append((e, FIRST_ROW, len(instance.element.rows), width))
             for name, channel in zip(names, instance.element.reactions, strict=True):
-                add(name, channel.unit, channel.meaning, channel.size, extra)
+                add(name, channel, extra)
     energy = width
     for name in energy_columns(model.jumps):
-        add(f"energy.{name}", "J", "energy book", 1)
+        add(f"energy.{name}", Channel(name, "J", "energy book"))
     unused = [p for p in patterns if not any(matches(c.name, (p,)) for c in columns)]
     if unused:
         raise ScenarioError(
@@ -123,8 +124,15 @@ def compared(columns: list[Column], told: set[str]) -> dict[str, Any]:
     turns = [c for c in columns if is_turn(c)]  # judged in any run: behind those that are told
     kin += [units.setdefault(column.unit, len(units)) for column in turns]
     vectors += turns
-    starts = [column.start for column in vectors]
-    return {"vector": np.array(starts, np.int64), "kin": np.array(kin, np.int64)}
+    of_forces = [column for column in columns if column.unit in ("N", "N*m")]
+    shared = [column.start + k for column in of_forces for k in range(column.size)]
+    least = [column.least for column in columns for _ in range(column.size)]
+    return {
+        "vector": np.array([column.start for column in vectors], np.int64),
+        "kin": np.array(kin, np.int64),
+        "least": np.array([*least, *(0.0 for _ in vectors)]),
+        "shared": np.array(shared, np.int64),
+    }
 
 
 def is_turn(column: Column) -> bool:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ class Column(NamedTuple):
     size: int
     wanted: bool
     for_points: bool = False  # measured only because a section or a portrait shows it
+    least: float = -inf  # what its definition alone keeps it above, or at
 
 
 class Section(NamedTuple):

@@ -35,6 +35,8 @@ OUTPUTS = (
     "section_at",
     "vector",
     "kin",
+    "least",
+    "shared",
 )
 
 

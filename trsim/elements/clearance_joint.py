@@ -240,7 +240,9 @@ def contact_forces(scene, e):
     i, j = con[e, 0], con[e, 1]
     c_i, c_j = touching(p_i, p_j, d, n, par[e, R_B] - par[e, C])
     if mem[e, PHASE] == FLIGHT or depth <= 0.0:
-        return 0.0, 0.0, 0.0, 0.0, c_i, c_j, n, tangent, depth, rate
+        # at the touch itself nothing presses yet, and the journal slides as it will right behind it
+        v_t = slip(V, i, c_i, j, c_j, tangent) if mem[e, PHASE] == CONTACT else 0.0
+        return 0.0, 0.0, v_t, 0.0, c_i, c_j, n, tangent, depth, rate
     first = mem[e, IMPACT_SPEED]
     if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
         first = max(rate, par[e, SLOWEST])
@@ -357,9 +359,9 @@ ELEMENT = Element(
     rows=("axial", "tilt 1", "tilt 2"),
     coordinate="angle",
     channels=(
-        Channel("normal_force", "N", "normal contact force; never negative"),
+        Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
         Channel("friction_force", "N", "on the journal, along axis x normal"),
-        Channel("contact_force", "N", "resultant of normal force and friction"),
+        Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
         Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
         Channel("penetration_rate", "m/s", "positive while approaching"),
         Channel(

@@ -31,6 +31,7 @@ has a branch for it.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import inf
 from typing import NamedTuple
 
 from trsim.elements.machine import Compiled
@@ -80,6 +81,7 @@ class Channel(NamedTuple):
     unit: str
     meaning: str
     size: int = 1
+    least: float = -inf  # what its definition alone keeps it above, or at
 
     def unit_on(self, own: str) -> str:
         """The unit where it depends on what it acts along, a coordinate in `own`: rad or m."""

@@ -77,6 +77,8 @@ def stored(d, K, n, c, form):
     if d <= 0.0:
         return 0.0
     if form == HERTZ:
+        if n == 1.5:
+            return K * d * d * sqrt(d) / 2.5
         return K * d ** (n + 1.0) / (n + 1.0)
     z = d / c
     s = sqrt(z)

@@ -15,7 +15,6 @@ from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import (
     BEYOND_AT,
     CORNERS_AT,
-    DENSE_AT,
     IMPLICIT_AT,
     INTERPOLATE_AT,
     LAST_AT,
@@ -33,7 +32,7 @@ from trsim.solve.calls import (
     call_sections,
     call_step,
 )
-from trsim.solve.dense_output import build, measure_inside
+from trsim.solve.dense_output import build, measure_inside, move_end
 from trsim.solve.events import SAME
 from trsim.solve.features import call_meet
 from trsim.solve.land import land
@@ -93,7 +92,6 @@ PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 ROUNDING = 1e-15  # of the mechanism's size: a gap is not known better
 NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
 SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
-AS_ONE = 1e-3  # times the tolerance, of a step: with so little no stage needs to move
 
 #                       scene   record  buffers  settings method h built
 COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
@@ -111,6 +109,7 @@ def complete(s, r, b, setting, method, h, built):
     a corner may be passed over; the same).
     """
     last, t = method[LAST_AT], r.clock[T]
+    b.moved[0] = 0.0
     t1 = reached(setting, t + h)
     worst, worst_rate = r.clock[WORST_PHI], r.clock[WORST_PHI_DOT]
     projected = land(s, r, b, t1, b.y1, b.K[last])
@@ -144,13 +143,9 @@ def complete(s, r, b, setting, method, h, built):
             shorter, beyond, projected = exact(s, r, b, setting, method, t, h, theta)
             if shorter > 0.0:
                 # from here on h is the length that the dense output is made with
-                h, built = shorter, 1 if beyond != 0.0 else 0
+                h, built = shorter, 0
                 t1 = reached(setting, t + h + beyond)
             else:
-                if shorter < 0.0:  # the dense output is that of another step by now
-                    call_step(method[STEP_AT], s, r, b, setting, t, h)
-                    land(s, r, b, t + h, b.y1, b.K[last])
-                    build(s, r, b, method[DENSE_AT], t, h)
                 call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
                 t1 = reached(setting, t + theta * h)
@@ -162,7 +157,7 @@ def complete(s, r, b, setting, method, h, built):
     inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.count[NEXT_ROW], t1)
     unseen = not inside and t1 - t > LONG * setting[T_END]
     if built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
-        build(s, r, b, method[DENSE_AT], t, h)
+        build(s, r, b, method, t, h)
         built = 1
     if due(r, setting, t1):
         first = r.count[ROWS]
@@ -260,13 +255,12 @@ def exact(s, r, b, setting, method, t, h, theta):
 
     A gap, what is watched, or u of a corner of a function is brought to zero at its end by Newton's
     method; a corner of friction is good enough as found.
-    Where it ends close to the event it is not made again: its end moves on along its tangent,
-    which is off by (late / h)^2 of what changes in it.  Its stages do not, so that its dense output
-    would be off by late / h: beyond the tolerance it is built before.
-    Returns the length of the step, how much further its end is where the dense output is built, and
-    the work of the projection there; a length of 0, or of -1 where the dense output was built anew,
-    where the interpolant serves: also where
-    Newton's method does not come nearer, as where what is watched turns back close to its value.
+    Where it ends close to a contact's event it is not made again: its end moves on along its
+    tangent, which is off by (late / h)^2 of what changes in it.  Its stages do not: its dense
+    output is that of the end before.
+    Returns the length of the step, how much further its end is, and the work of the projection
+    there; a length of 0 where the interpolant serves: also where Newton's method does not come
+    nearer, as where what is watched turns back close to its value.
     """
     if method[STEP_AT] == 0:
         return 0.0, 0.0, 0.0
@@ -274,14 +268,14 @@ def exact(s, r, b, setting, method, t, h, theta):
     for c in range(b.root.size):
         if b.root[c] <= theta:
             gap_of = c
-    h1, before, nothing = theta * h, 1e300, 0.0
+    h1, before = theta * h, 1e300
     close = max(PRECISE * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
-            return nothing, 0.0, 0.0
+            return 0.0, 0.0, 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
         if not error < NO_STEP:
-            return nothing, 0.0, 0.0
+            return 0.0, 0.0, 0.0
         projected = land(s, r, b, t + h1, b.y1, b.K[last])
         if gap_of < 0:
             if method[BEYOND_AT] == 0:
@@ -295,21 +289,17 @@ def exact(s, r, b, setting, method, t, h, theta):
         if abs(gap) <= close:
             return h1, 0.0, projected
         if rate == 0.0 or not abs(gap) < NEARER * before:
-            return nothing, 0.0, 0.0
+            return 0.0, 0.0, 0.0
         late, before = gap / rate, abs(gap)
         near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[TOLERANCE]) * h1
         if near and gap_of < s.contact.size:
-            beyond = 0.0
-            if abs(late) > AS_ONE * setting[TOLERANCE] * h1:
-                build(s, r, b, method[DENSE_AT], t, h1)
-                beyond, nothing = -late, -1.0
-            for i in range(b.y1.size):
-                b.y1[i] -= late * b.K[last, i]
+            move_end(b, last, late)
             projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])
             if abs(b.gap1[gap_of, 0]) <= close:
-                return (h1, beyond, projected) if beyond != 0.0 else (h1 - late, 0.0, projected)
+                return h1, -late, projected
+            b.moved[0] = 0.0
         h1 -= late
-    return nothing, 0.0, 0.0
+    return 0.0, 0.0, 0.0
 
 
 @internal

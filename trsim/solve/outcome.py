@@ -56,6 +56,7 @@ CRAWLS = (
 )
 SPEEDS = ("the velocity", "the angular velocity")
 SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
+MISSED = 0.3  # of the tolerance: what may be missed of an extreme
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
 EXPLICIT = ("auto", "dop853", "scipy:RK45")
@@ -116,6 +117,7 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
             "`every` is the time between two rows; at most 1e9 rows are written",
             ("output", "every"),
         )
+    s[rec.MISSED] = MISSED * solver.tolerance
     s[rec.HELD_TO] = held_to(solver.tolerance)
     located = adaptive if solver.locate_events is None else solver.locate_events
     s[rec.CHOOSES] = float(solver.method == "auto")

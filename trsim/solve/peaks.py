@@ -7,6 +7,10 @@ far is the dense output evaluated, at the place where the polynomial is largest;
 goes through that place too, until it promises nothing more.  What is kept is always a value of the
 dense motion, so a run costs little once its extremes have been met.
 
+A dense output that is not there yet costs several evaluations.  Before it is built the middle of
+the step is guessed by the cubic through both its ends; a channel that with it plainly goes one way,
+or stays plainly within its extremes, has none there.
+
 Samples on two sides of an event have nothing to do with each other: `restart`.
 """
 
@@ -18,12 +22,25 @@ from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import internal
-from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT, LAST_AT
+from trsim.solve.calls import INTERPOLATE_AT, LAST_AT
 from trsim.solve.dense_output import build, measure_inside
 from trsim.solve.land import evaluate_inside
+from trsim.solve.polynomials import (
+    DOUBT,
+    SURE,
+    apart,
+    differences,
+    lay,
+    one_way,
+    polynomial,
+    reach,
+    settled,
+    top,
+)
 from trsim.solve.record import (
     BUFFERS,
     ENERGY_0,
+    MISSED,
     NEWEST,
     PEAK_MAX,
     PEAK_MAX_T,
@@ -32,21 +49,18 @@ from trsim.solve.record import (
     POINTS,
     RECORD,
     SAMPLES,
-    TOLERANCE,
+    STEPS,
     WORK_PROJECTION,
 )
 
-SHARE = 0.3  # of the tolerance, times the range of a channel: what may be missed
-HALF, EASY, PROPORTION = 0.5, 1e-2, 7.0 / 8.0  # from the tolerance of a step to that
-SURE = 0.2  # of that: a polynomial that doubts no more is believed
 ROUNDING = 1e-12  # of the largest channel of its unit: less is no extreme
-BEFORE = 10.0  # times that: the same of the term before the last
 YOUNG = 2  # samples since an event: with fewer the middle between two is looked at in any case
+TINY = 0.02  # of the mean step: in a shorter one nothing turns
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
-DOUBT = 1.0  # of the last term of a polynomial: its error
-PARTS, ROUNDS = 8, 3  # in which the top of a polynomial is looked for
-TRIES = 6  # evaluations for one extreme of one channel
+NOT_LAID = -1.0
+GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be
+TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
 
 #                     scene  record  buffers setting method t  h   at values projected built
 SAMPLE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, A1, f8, i8)
@@ -64,17 +78,17 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
     if known > 0 and at <= r.sampled[head]:
         return built
     before = (head + POINTS - 1) % POINTS
-    apart = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[before])
-    new = (head + 1) % POINTS if apart else head
+    own = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[before])
+    new = (head + 1) % POINTS if own else head
     now = r.sample[new]
     lengths(s, now, values)
     for c in range(now.size):
         if now[c] > r.peak[c, PEAK_MAX] or now[c] < r.peak[c, PEAK_MIN]:
             extreme(r.peak[c], at, now[c])
             grow(s, r, c, now[c])
-    if apart and known > 0:
-        b.found[0] = 0.0
-        if known < YOUNG:
+    if own and known > 0:
+        b.found[0], b.laid[0] = 0.0, NOT_LAID
+        if known < YOUNG and h * r.count[STEPS] >= TINY * t:
             if built == 0:
                 guess(s, r, b, method, t, h, projected)
             else:
@@ -82,7 +96,7 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
         take(s, r, b, at, now, known)
         built = between(s, r, b, setting, method, t, h, at, now, projected, built)
     r.count[NEWEST], r.sampled[new] = new, at
-    if apart:
+    if own:
         r.count[SAMPLES] = min(known + 1, POINTS)
     else:
         anew(s, r, b)
@@ -134,7 +148,7 @@ def anew(s, r, b):
 @internal
 def between(s, r, b, setting, method, t, h, at, now, projected, built):
     """Look for the extremes of all channels between the newest sample and `at`."""
-    share, last = missed(setting), r.sample[r.count[NEWEST]]
+    share, last = setting[MISSED], r.sample[r.count[NEWEST]]
     n, most, steep = min(r.count[SAMPLES] + 1, POINTS), b.node[4], b.node[5]
     for c in range(now.size):
         if s.kin[c] < 0:
@@ -151,18 +165,24 @@ def between(s, r, b, setting, method, t, h, at, now, projected, built):
             above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
         bend += above - below if b.found[0] > 0.0 else 0.0
         enough = max(share * (high - low), ROUNDING * r.largest[s.kin[c]])
-        if above + bend > high + enough:
+        rises = above + bend > high + enough
+        falls = low > s.least[c] and below - bend < low - enough
+        if not (rises or falls):
+            continue
+        found = b.found[0]
+        if found <= POINTS - 2:  # one polynomial through all that was found
+            nodes_of = through(r, b, at, now, c, 1.0)
+            guessed = built == 0 and found > 0.0
+            if guessed and one_way(b.node, nodes_of):
+                continue
+            up, down = reach(b, nodes_of)
+            margin = -GUESSED * apart(b.node) if guessed else enough
+            rises, falls = rises and up > high + margin, falls and down < low - margin
+        if rises:
             built = search(s, r, b, enough, method, t, h, at, now, c, 1.0, projected, built)
-        if below - bend < low - enough:
+        if falls:
             built = search(s, r, b, enough, method, t, h, at, now, c, -1.0, projected, built)
     return built
-
-
-@internal
-def missed(setting):
-    """What may be missed of an extreme, as a part of the range of its channel: SHARE of the
-    tolerance asked for, of which that of a step is made in outcome.py."""
-    return SHARE * EASY * (setting[TOLERANCE] / (HALF * EASY)) ** PROPORTION
 
 
 @internal
@@ -214,20 +234,27 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
     p = r.peak[c]
     for _ in range(TRIES):
         best = p[PEAK_MAX] if sign > 0.0 else -p[PEAK_MIN]
-        n = nodes(r, b, at, now, c, sign)
-        differences(b.node, n)
-        if not highest(b.node, n) > best + enough:
+        guessed = built == 0 and b.found[0] > 0.0
+        n = through(r, b, at, now, c, sign)
+        if guessed and one_way(b.node, n):
             break
         low, high = b.node[0, 1], b.node[0, 0]
-        place, promised = top(b.node, n, low, high)
-        if not promised > best + enough or known_place(b, low, high, place):
+        wanted = best - GUESSED * apart(b.node) if guessed else best + enough
+        place, promised = top(b, n, low, high, wanted)
+        if not promised > wanted:
             break
-        said = polynomial(b.node[0], b.node[2], n, place, 0.0)
-        if n == POINTS and promised - said < SURE * enough and settled(b, place, enough):
-            extreme(p, place, sign * said)
-            break
-        if built == 0 and b.found[0] > 0.0:  # that was a guess
-            b.found[0] = 0.0
+        if not guessed:
+            if known_place(b, low, high, place):
+                break
+            said = polynomial(b.node, n, place, 0.0)
+            if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
+                extreme(p, place, sign * said)
+                break
+        if built == 0 and not guessed:
+            guess(s, r, b, method, t, h, projected)
+            continue
+        if guessed:
+            b.found[0], b.laid[0] = 0.0, NOT_LAID
             built = look(s, r, b, method, t, h, 0.5 * (low + high), projected, built)
             continue
         if int(b.found[0]) + 1 >= b.found.size:
@@ -240,7 +267,7 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
 def look(s, r, b, method, t, h, place, projected, built):
     """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
     if built == 0:
-        build(s, r, b, method[DENSE_AT], t, h)
+        build(s, r, b, method, t, h)
     k = int(b.found[0])
     measure_inside(s, r, b, method[INTERPOLATE_AT], place, (place - t) / h, projected)
     lengths(s, b.inside[k], s.out)
@@ -265,15 +292,6 @@ def guess(s, r, b, method, t, h, projected):
 
 
 @internal
-def settled(b, place, enough):
-    """Whether the last but one term of the polynomial is small too: of a channel that swings faster
-    than it is sampled the last one passes zero by chance."""
-    with_it = polynomial(b.node[0], b.node[2], POINTS - 1, place, 0.0)
-    without = polynomial(b.node[0], b.node[2], POINTS - 2, place, 0.0)
-    return DOUBT * abs(with_it - without) < BEFORE * SURE * enough
-
-
-@internal
 def known_place(b, start, end, place):
     """Whether the channels are known at this place between two samples."""
     near = NEAR * (end - start)
@@ -286,29 +304,48 @@ def known_place(b, start, end, place):
 
 
 @internal
-def nodes(r, b, at, now, c, sign):
-    """Fill b.node with times and values of sign times channel c; how many there are.
+def through(r, b, at, now, c, sign):
+    """The polynomial through sign times channel c, into b.node and b.lattice; how many nodes.
 
     Both samples around come first, then what was found between them, then older samples: the last
     one is what the polynomial may do without.  Where more was found than it can go through, it
     goes through the places around the best one, the two next to it first.
     """
-    times, values = b.node[0], b.node[1]
-    head, found = r.count[NEWEST], int(b.found[0])
-    times[0], values[0] = at, sign * now[c]
-    times[1], values[1] = r.sampled[head], sign * r.sample[head, c]
+    found, values, slope = int(b.found[0]), b.node[1], b.node[2]
     if found > POINTS - 2:
-        return around_best(b, found, c, sign)
-    n = 2
+        values[0], values[1] = sign * now[c], sign * r.sample[r.count[NEWEST], c]
+        b.node[0, 0], b.node[0, 1] = at, r.sampled[r.count[NEWEST]]
+        n = around_best(b, found, c, sign)
+        lay(b, n)
+        b.laid[0] = NOT_LAID
+        differences(b, n)
+        return n
+    if b.laid[0] != found:
+        lay(b, nodes(r, b, at, found))
+        b.laid[0] = found
+    n, head = min(r.count[SAMPLES] + 1 + found, POINTS), r.count[NEWEST]
+    values[0], values[1] = sign * now[c], sign * r.sample[head, c]
+    if found == 0:  # as `take` has them
+        for k in range(n):
+            slope[k] = sign * r.slope[c, k]
+        return n
     for k in range(found):
-        times[n], values[n] = b.found[1 + k], sign * b.inside[k, c]
-        n += 1
-    for k in range(1, r.count[SAMPLES]):
-        if n == POINTS:
-            break
-        old = (head + POINTS - k) % POINTS
-        times[n], values[n] = r.sampled[old], sign * r.sample[old, c]
-        n += 1
+        values[2 + k] = sign * b.inside[k, c]
+    for k in range(2 + found, n):
+        values[k] = sign * r.sample[(head + POINTS + 1 + found - k) % POINTS, c]
+    differences(b, n)
+    return n
+
+
+@internal
+def nodes(r, b, at, found):
+    """Fill the times of b.node where less was found than a polynomial goes through; how many."""
+    times, head, n = b.node[0], r.count[NEWEST], min(r.count[SAMPLES] + 1 + found, POINTS)
+    times[0], times[1] = at, r.sampled[head]
+    for k in range(found):
+        times[2 + k] = b.found[1 + k]
+    for k in range(2 + found, n):
+        times[k] = r.sampled[(head + POINTS + 1 + found - k) % POINTS]
     return n
 
 
@@ -351,70 +388,3 @@ def further(one, other, low, high):
         return other == low
     middle = 0.5 * (low + high)
     return abs(one - middle) > abs(other - middle)
-
-
-@internal
-def differences(node, n):
-    """Newton's form of the polynomial through n nodes, into node[2]."""
-    times, slope = node[0], node[2]
-    for i in range(n):
-        slope[i] = node[1, i]
-    for j in range(1, n):
-        for i in range(n - 1, j - 1, -1):
-            slope[i] = (slope[i] - slope[i - 1]) / (times[i] - times[i - j])
-
-
-@internal
-def highest(node, n):
-    """What the polynomial does not exceed between its first two nodes, with what `top` adds.
-
-    Between them |(x - t0) (x - t1)| is a quarter of the square of their distance at most, and x is
-    no further from another node than the further one of them is.
-    """
-    times, slope = node[0], node[2]
-    most, h = max(node[1, 0], node[1, 1]), times[0] - times[1]
-    if n == 2:
-        return most + DOUBT * abs(slope[1]) * h
-    term = 0.25 * h * h
-    for i in range(2, n):
-        most += (1.0 + (DOUBT if i == n - 1 else 0.0)) * abs(slope[i]) * term
-        term *= max(abs(times[0] - times[i]), abs(times[1] - times[i]))
-    return most
-
-
-@internal
-def top(node, n, start, end):
-    """Where the polynomial of `differences` may be largest between two times, and how large.
-
-    The last term, which another node changed, counts as its error.
-    """
-    times, slope = node[0], node[2]
-    place, best, low, high = start, -1e300, start, end
-    for _ in range(ROUNDS):
-        width = (high - low) / PARTS
-        for k in range(PARTS + 1):
-            x = low + k * width
-            value = polynomial(times, slope, n, x, DOUBT)
-            if value > best:
-                best, place = value, x
-        low, high = max(start, place - width), min(end, place + width)
-    if low < place < high:
-        # the vertex of the parabola through the last three
-        f0, f2 = (polynomial(times, slope, n, low, DOUBT), polynomial(times, slope, n, high, DOUBT))
-        left, right = (best - f0) / (place - low), (best - f2) / (high - place)
-        if left + right > 0.0:
-            x = place + 0.5 * (left * (high - place) - right * (place - low)) / (left + right)
-            value = polynomial(times, slope, n, x, DOUBT)
-            if value > best:
-                best, place = value, x
-    return place, best
-
-
-@internal
-def polynomial(times, slope, n, x, doubt):
-    """Its value at x in Newton's form, and on top that much of the size of its last term."""
-    value, term = slope[0], 1.0
-    for i in range(1, n):
-        term *= x - times[i - 1]
-        value += slope[i] * term
-    return value + doubt * abs(slope[n - 1] * term)

@@ -102,9 +102,10 @@ NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
     FIXED_STEP,  # s, 0 where the method controls its step
     LOCATE,  # 1: contact onset and separation are located
     CHOOSES,  # 1: between two methods, by the fastest motion
+    MISSED,  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
     HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
     N_SETTINGS,
-) = range(9)
+) = range(10)
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
@@ -120,6 +121,7 @@ LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
 JOLTS_KEPT = 8
+PARTS = 8  # in which the top of a polynomial is looked for
 FOUND = 200  # places between two samples where extremes are looked for
 
 # columns of the event buffer
@@ -208,6 +210,13 @@ class Buffers(Packed):
     inside: A2  # (FOUND, n_c) channels where an extreme was looked for           peaks.py
     found: A1  # (1 + FOUND) how often, and when
     node: A2  # (6, POINTS) of polynomials: times, values, slopes; see `take` of peaks.py
+    along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
+    lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
+    inverse: A2  # (POINTS, POINTS) of the distances of nodes
+    laid: A1  # (1) how many places were found when those were made
+    mean: A2  # (2, n_out) channels where rows of the solve depend on each other
+    moved: A1  # (1) 1: the end of the step was moved on along its tangent
+    unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
     branch1: A1
@@ -250,6 +259,13 @@ def fresh_buffers(
         inside=np.zeros((FOUND, len(model.kin))),
         found=np.zeros(1 + FOUND),
         node=np.zeros((6, POINTS)),
+        along=np.zeros(1 + PARTS),
+        lattice=np.zeros((POINTS, 1 + PARTS)),
+        inverse=np.zeros((POINTS, POINTS)),
+        laid=np.zeros(1),
+        mean=np.zeros((2, model.n_out)),
+        moved=np.zeros(1),
+        unmoved=np.zeros((3, n_y)),
         root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),
         branch1=np.zeros(max(model.n_s, 1)),

@@ -6,7 +6,7 @@ Called by its address, which is 0 where nothing can happen: such a run compiles 
 from trsim.assemble.equations import evaluate, poses
 from trsim.elements.contract import compiled
 from trsim.elements.vectors import internal
-from trsim.solve.calls import DENSE_AT, INTERPOLATE_AT, LAST_AT, SEARCH, STAGES_AT
+from trsim.solve.calls import INTERPOLATE_AT, LAST_AT, SEARCH, STAGES_AT
 from trsim.solve.dense_output import build
 from trsim.solve.events import NONE, SAME, any_change, first_change
 from trsim.solve.record import LOCATE
@@ -26,7 +26,7 @@ def search(s, r, b, setting, method, t, h, built):
         return NONE
     evaluations = s.status[1]
     if built == 0:
-        build(s, r, b, method[DENSE_AT], t, h)
+        build(s, r, b, method, t, h)
     fill_net(s, r, b, method)
     first = earliest(s, r, b, setting, t, h, interpolate)
     if first > 1.0 or first == 1.0:

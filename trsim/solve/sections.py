@@ -41,13 +41,11 @@ from trsim.assemble.sections import (
 from trsim.elements.contract import FLIGHT, PHASE, compiled
 from trsim.elements.vectors import internal
 from trsim.solve.calls import (
-    DENSE_AT,
     INTERPOLATE_AT,
     LAST_AT,
     SECTIONS,
-    call_dense,
 )
-from trsim.solve.dense_output import measure_inside
+from trsim.solve.dense_output import fill, measure_inside
 from trsim.solve.events import NONE, SAME
 from trsim.solve.illinois import between, narrowed
 from trsim.solve.record import (
@@ -101,7 +99,7 @@ def sections(s, r, b, method, t, h, t1, projected, built, event):
             crosses_after(s, k, t1) and may_cross(s, r, b, k, t1 - t, event, parts)
         ):
             if built == 0:
-                call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
+                fill(s, r, b, method, t, h)
                 built = 1
             if kind == STROBE:
                 strobes(s, r, b, k, interpolate, t, h, t1, projected)

@@ -53,7 +53,6 @@ from trsim.laws.functions import (
     sensed,
 )
 from trsim.solve.calls import (
-    DENSE_AT,
     IMPLICIT_AT,
     INTERPOLATE_AT,
     LAST_AT,
@@ -116,7 +115,7 @@ def corners_ahead(s, r, b, setting, method, t, h, built):
             return NONE
     evaluations = s.status[1]
     if built == 0:
-        build(s, r, b, method[DENSE_AT], t, h)
+        build(s, r, b, method, t, h)
     fill_net(s, r, b, method)
     again = setting[FIXED_STEP] == 0.0  # a shorter step can be had
     first = first_corner(s, r, b, setting, t, h, method[INTERPOLATE_AT], again)

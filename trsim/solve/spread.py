@@ -38,7 +38,6 @@ from trsim.solve.calls import (
 from trsim.solve.record import DEGREE
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
-FRAME = 7  # columns of b.curve for one frame
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
 
@@ -80,18 +79,18 @@ def fill_net(s, r, b, method):
 
 
 @internal
-def cut(curve, n, low, high):
+def cut(curve, n, columns, low, high):
     """From control points over the step to those on [low, high], of both frames.  de Casteljau"""
     if high < 1.0:
         for m in range(1, n):
             for k in range(n - 1, m - 1, -1):
-                for c in range(2 * FRAME):
+                for c in range(columns):
                     curve[k, c] += (1.0 - high) * (curve[k - 1, c] - curve[k, c])
     if low > 0.0:
         at = low / high
         for m in range(1, n):
             for k in range(n - m):
-                for c in range(2 * FRAME):
+                for c in range(columns):
                     curve[k, c] += at * (curve[k + 1, c] - curve[k, c])
 
 
@@ -109,19 +108,18 @@ def coordinates_of(s, f):
 
 @internal
 def fill_curve(s, b, n, f, first):
-    """The control points of a frame, in columns of b.curve: places, then attitude."""
-    net, curve = b.net, b.curve
-    for k in range(n):
-        for c in range(first, first + FRAME):
-            curve[k, c] = 0.0
+    """The control points of a frame in columns of b.curve from `first` on: places, then attitude.
+
+    Returns the column behind them; of the ground there are none.
+    """
     if f == 0:
-        return
+        return first
+    net, curve = b.net, b.curve
     q, places, attitude = coordinates_of(s, f)
     for k in range(n):
-        for c in range(places):
+        for c in range(places + attitude):
             curve[k, first + c] = net[k, q + c]
-        for c in range(attitude):
-            curve[k, first + 3 + c] = net[k, q + places + c]
+    return first + places + attitude
 
 
 @internal
@@ -133,11 +131,11 @@ def turning(s, r, b, n, f, first, length):
     once, twice, off = 0.0, 0.0, 0.0
     size, curve = 0.0, b.curve
     for c in range(attitude):
-        centre = curve[n // 2, first + 3 + c] + r.y[q + places + c]
+        centre = curve[n // 2, first + places + c] + r.y[q + places + c]
         size += centre * centre
     for k in range(n):
         a1 = a2 = away = 0.0
-        for c in range(first + 3, first + 3 + attitude):
+        for c in range(first + places, first + places + attitude):
             away += (curve[k, c] - curve[n // 2, c]) ** 2
             if k < n - 1:
                 a1 += (curve[k + 1, c] - curve[k, c]) ** 2
@@ -158,16 +156,19 @@ def turning(s, r, b, n, f, first, length):
 
 
 @internal
-def apart(b, n, length):
+def apart(s, b, n, i, j, first_j, length):
     """A bound of |r_j'' - r_i''| from the control points in b.curve."""
     worst, curve = 0.0, b.curve
     for k in range(n - 2):
         square = 0.0
-        for c in range(3):
-            i, j = c, FRAME + c
-            bend_i = curve[k + 2, i] - 2.0 * curve[k + 1, i] + curve[k, i]
-            bend_j = curve[k + 2, j] - 2.0 * curve[k + 1, j] + curve[k, j]
-            square += (bend_j - bend_i) ** 2
+        for c in range(2 if s.d == 3 else 3):
+            bend = 0.0
+            if i > 0:
+                bend -= curve[k + 2, c] - 2.0 * curve[k + 1, c] + curve[k, c]
+            if j > 0:
+                o = first_j + c
+                bend += curve[k + 2, o] - 2.0 * curve[k + 1, o] + curve[k, o]
+            square += bend * bend
         worst = max(worst, square)
     return (n - 1) * (n - 2) * sqrt(worst) / length**2
 
@@ -193,14 +194,12 @@ def spread_of(s, r, b, kind, e, sign, low, high, h):
         return 1.0, 0.0
     i, j, length = s.con[e, I], s.con[e, J], (high - low) * h
     n = r.count[DEGREE] + 1
-    fill_curve(s, b, n, i, 0)
-    fill_curve(s, b, n, j, FRAME)
-    cut(b.curve, n, low, high)
+    first_j = fill_curve(s, b, n, i, 0)
+    cut(b.curve, n, fill_curve(s, b, n, j, first_j), low, high)
     spin_i, bend_i = turning(s, r, b, n, i, 0, length)
-    spin_j, bend_j = turning(s, r, b, n, j, FRAME, length)
-    return from_motion(
-        s, kind, e, sign, length, apart(b, n, length), spin_i, bend_i, spin_j, bend_j
-    )
+    spin_j, bend_j = turning(s, r, b, n, j, first_j, length)
+    away = apart(s, b, n, i, j, first_j, length)
+    return from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j)
 
 
 @internal
