@@ -70,14 +70,20 @@ def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) 
     A pivot is delta^2, and eps/delta^2 of an acceleration is rounding: further away it is below the
     tolerance.  bars: first frame and number of nodes of each.
     """
-    if solver.method.startswith("scipy"):
+    if solver.method.startswith("scipy") or not closes_a_loop(rows, bars):
         return 0.0
-    return near_rows(solver, rows, bars)
+    return min(SMALL, NOISE / solver.tolerance)
 
 
 def near_rows(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) -> float:
-    """The same of what is measured; 0 in open chains."""
-    return min(SMALL, NOISE / solver.tolerance) if closes_a_loop(rows, bars) else 0.0
+    """The same of what is measured; 0 in open chains.
+
+    What is measured inside a step is brought to the rows, to rounding: off the branch by eps/delta,
+    with a rate of eps/delta^2 and so an acceleration of eps/delta^3.
+    """
+    if not closes_a_loop(rows, bars):
+        return 0.0
+    return min(SMALL, (NOISE / solver.tolerance) ** (2.0 / 3.0))
 
 
 def closes_a_loop(rows: Sequence[RowName], bars: Iterable[tuple[int, int]] = ()) -> bool:

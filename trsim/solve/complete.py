@@ -84,6 +84,9 @@ SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
 BRIEF = 1e-9  # of a run: no shorter step is asked for
 LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is looked at in
+# what a step is held to at most where branches of the motion meet: limits (beside.py) are known to
+# that, and shorter steps would only meet more of what they do not know
+OF_LIMITS = 1e-10
 LEAK = 0.1  # times the tolerance, of the kinetic energy
 FROM_REST = 0.01  # of the kinetic energy at the end of a step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
@@ -222,7 +225,7 @@ def leaked(s, r, b, setting, t1, projected):
     before, after = kinetic(s, r.y), kinetic(s, b.y1)
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
-    return lost > LEAK * setting[TOLERANCE] * max(before, after)
+    return lost > LEAK * max(setting[TOLERANCE], OF_LIMITS) * max(before, after)
 
 
 @internal

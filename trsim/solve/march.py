@@ -24,6 +24,7 @@ from trsim.solve.calls import (
     method_row,
 )
 from trsim.solve.complete import (
+    OF_LIMITS,
     SMALLEST,
     STRAYED,
     WITH_CORNER,
@@ -79,6 +80,7 @@ from trsim.solve.record import (
     STEP_ROWS,
     STEP_TOO_SMALL,
     T_END,
+    TOLERANCE,
     TOO_FAST,
     TORN,
     WINDS,
@@ -150,6 +152,8 @@ def march(s, r, b, setting, methods, most):
             s.left[s.contact[c]] = -1.0
         s.status[4] = 0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
+        if s.status[4] > 0:
+            error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
             if error < NO_STEP and to_look(r, h):
