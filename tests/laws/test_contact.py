@@ -5,6 +5,7 @@ import json
 from math import exp, inf, log1p
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -22,7 +23,11 @@ from trsim.laws.contact import (
     hertz_peak,
     hertz_stiffness,
     normal_force,
+    ramped_beyond,
+    ramped_branch_of,
     ramped_damping,
+    ramped_neighbour,
+    ramped_on_branch,
     stored,
     tangent,
 )
@@ -211,3 +216,30 @@ def test_ramped_damping():
     assert ramped_damping(1e-4, 0.2, k, c, ramp) == pytest.approx(100.0 + 80.0)
     assert ramped_damping(1e-4, -1.0, k, c, ramp) == 0.0
     assert ramped_damping(1e-12, 1.0, k, c, 0.0) == pytest.approx(400.0)
+
+
+@given(st.floats(1e-4, 3.0), st.floats(-3.0, 3.0), st.floats(0.05, 30.0))
+def test_branches_of_ramped_damping(x, v, ratio):
+    """Inside its branch the law is the branch; how far it has been left changes its sign at the
+    corners only, and the neighbour is where one then is."""
+    k, ramp = 1e6, 5e-5
+    c = ratio * k * ramp
+    rest = (k, c, ramp)
+    branch = ramped_branch_of(x * ramp, v, *rest)
+    assert ramped_beyond(branch, x * ramp, v, *rest) <= 1e-12
+    whole = ramped_damping(x * ramp, v, *rest)
+    assert ramped_on_branch(branch, x * ramp, v, *rest) == pytest.approx(whole, rel=1e-12, abs=1e-9)
+    for other in {0.0, 1.0, 2.0} - {branch}:
+        assert ramped_beyond(other, x * ramp, v, *rest) >= -1e-12
+
+
+@given(st.floats(-3.0, 3.0), st.floats(0.05, 30.0))
+def test_neighbours_of_branches_of_ramped_damping(v, ratio):
+    k, ramp = 1e6, 5e-5
+    rest = (v, k, ratio * k * ramp, ramp)
+    x = np.linspace(1e-3, 3.0, 3001)
+    branches = [ramped_branch_of(a * ramp, *rest) for a in x]
+    for i in np.flatnonzero(np.diff(branches)):
+        before, after = branches[i], branches[i + 1]
+        assert ramped_neighbour(before, x[i + 1] * ramp, *rest) == after
+        assert ramped_neighbour(after, x[i] * ramp, *rest) == before

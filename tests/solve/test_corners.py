@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
+from trsim.laws.contact import ramped_damping
 from trsim.laws.friction import beyond, branch_of, modified_coulomb, neighbour, on_branch
 from trsim.spec.load import load
 
@@ -97,3 +99,46 @@ def test_corners_do_not_hold_a_run(sets):
     r = run(scenario)
     assert r.outcome.status == "done"
     assert r.outcome.statistics["corners"] > 1000
+
+
+BUMPER = """
+bodies: {block: {mass: 2, inertia: 0.01, velocity: [0.5, 0]}}
+joints: {slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}
+forces:
+  bumper: {type: limit_stop, joint: slide, upper: 20 mm, stiffness: 1e5, damping: DAMPING,
+           ramp: 0.5 mm}
+solver: {end: 0.15 s, tolerance: 1e-8, method: METHOD}
+output: {every: 0.15 s}
+"""
+
+
+def rebound(damping, k=1e5, mass=2.0, ramp=5e-4, speed=0.5):
+    """Speed after the stop, of one equation: the law as it is written, in steps of 1/1000 of the
+    ramp or less."""
+
+    def rates(_, y):
+        return [y[1], -ramped_damping(y[0], y[1], k, damping, ramp) / mass]
+
+    def out(_, y):
+        return y[0]
+
+    out.terminal, out.direction = True, -1.0
+    return solve_ivp(
+        rates, (0.0, 1.0), [0.0, speed], "DOP853", rtol=1e-12, atol=1e-14, events=out,
+        max_step=1e-3 * ramp / speed,
+    ).y[1, -1]  # fmt: skip
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "scipy:RK45"])
+@pytest.mark.parametrize(("damping", "corners"), [(20, 2), (200, 3), (1200, 3)])
+def test_stops_pass_the_end_of_their_ramp_and_where_they_would_pull(damping, corners, method):
+    r = run(BUMPER.replace("DAMPING", str(damping)).replace("METHOD", method))
+    assert r["block.velocity"][-1, 0] == pytest.approx(rebound(damping), rel=1e-7)
+    assert r.outcome.statistics["corners"] == corners
+
+
+def test_a_stop_that_stops_pulling_pushes_again_before_it_is_left():
+    """Below its ramp the spring is stronger than the damper: three corners on its way out."""
+    r = run(BUMPER.replace("DAMPING", "150").replace("METHOD", "dop853"))
+    assert r["block.velocity"][-1, 0] == pytest.approx(rebound(150), rel=1e-7)
+    assert r.outcome.statistics["corners"] == 4

@@ -6,7 +6,8 @@ Point on wall: d = -(p - w) . n with n the allowed side, fixed in the wall's bod
 point, -F n on the wall's body at the same place.  Joint: d = max(lower - x, x - upper), F acts
 along the axis of the joint.  The damping fades in over the ramp, so there is no jump at the touch
 and no memory of the impact speed; soft impacts are right, where Lankarani-Nikravesh is not.  In the
-phase of contact the spring is drawn on to d < 0, where no accepted step ever is.
+phase of contact the spring is drawn on to d < 0, where no accepted step ever is.  The end of the
+ramp and the place from which the force would pull are corners, located like a touch.
 """
 
 from typing import Annotated, ClassVar
@@ -15,11 +16,13 @@ from annotated_types import Ge, Gt
 from pydantic import model_validator
 
 from trsim.elements.contract import (
+    BRANCH,
     CONTACT,
     CONTACTS,
     FLIGHT,
     IMPACTS,
     PHASE,
+    WHOLE,
     Channel,
     Contact,
     Element,
@@ -30,7 +33,13 @@ from trsim.elements.contract import (
 from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
-from trsim.laws.contact import ramped_damping
+from trsim.laws.contact import (
+    ramped_beyond,
+    ramped_branch_of,
+    ramped_damping,
+    ramped_neighbour,
+    ramped_on_branch,
+)
 
 
 class BodyPoint(Spec):
@@ -159,16 +168,22 @@ def touch(X, V, S, con, par, e):
 @kernel
 def force(t, scene, a, b):
     X, V, S, con = scene.X, scene.V, scene.S, scene.con
-    par, mem, F, zd = scene.par, scene.mem, scene.F, scene.zd
+    par, mem, F, zd, left = scene.par, scene.mem, scene.F, scene.zd, scene.left
     for e in range(a, b):
         if mem[e, PHASE] == FLIGHT:
             continue
         d, d_dot, n = touch(X, V, S, con, par, e)
         if d <= 0.0 and mem[e, PHASE] != CONTACT:
             continue
-        i, j, k = con[e, 0], con[e, 1], par[e, 9]
-        # a trial step past the separation goes on smoothly; it is cut at the root of d
-        f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, par[e, 10], par[e, 11])
+        i, j, k, c, ramp, branch = (
+            con[e, 0], con[e, 1], par[e, 9], par[e, 10], par[e, 11], mem[e, BRANCH]
+        )  # fmt: skip
+        if mem[e, PHASE] == CONTACT and c > 0.0 and branch != WHOLE:
+            left[e] = max(left[e], ramped_beyond(branch, d, d_dot, k, c, ramp))
+            f = ramped_on_branch(branch, d, d_dot, k, c, ramp)
+        else:
+            # a trial step past the separation goes on smoothly; it is cut at the root of d
+            f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
         on_j, on_i = (f * n[0], f * n[1], f * n[2]), (-f * n[0], -f * n[1], -f * n[2])
         if con[e, 3] == ON_ANGLE:
             twist(F, j, on_j)
@@ -189,6 +204,23 @@ def gap(t, scene, a, b):
         d, d_dot, _ = touch(X, V, S, con, par, e)
         g[e, 0] = d
         g[e, 1] = d_dot
+
+
+@kernel
+def corners(t, scene, a, b):
+    X, V, S, con = scene.X, scene.V, scene.S, scene.con
+    par, mem, out = scene.par, scene.mem, scene.corner
+    for e in range(a, b):
+        out[e, 0] = -1.0
+        k, c, ramp, branch = par[e, 9], par[e, 10], par[e, 11], mem[e, BRANCH]
+        if c == 0.0 or mem[e, PHASE] != CONTACT:
+            continue
+        d, d_dot, _ = touch(X, V, S, con, par, e)
+        if branch == WHOLE:
+            out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
+        else:
+            out[e, 0] = ramped_beyond(branch, d, d_dot, k, c, ramp)
+            out[e, 1] = ramped_neighbour(branch, d, d_dot, k, c, ramp)
 
 
 @kernel
@@ -240,8 +272,14 @@ ELEMENT = Element(
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
-    n_mem=2,
-    kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
+    n_mem=3,
+    kernels={
+        "force": force,
+        "gaps": gap,
+        "corners": corners,
+        "energy": energy,
+        "measure": measure,
+    },
     example="""
 bodies:
   block: {mass: 2 kg, inertia: 0.01 kg*m^2, velocity: [0.5 m/s, 0]}

@@ -136,7 +136,73 @@ def ramped_damping(pen, pen_dot, k, c, ramp):
     """
     if pen <= 0.0:
         return 0.0
-    return max(0.0, k * pen + c * smoothstep(pen / ramp) * pen_dot)
+    return max(0.0, undamped_below(pen, pen_dot, k, c, ramp))
+
+
+@law
+def undamped_below(pen, pen_dot, k, c, ramp):
+    """The same where it would pull, N or N*m; below zero penetration the spring alone."""
+    return k * pen + c * smoothstep(pen / ramp) * pen_dot
+
+
+@law
+def ramped_branch_of(pen, pen_dot, k, c, ramp):
+    """The branch of `ramped_damping` that a penetration and its rate are on.
+
+    0: the damper fades in; 1: it is complete; 2: the force would pull, and is zero.
+    """
+    if undamped_below(pen, pen_dot, k, c, ramp) < 0.0 < pen:
+        return 2.0
+    return 0.0 if pen < ramp else 1.0
+
+
+@law
+def ramped_on_branch(branch, pen, pen_dot, k, c, ramp):
+    """`ramped_damping` with one branch drawn on beyond its ends, so that it has no corner, N."""
+    if branch == 2.0:
+        return 0.0
+    if branch == 1.0:
+        return k * pen + c * pen_dot
+    x = pen / ramp
+    return k * pen + (c * x * x * (3.0 - 2.0 * x) * pen_dot if x > 0.0 else 0.0)
+
+
+@law
+def pulling(pen_dot, k, c, ramp):
+    """Between which penetrations, of the ramp, the force of `ramped_damping` would pull.
+
+    While bodies part, with a = k ramp / (c |pen'|): a x = 3 x^2 - 2 x^3 below 1, x = 1 / a above.
+    Both are 3/4 where it pulls nowhere; the third result says by how much a is too large then.
+    """
+    a = min(k * ramp / (c * -pen_dot), 1e6) if pen_dot < 0.0 else 1e6
+    if a >= 1.125:
+        return 0.75, 0.75, a - 1.125
+    root = sqrt(9.0 - 8.0 * a)
+    return 0.25 * (3.0 - root), 1.0 / a if a <= 1.0 else 0.25 * (3.0 + root), 0.0
+
+
+@law
+def ramped_beyond(branch, pen, pen_dot, k, c, ramp):
+    """How far a branch has been left, of the ramp: negative inside, zero at a corner."""
+    if branch == 2.0:
+        low, high, nowhere = pulling(pen_dot, k, c, ramp)
+        return max(low - pen / ramp, pen / ramp - high) + nowhere
+    pull = -undamped_below(pen, pen_dot, k, c, ramp) / (k * ramp)
+    along = pen / ramp - 1.0
+    if pen <= 0.0:  # a separation is an event of its own
+        return along if branch == 0.0 else -along
+    return max(pull, along if branch == 0.0 else -along)
+
+
+@law
+def ramped_neighbour(branch, pen, pen_dot, k, c, ramp):
+    """The branch on the other side of the nearest corner."""
+    along = pen / ramp - 1.0
+    if branch == 2.0:
+        return 0.0 if along < 0.0 else 1.0
+    pull = -undamped_below(pen, pen_dot, k, c, ramp) / (k * ramp)
+    beside = along if branch == 0.0 else -along
+    return 2.0 if pull > beside else 1.0 - branch
 
 
 def _residual(chi, e):

@@ -13,7 +13,7 @@ from trsim.solve.illinois import between, narrowed
 
 NONE = 2.0  # a root beyond the step
 EXACT = 1e-12  # of a step: how well a corner is located
-LOOKS = 4  # places of a step that are looked at before the root is bracketed
+LOOKS = 16  # places of a step that are looked at before the root is bracketed
 
 
 @internal
