@@ -68,6 +68,7 @@ from trsim.solve.record import (
     OLD_H,
     OPEN,
     OPENED,
+    PASSED,
     PAST_ERROR,
     PAUSE,
     PEAK_MAX,
@@ -230,6 +231,7 @@ def full(s, r, b):
         or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
         or r.count[EVENT_ROWS] + contacts + watched + s.feature.shape[0] >= b.events.shape[0]
         or r.count[POINT_ROWS] > b.points.shape[0] // 2
+        or (r.count[PASSED] > 0 and 2 * r.count[PASSED] > r.passed.shape[0])
     )
 
 

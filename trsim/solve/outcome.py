@@ -199,6 +199,7 @@ def new_record(
     """
     n_v = model.n_v if past_rows else 0
     n_w = n_v + model.n_z - N_BOOK if past_rows else 0
+    passes = rec.PASSES_KEPT if model.near_rows > 0.0 else 0
     model.mem[:] = begun.mem
     model.branch[:] = begun.branch
     record = Record(
@@ -233,6 +234,11 @@ def new_record(
         left_out=np.array(left_out, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
         jolt=np.zeros((rec.JOLTS_KEPT, 5)),
+        seen=begun.y.copy(),
+        behind=begun.y.copy(),
+        passed=np.zeros((passes, 2 + 2 * begun.y.size + len(model.branch))),
+        meeting=np.zeros((rec.MEETINGS_KEPT if passes else 0, begun.y.size)),
+        crossed=np.zeros_like(begun.y),
         worked=np.zeros((2, N_WORKED)),
     )
     record.clock[rec.WEAKEST] = 1.0

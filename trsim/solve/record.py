@@ -46,8 +46,13 @@ from trsim.elements.scene import Model
     ROUNDED_AT,
     ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
     LONGEST,  # s, the longest step since then, see LOOKED
+    PIVOT,  # the smallest of S at the end of the last trial step                   passes.py
+    SIGMA,  # its root when it was looked at last
+    FALLING,  # 1/s, how fast it had fallen to there
+    LAST_H,  # s, for how long
+    CROSSED_T,  # s, when the run first changed its branch                         crossed.py
     N_CLOCK,
-) = range(40)
+) = range(45)
 
 # count: integer state of the march
 (
@@ -87,8 +92,13 @@ from trsim.elements.scene import Model
     FAILED,  # and how many trials were rejected then
     NEWEST,  # which of the last samples of the channels is the newest, and how many there are
     SAMPLES,
+    SIGMAS,  # 1: SIGMA is known; 2: and FALLING, LAST_H
+    NOTED,  # 1: that way was noted
+    PASSED,  # ways noted that are still to be examined
+    MEETINGS,  # places known where branches meet
+    CROSSED,  # how often the run changed its branch
     N_COUNT,
-) = range(37)
+) = range(42)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -121,6 +131,7 @@ LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
 JOLTS_KEPT = 8
+PASSES_KEPT, MEETINGS_KEPT = 32, 8
 PARTS = 8  # in which the top of a polynomial is looked for
 FOUND = 200  # places between two samples where extremes are looked for
 
@@ -176,6 +187,11 @@ class Record(Packed):
     )
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
     jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
+    seen: A1  # (n_y) y when SIGMA was looked at last                             passes.py
+    behind: A1  # (n_y) and before that
+    passed: A2  # (PASSES_KEPT, 2 + 2 n_y + n_s) ways noted: times, states, branches of angles
+    meeting: A2  # (MEETINGS_KEPT, n_y) where branches meet                      crossed.py
+    crossed: A1  # (n_y) where the run first changed its branch
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
 
 

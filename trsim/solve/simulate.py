@@ -18,6 +18,7 @@ from trsim.solve.anew import anew, begun_with, resumed
 from trsim.solve.blame import why
 from trsim.solve.calls import FIELDS
 from trsim.solve.checkpoint import State, begun_at, put_back, state
+from trsim.solve.crossed import examine
 from trsim.solve.features import put_back as put_back_held
 from trsim.solve.march import begin, march, method_table
 from trsim.solve.mesh_error import Bends
@@ -171,8 +172,10 @@ def compiled(
     while True:
         most = min(visit, limit - int(r.count[rec.STEPS]))
         reason = march(work, r, b, setting, methods, most)
+        examine(work, r)
         recorded = None
         if reason == rec.ACT:
+            r.count[rec.SIGMAS] = 0
             before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))

@@ -1,0 +1,187 @@
+"""Whether a run changed from one branch of the motion to another where branches nearly meet.
+
+Cranks of lengths that differ by 1e-8 turn over at the flat places of their parallelogram, within
+1e-4 rad: the branches there are those of x y = 1e-8.  A long step goes straight on, as is right
+where they meet (x y = 0), and no estimate of its error sees that.
+
+What tells is the sign of each singular value of J.  With O = (J J^T)^(-1/2) J, the rows of J made
+orthonormal, which follow a motion smoothly, O_1 O_0^T is close to I for two near places on one
+branch; it has an eigenvalue close to -1 for every singular value that went through zero between
+them.  So the way between the ends of a step that passes.py noted is halved, each place brought to
+the constraints from a cubic through the last ones, until
+
+    as many singular values are zero there:   the branches meet, and the step went on along its own
+    the way becomes no shorter:               they do not, and the run changed its branch
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.projection import move_all, project_positions, project_velocities
+from trsim.assemble.rank import of_length_one
+from trsim.assemble.reduce import all_rows, weights
+from trsim.elements.scene import Scene, scene
+from trsim.solve import record as rec
+from trsim.solve.locked import dependent
+from trsim.solve.passes import known
+from trsim.solve.record import Record
+
+Array = NDArray[np.float64]
+
+MEET = 3e-6  # singular value: rounding leaves some 1e-8 of one that is zero
+NARROWER, PATIENT = 0.25, 9  # a way that becomes no shorter than that in so many looks stays wide
+OVERLAP = 0.5  # smallest singular value of O_1 O_0^T of places near to each other
+NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
+LOOKS = 200  # places looked at between two states, at most
+NUDGE = 1e-6  # rad, or of the mechanism's size: for derivatives of coordinates
+
+
+class Place(NamedTuple):
+    """A state on the constraints."""
+
+    t: float
+    y: Array
+    slope: Array  # (n_y) dy/dt of coordinates; 0 of what else there is
+    sigma: Array  # (m) singular values of the rows at length one, the least first
+    rows: Array  # (m, ...) the rows made orthonormal
+
+
+class Found(NamedTuple):
+    """Where branches meet, or nearly do."""
+
+    meet: bool
+    place: Place
+
+
+def examine(work: Scene, r: Record) -> None:
+    """Find out what became of the branch in the steps noted so far, and forget these."""
+    many = int(r.count[rec.PASSED])
+    if not many:
+        return
+    n, scratch = r.y.size, scene(work)
+    scratch.mem[:] = work.mem
+    for line in r.passed[:many]:
+        t0, t1 = line[:2].tolist()
+        y0, y1 = line[2 : 2 + n], line[2 + n : 2 + 2 * n]
+        if known(work, r, y0, y1):
+            continue
+        scratch.branch[:] = line[2 + 2 * n :]
+        for found in between(scratch, t0, y0, t1, y1):
+            keep(r, found, n)
+    r.count[rec.PASSED] = 0
+
+
+def keep(r: Record, found: Found, n: int) -> None:
+    """A place in the record."""
+    if found.meet:
+        k = int(r.count[rec.MEETINGS])
+        if k < len(r.meeting):
+            r.meeting[k] = found.place.y
+            r.count[rec.MEETINGS] = k + 1
+        return
+    if not r.count[rec.CROSSED]:
+        r.clock[rec.CROSSED_T] = found.place.t
+        r.crossed[:] = found.place.y
+    r.count[rec.CROSSED] += 1
+
+
+def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Found]:
+    """The places between two states where singular values change their sign."""
+    first, last = place(w, t0, y0.copy()), place(w, t1, y1.copy())
+    ways, looks = [(first, last, np.inf, 0)], 0
+    while ways and looks < LOOKS:
+        a, b, wide, waited = ways.pop()
+        if a is None or b is None:
+            continue
+        near, flips = compared(a, b)
+        if near and not flips:
+            continue
+        of = max(flips, 1) - 1
+        least, width = min((a, b), key=lambda p: p.sigma[of]), distance(w, a, b)
+        waited = 0 if width < NARROWER * wide else waited + 1
+        wide = width if not waited else wide
+        if near and (least.sigma[of] <= MEET or waited == PATIENT):
+            yield Found(bool(least.sigma[of] <= MEET), least)
+            continue
+        # the zero of a straight line is found at once; halving gets near to any
+        at = a.sigma[of] / (a.sigma[of] + b.sigma[of]) if near and looks % 3 else 0.5
+        m = middle(w, a, b, min(max(at, 1e-3), 1.0 - 1e-3))
+        ways += [(m, b, wide, waited), (a, m, wide, waited)]
+        looks += 1
+
+
+def compared(a: Place, b: Place) -> tuple[bool, int]:
+    """Whether two places are near to each other, and how many singular values changed sign."""
+    product = b.rows @ a.rows.T
+    if np.linalg.svd(product, compute_uv=False)[-1] < OVERLAP:
+        return False, 0
+    return True, int(np.sum(np.linalg.eigvals(product).real < 0.0))
+
+
+def distance(w: Scene, a: Place, b: Place) -> float:
+    """By how much directions of rows change between two places, about."""
+    moved = np.abs(b.y - a.y)[: w.n_q]
+    return float(np.max(moved / coordinate_units(w), initial=0.0))
+
+
+def coordinate_units(w: Scene) -> Array:
+    """The mechanism's size of lengths, 1 of angles and of quaternions."""
+    if w.d == 3:
+        rigid = np.tile([w.size, w.size, 1.0], w.n_r - 1)
+    else:
+        rigid = np.tile([w.size] * 3 + [1.0] * 4, w.n_r - 1)
+    return np.concatenate([rigid, np.full(w.n_q - rigid.size, w.size)])
+
+
+def middle(w: Scene, a: Place, b: Place, at: float) -> Place | None:
+    """The place between two others, from the cubic through them and their velocities."""
+    h = b.t - a.t
+    t, y = a.t + at * h, (1.0 - at) * a.y + at * b.y
+    here, there = h * a.slope - (b.y - a.y), h * b.slope - (b.y - a.y)
+    y += at * (1.0 - at) * ((1.0 - at) * here - at * there) * (a.slope != 0.0)
+    return place(w, t, y)
+
+
+def place(w: Scene, t: float, y: Array) -> Place | None:
+    """A state brought to the constraints; None where it does not get there."""
+    for _ in range(NEWTON):
+        worst = project_positions(w, t, y)
+        if not worst > CLOSED * w.size:
+            break
+    if not worst < REACHED * w.size:
+        return None
+    J = all_rows(w, y)[: w.m]
+    u, sigma, vt = np.linalg.svd(of_length_one(J, weights(w)), full_matrices=False)
+    project_velocities(w, y)
+    return Place(t, y, slope(w, y), sigma[::-1], u @ vt)
+
+
+def slope(w: Scene, y: Array) -> Array:
+    """dy/dt of the coordinates."""
+    v = y[w.n_q : w.n_q + w.n_v]
+    d = NUDGE / max(float(np.max(np.abs(v), initial=0.0)), 1e-300)
+    ahead, behind = y.copy(), y.copy()
+    move_all(w, ahead, d * v)
+    move_all(w, behind, -d * v)
+    found = (ahead - behind) / (2.0 * d)
+    found[w.n_q :] = 0.0
+    return found
+
+
+def of_branches(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+    """That a run changed its branch where branches nearly meet."""
+    if r is None or not r.count[rec.CROSSED]:
+        return
+    t, many = float(r.clock[rec.CROSSED_T]), int(r.count[rec.CROSSED])
+    names, nearly = dependent(mechanism, t, r.crossed)
+    again = f" ({many} times in all)" if many > 1 else ""
+    yield (
+        f"joints.{names[0]}: at t = {t:.6g} s{again} the run went on along another branch of the "
+        f"motion than it was on, past a place where branches come close but do not meet (rows of "
+        f"{', '.join(names)} depend on each other to {nearly:.1g}): what follows is another "
+        "motion; draw lengths that are to be equal to more digits, or take a smaller `tolerance`"
+    )

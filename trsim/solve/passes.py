@@ -1,0 +1,157 @@
+"""Steps that may have gone past a place where branches of the motion meet, or nearly meet.
+
+sigma, the root of the smallest pivot of S, is how far the rows of J are from depending on each
+other.  Where branches meet it goes to zero and up again, and has a sign that changes there; steps
+see |sigma| at their ends only.  A step is noted where sigma, continued along a line from the step
+before or back from the step after, would have lost most of itself in it.  What became of the
+branch in it is found out later, by crossed.py.  Where branches are known to meet nothing is noted.
+"""
+
+from math import cos, sqrt
+
+from trsim.assemble.equations import constraints, poses
+from trsim.assemble.linear import factorise, smallest_pivot
+from trsim.assemble.schur import rows
+from trsim.elements import signatures as types
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.packed import A1
+from trsim.elements.vectors import copy_to, internal
+from trsim.solve.record import (
+    FALLING,
+    LAST_H,
+    MEETINGS,
+    NOTED,
+    PASSED,
+    PIVOT,
+    RECORD,
+    SIGMA,
+    SIGMAS,
+    T,
+)
+
+LEFT = 0.3  # of sigma: a line that comes below that is looked at
+PART = 0.8  # rad, or of the mechanism's size: in longer steps sigma is looked at too
+MANY = 16  # parts of a step, at most
+AROUND = 0.36  # of the square of a step: how far from its middle a known place is in it
+
+
+@internal
+def note_passes(s, r, b, t1, last):
+    """Look at the step to b.y1, which is about to be accepted; notes it, or the one before it."""
+    t, pivot = r.clock[T], r.clock[PIVOT]
+    h = t1 - t
+    if not h > 0.0:
+        return
+    if r.count[SIGMAS] == 0:
+        r.clock[SIGMA], r.count[SIGMAS] = sigma(s, t, r.y), 1
+        copy_to(r.seen, r.y)
+    parts = 1
+    way = h * max(fastest(s, r.y), fastest(s, b.y1))
+    if way > PART:
+        parts = min(int(way / PART) + 1, MANY)
+        for k in range(1, parts):
+            x = k / parts
+            inside(r.y, r.yd, b.y1, b.K[last], h, x, b.y2)
+            look(s, r, t + (k - 1) / parts * h, t + x * h, b.y2, sigma(s, t + x * h, b.y2))
+    look(s, r, t + (parts - 1) / parts * h, t1, b.y1, sqrt(max(pivot, 0.0)))
+
+
+@internal
+def look(s, r, t, t1, y, now):
+    """Whether sigma seems to go through zero on the way to y, or did on the way before it."""
+    h, before, noted = t1 - t, r.clock[SIGMA], 0
+    falling = (before - now) / h
+    if r.count[SIGMAS] == 2:
+        if before - r.clock[FALLING] * h < LEFT * before:
+            note(s, r, t, t1, r.seen, y)
+            noted = 1
+        if r.count[NOTED] == 0 and before + falling * r.clock[LAST_H] < LEFT * before:
+            note(s, r, t - r.clock[LAST_H], t, r.behind, r.seen)
+    r.clock[SIGMA], r.clock[FALLING], r.clock[LAST_H] = now, falling, h
+    r.count[SIGMAS], r.count[NOTED] = 2, noted
+    copy_to(r.behind, r.seen)
+    copy_to(r.seen, y)
+
+
+@internal
+def sigma(s, t, y):
+    """The root of the smallest pivot of S."""
+    counted = s.status[2]
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    factorise(s)
+    s.status[2] = counted
+    return sqrt(max(smallest_pivot(s), 0.0))
+
+
+@internal
+def fastest(s, y):
+    """The fastest rate of a body or a node, rad/s or sizes/s."""
+    most, turns = 0.0, s.d // 2 + s.d % 2
+    for k in range(s.v_node):
+        v = abs(y[s.n_q + k])
+        most = max(most, v / s.size if k % s.d < turns else v)
+    for k in range(s.v_node, s.n_v):
+        most = max(most, abs(y[s.n_q + k]) / s.size)
+    return most
+
+
+@internal
+def inside(y0, yd0, y1, yd1, h, x, y):
+    """y <- the cubic through both ends of a step and their rates, at the part x of it."""
+    for k in range(y.size):
+        by = y1[k] - y0[k]
+        bent = (1.0 - x) * (h * yd0[k] - by) - x * (h * yd1[k] - by)
+        y[k] = y0[k] + x * by + x * (1.0 - x) * bent
+
+
+@internal
+def note(s, r, t0, t1, y0, y1):
+    """A line in r.passed: times, states and branches of angles."""
+    if r.count[PASSED] == r.passed.shape[0] or known(s, r, y0, y1) > 0:
+        return
+    line, n = r.passed[r.count[PASSED]], y0.size
+    line[0], line[1] = t0, t1
+    for k in range(n):
+        line[2 + k], line[2 + n + k] = y0[k], y1[k]
+    for k in range(r.branch.size):
+        line[2 + 2 * n + k] = r.branch[k]
+    r.count[PASSED] += 1
+
+
+@compiled(types.int64(SCENE, RECORD, A1, A1))
+def known(s, r, y0, y1):
+    """Whether branches meet, as was found out before, between two states."""
+    for k in range(r.count[MEETINGS]):
+        place = r.meeting[k]
+        if away(s, place, y0, y1) <= AROUND * apart(s, y0, y1):
+            return 1
+    return 0
+
+
+@internal
+def apart(s, y0, y1):
+    """The square of the distance of two states, a turn taken times the mechanism's size."""
+    total = 0.0
+    for f in range(s.n_r - 1):
+        if s.d == 3:
+            q = 3 * f
+            total += (y1[q] - y0[q]) ** 2 + (y1[q + 1] - y0[q + 1]) ** 2
+            total += 2.0 * s.size**2 * (1.0 - cos(y1[q + 2] - y0[q + 2]))
+            continue
+        q, along = 7 * f, 0.0
+        for a in range(3):
+            total += (y1[q + a] - y0[q + a]) ** 2
+        for a in range(3, 7):
+            along += y1[q + a] * y0[q + a]
+        total += 8.0 * s.size**2 * (1.0 - abs(along))
+    for k in range(s.q_node, s.n_q):
+        total += (y1[k] - y0[k]) ** 2
+    return total
+
+
+@internal
+def away(s, place, y0, y1):
+    """The square of the distance of a place from the middle of two states."""
+    return 0.5 * (apart(s, place, y0) + apart(s, place, y1)) - 0.25 * apart(s, y0, y1)
