@@ -34,7 +34,7 @@ Array = NDArray[np.float64]
 
 MEET = 3e-6  # singular value: rounding leaves some 1e-8 of one that is zero
 NARROWER, PATIENT = 0.25, 9  # a way that becomes no shorter than that in so many looks stays wide
-OVERLAP = 0.5  # smallest singular value of O_1 O_0^T of places near to each other
+OVERLAP = 0.95  # smallest singular value of O_1 O_0^T of places near to each other
 NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
 LOOKS = 200  # places looked at between two states, at most
 NUDGE = 1e-6  # rad, or of the mechanism's size: for derivatives of coordinates
@@ -46,8 +46,9 @@ class Place(NamedTuple):
     t: float
     y: Array
     slope: Array  # (n_y) dy/dt of coordinates; 0 of what else there is
-    sigma: Array  # (m) singular values of the rows at length one, the least first
-    rows: Array  # (m, ...) the rows made orthonormal
+    sigma: Array  # (m) singular values of all rows at length one but those of redundant ones, which
+    # are zero everywhere; the least first
+    rows: Array  # (m + n_d, ...) the rows made orthonormal, as far as their rank goes
 
 
 class Found(NamedTuple):
@@ -104,7 +105,7 @@ def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Fo
         least, width = min((a, b), key=lambda p: p.sigma[of]), distance(w, a, b)
         waited = 0 if width < NARROWER * wide else waited + 1
         wide = width if not waited else wide
-        if near and (least.sigma[of] <= MEET or waited == PATIENT):
+        if near and (least.sigma[of] <= MEET or waited >= PATIENT):
             yield Found(bool(least.sigma[of] <= MEET), least)
             continue
         # the zero of a straight line is found at once; halving gets near to any
@@ -117,9 +118,9 @@ def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Fo
 def compared(a: Place, b: Place) -> tuple[bool, int]:
     """Whether two places are near to each other, and how many singular values changed sign."""
     product = b.rows @ a.rows.T
-    if np.linalg.svd(product, compute_uv=False)[-1] < OVERLAP:
+    if np.linalg.svd(product, compute_uv=False)[a.sigma.size - 1] < OVERLAP:
         return False, 0
-    return True, int(np.sum(np.linalg.eigvals(product).real < 0.0))
+    return True, int(np.sum(np.linalg.eigvals(product).real < -0.5))
 
 
 def distance(w: Scene, a: Place, b: Place) -> float:
@@ -154,10 +155,9 @@ def place(w: Scene, t: float, y: Array) -> Place | None:
             break
     if not worst < REACHED * w.size:
         return None
-    J = all_rows(w, y)[: w.m]
-    u, sigma, vt = np.linalg.svd(of_length_one(J, weights(w)), full_matrices=False)
+    u, sigma, vt = np.linalg.svd(of_length_one(all_rows(w, y), weights(w)), full_matrices=False)
     project_velocities(w, y)
-    return Place(t, y, slope(w, y), sigma[::-1], u @ vt)
+    return Place(t, y, slope(w, y), sigma[w.m - 1 :: -1], u[:, : w.m] @ vt[: w.m])
 
 
 def slope(w: Scene, y: Array) -> Array:

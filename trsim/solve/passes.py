@@ -30,7 +30,8 @@ from trsim.solve.record import (
 )
 
 LEFT = 0.3  # of sigma: a line that comes below that is looked at
-PART = 0.8  # rad, or of the mechanism's size: in longer steps sigma is looked at too
+PART = 0.8  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
+FINE = 0.2  # the same with redundant rows, where those of the solve come close to others too
 MANY = 16  # parts of a step, at most
 AROUND = 0.36  # of the square of a step: how far from its middle a known place is in it
 
@@ -47,8 +48,9 @@ def note_passes(s, r, b, t1, last):
         copy_to(r.seen, r.y)
     parts = 1
     way = h * max(fastest(s, r.y), fastest(s, b.y1))
-    if way > PART:
-        parts = min(int(way / PART) + 1, MANY)
+    longest = PART if s.redundant.shape[0] == 0 else FINE
+    if way > longest:
+        parts = min(int(way / longest) + 1, MANY)
         for k in range(1, parts):
             x = k / parts
             inside(r.y, r.yd, b.y1, b.K[last], h, x, b.y2)
