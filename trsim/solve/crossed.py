@@ -36,6 +36,7 @@ MEET = 3e-6  # singular value: rounding leaves some 1e-8 of one that is zero
 NARROWER, PATIENT = 0.25, 9  # a way that becomes no shorter than that in so many looks stays wide
 OVERLAP = 0.95  # smallest singular value of O_1 O_0^T of places near to each other
 NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
+ELSEWHERE = (0.4, 0.65, 0.2, 0.85, 0.05, 0.97)  # where rows are singular there is no way back
 LOOKS = 200  # places looked at between two states, at most
 NUDGE = 1e-6  # rad, or of the mechanism's size: for derivatives of coordinates
 
@@ -93,11 +94,11 @@ def keep(r: Record, found: Found, n: int) -> None:
 def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Found]:
     """The places between two states where singular values change their sign."""
     first, last = place(w, t0, y0.copy()), place(w, t1, y1.copy())
+    if first is None or last is None:
+        return
     ways, looks = [(first, last, np.inf, 0)], 0
     while ways and looks < LOOKS:
         a, b, wide, waited = ways.pop()
-        if a is None or b is None:
-            continue
         near, flips = compared(a, b)
         if near and not flips:
             continue
@@ -110,8 +111,10 @@ def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Fo
             continue
         # the zero of a straight line is found at once; halving gets near to any
         at = a.sigma[of] / (a.sigma[of] + b.sigma[of]) if near and looks % 3 else 0.5
-        m = middle(w, a, b, min(max(at, 1e-3), 1.0 - 1e-3))
-        ways += [(m, b, wide, waited), (a, m, wide, waited)]
+        tries = (middle(w, a, b, min(max(x, 1e-3), 1.0 - 1e-3)) for x in (at, *ELSEWHERE))
+        m = next((found for found in tries if found), None)
+        if m:
+            ways += [(m, b, wide, waited), (a, m, wide, waited)]
         looks += 1
 
 

@@ -30,8 +30,9 @@ from trsim.solve.record import (
 )
 
 LEFT = 0.3  # of sigma: a line that comes below that is looked at
-PART = 0.8  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
+PART = 0.4  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
 FINE = 0.2  # the same with redundant rows, where those of the solve come close to others too
+STEEP, STEEPER = 2.0, 4.0  # by how much sigma changes per radian, at most, without and with these
 MANY = 16  # parts of a step, at most
 AROUND = 0.36  # of the square of a step: how far from its middle a known place is in it
 
@@ -49,7 +50,8 @@ def note_passes(s, r, b, t1, last):
     parts = 1
     way = h * max(fastest(s, r.y), fastest(s, b.y1))
     longest = PART if s.redundant.shape[0] == 0 else FINE
-    if way > longest:
+    steepest = STEEP if s.redundant.shape[0] == 0 else STEEPER
+    if way > longest and r.clock[SIGMA] + sqrt(max(pivot, 0.0)) < steepest * way:
         parts = min(int(way / longest) + 1, MANY)
         for k in range(1, parts):
             x = k / parts
