@@ -27,15 +27,13 @@ from trsim.assemble.reduce import all_rows, weights
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.locked import dependent
-from trsim.solve.passes import known
+from trsim.solve.passes import CLOSED, MEET, NEWTON, REACHED, known
 from trsim.solve.record import Record
 
 Array = NDArray[np.float64]
 
-MEET = 3e-6  # singular value: rounding leaves some 1e-8 of one that is zero
 NARROWER, PATIENT = 0.25, 9  # a way that becomes no shorter than that in so many looks stays wide
 OVERLAP = 0.95  # smallest singular value of O_1 O_0^T of places near to each other
-NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
 ELSEWHERE = (0.4, 0.65, 0.2, 0.85, 0.05, 0.97)  # where rows are singular there is no way back
 LOOKS = 200  # places looked at between two states, at most
 NUDGE = 1e-6  # rad, or of the mechanism's size: for derivatives of coordinates
@@ -73,17 +71,15 @@ def examine(work: Scene, r: Record) -> None:
             continue
         scratch.branch[:] = line[2 + 2 * n :]
         for found in between(scratch, t0, y0, t1, y1):
-            keep(r, found, n)
+            keep(r, found)
     r.count[rec.PASSED] = 0
 
 
-def keep(r: Record, found: Found, n: int) -> None:
+def keep(r: Record, found: Found) -> None:
     """A place in the record."""
     if found.meet:
-        k = int(r.count[rec.MEETINGS])
-        if k < len(r.meeting):
-            r.meeting[k] = found.place.y
-            r.count[rec.MEETINGS] = k + 1
+        r.meeting[r.count[rec.MEETINGS] % len(r.meeting)] = found.place.y
+        r.count[rec.MEETINGS] += 1
         return
     if not r.count[rec.CROSSED]:
         r.clock[rec.CROSSED_T] = found.place.t

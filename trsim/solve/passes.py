@@ -10,7 +10,8 @@ branch in it is found out later, by crossed.py.  Where branches are known to mee
 from math import cos, sqrt
 
 from trsim.assemble.equations import constraints, poses
-from trsim.assemble.linear import factorise, smallest_pivot
+from trsim.assemble.linear import diagonal, eliminate, factorise, smallest_pivot
+from trsim.assemble.projection import move_all, project_positions, project_velocities
 from trsim.assemble.schur import rows
 from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
@@ -34,6 +35,12 @@ PART = 0.4  # rad, or of the mechanism's size: inside longer steps sigma is look
 FINE = 0.2  # the same with redundant rows, where those of the solve come close to others too
 STEEP, STEEPER = 2.0, 4.0  # by how much sigma changes per radian, at most, without and with these
 MANY = 16  # parts of a step, at most
+MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
+APART = 1e-2  # pivots that do not take part
+NEARER, GAIN = 12, 0.6  # how often; what is left of sigma each time, at most
+SLOWEST = 1e-3  # 1/rad: how fast sigma goes to zero, at least
+FINEST = 1e-15  # of the diagonal: rounding of a pivot
+NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
 AROUND = 0.36  # of the square of a step: how far from its middle a known place is in it
 
 
@@ -56,21 +63,24 @@ def note_passes(s, r, b, t1, last):
         for k in range(1, parts):
             x = k / parts
             inside(r.y, r.yd, b.y1, b.K[last], h, x, b.y2)
-            look(s, r, t + (k - 1) / parts * h, t + x * h, b.y2, sigma(s, t + x * h, b.y2))
-    look(s, r, t + (parts - 1) / parts * h, t1, b.y1, sqrt(max(pivot, 0.0)))
+            look(s, r, b, t + (k - 1) / parts * h, t + x * h, b.y2, sigma(s, t + x * h, b.y2))
+    look(s, r, b, t + (parts - 1) / parts * h, t1, b.y1, sqrt(max(pivot, 0.0)))
 
 
 @internal
-def look(s, r, t, t1, y, now):
+def look(s, r, b, t, t1, y, now):
     """Whether sigma seems to go through zero on the way to y, or did on the way before it."""
     h, before, noted = t1 - t, r.clock[SIGMA], 0
     falling = (before - now) / h
     if r.count[SIGMAS] == 2:
         if before - r.clock[FALLING] * h < LEFT * before:
-            note(s, r, t, t1, r.seen, y)
+            note(s, r, b, t, t1, r.seen, y, before / (before + now + 1e-300))
             noted = 1
         if r.count[NOTED] == 0 and before + falling * r.clock[LAST_H] < LEFT * before:
-            note(s, r, t - r.clock[LAST_H], t, r.behind, r.seen)
+            last = before + max(r.clock[FALLING], 0.0) * r.clock[LAST_H]
+            note(
+                s, r, b, t - r.clock[LAST_H], t, r.behind, r.seen, last / (last + before + 1e-300)
+            )
     r.clock[SIGMA], r.clock[FALLING], r.clock[LAST_H] = now, falling, h
     r.count[SIGMAS], r.count[NOTED] = 2, noted
     copy_to(r.behind, r.seen)
@@ -111,9 +121,16 @@ def inside(y0, yd0, y1, yd1, h, x, y):
 
 
 @internal
-def note(s, r, t0, t1, y0, y1):
-    """A line in r.passed: times, states and branches of angles."""
+def note(s, r, b, t0, t1, y0, y1, part):
+    """A line in r.passed: times, states and branches of angles.
+
+    part: of the way to where sigma is zero.  Where it is, the place is kept instead.
+    """
     if r.count[PASSED] == r.passed.shape[0] or known(s, r, y0, y1) > 0:
+        return
+    if s.redundant.shape[0] == 0 and meet(s, b, t0, t1, y0, y1, part):
+        copy_to(r.meeting[r.count[MEETINGS] % r.meeting.shape[0]], b.rough[0])
+        r.count[MEETINGS] += 1
         return
     line, n = r.passed[r.count[PASSED]], y0.size
     line[0], line[1] = t0, t1
@@ -124,10 +141,84 @@ def note(s, r, t0, t1, y0, y1):
     r.count[PASSED] += 1
 
 
+@internal
+def meet(s, b, t0, t1, y0, y1, part):
+    """Whether sigma goes to zero next to a way, and then with no other pivot that does not.
+
+    From the best place so far it looks where a line comes to zero, ahead and behind.  Leaves the
+    place in b.rough[0].
+    """
+    best, trial = b.rough[0], b.rough[1]
+    for k in range(best.size):
+        best[k] = y0[k] + part * (y1[k] - y0[k])
+    t, h, rate = t0 + part * (t1 - t0), t1 - t0, fastest(s, y0)
+    now = least(s, t, best)
+    steep = 1.0  # 1/rad
+    for _ in range(NEARER):
+        if now <= MEET or not rate > 0.0:
+            break
+        d, found, farther = now / (steep * rate), -1.0, now
+        for side in range(2):
+            x = d if side == 0 else -d
+            copy_to(trial, best)
+            for k in range(s.n_v):
+                b.rough[2, k] = x * best[s.n_q + k]
+            move_all(s, trial, b.rough[2])
+            for k in range(s.n_z):
+                at = s.n_q + s.n_v + k
+                trial[at] += x / h * (y1[at] - y0[at])
+            there = least(s, t + x, trial)
+            farther = max(farther, there)
+            if there < GAIN * now and (found < 0.0 or there < found):
+                found, t_found = there, t + x
+                copy_to(b.unmoved[2], trial)
+        if found < 0.0:
+            return False
+        steep = max(steep * (farther - now) / now, SLOWEST)
+        now, t = found, t_found
+        copy_to(best, b.unmoved[2])
+        rate = fastest(s, best)
+    if not now <= MEET:
+        return False
+    least(s, t, best)
+    for k in range(s.first.size):
+        place = s.column_start[k]
+        share = s.value[place] / s.first[k]
+        if s.row[place] < s.m and MEET * MEET < share < APART:
+            return False
+    return True
+
+
+@internal
+def least(s, t, y):
+    """sigma of y brought to the constraints, with its velocities; 1 where it does not get there."""
+    worst = 1e300
+    for _ in range(NEWTON):
+        worst = project_positions(s, t, y)
+        if not worst > CLOSED * s.size:
+            break
+    if not worst < REACHED * s.size:
+        return 1.0
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    factorise(s)
+    project_velocities(s, y)
+    rows(s)
+    diagonal(s)
+    eliminate(s, FINEST)
+    smallest = 1.0
+    for k in range(s.first.size):
+        place = s.column_start[k]
+        if s.row[place] < s.m:
+            smallest = min(smallest, s.value[place] / s.first[k])
+    return sqrt(max(smallest, 0.0))
+
+
 @compiled(types.int64(SCENE, RECORD, A1, A1))
 def known(s, r, y0, y1):
     """Whether branches meet, as was found out before, between two states."""
-    for k in range(r.count[MEETINGS]):
+    for k in range(min(r.count[MEETINGS], r.meeting.shape[0])):
         place = r.meeting[k]
         if away(s, place, y0, y1) <= AROUND * apart(s, y0, y1):
             return 1
