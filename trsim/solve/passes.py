@@ -11,7 +11,7 @@ from math import cos, sqrt
 
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.linear import diagonal, eliminate, factorise, smallest_pivot
-from trsim.assemble.projection import move_all, project_positions, project_velocities
+from trsim.assemble.projection import move_all, project_positions
 from trsim.assemble.schur import rows
 from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
@@ -31,9 +31,9 @@ from trsim.solve.record import (
 )
 
 LEFT = 0.3  # of sigma: a line that comes below that is looked at
-PART = 0.4  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
+PART = 0.55  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
 FINE = 0.2  # the same with redundant rows, where those of the solve come close to others too
-STEEP, STEEPER = 2.0, 4.0  # by how much sigma changes per radian, at most, without and with these
+STEEP, STEEPER = 1.5, 4.0  # by how much sigma changes per radian, at most, without and with these
 MANY = 16  # parts of a step, at most
 MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
 APART = 1e-2  # pivots that do not take part
@@ -41,7 +41,8 @@ NEARER, GAIN = 12, 0.6  # how often; what is left of sigma each time, at most
 SLOWEST = 1e-3  # 1/rad: how fast sigma goes to zero, at least
 FINEST = 1e-15  # of the diagonal: rounding of a pivot
 NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
-AROUND = 0.36  # of the square of a step: how far from its middle a known place is in it
+NEAR_ENOUGH = 1e-3  # of the square of sigma: it is not felt
+AROUND = 1.5  # of the square of a way: how far from its middle a known place is next to it
 
 
 @internal
@@ -152,7 +153,7 @@ def meet(s, b, t0, t1, y0, y1, part):
     for k in range(best.size):
         best[k] = y0[k] + part * (y1[k] - y0[k])
     t, h, rate = t0 + part * (t1 - t0), t1 - t0, fastest(s, y0)
-    now = least(s, t, best)
+    now = least(s, t, best, 0.1)
     steep = 1.0  # 1/rad
     for _ in range(NEARER):
         if now <= MEET or not rate > 0.0:
@@ -167,7 +168,7 @@ def meet(s, b, t0, t1, y0, y1, part):
             for k in range(s.n_z):
                 at = s.n_q + s.n_v + k
                 trial[at] += x / h * (y1[at] - y0[at])
-            there = least(s, t + x, trial)
+            there = least(s, t + x, trial, now)
             farther = max(farther, there)
             if there < GAIN * now and (found < 0.0 or there < found):
                 found, t_found = there, t + x
@@ -180,7 +181,7 @@ def meet(s, b, t0, t1, y0, y1, part):
         rate = fastest(s, best)
     if not now <= MEET:
         return False
-    least(s, t, best)
+    least(s, t, best, 0.0)
     for k in range(s.first.size):
         place = s.column_start[k]
         share = s.value[place] / s.first[k]
@@ -190,20 +191,20 @@ def meet(s, b, t0, t1, y0, y1, part):
 
 
 @internal
-def least(s, t, y):
-    """sigma of y brought to the constraints, with its velocities; 1 where it does not get there."""
-    worst = 1e300
+def least(s, t, y, about):
+    """sigma of y brought to the constraints; 1 where it does not get there.
+
+    about: how large sigma is next to it, which says how near to the constraints will do.
+    """
+    near, worst = max(CLOSED, NEAR_ENOUGH * about * about), 1e300
     for _ in range(NEWTON):
         worst = project_positions(s, t, y)
-        if not worst > CLOSED * s.size:
+        if not worst > near * s.size:
             break
-    if not worst < REACHED * s.size:
+    if not worst < max(near, REACHED) * s.size:
         return 1.0
     poses(s, y)
     constraints(s, t)
-    rows(s)
-    factorise(s)
-    project_velocities(s, y)
     rows(s)
     diagonal(s)
     eliminate(s, FINEST)
