@@ -31,7 +31,7 @@ from trsim.solve.record import (
 )
 
 LEFT = 0.3  # of sigma: a line that comes below that is looked at
-PART = 0.55  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
+PART = 0.7  # rad, or of the mechanism's size: inside longer steps sigma is looked at too
 FINE = 0.2  # the same with redundant rows, where those of the solve come close to others too
 STEEP, STEEPER = 1.5, 4.0  # by how much sigma changes per radian, at most, without and with these
 MANY = 16  # parts of a step, at most
@@ -56,7 +56,7 @@ def note_passes(s, r, b, t1, last):
         r.clock[SIGMA], r.count[SIGMAS] = sigma(s, t, r.y), 1
         copy_to(r.seen, r.y)
     parts = 1
-    way = h * max(fastest(s, r.y), fastest(s, b.y1))
+    way = h * fastest(s, b.y1)
     longest = PART if s.redundant.shape[0] == 0 else FINE
     steepest = STEEP if s.redundant.shape[0] == 0 else STEEPER
     if way > longest and r.clock[SIGMA] + sqrt(max(pivot, 0.0)) < steepest * way:
@@ -103,13 +103,17 @@ def sigma(s, t, y):
 @internal
 def fastest(s, y):
     """The fastest rate of a body or a node, rad/s or sizes/s."""
-    most, turns = 0.0, s.d // 2 + s.d % 2
-    for k in range(s.v_node):
-        v = abs(y[s.n_q + k])
-        most = max(most, v / s.size if k % s.d < turns else v)
+    along = turning = 0.0
+    first = 2 if s.d == 3 else 3
+    for f in range(s.n_r - 1):
+        o = s.n_q + s.d * f
+        for c in range(first):
+            along = max(along, abs(y[o + c]))
+        for c in range(first, s.d):
+            turning = max(turning, abs(y[o + c]))
     for k in range(s.v_node, s.n_v):
-        most = max(most, abs(y[s.n_q + k]) / s.size)
-    return most
+        along = max(along, abs(y[s.n_q + k]))
+    return max(along / s.size, turning)
 
 
 @internal
