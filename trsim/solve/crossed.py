@@ -57,22 +57,31 @@ class Found(NamedTuple):
     place: Place
 
 
-def examine(work: Scene, r: Record) -> None:
-    """Find out what became of the branch in the steps noted so far, and forget these."""
-    many = int(r.count[rec.PASSED])
-    if not many:
-        return
-    n, scratch = r.y.size, scene(work)
-    scratch.mem[:] = work.mem
-    for line in r.passed[:many]:
-        t0, t1 = line[:2].tolist()
-        y0, y1 = line[2 : 2 + n], line[2 + n : 2 + 2 * n]
-        if known(work, r, y0, y1):
-            continue
-        scratch.branch[:] = line[2 + 2 * n :]
-        for found in between(scratch, t0, y0, t1, y1):
-            keep(r, found)
+def examine(work: Scene, r: Record, other_rows: bool) -> None:
+    """Find out what became of the branch on the ways noted so far, and forget these.
+
+    other_rows: are solved from here on, so the last way must be judged now, and sigma begins anew.
+    """
+    n, many = r.y.size, int(r.count[rec.PASSED])
+    ways = [
+        (*line[:2].tolist(), line[2 : 2 + n], line[2 + n : 2 + 2 * n], line[2 + 2 * n :])
+        for line in r.passed[:many]
+    ]
     r.count[rec.PASSED] = 0
+    if other_rows:
+        t, h = float(r.clock[rec.T]), float(r.clock[rec.LAST_H])
+        if r.count[rec.SIGMAS] == 2 and not r.count[rec.NOTED]:
+            ways.append((t - h, t, r.behind, r.seen, r.branch))
+        r.count[rec.SIGMAS] = 0
+    if not ways:
+        return
+    scratch = scene(work)
+    scratch.mem[:] = work.mem
+    for t0, t1, y0, y1, branch in ways:
+        if not known(work, r, y0, y1):
+            scratch.branch[:] = branch
+            for found in between(scratch, t0, y0, t1, y1):
+                keep(r, found)
 
 
 def keep(r: Record, found: Found) -> None:

@@ -172,10 +172,9 @@ def compiled(
     while True:
         most = min(visit, limit - int(r.count[rec.STEPS]))
         reason = march(work, r, b, setting, methods, most)
-        examine(work, r)
+        examine(work, r, other_rows=reason == rec.ACT)
         recorded = None
         if reason == rec.ACT:
-            r.count[rec.SIGMAS] = 0
             before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
