@@ -40,7 +40,7 @@ APART = 1e-2  # pivots that do not take part
 NEARER, GAIN = 12, 0.6  # how often; what is left of sigma each time, at most
 SLOWEST = 1e-3  # 1/rad: how fast sigma goes to zero, at least
 FINEST = 1e-15  # of the diagonal: rounding of a pivot
-NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-9  # steps; of the mechanism's size
+NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-12  # steps; of the mechanism's size
 NEAR_ENOUGH = 1e-3  # of the square of sigma: it is not felt
 AROUND = 1.5  # of the square of a way: how far from its middle a known place is next to it
 
@@ -160,6 +160,8 @@ def meet(s, b, t0, t1, y0, y1, part):
     now = least(s, t, best, 0.1)
     steep = 1.0  # 1/rad
     for _ in range(NEARER):
+        if now <= MEET:  # of a place that is on the constraints for certain?
+            now = least(s, t, best, 0.0)
         if now <= MEET or not rate > 0.0:
             break
         d, found, farther = now / (steep * rate), -1.0, now
@@ -183,9 +185,8 @@ def meet(s, b, t0, t1, y0, y1, part):
         now, t = found, t_found
         copy_to(best, b.unmoved[2])
         rate = fastest(s, best)
-    if not now <= MEET:
+    if not least(s, t, best, 0.0) <= MEET:
         return False
-    least(s, t, best, 0.0)
     for k in range(s.first.size):
         place = s.column_start[k]
         share = s.value[place] / s.first[k]

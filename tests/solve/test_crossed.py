@@ -1,0 +1,143 @@
+"""Runs that change their branch where branches nearly meet, and those that do not.
+
+Cranks of nearly one length turn over at the flat places of their parallelogram, so that
+
+    theta_0' (plate x crank 1)
+
+never changes its sign while they move; a run that goes straight on changes it.
+"""
+
+import numpy as np
+import pytest
+
+from trsim.solve.doubts import doubts
+
+from ..overconstrained import METHODS, ORDINARY, TILTED, Z, cranks, text
+from ..runs import run
+from .test_branches import flat, turning
+
+SPACES = {"plane": ORDINARY, "tilted": TILTED}
+
+
+def given(body, rate, place, pivot, R):
+    """Velocities of a body that turns about a pivot."""
+    way = np.asarray(place, float) - pivot
+    v = [float(x) for x in R @ (rate * np.array([-way[1], way[0], 0.0]))]
+    spin = [float(x) for x in R @ [0.0, 0.0, rate]]
+    return [f"bodies.{body}.velocity={v}", f"bodies.{body}.angular_velocity={spin}"]
+
+
+def upright(longer, R, rate=2.0):
+    """Two upright cranks that carry a plate, the second one longer; text and velocities."""
+    R = np.asarray(R)
+    parts = cranks([1.0, 1.0 + longer], [0.0, 0.7], np.pi / 2, top=0.0)
+    more = "gravity: [0, 0, 0]\noutput: {every: 0.002}"
+    planar = "true" if R is ORDINARY else "false"
+    sets = [f"bodies.plate.velocity={[float(x) for x in R @ [-rate, 0.0, 0.0]]}"]
+    for k, (length, x) in enumerate(((1.0, 0.0), (1.0 + longer, 0.7))):
+        sets += given(f"crank{k}", rate, (x, -length / 2, 0.0), (x, -length, 0.0), R)
+    return text(parts, more, R, planar=planar, end=10.0), sets
+
+
+def crank_and_rod(longer, R, rate=3.0):
+    """A slider-crank with a rod longer than its crank by a little."""
+    R, angle = np.asarray(R), 1.0
+    pin = np.array([np.cos(angle), np.sin(angle), 0.0])
+    end = np.array([pin[0] + np.sqrt((1.0 + longer) ** 2 - pin[1] ** 2), 0.0, 0.0])
+    joints = {
+        "A": ("ground", "crank", (0, 0, 0), Z),
+        "B": ("crank", "rod", pin, Z),
+        "C": ("rod", "slider", end, Z),
+        "track": ("ground", "slider", end, (1, 0, 0), "prismatic"),
+    }
+    bodies = {"crank": pin / 2, "rod": (pin + end) / 2, "slider": end}
+    planar = "true" if R is ORDINARY else "false"
+    scene = text((bodies, joints), "output: {every: 0.002}", R, planar=planar, end=10.0)
+    turn = -rate * pin[0] / (end - pin)[0]
+    pole = np.array([0.0, 0.0, 0.0]) + pin * (1.0 - rate / turn)  # of the rod
+    slide = turn * (pole[1] - end[1])
+    sets = given("crank", rate, pin / 2, (0, 0, 0), R) + given("rod", turn, (pin + end) / 2, pole, R)
+    return scene, [*sets, f"bodies.slider.velocity={[float(x) for x in R @ [slide, 0, 0]]}"]
+
+
+def cross(u, v):
+    return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+
+
+def changes(x):
+    """How often x changes its sign, what is close to zero left out."""
+    sign = np.sign(x[np.abs(x) > 0.02])
+    return int(np.sum(sign[1:] != sign[:-1]))
+
+
+def of_cranks(r, R):
+    feet = [np.array(r.scenario.joints[f"F{k}"].at) for k in (0, 1)]
+    first, second = (2.0 * (r[f"crank{k}.position"] - feet[k]) @ R for k in (0, 1))
+    plate = (feet[1] - feet[0]) @ R + second - first
+    return changes((r["crank0.angular_velocity"] @ R)[:, 2] * cross(plate, second))
+
+
+def of_rod(r, R):
+    rod = (r["rod.position"] - 2.0 * r["crank.position"]) @ R
+    return changes((r["crank.angular_velocity"] @ R)[:, 2] * rod[:, 0])
+
+
+def told(r):
+    """What is said of branches."""
+    return [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "another branch" in x]
+
+
+@pytest.mark.parametrize("R", SPACES.values(), ids=SPACES)
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("scene", [(upright, of_cranks), (crank_and_rod, of_rod)], ids=["", "rod"])
+def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
+    drawn, branches = scene
+    wrong = 0
+    for longer in (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, -1e-8, -1e-6):
+        for tolerance in ("1e-2", "1e-3", "1e-4", "1e-6"):
+            made, sets = drawn(longer, R)
+            ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
+            r = run(made, *sets, *ways)
+            changed = branches(r, np.asarray(R)) > 0
+            assert bool(told(r)) == changed, (longer, tolerance)
+            wrong += changed
+    assert wrong > 4  # else nothing was tested
+
+
+@pytest.mark.parametrize("R", SPACES.values(), ids=SPACES)
+@pytest.mark.parametrize("method", ["auto", "dop853", "radau", "ggl"])
+@pytest.mark.parametrize("number", [2, 3])
+def test_nothing_is_said_where_branches_meet(number, method, R):
+    for tolerance in ("1e-2", "1e-4", "1e-6"):
+        sets = (*METHODS[method], f"solver.tolerance={tolerance}")
+        r = run(flat(number, "", R, end=5.0), *turning(number, 6.0, R), *sets)
+        assert not told(r), tolerance
+
+
+@pytest.mark.parametrize("R", SPACES.values(), ids=SPACES)
+def test_crank_and_rod_of_one_length_go_on_along_their_branch(R):
+    made, sets = crank_and_rod(0.0, R)
+    for tolerance in ("1e-2", "1e-4", "1e-6"):
+        r = run(made, *sets, f"solver.tolerance={tolerance}")
+        assert of_rod(r, np.asarray(R)) > 4
+        assert not told(r)
+
+
+def test_what_is_said():
+    """The time, the joints, and what to do."""
+    made, sets = upright(1e-8, ORDINARY)
+    r = run(made, *sets, "solver.tolerance=1e-3", "solver.method=dop853")
+    (said,) = told(r)
+    assert said.startswith("joints.F0: at t = 0.785")  # pi/4: the first flat place
+    assert "F0, T0, F1, T1" in said
+    assert "times in all" in said
+    assert "`tolerance`" in said
+
+
+def test_a_way_that_meets_one_place_and_nearly_another():
+    """Two loops on one plate are flat at once: of the first two cranks the rows depend on each
+    other there, of the third, on a slider, they nearly do."""
+    made, sets = upright(0.0, ORDINARY)
+    silent = run(made, *sets, "solver.tolerance=1e-3")
+    assert not told(silent)
+    assert silent.outcome.record.passed.shape[0] > 0
