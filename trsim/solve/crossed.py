@@ -15,7 +15,7 @@ the constraints from a cubic through the last ones, until
 """
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray

@@ -79,9 +79,7 @@ def look(s, r, b, t, t1, y, now):
             noted = 1
         if r.count[NOTED] == 0 and before + falling * r.clock[LAST_H] < LEFT * before:
             last = before + max(r.clock[FALLING], 0.0) * r.clock[LAST_H]
-            note(
-                s, r, b, t - r.clock[LAST_H], t, r.behind, r.seen, last / (last + before + 1e-300)
-            )
+            note(s, r, b, t - r.clock[LAST_H], t, r.behind, r.seen, last / (last + before + 1e-300))
     r.clock[SIGMA], r.clock[FALLING], r.clock[LAST_H] = now, falling, h
     r.count[SIGMAS], r.count[NOTED] = 2, noted
     copy_to(r.behind, r.seen)
