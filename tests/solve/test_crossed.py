@@ -141,12 +141,13 @@ def test_two_mechanisms_flat_at_once_one_of_them_nearly():
     for longer in (0.0, 1e-8):
         bodies, joints, sets = {}, {}, []
         for name, extra, y in (("a", 0.0, 0.0), ("b", longer, 5.0)):
+            up = np.array([0.0, y, 0.0])
             parts = cranks([1.0, 1.0 + extra], [0.0, 0.7], np.pi / 2, top=0.0)
             for body, place in parts[0].items():
-                bodies[name + body] = np.array(place) + [0.0, y, 0.0]
+                bodies[name + body] = np.array(place) + up
             for joint, (i, j, place, axis) in parts[1].items():
                 i = i if i == "ground" else name + i
-                joints[name + joint] = (i, name + j, np.array(place) + [0.0, y, 0.0], axis)
+                joints[name + joint] = (i, name + j, np.array(place) + up, axis)
             sets += [
                 word.replace("bodies.", f"bodies.{name}") for word in upright(extra, ORDINARY)[1]
             ]
