@@ -62,11 +62,12 @@ FIELDS = (
     "search",  # what finds events
     "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
     "sample",  # what keeps extremes
+    "passes",  # what notes steps past places where branches of the motion may meet
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
-    BEYOND_AT, TURN_AT, SAMPLE_AT,
+    BEYOND_AT, TURN_AT, SAMPLE_AT, PASSES_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from trsim.solve.calls import (
     LOOK_AT,
     MEET_AT,
     NO_STEP,
+    PASSES_AT,
     SAMPLE_AT,
     SEARCH_AT,
     SECTIONS_AT,
@@ -37,7 +38,7 @@ from trsim.solve.events import SAME
 from trsim.solve.features import call_meet
 from trsim.solve.land import land
 from trsim.solve.norm import grow
-from trsim.solve.passes import note_passes
+from trsim.solve.passes import call_passes
 from trsim.solve.peaks import call_sample
 from trsim.solve.phases import change_phases, latch
 from trsim.solve.record import (
@@ -182,8 +183,8 @@ def complete(s, r, b, setting, method, h, built):
         call_sections(
             method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event or corner)
         )  # fmt: skip
-    if r.passed.shape[0] > 0 and s.near_rows > 0.0:
-        note_passes(s, r, b, t1, last)
+    if method[PASSES_AT] > 0:
+        call_passes(method[PASSES_AT], s, r, b, t1, last)
     accept(s, r, b, t1, projected, last)
     take_sides(s, r)
     if method[IMPLICIT_AT] > 0:

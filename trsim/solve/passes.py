@@ -14,10 +14,12 @@ from trsim.assemble.linear import diagonal, eliminate, factorise, smallest_pivot
 from trsim.assemble.projection import move_all, project_positions
 from trsim.assemble.schur import rows
 from trsim.elements import signatures as types
+from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.packed import A1
+from trsim.elements.packed import A1, f8, i8
 from trsim.elements.vectors import copy_to, internal
 from trsim.solve.record import (
+    BUFFERS,
     FALLING,
     LAST_H,
     MEETINGS,
@@ -44,10 +46,19 @@ NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-12  # steps; of the mechanism's size
 NEAR_ENOUGH = 1e-3  # of the square of sigma: it is not felt
 AROUND = 1.5  # of the square of a way: how far from its middle a known place is next to it
 
+#                   scene  record  buffers end of the step
+PASSES = types.void(SCENE, RECORD, BUFFERS, f8, i8)
+call_passes = caller(PASSES)
 
-@internal
+
+@compiled(PASSES)
 def note_passes(s, r, b, t1, last):
-    """Look at the step to b.y1, which is about to be accepted; notes it, or the one before it."""
+    """Look at the step to b.y1, which is about to be accepted; notes it, or the one before it.
+
+    last: the row of b.K with its derivative.
+    """
+    if not s.near_rows > 0.0:
+        return
     t, pivot = r.clock[T], r.clock[PIVOT]
     h = t1 - t
     if not h > 0.0:

@@ -153,6 +153,10 @@ def compiled(
         b = sparse.buffers(b, scenario, mechanism, work)
     methods = np.zeros((len(used), len(FIELDS)), np.int64)
     called = called_by(mechanism, setting)
+    if len(r.passed):
+        from trsim.solve.passes import note_passes
+
+        called["passes"] = note_passes.address()
     methods[0] = method_table(used[0], **called)
     clock0 = time.process_time()
     if checkpoint:
