@@ -136,12 +136,12 @@ def ramped_damping(pen, pen_dot, k, c, ramp):
     """
     if pen <= 0.0:
         return 0.0
-    return max(0.0, undamped_below(pen, pen_dot, k, c, ramp))
+    return max(0.0, uncut(pen, pen_dot, k, c, ramp))
 
 
 @law
-def undamped_below(pen, pen_dot, k, c, ramp):
-    """The same where it would pull, N or N*m; below zero penetration the spring alone."""
+def uncut(pen, pen_dot, k, c, ramp):
+    """The same before it is cut at zero, N or N*m; below zero penetration the spring alone."""
     return k * pen + c * smoothstep(pen / ramp) * pen_dot
 
 
@@ -151,7 +151,7 @@ def ramped_branch_of(pen, pen_dot, k, c, ramp):
 
     0: the damper fades in; 1: it is complete; 2: the force would pull, and is zero.
     """
-    if undamped_below(pen, pen_dot, k, c, ramp) < 0.0 < pen:
+    if uncut(pen, pen_dot, k, c, ramp) < 0.0 < pen:
         return 2.0
     return 0.0 if pen < ramp else 1.0
 
@@ -187,7 +187,7 @@ def ramped_beyond(branch, pen, pen_dot, k, c, ramp):
     if branch == 2.0:
         low, high, nowhere = pulling(pen_dot, k, c, ramp)
         return max(low - pen / ramp, pen / ramp - high) + nowhere
-    pull = -undamped_below(pen, pen_dot, k, c, ramp) / (k * ramp)
+    pull = -uncut(pen, pen_dot, k, c, ramp) / (k * ramp)
     along = pen / ramp - 1.0
     if pen <= 0.0:  # a separation is an event of its own
         return along if branch == 0.0 else -along
@@ -200,7 +200,7 @@ def ramped_neighbour(branch, pen, pen_dot, k, c, ramp):
     along = pen / ramp - 1.0
     if branch == 2.0:
         return 0.0 if along < 0.0 else 1.0
-    pull = -undamped_below(pen, pen_dot, k, c, ramp) / (k * ramp)
+    pull = -uncut(pen, pen_dot, k, c, ramp) / (k * ramp)
     beside = along if branch == 0.0 else -along
     return 2.0 if pull > beside else 1.0 - branch
 

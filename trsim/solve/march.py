@@ -153,7 +153,7 @@ def march(s, r, b, setting, methods, most):
             s.left[s.contact[c]] = -1.0
         s.status[4] = 0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
-        if s.status[4] > 0:
+        if s.status[4] > 0 and error < NO_STEP:
             error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
