@@ -202,7 +202,7 @@ def ramped_neighbour(branch, pen, pen_dot, k, c, ramp):
         return 0.0 if along < 0.0 else 1.0
     pull = -uncut(pen, pen_dot, k, c, ramp) / (k * ramp)
     beside = along if branch == 0.0 else -along
-    return 2.0 if pull > beside else 1.0 - branch
+    return 2.0 if pull > min(beside, 0.0) else 1.0 - branch
 
 
 def _residual(chi, e):
