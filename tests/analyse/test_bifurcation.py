@@ -115,7 +115,7 @@ def test_a_case_without_the_key_the_section_or_its_file_is_left_out(study, tmp_p
     with pytest.raises(UsageError, match="no case that varies joints"):
         diagram(Study((rigid, plain)), "journal:x")
     over = Study((rigid, good), ("case", "joints.B.clearance"))
-    with pytest.raises(UsageError, match="no row lies in"):
+    with pytest.raises(UsageError, match="nothing lies in"):
         diagram(over, "journal@1 s..")
 
 

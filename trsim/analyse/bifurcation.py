@@ -100,7 +100,7 @@ def _points(run: Run, name: str, text: str) -> Any:
         hint = known(name, sections) if sections else "Declare one under `poincare`."
         raise UsageError(f"{run.path}: no section '{name}'", hint)
     points = sections[name]
-    return points, window(run, text).of(points.time)
+    return points, window(run, text, rows=False).of(points.time)
 
 
 def swept(study: Any, over: str | None) -> str:

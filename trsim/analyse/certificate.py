@@ -17,6 +17,7 @@ from trsim.analyse.levels import ERRORS, Inside, levels, shares
 from trsim.analyse.onsets import first_onsets, numbers
 from trsim.analyse.pair import Column, Pair, Totals
 from trsim.store.certificate import Certificate, Curve, Parted, Quantity
+from trsim.store.read import reached
 
 Array = NDArray[np.float64]
 
@@ -50,9 +51,10 @@ def certificate(run: h5py.File, twin: h5py.File) -> Certificate:
         **worst_quantity(pair, quantities, ranges),
     }  # fmt: skip
     told = [row for k, one in enumerate(inside) for row in levels(pair, k + 1, one, both)]
-    told += [row for one in parted for row in shares(run, twin, one, until)]
+    located = min(reached(run), reached(twin))  # contacts go on behind the last row
+    told += [row for one in parted for row in shares(run, twin, one, located)]
     return Certificate(about, parted, curves, quantities, told, numbers(run, twin, first),
-                       first_onsets(run, twin, until))  # fmt: skip
+                       first_onsets(run, twin, located))  # fmt: skip
 
 
 def stretch(pair: Pair, number: int, found: Window, apart: NDArray[np.bool_]) -> Parted:

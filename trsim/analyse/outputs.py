@@ -50,7 +50,8 @@ def scalar(run: Run, word: str) -> Number:
         raise UsageError(f"{described(word)} does not say of what", FORM)
     if kind in WHOLE and text:
         raise UsageError(f"{described(word)}: {kind} is of the whole run", "Leave out the window.")
-    value, unit = KINDS[kind](run, of, window(run, text), bool(text))
+    within = window(run, text, rows=kind not in LOCATED)
+    value, unit = KINDS[kind](run, of, within, bool(text))
     return float(value), unit
 
 
@@ -209,3 +210,5 @@ KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
     "solver": _kept("solver"),
 }
 WHOLE = ("summary", "solver")
+# of what the solver located: the output rows have no say
+LOCATED = ("dispersion", "points", "flight", "contact", "following", "impacts", "onsets", "between")

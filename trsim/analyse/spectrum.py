@@ -146,7 +146,7 @@ def of_channel(run: Run, channel: str, within: Window, segments: int = SEGMENTS)
         found = spectrum(time, x, segments)
     except UsageError as error:
         raise UsageError(f"{run.path}: {channel}: {error.what}", error.hint) from None
-    missed = beyond(run, channel, within, x)
+    missed = beyond(run, channel, Window(float(time[0]), float(time[-1])), x)
     if missed > MISSED:
         text = (
             f"between the rows it goes further than in them by {missed:.0%} of its range: rows are "

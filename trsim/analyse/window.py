@@ -3,7 +3,9 @@
     begin <= t <= end
 
 Ends are times (s, or with a unit), or values of a channel that passes both of them once: a stroke
-is one, whatever the speed it is made at.  An end may be left out.
+is one, whatever the speed it is made at.  An end may be left out.  No window reaches beyond the
+run, which ends where it came to and not at its last output row: what the solver located lies behind
+that row, too.  A channel is known in the rows alone, and counts as unchanged behind the last one.
 """
 
 from typing import NamedTuple
@@ -37,15 +39,16 @@ def parted(word: str) -> tuple[str, str]:
     return name, text
 
 
-def window(run: Run, text: str = "") -> Window:
+def window(run: Run, text: str = "", rows: bool = True) -> Window:
     """The window a text describes, in the time of a run; all of the run for an empty one.
 
-    Raises UsageError where the text makes no sense, or no row lies inside.
+    rows: whether something is asked of the output rows in it, so that it has to have one.  Raises
+    UsageError where the text makes no sense, or no row, or nothing of the run, lies inside.
     """
     time = run.time
     if not time.size:
         raise UsageError(f"{run.path} has no output rows", "Run the scenario again.")
-    whole = Window(float(time[0]), float(time[-1]))
+    whole = Window(float(time[0]), max(float(time[-1]), run.reached))
     if not text:
         return whole
     channel, equals, limits = text.rpartition("=")
@@ -55,15 +58,19 @@ def window(run: Run, text: str = "") -> Window:
     x = scalar_channel(run, channel) if equals else time
     si = run.unit(channel) if equals else "s"
     low, high = (_value(limit, si, text) for limit in (begin, end))
-    found = _passed(run, channel, x, low, high) if equals else _limited(whole, low, high)
-    if not found.of(time).any():
-        told = f"it has rows from {whole.begin:g} to {whole.end:g} s"
+    found = _passed(run, channel, x, whole, low, high) if equals else _limited(whole, low, high)
+    if rows and not found.of(time).any():
+        told = f"it has rows from {whole.begin:g} to {time[-1]:g} s"
         raise UsageError(f"{run.path}: no row lies in {described('@' + text)}; {told}", FORM)
+    if found.end < found.begin:
+        told = f"it goes from {whole.begin:g} to {whole.end:g} s"
+        raise UsageError(f"{run.path}: nothing lies in {described('@' + text)}; {told}", FORM)
     return found
 
 
 def _limited(whole: Window, low: float | None, high: float | None) -> Window:
-    return Window(whole.begin if low is None else low, whole.end if high is None else high)
+    begin = whole.begin if low is None else max(low, whole.begin)
+    return Window(begin, whole.end if high is None else min(high, whole.end))
 
 
 def _value(text: str, si: str, whole: str) -> float | None:
@@ -94,7 +101,9 @@ def scalar_channel(run: Run, name: str) -> Array:
     return np.asarray(found)
 
 
-def _passed(run: Run, channel: str, x: Array, low: float | None, high: float | None) -> Window:
+def _passed(
+    run: Run, channel: str, x: Array, whole: Window, low: float | None, high: float | None
+) -> Window:
     """The stretch in which a channel goes from one value to another."""
     time = run.time
     inside = (x >= (-np.inf if low is None else low)) & (x <= (np.inf if high is None else high))
@@ -105,8 +114,8 @@ def _passed(run: Run, channel: str, x: Array, low: float | None, high: float | N
     if not edges.size:
         return Window(np.inf, -np.inf)
     first, last = int(edges[0]), int(edges[1]) - 1
-    begin = _crossing(time, x, first - 1, low, high) if first else float(time[0])
-    end = _crossing(time, x, last, low, high) if last + 1 < len(x) else float(time[-1])
+    begin = _crossing(time, x, first - 1, low, high) if first else whole.begin
+    end = _crossing(time, x, last, low, high) if last + 1 < len(x) else whole.end
     return Window(begin, end)
 
 

@@ -105,7 +105,7 @@ def motion(runs: list[Shown], sensor: str) -> Any:
         style.apart(a, noise)
         happened(a, runs)
         # what rounding of this value over the length of the run may look like in its rate
-        noise = 1e-9 * largest / max(float(one.run.time[-1]), 1e-300)
+        noise = 1e-9 * largest / max(one.run.reached, 1e-300)
     axes[-1, 0].set_xlabel(runs[0].time_label)
     figure.align_ylabels()
     titled(figure, runs, spaced(sensor).capitalize())
@@ -214,7 +214,8 @@ def contact_history(shown: Shown, name: str) -> tuple[Array, Array]:
     steps, events = shown.run.steps(name), shown.run.events
     force = steps["contact_force" if "contact_force" in steps else "normal_force"]
     at = events.time[events.element == name]
-    ends = shown.run.time[[0, -1]] if shown.run.rows else np.zeros(0)
+    run = shown.run
+    ends = np.array([run.time[0], run.reached]) if run.rows else np.zeros(0)
     times = np.concatenate([steps["time"], at, ends])
     values = np.concatenate([force, np.zeros(len(at) + len(ends))])
     # a closed contact at the start or at the end has no zero there

@@ -69,6 +69,12 @@ class Run:
     def time(self) -> Array:
         return self.channel("time")
 
+    @property
+    def reached(self) -> float:
+        """The time a run came to, s: its end where it ended well, also between two rows."""
+        with opened(self.path) as file:
+            return reached(file)
+
     def channel(self, name: str) -> Array:
         """The rows of a channel, (n) or (n, size); `B.force.x` is one component."""
         stored, component = split(name, self.sizes)
@@ -220,6 +226,21 @@ def verify(path: str | os.PathLike) -> bool:
         _check(file, Path(path))
         same = content_hash(file) == file.attrs.get("content_sha256")
         return same and certificate.whole(file)
+
+
+def reached(file: h5py.File) -> float:
+    """The time the run of an open file came to, s.
+
+    Of one that was not completed, which does not say so, the last time in its tables.
+    """
+    told = file["summary"].attrs
+    if "time" in told and file.attrs["status"] != "recovered":
+        return float(told["time"])
+    last = [0.0]
+    for group in (file, file["events"], *file["steps"].values(), *file["poincare"].values()):
+        n = _written([group["time"]])
+        last += group["time"][max(n - 1, 0) : n].tolist()
+    return max(last)
 
 
 @contextmanager

@@ -8,6 +8,7 @@ import numpy as np
 from trsim.store.grow import AXES, Array
 from trsim.store.peaks import Peak
 from trsim.store.peaks import store as store_peaks
+from trsim.store.read import reached
 from trsim.store.tables import MAY_BE_NAN
 
 ROWS = 1 << 14  # rows handled together
@@ -143,7 +144,7 @@ class Salvage:
         n = self.rows["/"]
         return {
             "title": str(self.file.attrs["title"]),
-            "time": float(self.file["time"][n - 1]) if n else 0.0,
+            "time": reached(self.file),
             "rows": n,
             "events": self.rows["/events"],
             "contacts": contacts,

@@ -52,7 +52,7 @@ class Certified(TypedDict):
     time            simulated until by the twin, s
     steps           accepted by the twin
     evaluations     right-hand sides of the twin
-    compared_until  last time that both reached, s
+    compared_until  time of the last output row that both have, s
     rows            output rows compared
     motion          channels of positions and velocities that say whether the two are apart
     apart           s: here one of these differs by more than 1 % of its range for the first time;
