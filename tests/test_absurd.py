@@ -12,11 +12,17 @@ import pytest
 from trsim.assemble.assemble import assemble
 from trsim.assemble.release import release
 from trsim.errors import TrsimError
+from trsim.solve.land import NOTHING
 from trsim.solve.projected import projected
 from trsim.solve.scales import scales
+from trsim.solve.simulate import simulate
 from trsim.solve.skipped import skipped
 from trsim.solve.start import start
 from trsim.spec.load import load, loads
+from trsim.spec.scenario import SHORTEST
+
+from . import small
+from .runs import run
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 FILES = ("thrust_reverser/clearance_ab_0.3mm", "validation/slider_crank_friction",
@@ -58,3 +64,91 @@ def test_absurd_numbers(name):
             counts[error.exit_code] += 1
     print(name, counts)
     assert min(counts.values()) > 0
+
+
+# --- and to the end of a run -------------------------------------------------------------------
+
+MOVING = """
+bodies:
+  sliding: {mass: 2, inertia: 0.01, velocity: [0.5, 0]}
+  pushed: {mass: 2, inertia: 0.01}
+joints:
+  along: {type: prismatic, bodies: [ground, sliding], axis: [1, 0, 0]}
+  across: {type: prismatic, bodies: [ground, pushed], axis: [0, 1, 0]}
+sensors: {x: {joint: along}, y: {joint: across}}
+forces:
+  push: {type: applied_load, body: pushed, direction: [0, 1], force: 2}
+  stop: {type: limit_stop, joint: across, upper: 1, lower: -1, stiffness: 1e5, damping: 8}
+  spring: {type: spring_damper, bodies: [ground, pushed], points: [[0, -1], [0, 0]],
+           stiffness: 10, damping: 3, free_length: 1}
+poincare: {beat: {every: 0.02, plot: [x, x.rate]}, touch: {at_onset: stop, plot: [y, y.rate]}}
+solver: {end: 0.1, max_step: 0.01, first_step: 1e-4, locate_events: true}
+output: {every: 0.01}
+"""
+TINY_OR_HUGE = (1e-300, 1e-200, 1e-100, 1e-50, 1e-20, 1e20, 1e50, 1e100, 1e200, 1e300)
+FEW = "solver.max_steps=300"
+CLEARANCE = small.SLIDER_CRANK.replace("internal", "1e9")
+
+
+def of_a_run(text, *sets):
+    """How a run ends: the status, or that the scenario was refused."""
+    try:
+        scenario = loads(text, sets)
+        mechanism = assemble(scenario)
+        marching = simulate(scenario, mechanism)
+        while True:
+            next(marching)
+    except StopIteration as end:
+        return end.value.status
+    except TrsimError as error:
+        assert error.show()
+        return "refused"
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("key", [
+    "bodies.pushed.mass", "bodies.pushed.inertia", "forces.stop.stiffness", "forces.stop.damping",
+    "forces.stop.upper", "forces.spring.stiffness", "forces.spring.free_length",
+    "poincare.beat.every", "output.every", "solver.end", "solver.max_step", "solver.first_step",
+])  # fmt: skip
+def test_absurd_numbers_of_a_run(key):
+    found = {size: of_a_run(MOVING, FEW, f"{key}={size}") for size in TINY_OR_HUGE}
+    assert {*found.values()} <= {"done", "failed", "refused"}
+    assert found[1e300] == "refused"
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.parametrize("key", [
+    "joints.B.clearance", "contact_laws.pin.stiffness", "contact_laws.pin.bearing_radius",
+    "contact_laws.pin.slowest_impact", "bodies.rod.mass", "bodies.rod.inertia", "solver.end",
+])  # fmt: skip
+def test_absurd_numbers_of_a_run_with_play(key):
+    found = [of_a_run(CLEARANCE, FEW, f"{key}={size}") for size in TINY_OR_HUGE]
+    assert {*found} <= {"done", "failed", "refused"}
+
+
+@pytest.mark.parametrize("end", [1e-300, 1e-200, 1e-100, 1e-60, 1e-30, 0.99 * SHORTEST])
+def test_a_run_shorter_than_any_motion_is_refused(end):
+    with pytest.raises(TrsimError, match="is shorter than any motion that can be told") as caught:
+        loads(MOVING, [f"solver.end={end}"])
+    assert "1e-60" in caught.value.hint and NOTHING == 1e-60
+    assert "1e-20 s" in caught.value.hint and SHORTEST == 1e-20
+
+
+@pytest.mark.parametrize("method", ["auto", "dop853", "radau", "generalized_alpha", "rk4"])
+def test_the_shortest_run_moves_as_it_should(method):
+    """Both what goes on and what a load of 1e-6 m/s^2 begins to move."""
+    step = SHORTEST / 100
+    r = run(MOVING, f"solver.end={SHORTEST}", f"solver.method={method}", f"solver.max_step={step}",
+            f"solver.step={step}", "forces.push.force=2e-6", "output={every: 1e-22}")  # fmt: skip
+    assert r["x"][-1] == pytest.approx(0.5 * SHORTEST, rel=1e-9, abs=0.0)
+    assert r["y"][-1] == pytest.approx(0.5e-6 * SHORTEST**2, rel=1e-9, abs=0.0)
+    assert r["y.rate"][-1] == pytest.approx(1e-6 * SHORTEST, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("method, key", [("auto", "max_step"), ("rk4", "step")])
+def test_steps_that_cannot_come_to_the_end(method, key):
+    scenario = loads(MOVING, [f"solver.method={method}", "solver.step=1e-3", f"solver.{key}=1e-20"])
+    with pytest.raises(TrsimError, match=r"steps of 1e-20 s would be 1e\+19 in 0.1 s") as no:
+        list(simulate(scenario, assemble(scenario)))
+    assert no.value.path == ("solver", key)

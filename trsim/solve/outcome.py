@@ -67,6 +67,7 @@ FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
 CROSSINGS = 256.0  # of a step, at most, see WHOLE of turns.py
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
+FINEST = 1e-14  # of the run: the last of shorter steps would hardly move the time, or not at all
 MOST_ROWS = 10_000  # output rows one fixed step may span
 
 
@@ -105,6 +106,7 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     if solver.stabilisation == "baumgarte" and solver.method in EXPLICIT:
         s[rec.H_MAX] = min(s[rec.H_MAX], FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
     s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
+    see_steps(solver, adaptive)
     if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
         raise ScenarioError(
             f"a step of {solver.step:g} s spans more than {MOST_ROWS} output rows",
@@ -123,6 +125,18 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     s[rec.CHOOSES] = float(solver.method == "auto")
     s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
     return s
+
+
+def see_steps(solver: Any, adaptive: bool) -> None:
+    """Refuse steps that are given and cannot come to the end; raises ScenarioError."""
+    key = "max_step" if adaptive else "step"
+    given, least = getattr(solver, key), FINEST * solver.end
+    if given and given < least:
+        raise ScenarioError(
+            f"steps of {given:.3g} s would be {solver.end / given:.0e} in {solver.end:g} s",
+            f"make it {least:.1g} s or longer, the run shorter, or check the unit",
+            ("solver", key),
+        )
 
 
 def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:

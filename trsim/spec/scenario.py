@@ -30,6 +30,10 @@ METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
+# s, of a run.  The solver takes what is below 1e-60 (m, m/s, J; NOTHING of solve/land.py) for none:
+# 1 m/s^2 moves a body from rest by as much in 1.4e-30 s, and the first step is shorter than a run.
+# From 1e-26 s on nothing is lost of that motion; the rest is for accelerations down to 1e-12 m/s^2
+SHORTEST = 1e-20
 Rate = Annotated[float, Ge(0), Unit("1/s")]
 EMPTY: Any = Field(default_factory=dict)
 
@@ -111,7 +115,7 @@ class SolverSpec(Spec):
                    independent checks
     formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
                    stabilised index 2 with sparse matrices; found out unless given
-    end            time at which the run ends; needed by `run`, not by `check`
+    end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
     step           of rk4
     tolerance      error of a step, relative to the size of clearances or of bodies
     stabilisation  how joints are kept closed
@@ -139,6 +143,13 @@ class SolverSpec(Spec):
 
     @model_validator(mode="after")
     def consistent(self) -> "SolverSpec":
+        if self.end is not None and self.end < SHORTEST:
+            what = f"a run of {self.end:.3g} s is shorter than any motion that can be told"
+            hint = (
+                "What is below 1e-60 m, m/s or J counts as nothing, and in so short a time a body "
+                f"may move by less: give at least {SHORTEST:g} s, and check the unit."
+            )
+            raise ScenarioError(what, hint, ("end",))
         if self.method == "rk4" and self.step is None:
             raise ScenarioError("method rk4 needs a step", "Write for example `step: 1e-5`.")
         if self.baumgarte is not None and self.stabilisation != "baumgarte":
