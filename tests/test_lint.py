@@ -96,10 +96,10 @@ CASES = [
     # from the implicit relation: see damping_factor
     (("restitution: 0.9", "restitution: 0.5"), "contact_laws.pin: lankarani", "0.725"),
     (("v0: 1e-4, v1: 1e-3", "v0: 0, v1: 1e-6"), "contact_laws.pin.friction", "1.0e-06"),
-    # 2 sqrt(1e4 0.01) = 20
-    (("damping: 1}", "damping: 50}"), "forces.stop: damping 50", "2.5 times"),
-    # pi sqrt(0.01 / 1e4) = 3.1e-3 s
-    (("solver: {", f"{RK4}1e-3, "), "forces.stop: a contact lasts 3.1e-03 s", "3.14 steps"),
+    # 2 sqrt(1e4 (0.01 + 1 0.1^2)) = 28.3
+    (("damping: 1}", "damping: 50}"), "forces.stop: damping 50", "1.77 times"),
+    # pi sqrt(0.02 / 1e4) = 4.4e-3 s
+    (("solver: {", f"{RK4}1e-3, "), "forces.stop: a contact lasts 4.4e-03 s", "4.44 steps"),
     (("solver: {", f"{RK4}1e-4, "), "joints.B: a contact lasts", "steps of rk4"),
     (("solver: {", f"{RK4}1e-4, "), "joints.B: friction rises by", "unstable above"),
 ]

@@ -69,8 +69,55 @@ def test_damping_ratio_takes_the_mass_of_the_driven_body(kind, bodies):
     I = np.array([[0.05, 0.001, 0.002], [0.001, 0.04, -0.003], [0.002, -0.003, 0.03]])
     c, s = np.cos(-0.4), np.sin(-0.4)
     a = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) @ AXIS
-    inertia = 3.0 if kind == "prismatic" else a @ I @ a
+    away = np.cross(PLACE - np.array([0.5, 0.2, -0.1]), AXIS)
+    inertia = 3.0 if kind == "prismatic" else a @ I @ a + 3.0 * away @ away
     assert par[10] == pytest.approx(0.2 * np.sqrt(500 * inertia), rel=1e-12)
+
+
+HINGED = """
+{flat}
+bodies: {{rod: {{mass: 2 kg, inertia: {inertia}, at: [0.3, 0.4, {z}]}}}}
+joints: {{hinge: {{type: revolute, bodies: {bodies}, at: [0, 0, 0], axis: {axis}}}}}
+sensors: {{turn: {{joint: hinge}}}}
+drives:
+  drive: {{joint: hinge, position: 0, compliance: {{stiffness: 600, damping_ratio: 0.2}}}}
+initial: {{hinge: 1e-3}}
+solver: {{end: 0.6 s, tolerance: 1e-10}}
+output: {{every: 0.1 ms}}
+"""
+
+
+@pytest.mark.parametrize("bodies", ["[ground, rod]", "[rod, ground]"])
+@pytest.mark.parametrize(
+    "flat, inertia, z, axis", [
+        ("", "0.1", "0", "[0, 0, 1]"),
+        ("planar: false", "[0.05, 0.07, 0.1]", "0.7", "[0, 0, 1]"),  # the same beside the plane
+    ],
+)  # fmt: skip
+def test_damping_ratio_on_a_hinge_is_that_of_the_decay(bodies, flat, inertia, z, axis):
+    """A body off its hinge: by I alone 0.2 became 0.08.  m = 0.1 + 2 * 0.5^2 kg*m^2."""
+    text = HINGED.format(flat=flat, inertia=inertia, z=z, axis=axis, bodies=bodies)
+    r = run(text)
+    (par,) = [i.row.par for i in r.mechanism.instances if i.element.key == "drive"]
+    assert par[10] == pytest.approx(0.4 * np.sqrt(600 * 0.6), rel=1e-12)
+    x = np.abs(r["turn"])
+    tops = x[1:-1][(x[1:-1] > x[:-2]) & (x[1:-1] >= x[2:])]
+    decrement = 2.0 * np.log(tops[0] / tops[1])  # of a whole period
+    assert decrement / np.hypot(2.0 * np.pi, decrement) == pytest.approx(0.2, rel=1e-3)
+
+
+def test_damping_ratio_of_a_flexible_bar_on_a_hinge():
+    """A slender bar about its end: m L^2 / 3."""
+    m = built("""
+bodies:
+  bar: {type: ancf_cable, start: [0, 0], end: [0.6, 0], elements: 4, youngs_modulus: 2e11,
+        density: 7800, section: {width: 10 mm, height: 10 mm}}
+joints: {hinge: {type: revolute, bodies: [ground, bar], at: [0, 0]}}
+drives: {drive: {joint: hinge, position: 0, compliance: {stiffness: 600, damping_ratio: 0.5}}}
+""")
+    (par,) = [i.row.par for i in m.instances if i.element.key == "drive"]
+    inertia = 7800 * 1e-4 * 0.6 * 0.6**2 / 3.0
+    assert par[10] == pytest.approx(np.sqrt(600 * inertia), rel=1e-12)
 
 
 @pytest.mark.parametrize("motion", ["position", "velocity"])

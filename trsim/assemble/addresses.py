@@ -162,18 +162,26 @@ class Addresses:
         spec = self.members[self.owners[i]]
         return float(spec.per_length * spec.length if self.is_node(i) else spec.mass)
 
-    def inertia_about(self, i: int, axis: tuple[float, ...]) -> float:
-        """Moment of inertia about an axis (world, as drawn) through the centre of mass."""
+    def inertia_about(self, i: int, axis: tuple[float, ...], through: tuple[float, ...]) -> float:
+        """Moment of inertia of one body about an axis (world, as drawn): a . I a + m d^2.
+
+        through: a point of the axis, in the axes of frame i from its origin; d is the distance of
+        the body's centre of mass from the axis.
+        """
         from trsim.elements.rigid_body import tensor
 
+        a, bar = np.array(axis), self.members[self.owners[i]]
+        place = self.at_start[i] + product(self.rotation[i], np.array(through))
         if self.is_node(i):  # a slender bar
-            bar = self.members[self.owners[i]]
-            across = np.linalg.norm(np.cross(self.rotation[i][:, 0], axis))
-            return float(bar.per_length * bar.length**3 / 12.0 * across**2)
-        a = np.array(self.axes(i, axis))
-        return float(
-            a @ np.array(tensor(self.members[self.owners[i]].inertia)[0]).reshape(3, 3) @ a
-        )
+            across = np.linalg.norm(np.cross(self.rotation[i][:, 0], a))
+            own = bar.per_length * bar.length**3 / 12.0 * across**2
+            ends = self.beams[self.owners[i]].places
+            centre = 0.5 * (ends[0] + ends[-1])
+        else:
+            inside, centre = np.array(self.axes(i, axis)), self.at_start[i]
+            own = inside @ np.array(tensor(bar.inertia)[0]).reshape(3, 3) @ inside
+        away = np.cross(place - centre, a)
+        return float(own + self.mass(i) * (away @ away))
 
     def coordinate(self, joint: str, kind: str = "") -> JointCoordinate:
         """The coordinate of a joint; entering it in S is what makes it computed."""

@@ -34,7 +34,10 @@ class Compliance(Spec):
     stiffness      of the spring
     damping        of the damper; 0 unless this or damping_ratio is given
     damping_ratio  zeta of c = 2 zeta sqrt(k m)
-    mass           m of it; unless given the driven body's mass, or inertia about the axis
+    mass           m of it; unless given that of the driven body alone (the second one of the
+                   joint, or the first where that is the ground; what hangs on it does not count):
+                   its mass, or on a hinge its inertia about the hinge's axis, I + m d^2 with the
+                   distance d of its centre of mass from the axis
     """
 
     stiffness: Annotated[float, Gt(0), Unit("N/m", "N*m/rad")]
@@ -98,7 +101,9 @@ def pack(name, spec, at):
         k = spec.compliance.stiffness
         driven = x.j or x.i  # the ground is not driven
         m = spec.compliance.mass or (
-            at.inertia_about(driven, x.axis) if x.kind == "angle" else at.mass(driven)
+            at.inertia_about(driven, x.axis, x.s_j if x.j else x.s_i)
+            if x.kind == "angle"
+            else at.mass(driven)
         )
         zeta = spec.compliance.damping_ratio
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0

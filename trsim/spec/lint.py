@@ -5,7 +5,7 @@ wide, so that a scenario somebody thought about is silent.
 """
 
 from collections.abc import Iterator
-from math import ceil, dist, inf, pi, sqrt
+from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
 from trsim.elements.clearance_joint import normal_numbers
@@ -181,8 +181,11 @@ def _speeds(scenario: Any) -> Iterator[str]:
 # --- stiffness against the step --------------------------------------------------------------
 
 
-def _reduced(scenario: Any, bodies: Any, joint: bool = False) -> float:
-    """m_i m_j / (m_i + m_j) of two bodies; their inertias about z for an angle."""
+def _reduced(scenario: Any, bodies: Any, hinge: Any = None) -> float:
+    """m_i m_j / (m_i + m_j) of two bodies; of a hinge their inertias about its axis as drawn.
+
+    These are I + m d^2 with I about z and the distance d of the centre of mass from the axis.
+    """
     inverse = 0.0
     for name in bodies:
         body = scenario.bodies.get(name)
@@ -190,18 +193,34 @@ def _reduced(scenario: Any, bodies: Any, joint: bool = False) -> float:
             continue  # the ground
         if body.type == "ancf_cable":
             mass = body.per_length * body.length
-            inverse += 1.0 / (mass * body.length**2 / 12.0 if joint else mass)
-            continue
-        inertia = body.inertia if isinstance(body.inertia, float) else body.inertia[2]
-        inverse += 1.0 / (inertia if joint else body.mass) if (inertia and body.mass) else inf
+            inertia = mass * body.length**2 / 12.0
+            centre = tuple(0.5 * (a + b) for a, b in zip(body.start, body.end, strict=True))
+        else:
+            mass, centre = body.mass, body.at
+            inertia = body.inertia if isinstance(body.inertia, float) else body.inertia[2]
+        if hinge is not None:
+            about = inertia + mass * _away(centre, hinge) ** 2
+        inverse += 1.0 / (mass if hinge is None else about) if (inertia and mass) else inf
     return 1.0 / inverse if inverse else inf
+
+
+def _away(place: Any, hinge: Any) -> float:
+    """How far a place is from the axis of a hinge, m; 0 of a joint that has no axis."""
+    size = hypot(*getattr(hinge, "axis", (0.0,)))
+    if size == 0.0:
+        return 0.0
+    r = [a - b for a, b in zip(place, hinge.at, strict=True)]
+    along = sum(a * b for a, b in zip(r, hinge.axis, strict=True)) / size
+    return hypot(*(a - along * b / size for a, b in zip(r, hinge.axis, strict=True)))
 
 
 def _stop_mass(scenario: Any, stop: Any) -> float:
     if stop.joint is None:
         return _reduced(scenario, (stop.point.body, stop.wall.body))
     joint = scenario.joints.get(stop.joint)
-    return inf if joint is None else _reduced(scenario, joint.bodies, joint.type != "prismatic")
+    if joint is None:
+        return inf
+    return _reduced(scenario, joint.bodies, None if joint.type == "prismatic" else joint)
 
 
 def _all_stops(scenario: Any) -> Iterator[tuple[str, Any, float]]:
