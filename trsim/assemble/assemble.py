@@ -318,6 +318,7 @@ def build(
         column_energy=-1,
         n_out=0,
         vector=np.zeros(0, np.int64),
+        sought=np.zeros(0, np.int64),
         kin=np.zeros(0, np.int64),
         least=np.zeros(0),
         shared=np.zeros(0, np.int64),

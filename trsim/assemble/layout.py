@@ -127,10 +127,13 @@ def compared(columns: list[Column], told: set[str]) -> dict[str, Any]:
     of_forces = [column for column in columns if column.unit in ("N", "N*m")]
     shared = [column.start + k for column in of_forces for k in range(column.size)]
     least = [column.least for column in columns for _ in range(column.size)]
+    least += [0.0 for _ in vectors]
+    sought = [k for k, number in enumerate(kin) if number >= 0]
     return {
         "vector": np.array([column.start for column in vectors], np.int64),
-        "kin": np.array(kin, np.int64),
-        "least": np.array([*least, *(0.0 for _ in vectors)]),
+        "sought": np.array(sought, np.int64),
+        "kin": np.array([kin[k] for k in sought], np.int64),
+        "least": np.array([least[k] for k in sought]),
         "shared": np.array(shared, np.int64),
     }
 

@@ -34,6 +34,7 @@ OUTPUTS = (
     "section",
     "section_at",
     "vector",
+    "sought",
     "kin",
     "least",
     "shared",

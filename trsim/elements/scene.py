@@ -96,8 +96,9 @@ class Model(Packed):
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1
     wanted: I1  # (N) first output column of a row, or -1
     vector: I1  # first columns of the vectors whose magnitudes have extremes
-    kin: I1  # (n_out + n_vectors) channels of one unit have one number; -1: of no extreme inside
-    least: A1  # (n_out + n_vectors) what a channel is never below
+    sought: I1  # (n_k) columns, and behind all those such magnitudes, with extremes inside steps
+    kin: I1  # (n_k) those of one unit have one number
+    least: A1  # (n_k) what they are never below
     shared: I1  # columns of forces and moments, which rows may share between them
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
     watch: I2  # (n_w, 3) user events: entry of S or -1 for t, direction, how often   events.py

@@ -114,7 +114,7 @@ def meet(s, r, b, t, t1):
         r.clock[WORK_PROJECTION] += done
     for c in range(r.gap.shape[0]):
         r.gap[c, 1] = b.gap1[c, 1]
-    other_side(s, r, t1)
+    other_side(s, r, b, t1)
     return 1
 
 
@@ -180,10 +180,10 @@ def tell(r, b, first, done):
 
 
 @internal
-def other_side(s, r, t1):
+def other_side(s, r, b, t1):
     """What the end of a step leaves behind does not hold across a corner."""
     measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-    restart(s, r, t1)
+    restart(s, r, b, t1)
     r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
     r.clock[PAST_ERROR] = 0.0
     r.worked[0, LONG] = 0.0

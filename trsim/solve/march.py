@@ -311,7 +311,7 @@ def begin(s, r, b, setting):
     for k in range(r.book.shape[0]):
         r.book[k, 0] = r.book[k, 1] = b.out[s.column_energy + k]
     clear_table(r.peak)
-    for c in range(s.kin.size):
-        r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN] = -1e300, 1e300
+    for c in range(r.peak.shape[1]):
+        r.peak[PEAK_MAX, c], r.peak[PEAK_MIN, c] = -1e300, 1e300
     copy_to(s.out, b.out)
-    restart(s, r, 0.0)
+    restart(s, r, b, 0.0)

@@ -227,12 +227,12 @@ def new_record(
         corner=np.zeros(len(model.contact)),
         clock=np.zeros(rec.N_CLOCK),
         count=np.zeros(rec.N_COUNT, np.int64),
-        peak=np.zeros((len(model.kin), rec.N_PEAK)),
+        peak=np.zeros((rec.N_PEAK, model.n_out + len(model.vector))),
         book=np.zeros((1 + N_STORED, 2)),
         sampled=np.zeros(rec.POINTS),
         largest=np.zeros(len(model.kin)),
         sample=np.zeros((rec.POINTS, len(model.kin))),
-        slope=np.zeros((len(model.kin), rec.POINTS)),
+        slope=np.zeros((rec.POINTS, len(model.kin))),
         impact=begun.depth.copy(),
         by_place=np.zeros((n_w, n_v)),
         by_rate=np.zeros((n_w, n_w)),
@@ -370,6 +370,6 @@ def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
     force = np.abs(work.F[:, :3]).max(initial=0.0)
     force = max(force, np.abs(work.lam[:, None] * work.J[:, :3]).max(initial=0.0))
     natural = float(force * work.size + np.sum(work.mass) * begun.speed**2)
-    driven = np.any(r.peak[drives, [rec.PEAK_MAX, rec.PEAK_MIN]])
-    still = r.peak[kinetic, rec.PEAK_MAX] <= AT_REST * natural
+    driven = np.any(r.peak[[rec.PEAK_MAX, rec.PEAK_MIN], drives])
+    still = r.peak[rec.PEAK_MAX, kinetic] <= AT_REST * natural
     return natural if still and not driven else 0.0

@@ -81,11 +81,8 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
     own = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[before])
     new = (head + 1) % POINTS if own else head
     now = r.sample[new]
-    lengths(s, now, values)
-    for c in range(now.size):
-        if now[c] > r.peak[c, PEAK_MAX] or now[c] < r.peak[c, PEAK_MIN]:
-            extreme(r.peak[c], at, now[c])
-            grow(s, r, c, now[c])
+    gather(s, b.full, values, now)
+    known_extremes(s, r, b.full, at)
     if own and known > 0:
         b.found[0], b.laid[0] = 0.0, NOT_LAID
         if known < YOUNG and h * r.count[STEPS] >= TINY * t:
@@ -93,18 +90,18 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
                 guess(s, r, b, method, t, h, projected)
             else:
                 built = look(s, r, b, method, t, h, 0.5 * (r.sampled[head] + at), projected, built)
-        take(s, r, b, at, now, known)
+        take(r, b, at, now, known)
         built = between(s, r, b, setting, method, t, h, at, now, projected, built)
     r.count[NEWEST], r.sampled[new] = new, at
     if own:
         r.count[SAMPLES] = min(known + 1, POINTS)
     else:
-        anew(s, r, b)
+        anew(r, b)
     return built
 
 
 @internal
-def take(s, r, b, at, now, known):
+def take(r, b, at, now, known):
     """Divided differences of all channels with a new sample: f[t0], f[t0, t1], ... newest first.
 
     known: samples before it.  Also, into b.node[4] and [5], what the product (x - t0) ...
@@ -122,26 +119,26 @@ def take(s, r, b, at, now, known):
             most[k], steep[k] = term, rate
             rate = rate * apart + term
             term *= apart
+    d, before = r.slope, b.bound[0]
     for c in range(now.size):
-        if s.kin[c] < 0:
-            continue
-        d = r.slope[c]
-        before = d[0]
-        d[0] = now[c]
-        for k in range(1, n):
-            old = d[k]
-            d[k] = (d[k - 1] - before) * inverse[k]
-            before = old
+        before[c] = d[0, c]
+        d[0, c] = now[c]
+    for k in range(1, n):
+        above, row, by = d[k - 1], d[k], inverse[k]
+        for c in range(now.size):
+            old = row[c]
+            row[c] = (above[c] - before[c]) * by
+            before[c] = old
 
 
 @internal
-def anew(s, r, b):
+def anew(r, b):
     """The divided differences made again, where the newest sample was replaced."""
     head, known = r.count[NEWEST], r.count[SAMPLES]
     for k in range(known):
         j = (head + POINTS + 1 - known + k) % POINTS
         r.count[NEWEST] = (j + POINTS - 1) % POINTS
-        take(s, r, b, r.sampled[j], r.sample[j], k)
+        take(r, b, r.sampled[j], r.sample[j], k)
     r.count[NEWEST] = head
 
 
@@ -149,16 +146,12 @@ def anew(s, r, b):
 def between(s, r, b, setting, method, t, h, at, now, projected, built):
     """Look for the extremes of all channels between the newest sample and `at`."""
     share, last = setting[MISSED], r.sample[r.count[NEWEST]]
-    n, most, steep = min(r.count[SAMPLES] + 1, POINTS), b.node[4], b.node[5]
+    n = min(r.count[SAMPLES] + 1, POINTS)
+    bounds(r, b, n)
     for c in range(now.size):
-        if s.kin[c] < 0:
-            continue
-        high, low, d = r.peak[c, PEAK_MAX], r.peak[c, PEAK_MIN], r.slope[c]
-        bend, turn = DOUBT * abs(d[n - 1]) * most[n - 1], DOUBT * abs(d[n - 1]) * steep[n - 1]
-        for k in range(2, n):
-            bend += abs(d[k]) * most[k]
-            turn += abs(d[k]) * steep[k]
-        if n > 2 and turn < abs(d[1]) and b.found[0] == 0.0:
+        high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
+        bend, turn = b.bound[1, c], b.bound[2, c]
+        if n > 2 and turn < abs(r.slope[1, c]) and b.found[0] == 0.0:
             continue  # it goes one way all the time
         above, below = max(now[c], last[c]), min(now[c], last[c])
         for k in range(int(b.found[0])):
@@ -186,41 +179,64 @@ def between(s, r, b, setting, method, t, h, at, now, projected, built):
 
 
 @internal
-def grow(s, r, c, value):
-    """Let the size of the channels of one unit follow."""
-    g = s.kin[c]
-    if g >= 0 and abs(value) > r.largest[g]:
-        r.largest[g] = abs(value)
+def bounds(r, b, n):
+    """What every channel bends by between the two newest samples, and its slope changes by, at
+    most, into b.bound[1] and [2]."""
+    d, bend, turn = r.slope, b.bound[1], b.bound[2]
+    most, steep = b.node[4], b.node[5]
+    for c in range(bend.size):
+        last = DOUBT * abs(d[n - 1, c])
+        bend[c], turn[c] = last * most[n - 1], last * steep[n - 1]
+    for k in range(2, n):
+        row, by, rate = d[k], most[k], steep[k]
+        for c in range(bend.size):
+            bend[c] += abs(row[c]) * by
+            turn[c] += abs(row[c]) * rate
 
 
 @internal
-def lengths(s, now, values):
-    """The channels and, behind them, the magnitudes of vectors among them."""
+def gather(s, full, values, sought):
+    """Fill `full` with the channels and, behind them, the magnitudes of vectors among them, and
+    `sought` with those whose extremes are looked for between samples."""
     for c in range(s.n_out):
-        now[c] = values[c]
+        full[c] = values[c]
     for k in range(s.vector.size):
         x, y, z = values[s.vector[k]], values[s.vector[k] + 1], values[s.vector[k] + 2]
-        now[s.n_out + k] = sqrt(x * x + y * y + z * z)
+        full[s.n_out + k] = sqrt(x * x + y * y + z * z)
+    for k in range(sought.size):
+        sought[k] = full[s.sought[k]]
 
 
 @internal
-def extreme(p, t, value):
-    """Take a value into a channel's extremes."""
-    if value > p[PEAK_MAX]:
-        p[PEAK_MAX], p[PEAK_MAX_T] = value, t
-    if value < p[PEAK_MIN]:
-        p[PEAK_MIN], p[PEAK_MIN_T] = value, t
+def known_extremes(s, r, full, t):
+    """Take all channels of one time into their extremes; the sizes of those of one unit follow."""
+    high, low, beyond = r.peak[PEAK_MAX], r.peak[PEAK_MIN], 0
+    for c in range(full.size):
+        beyond += int(full[c] > high[c]) + int(full[c] < low[c])
+    if beyond == 0:
+        return
+    for c in range(full.size):
+        extreme(r.peak, c, t, full[c])
+    for k in range(s.kin.size):
+        r.largest[s.kin[k]] = max(r.largest[s.kin[k]], abs(full[s.sought[k]]))
 
 
 @internal
-def restart(s, r, t):
+def extreme(p, c, t, value):
+    """Take a value into the extremes p of channel c."""
+    if value > p[PEAK_MAX, c]:
+        p[PEAK_MAX, c], p[PEAK_MAX_T, c] = value, t
+    if value < p[PEAK_MIN, c]:
+        p[PEAK_MIN, c], p[PEAK_MIN_T, c] = value, t
+
+
+@internal
+def restart(s, r, b, t):
     """Begin anew with the channels in s.out, those behind an event."""
-    lengths(s, r.sample[0], s.out)
-    for c in range(r.sample.shape[1]):
-        extreme(r.peak[c], t, r.sample[0, c])
-        grow(s, r, c, r.sample[0, c])
-    for c in range(r.sample.shape[1]):
-        r.slope[c, 0] = r.sample[0, c]
+    gather(s, b.full, s.out, r.sample[0])
+    known_extremes(s, r, b.full, t)
+    for c in range(s.sought.size):
+        r.slope[0, c] = r.sample[0, c]
     r.count[NEWEST], r.count[SAMPLES], r.sampled[0] = 0, 1, t
 
 
@@ -231,9 +247,9 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
     sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
     surer than that is taken at its word.
     """
-    p = r.peak[c]
+    o = s.sought[c]
     for _ in range(TRIES):
-        best = p[PEAK_MAX] if sign > 0.0 else -p[PEAK_MIN]
+        best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]
         guessed = built == 0 and b.found[0] > 0.0
         n = through(r, b, at, now, c, sign)
         if guessed and one_way(b.node, n):
@@ -248,7 +264,7 @@ def search(s, r, b, enough, method, t, h, at, now, c, sign, projected, built):
                 break
             said = polynomial(b.node, n, place, 0.0)
             if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
-                extreme(p, place, sign * said)
+                extreme(r.peak, o, place, sign * said)
                 break
         if built == 0 and not guessed:
             guess(s, r, b, method, t, h, projected)
@@ -270,10 +286,9 @@ def look(s, r, b, method, t, h, place, projected, built):
         build(s, r, b, method, t, h)
     k = int(b.found[0])
     measure_inside(s, r, b, method[INTERPOLATE_AT], place, (place - t) / h, projected)
-    lengths(s, b.inside[k], s.out)
+    gather(s, b.full, s.out, b.inside[k])
+    known_extremes(s, r, b.full, place)
     b.found[0], b.found[1 + k] = k + 1.0, place
-    for o in range(r.sample.shape[1]):
-        extreme(r.peak[o], place, b.inside[k, o])
     return 1
 
 
@@ -287,7 +302,7 @@ def guess(s, r, b, method, t, h, projected):
     middle = t + 0.5 * h
     evaluate_inside(s, r, middle, b.y2, b.rough[0])
     measure(s, middle, b.y2, r.clock[WORK_PROJECTION] + 0.5 * projected, r.clock[ENERGY_0])
-    lengths(s, b.inside[0], s.out)
+    gather(s, b.full, s.out, b.inside[0])
     b.found[0], b.found[1] = 1.0, middle
 
 
@@ -327,7 +342,7 @@ def through(r, b, at, now, c, sign):
     values[0], values[1] = sign * now[c], sign * r.sample[head, c]
     if found == 0:  # as `take` has them
         for k in range(n):
-            slope[k] = sign * r.slope[c, k]
+            slope[k] = sign * r.slope[k, c]
         return n
     for k in range(found):
         values[2 + k] = sign * b.inside[k, c]

@@ -122,7 +122,7 @@ def change_phases(s, r, b, setting, t1):
         # inside its new branch, whatever rounding says
         r.corner[c] = min(s.corner[s.contact[c], 0], -TINY)
     measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-    restart(s, r, t1)
+    restart(s, r, b, t1)
     if h < 1e300:
         r.clock[H] = min(r.clock[H], h)
     return touched
@@ -174,4 +174,4 @@ def settle(s, r, b, setting):
     r.count[STIFF], r.count[NOT_STIFF] = 0, 0
     r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
     measure(s, r.clock[T], r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-    restart(s, r, r.clock[T])
+    restart(s, r, b, r.clock[T])

@@ -163,12 +163,12 @@ class Record(Packed):
     corner: A1  # (n_contacts) how far each has left the branch of its law at y
     clock: A1
     count: I1
-    peak: A2  # (n_c, N_PEAK) extremes of channels and magnitudes
+    peak: A2  # (N_PEAK, n_c) extremes of channels and magnitudes
     book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
-    sample: A2  # (POINTS, n_c) their last values
+    sample: A2  # (POINTS, n_k) last values of those that are sought inside steps
     sampled: A1  # (POINTS) when those were taken
-    slope: A2  # (n_c, POINTS) their divided differences, newest first
-    largest: A1  # (n_c) size of the channels of one unit, see `kin` of the scene
+    slope: A2  # (POINTS, n_k) their divided differences, newest first
+    largest: A1  # (n_k) size of the channels of one unit, see `kin` of the scene
     impact: A1  # (n_contacts) largest penetration so far
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
     by_place: A2  # (n_w, n_v) w' against displacements
@@ -223,13 +223,15 @@ class Buffers(Packed):
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts + n_w, 2)
     corner1: A1  # (n_contacts)
-    inside: A2  # (FOUND, n_c) channels where an extreme was looked for           peaks.py
+    full: A1  # (n_c) all channels and magnitudes
+    inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
     found: A1  # (1 + FOUND) how often, and when
     node: A2  # (6, POINTS) of polynomials: times, values, slopes; see `take` of peaks.py
     along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
     laid: A1  # (1) how many places were found when those were made
+    bound: A2  # (3, n_k) of channels between two samples: see `bounds` of peaks.py
     mean: A2  # (2, n_out) channels where rows of the solve depend on each other
     moved: A1  # (1) 1: the end of the step was moved on along its tangent
     unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
@@ -272,6 +274,7 @@ def fresh_buffers(
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts + watched, 2)),
         corner1=np.zeros(contacts),
+        full=np.zeros(model.n_out + len(model.vector)),
         inside=np.zeros((FOUND, len(model.kin))),
         found=np.zeros(1 + FOUND),
         node=np.zeros((6, POINTS)),
@@ -279,6 +282,7 @@ def fresh_buffers(
         lattice=np.zeros((POINTS, 1 + PARTS)),
         inverse=np.zeros((POINTS, POINTS)),
         laid=np.zeros(1),
+        bound=np.zeros((3, len(model.kin))),
         mean=np.zeros((2, model.n_out)),
         moved=np.zeros(1),
         unmoved=np.zeros((3, n_y)),

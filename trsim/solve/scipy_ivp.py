@@ -159,7 +159,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         reason = reason if known else why(scenario, at, r) or reason
     bends = Bends(mechanism)
     bends.look(float(r.clock[rec.T]), r.y)
-    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak[:, :4].copy(), r, begun,
+    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak.T.copy(), r, begun,
                    bent=bends.states)  # fmt: skip
 
 

@@ -309,7 +309,7 @@ def turn(s, r, b, setting, method, t1, changed):
     if turned > 0:
         evaluate(s, t1, r.y, r.yd)
         keep(s, r)
-        other_side(s, r, t1)
+        other_side(s, r, b, t1)
     explicit = method[IMPLICIT_AT] == 0 and method[STEP_AT] > 0
     if not explicit and (turned > 0 or changed > 0) and other_pieces(s, b):
         turned += ease(s, r, b, t1)

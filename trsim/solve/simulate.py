@@ -205,7 +205,7 @@ def compiled(
     times = zip(switches.events, r.watch[:, rec.TIMES].astype(int).tolist(), strict=True)
     fired = {event.name: n for event, n in times if event.kind != "limit"}
     return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
-                   r.peak[:, :4].copy(), r, begun, fired, bends.states)  # fmt: skip
+                   r.peak.T.copy(), r, begun, fired, bends.states)  # fmt: skip
 
 
 def ending(
