@@ -16,6 +16,7 @@ from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
 from trsim.assemble.jumps import find_jumps, steep
 from trsim.assemble.layout import layout
+from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
@@ -299,6 +300,7 @@ def build(
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
         near=near(solver, rows, spans(at)),
         near_rows=near_rows(solver, rows, spans(at)),
+        looped=looped(instances, rows, spans(at)),
         tolerance=solver.tolerance,
         on_beams=np.array(addresses(at.beams), np.int64),
         stabilisation=stabilisation[solver.stabilisation],

@@ -82,6 +82,7 @@ class Model(Packed):
     beside: i8  # address of what finds limits where rows depend on each other     beside.py
     near: f8  # pivot below which it is asked; 0: where rows do depend on each other only
     near_rows: f8  # the same of what is measured
+    looped: I1  # rigid bodies in kinematic loops    assemble/loops.py
     tolerance: f8  # asked for, of the units of the error norm
     plain: i8  # address of what leaves Baumgarte's feedback out of what is measured, or 0
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
@@ -160,6 +161,12 @@ class Scene(Model):
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
     aside: A2  # (7, n_y or n_v+m) states and accelerations beside this one   beside.py
+    root: A2  # (3, n_x) sigma at the ends of the last step and of this one    solve/passes.py
+    part_root: A2  # (3, n_x) the same of parts of a step
+    kept_rows: A2  # (2, 6 slots) B, the factors and sigma at both ends of a step
+    kept_factors: A2  # (2, places)
+    kept_roots: A2  # (2, n_x)
+    own: A2  # (2, 6 n) what a row has of its own
     moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: T6  # (n, 6) accelerations without constraints, axes of the solve
     gap: T2  # (N, 2) penetration and its rate
@@ -188,6 +195,7 @@ def scene(model: Model) -> Scene:
     n, m, n_x, slots = model.n, model.m, len(model.column_start) - 1, len(model.slot_row)
     rows = m + len(model.redundant)
     elements = int(np.sum(model.beam[:, 1] - 1))
+    loops = 1 if model.near_rows > 0.0 else 0
     made = Scene(
         model,
         {
@@ -220,6 +228,12 @@ def scene(model: Model) -> Scene:
             "r": (n_x,),
             "r2": (n_x,),
             "aside": (7, max(model.n_q + model.n_v + model.n_z, model.n_v + m)),
+            "root": (3 * loops, n_x),
+            "part_root": (3 * loops, n_x),
+            "kept_rows": (2 * loops, 6 * slots),
+            "kept_factors": (2 * loops, len(model.row)),
+            "kept_roots": (2 * loops, n_x),
+            "own": (2 * loops, 6 * n),
             "moved": (n, 6),
             "free": (n, 6),
             "gap": (len(model.con), 2),

@@ -44,6 +44,7 @@ def resumed(mechanism: Mechanism, work: Scene, r: Record) -> Scene:
     marks = int(np.sum(r.left_out == 1))
     if not marks == len(choice.dropped) == int(np.sum(usual)) == int(np.sum(r.left_out != 0)):
         raise FileError(f"{UNFIT}: record.left_out", ANEW)
+    r.count[rec.KEPT] = 0  # what passes.py knows of rows is in the scene
     return work if same(work, choice.model) else carried(work, choice.model)
 
 

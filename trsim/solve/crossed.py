@@ -27,7 +27,7 @@ from trsim.assemble.reduce import all_rows, weights
 from trsim.elements.scene import Scene, scene
 from trsim.solve import record as rec
 from trsim.solve.locked import dependent
-from trsim.solve.passes import CLOSED, MEET, NEWTON, REACHED, known
+from trsim.solve.meetings import CLOSED, MEET, NEWTON, REACHED, known
 from trsim.solve.record import Record
 
 Array = NDArray[np.float64]
@@ -69,10 +69,7 @@ def examine(work: Scene, r: Record, other_rows: bool) -> None:
     ]
     r.count[rec.PASSED] = 0
     if other_rows:
-        t, h = float(r.clock[rec.T]), float(r.clock[rec.LAST_H])
-        if r.count[rec.SIGMAS] == 2 and not r.count[rec.NOTED]:
-            ways.append((t - h, t, r.behind, r.seen, r.branch))
-        r.count[rec.SIGMAS] = 0
+        r.count[rec.KEPT] = 0
     if not ways:
         return
     scratch = scene(work)

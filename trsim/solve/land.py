@@ -15,7 +15,8 @@ from trsim.assemble.projection import (
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
 from trsim.elements.vectors import internal
-from trsim.solve.record import LENGTH, OFF, OFF_RATE, PIVOT, SPEED, WORST_PHI, WORST_PHI_DOT
+from trsim.solve.own_rows import keep_roots
+from trsim.solve.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
@@ -59,7 +60,7 @@ def land(s, r, b, t, y, yd):
     flush(y)
     evaluate(s, t, y, yd)
     if s.near_rows > 0.0:
-        r.clock[PIVOT] = smallest_pivot(s)
+        keep_roots(s, s.root[2])
     if s.stabilisation == PROJECTION and s.m > 0:
         done += position_work(s, b.y2, y)
     else:

@@ -246,7 +246,7 @@ def next_step(s, r, b, setting):
     h = min(r.clock[H], setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
     if setting[FIXED_STEP] > 0.0:
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
-    if s.wound.size + s.section.shape[0] > 0:
+    if s.wound.size + s.section.shape[0] + s.looped.size > 0:
         h = min(h, longest_turn(s, r))
     if h >= left * (1.0 - 1e-12):
         return left

@@ -248,8 +248,6 @@ def new_record(
         left_out=np.array(left_out, np.int64),
         section=np.zeros((len(model.section), rec.N_SECTION)),
         jolt=np.zeros((rec.JOLTS_KEPT, 5)),
-        seen=begun.y.copy(),
-        behind=begun.y.copy(),
         passed=np.zeros((passes, 2 + 2 * begun.y.size + len(model.branch))),
         meeting=np.zeros((rec.MEETINGS_KEPT if passes else 0, begun.y.size)),
         crossed=np.zeros_like(begun.y),

@@ -46,13 +46,10 @@ from trsim.elements.scene import Model
     ROUNDED_AT,
     ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
     LONGEST,  # s, the longest step since then, see LOOKED
-    PIVOT,  # the smallest of S at the end of the last trial step                   passes.py
-    SIGMA,  # its root when it was looked at last
-    FALLING,  # 1/s, how fast it had fallen to there
-    LAST_H,  # s, for how long
+    LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
     CROSSED_T,  # s, when the run first changed its branch                         crossed.py
     N_CLOCK,
-) = range(45)
+) = range(42)
 
 # count: integer state of the march
 (
@@ -92,13 +89,12 @@ from trsim.elements.scene import Model
     FAILED,  # and how many trials were rejected then
     NEWEST,  # which of the last samples of the channels is the newest, and how many there are
     SAMPLES,
-    SIGMAS,  # 1: SIGMA is known; 2: and FALLING, LAST_H
-    NOTED,  # 1: that way was noted
+    KEPT,  # 1: sigma is known where the step begins
     PASSED,  # ways noted that are still to be examined
     MEETINGS,  # places known where branches meet
     CROSSED,  # how often the run changed its branch
     N_COUNT,
-) = range(42)
+) = range(41)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -187,8 +183,6 @@ class Record(Packed):
     )
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
     jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
-    seen: A1  # (n_y) y when SIGMA was looked at last                             passes.py
-    behind: A1  # (n_y) and before that
     passed: A2  # (PASSES_KEPT, 2 + 2 n_y + n_s) ways noted: times, states, branches of angles
     meeting: A2  # (MEETINGS_KEPT, n_y) where branches meet                      crossed.py
     crossed: A1  # (n_y) where the run first changed its branch
@@ -232,6 +226,7 @@ class Buffers(Packed):
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
     laid: A1  # (1) how many places were found when those were made
     bound: A2  # (3, n_k) of channels between two samples: see `bounds` of peaks.py
+    part: A2  # (2, n_y) both ends of a part of a step                            passes.py
     mean: A2  # (2, n_out) channels where rows of the solve depend on each other
     moved: A1  # (1) 1: the end of the step was moved on along its tangent
     unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
@@ -283,6 +278,7 @@ def fresh_buffers(
         inverse=np.zeros((POINTS, POINTS)),
         laid=np.zeros(1),
         bound=np.zeros((3, len(model.kin))),
+        part=np.zeros((2, n_y)),
         mean=np.zeros((2, model.n_out)),
         moved=np.zeros(1),
         unmoved=np.zeros((3, n_y)),

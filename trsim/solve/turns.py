@@ -20,6 +20,7 @@ from trsim.solve.spread import coordinates_of
 MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
 WHOLE = 50.0  # rad: the most a body turns by in a step where points of sections are looked for
 MOST_WAVES = 200.0  # rad: the same of waves in functions that make a section's channel swing
+IN_LOOPS = 1.0  # rad, or of the mechanism's size: the most a body in a loop moves by
 NEXT = 0.9  # of MOST: what the next step may turn a joint by at its present rate
 
 
@@ -40,7 +41,8 @@ def too_far(s, r, b, h):
 def longest_turn(s, r):
     """The longest step that turns no joint by more than is sure to be counted, s.
 
-    Where points of sections are looked for none turns a body by more than WHOLE.
+    Where points of sections are looked for none turns a body by more than WHOLE.  In loops none
+    moves a body further than passes.py can follow what becomes of its rows.
     """
     longest = 1e300
     if s.section.shape[0] > 0:
@@ -48,9 +50,27 @@ def longest_turn(s, r):
     if s.wave.size > 0:
         w = swings(s, r.clock[T], 1.0, r.branch, r.turning, r.branch, r.turning)
         longest = min(longest, MOST_WAVES / max(w, 1e-300))
+    if s.looped.size > 0:
+        longest = min(longest, IN_LOOPS / max(fastest_in_loops(s, r.y), 1e-300))
     for n in range(s.wound.size):
         longest = min(longest, NEXT * MOST / max(abs(r.turning[s.wound[n]]), 1e-300))
     return longest
+
+
+@internal
+def fastest_in_loops(s, y):
+    """The fastest rate of a body in a loop, or of a node, rad/s or sizes/s."""
+    along = turning = 0.0
+    first = 2 if s.d == 3 else 3
+    for f in s.looped:
+        o = s.n_q + s.d * (f - 1)
+        for c in range(first):
+            along = max(along, abs(y[o + c]))
+        for c in range(first, s.d):
+            turning = max(turning, abs(y[o + c]))
+    for k in range(s.v_node, s.n_v):
+        along = max(along, abs(y[s.n_q + k]))
+    return max(along / s.size, turning)
 
 
 @internal

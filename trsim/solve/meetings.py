@@ -1,0 +1,117 @@
+"""Places where branches of the motion meet: searched for in a step, and known from then on."""
+
+from math import cos
+
+from trsim.assemble.projection import project_positions
+from trsim.elements import signatures as types
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.packed import A1
+from trsim.elements.vectors import internal
+from trsim.solve.illinois import between, narrowed
+from trsim.solve.own_rows import cosine, keep_rows, look_at, own
+from trsim.solve.record import MEETINGS, RECORD, T
+
+MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
+APART = 1e-2  # pivots that do not take part
+NEARER = 12  # places looked at, at most
+NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-12  # steps; of the mechanism's size
+NEAR_ENOUGH = 1e-3  # of the square of sigma: it is not felt
+AROUND = 1.5  # of the square of a way: how far from its middle a known place is next to it
+
+
+@internal
+def meet(s, r, b, t1, last, start, end, k):
+    """Whether branches meet in the part of a step where the row eliminated k-th turned round.
+
+    Its sigma, negative behind that place, has a zero there along the cubic through both ends of
+    the step and the rates there, brought to the constraints.  That place is left in b.rough[0];
+    branches meet where no other pivot is small that is not zero too.
+    """
+    place, h = b.rough[0], t1 - r.clock[T]
+    bracket = (start, s.kept_roots[0, k], end, -s.kept_roots[1, k], 0.0)
+    about = min(s.kept_roots[0, k], s.kept_roots[1, k])
+    for n in range(NEARER):
+        x = between(bracket, n)
+        inside(r.y, r.yd, b.y1, b.K[last], h, x, place)
+        if not closed(s, t1 + (x - 1.0) * h, place, about):
+            return False
+        about = s.kept_roots[1, k]
+        if about <= MEET:
+            return closed(s, t1 + (x - 1.0) * h, place, 0.0) and alone(s, k)
+        own(s, 1, k)
+        bracket = narrowed(bracket, x, about if cosine(s) > 0.0 else -about, False)
+    return False
+
+
+@internal
+def closed(s, t, y, about):
+    """Bring y to the constraints, and keep its rows; whether it gets there.
+
+    about: how large sigma is next to it, which says how near to the constraints will do.
+    """
+    near, worst = max(CLOSED, NEAR_ENOUGH * about * about), 1e300
+    for _ in range(NEWTON):
+        worst = project_positions(s, t, y)
+        if not worst > near * s.size:
+            break
+    if not worst < max(near, REACHED) * s.size:
+        return False
+    look_at(s, t, y)
+    keep_rows(s, 1)
+    return True
+
+
+@internal
+def alone(s, k):
+    """Whether the row eliminated k-th depends on others, and no row nearly does."""
+    for j in range(s.first.size):
+        sigma = s.kept_roots[1, j]
+        if s.row[s.column_start[j]] < s.m and sigma > MEET and sigma * sigma < APART:
+            return False
+    return s.kept_roots[1, k] <= MEET
+
+
+@internal
+def inside(y0, yd0, y1, yd1, h, x, y):
+    """y <- the cubic through both ends of a step and their rates, at the part x of it."""
+    for k in range(y.size):
+        by = y1[k] - y0[k]
+        bent = (1.0 - x) * (h * yd0[k] - by) - x * (h * yd1[k] - by)
+        y[k] = y0[k] + x * by + x * (1.0 - x) * bent
+
+
+@compiled(types.int64(SCENE, RECORD, A1, A1))
+def known(s, r, y0, y1):
+    """Whether branches meet, as was found out before, between two states."""
+    for k in range(min(r.count[MEETINGS], r.meeting.shape[0])):
+        place = r.meeting[k]
+        if away(s, place, y0, y1) <= AROUND * apart(s, y0, y1):
+            return 1
+    return 0
+
+
+@internal
+def apart(s, y0, y1):
+    """The square of the distance of two states, a turn taken times the mechanism's size."""
+    total = 0.0
+    for f in range(s.n_r - 1):
+        if s.d == 3:
+            q = 3 * f
+            total += (y1[q] - y0[q]) ** 2 + (y1[q + 1] - y0[q + 1]) ** 2
+            total += 2.0 * s.size**2 * (1.0 - cos(y1[q + 2] - y0[q + 2]))
+            continue
+        q, along = 7 * f, 0.0
+        for a in range(3):
+            total += (y1[q + a] - y0[q + a]) ** 2
+        for a in range(3, 7):
+            along += y1[q + a] * y0[q + a]
+        total += 8.0 * s.size**2 * (1.0 - abs(along))
+    for k in range(s.q_node, s.n_q):
+        total += (y1[k] - y0[k]) ** 2
+    return total
+
+
+@internal
+def away(s, place, y0, y1):
+    """The square of the distance of a place from the middle of two states."""
+    return 0.5 * (apart(s, place, y0) + apart(s, place, y1)) - 0.25 * apart(s, y0, y1)

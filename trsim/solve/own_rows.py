@@ -1,0 +1,113 @@
+"""What rows of J have of their own, and whether it turned round between two places.
+
+    d_k = e_k^T L^-1 J,        D_k = |d_k|^2 = d_k M^-1 d_k^T        with S = L D L^T
+
+is row k less what it shares with the rows eliminated before it; sigma_k is the root of D_k as a
+share of the diagonal of S.
+"""
+
+from math import sqrt
+
+from trsim.assemble.equations import constraints, poses
+from trsim.assemble.linear import diagonal, eliminate
+from trsim.assemble.schur import rows
+from trsim.elements.vectors import clear, copy_to, internal
+
+FINEST = 1e-15  # of the diagonal: rounding of a pivot
+PLAINLY = 0.1  # cosine: below that a row turned by more than it does on a branch
+
+
+@internal
+def look_at(s, t, y):
+    """The rows at a place, and their factors."""
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    diagonal(s)
+    eliminate(s, FINEST)
+
+
+@internal
+def keep_roots(s, roots):
+    """sigma of the rows just factorised."""
+    for k in range(s.first.size):
+        D = s.value[s.column_start[k]]
+        roots[k] = sqrt(D / s.first[k]) if D * s.first[k] > 0.0 else 0.0
+
+
+@internal
+def keep_rows(s, end):
+    """B, L and sigma of the rows just factorised, of the beginning (0) or the end (1) of a step."""
+    B, n = s.kept_rows[end], 0
+    for p in range(s.slot_row.size):
+        for c in range(s.d):
+            B[n] = s.B[p, c]
+            n += 1
+    copy_to(s.kept_factors[end], s.value)
+    keep_roots(s, s.kept_roots[end])
+
+
+@internal
+def turned_round(s, k):
+    """Whether what the row eliminated k-th has of its own points elsewhere at the end."""
+    own(s, 0, k)
+    own(s, 1, k)
+    return cosine(s) <= PLAINLY
+
+
+@internal
+def cosine(s):
+    """Of the angle between what own() left of both ends, in the metric of M^-1."""
+    u, v = s.own[0], s.own[1]
+    along = first = second = 0.0
+    for f in range(1, s.n_r):
+        o = s.d * f
+        along += product(s, f, u, v, o)
+        first += product(s, f, u, u, o)
+        second += product(s, f, v, v, o)
+    return along / (sqrt(first * second) + 1e-300)
+
+
+@internal
+def own(s, end, k):
+    """d of the row eliminated k-th, into s.own[end]: of bodies, of hubs those eliminated before."""
+    w, L, B, d = s.r2, s.kept_factors[end], s.kept_rows[end], s.own[end]
+    row, column_start = s.row, s.column_start
+    clear(w)
+    w[row[column_start[k]]] = 1.0
+    for j in range(k - 1, -1, -1):
+        total = 0.0
+        for p in range(column_start[j] + 1, column_start[j + 1]):
+            total -= L[p] * w[row[p]]
+        w[row[column_start[j]]] = total
+    clear(d)
+    for f in range(1, s.n_r):
+        if s.hub[f] >= 0 and not moves(s, w, f):
+            continue
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            w_p = w[s.slot_row[p]]
+            for c in range(s.d):
+                d[s.d * f + c] += B[s.d * p + c] * w_p
+
+
+@internal
+def moves(s, w, f):
+    """Whether a hub gives way, as its own unknowns say."""
+    for c in range(s.d):  # noqa: SIM110 - a generator does not compile
+        if w[s.hub[f] + c] != 0.0:
+            return True
+    return False
+
+
+@internal
+def product(s, f, u, v, o):
+    """u M^-1 v^T of one body, whose part of both begins at o."""
+    K = s.inertia_inverse
+    if s.d == 3:
+        along = u[o] * v[o] + u[o + 1] * v[o + 1]
+        return s.mass_inverse[f] * along + K[f, 8] * u[o + 2] * v[o + 2]
+    total = s.mass_inverse[f] * (u[o] * v[o] + u[o + 1] * v[o + 1] + u[o + 2] * v[o + 2])
+    for i in range(3):
+        for j in range(3):
+            total += u[o + 3 + i] * K[f, 3 * i + j] * v[o + 3 + j]
+    return total
