@@ -10,7 +10,7 @@ from trsim.assemble.linear import factorise, smallest_pivot, solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, rows, velocity_residual
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.signatures import A1, f8, float64, void
+from trsim.elements.signatures import A1, f8, float64, i8, void
 from trsim.elements.vectors import clear_table
 
 DOUBTFUL = 1e-2  # a pivot, of its diagonal
@@ -83,6 +83,20 @@ def project_positions(s, t, y):
         call_beams(s.on_beams[PULL], s, s.x, s.x, 0)
         for k in range(s.n_v - s.v_node):
             y[s.q_node + k] += dx[s.n_r + k // s.d_node, k % s.d_node]
+    return worst
+
+
+@compiled(float64(SCENE, f8, A1, f8, i8))
+def close_positions(s, t, y, near, steps):
+    """Newton's steps of Phi(q, t) = 0 until all of it is below `near`; the largest |Phi| at last.
+
+    steps: at most so many, at least one.  What is returned was there before the last of them.
+    """
+    worst = 0.0
+    for _ in range(steps):
+        worst = project_positions(s, t, y)
+        if not worst > near:
+            break
     return worst
 
 

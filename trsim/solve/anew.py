@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.linear import SINGULAR
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.projection import project_positions, project_velocities
+from trsim.assemble.projection import close_positions, project_positions, project_velocities
 from trsim.elements.scene import Model, Scene, carried, scene
 from trsim.errors import FileError
 from trsim.solve import record as rec
@@ -89,9 +89,7 @@ def anew(
 
 def project(work: Scene, t: float, y: Array) -> None:
     """Positions and velocities to the rows, nearest in M."""
-    for _ in range(NEWTON):
-        if not project_positions(work, t, y) > CLOSED * work.size:
-            break
+    close_positions(work, t, y, CLOSED * work.size, NEWTON)
     poses(work, y)
     project_velocities(work, y)
 

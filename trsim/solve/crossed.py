@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.projection import move_all, project_positions, project_velocities
+from trsim.assemble.projection import close_positions, move_all, project_velocities
 from trsim.assemble.rank import of_length_one
 from trsim.assemble.reduce import all_rows, weights
 from trsim.elements.scene import Scene, scene
@@ -154,11 +154,7 @@ def middle(w: Scene, a: Place, b: Place, at: float) -> Place | None:
 
 def place(w: Scene, t: float, y: Array) -> Place | None:
     """A state brought to the constraints; None where it does not get there."""
-    for _ in range(NEWTON):
-        worst = project_positions(w, t, y)
-        if not worst > CLOSED * w.size:
-            break
-    if not worst < REACHED * w.size:
+    if not close_positions(w, t, y, CLOSED * w.size, NEWTON) < REACHED * w.size:
         return None
     u, sigma, vt = np.linalg.svd(of_length_one(all_rows(w, y), weights(w)), full_matrices=False)
     project_velocities(w, y)

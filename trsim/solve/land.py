@@ -7,6 +7,7 @@ from trsim.assemble.linear import SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import (
     DOUBTFUL,
+    close_positions,
     normalise,
     poses_and_rows,
     project_positions,
@@ -97,9 +98,7 @@ def evaluate_inside(s, r, t, y, yd):
         pivot = smallest_pivot(s)
         if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
             return
-    for _ in range(NEWTON):
-        if not project_positions(s, t, y) > CLOSED * s.size:
-            break
+    close_positions(s, t, y, CLOSED * s.size, NEWTON)
     poses_and_rows(s, t, y)
     project_velocities(s, y)
     evaluate_to_measure(s, t, y, yd)

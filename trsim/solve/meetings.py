@@ -2,7 +2,7 @@
 
 from math import cos
 
-from trsim.assemble.projection import project_positions
+from trsim.assemble.projection import close_positions
 from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1
@@ -49,12 +49,8 @@ def closed(s, t, y, about):
 
     about: how large sigma is next to it, which says how near to the constraints will do.
     """
-    near, worst = max(CLOSED, NEAR_ENOUGH * about * about), 1e300
-    for _ in range(NEWTON):
-        worst = project_positions(s, t, y)
-        if not worst > near * s.size:
-            break
-    if not worst < max(near, REACHED) * s.size:
+    near = max(CLOSED, NEAR_ENOUGH * about * about)
+    if not close_positions(s, t, y, near * s.size, NEWTON) < max(near, REACHED) * s.size:
         return False
     look_at(s, t, y)
     keep_rows(s, 1)

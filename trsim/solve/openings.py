@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.mechanism import Instance, Mechanism
-from trsim.assemble.projection import project_positions
+from trsim.assemble.projection import close_positions
 from trsim.assemble.tables import turns_by
 from trsim.elements.contract import compiled
 from trsim.elements.scene import workspace
@@ -109,9 +109,7 @@ def closed(s, t, y):
     """Bring y to the rows of the solve, as close as rounding lets it; what they stay open by."""
     went, evaluations = s.status[0], s.status[1]
     factorisations, contradictory = s.status[2], s.status[3]
-    for _ in range(NEWTON):
-        if not project_positions(s, t, y) > CLOSED * s.size:
-            break
+    close_positions(s, t, y, CLOSED * s.size, NEWTON)
     poses(s, y)
     constraints(s, t)
     s.status[0], s.status[1] = went, evaluations

@@ -1,13 +1,9 @@
 """Steps that may have gone past a place where branches of the motion meet, or nearly meet.
 
-What a row of J has of its own, less what it shares with the rows eliminated before it, is
-
-    d_k = e_k^T L^-1 J,        D_k = |d_k|^2 = d_k M^-1 d_k^T        with S = L D L^T
-
-Where branches meet, sigma_k, the root of D_k as a share of the diagonal of S, goes to zero and up
-again as the size of what changes its sign there.  Steps see sizes only, but behind such a place d_k
-has turned round.  On its branch, which bends away before it, it turns by a right angle at most.  So
-a step is noted where
+Where branches meet, sigma_k, the size of what a row has of its own (d_k, see own_rows.py), goes to
+zero and up again as the size of what changes its sign there.  Steps see sizes only, but behind such
+a place d_k has turned round.  On its branch, which bends away before it, it turns by a right angle
+at most.  So a step is noted where
 
     d_k(0) M^-1 d_k(1)^T <= PLAINLY |d_k(0)| |d_k(1)|
 
@@ -16,12 +12,13 @@ line through the ends of this step and the last one as it is without.  What beca
 found out later, by crossed.py.  Where branches are known to meet nothing is noted.
 """
 
+from trsim.assemble.projection import close_positions
 from trsim.elements import signatures as types
 from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import f8, i8
 from trsim.elements.vectors import copy_to, internal
-from trsim.solve.meetings import closed, inside, known, meet
+from trsim.solve.meetings import CLOSED, NEWTON, inside, known, meet
 from trsim.solve.own_rows import keep_roots, keep_rows, look_at, turned_round
 from trsim.solve.record import BUFFERS, KEPT, LAST_WAY, MEETINGS, PASSED, RECORD, T
 from trsim.solve.turns import fastest_in_loops
@@ -81,8 +78,8 @@ def look_at_parts(s, r, b, t1, last, way):
             inside(r.y, r.yd, b.y1, b.K[last], h, k / n, y1)
             start, end = t + (k - 1) / n * h, t + k / n * h
             if known(s, r, y0, y1) == 0 and which_turned(s, start, end, y0, y1, way / n) >= 0:
-                closed(s, start, y0, 0.0)
-                closed(s, end, y1, 0.0)
+                close_positions(s, start, y0, CLOSED * s.size, NEWTON)
+                close_positions(s, end, y1, CLOSED * s.size, NEWTON)
                 note_turned(s, r, b, t1, last, (k - 1) / n, k / n, y0, y1, way / n)
         copy_to(roots[0], roots[1])
         copy_to(roots[1], roots[2])
