@@ -8,11 +8,14 @@ that only appear as the motion goes on,
 
 and next to such a place, on the branch that the velocities are on, J has its full rank.  So the
 motion is followed by d to both sides, brought to the constraints there, and the accelerations are
-those between, to fourth order in d:
+those between, of the polynomial in d^2 through the last pairs of places:
 
-    a(d) = (a_ahead + a_behind) / 2,        a = (4 a(d) - a(2 d)) / 3 + O(d^4)
+    a(d) = (a_ahead + a_behind) / 2,        a = a(d) + c_1 d^2 + ... + c_4 d^8 + O(d^10)
 
-d is halved until that no longer changes.  Forces are those of the place itself, so stiff ones do
+d is made smaller until that no longer changes.  Of a place at delta from where branches meet
+rounding makes eps/delta^3 (below), so the order is high and d is large: with 0.08 to 0.02 rad what
+is left out is 1e-13 of a motion that turns by a radian, and rounding 1e-10.  Pairs of which one
+place is nearer to where branches meet than the place itself are passed over.  Forces are those of the place itself, so stiff ones do
 not matter.  Reactions of the rows that depend on each other grow like 1/d with another sign on the
 other side; what is given is the mean of both.  Where nothing moves, or rows depend on each other
 beside the place too, nothing is changed.
@@ -54,14 +57,20 @@ from trsim.assemble.mechanism import RowName
 from trsim.assemble.projection import move_all, project_positions, project_velocities
 from trsim.assemble.schur import plain_rows, pull, rows
 from trsim.elements.contract import DRIVES, compiled
+from trsim.elements.vectors import clear
 
-FARTHEST, HALVED = 0.02, 8  # rad, or of the mechanism's size; how often
+# rad, or of the mechanism's size; from one pair of places to the next; pairs looked at
+FARTHEST, NEARER, PAIRS = 0.08, 0.7, 18
+TRIED = 4  # pairs further away that may be none: a mechanism that locks there
+MOST = 5  # pairs that a polynomial goes through
+NEAR_TO = 0.25  # times the pivot of the place itself
+THERE, NOT_THERE, TOO_NEAR = range(3)
 NEWTON, CLOSED, REACHED = 8, 1e-14, 1e-9  # steps; of the mechanism's size
 SURE = 1e-3  # of the accelerations: more than that, and there is no limit
 PLAINLY = 4.0  # times what is uncertain of a limit: an evaluation is not itself that
 SETTLED = 1e-11  # the same: nothing smaller is asked for
 NOISE = 1e-13  # 500 times rounding, which is a 500th of the tolerance at NOISE / tolerance
-PLACE, WAY, MEAN, BEFORE, LIMIT, NEWER, FOUND = range(7)  # rows of s.aside
+PLACE, WAY, MEAN, LIMIT, FOUND, TABLE = range(6)  # rows of s.aside, TABLE of MOST rows
 
 
 def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) -> float:
@@ -113,11 +122,12 @@ def beside(s, t, y, yd):
     fastest, went, counted = speed(s), s.status[0], s.status[2]
     if s.n_r < s.n or not fastest > 0.0:
         return
-    if went != SINGULAR and smallest_pivot(s) > (s.near_rows if s.status[5] > 0 else s.near):
+    own = smallest_pivot(s)
+    if went != SINGULAR and own > (s.near_rows if s.status[5] > 0 else s.near):
         return
     best, scale = 1e300, 0.0
     if went == SINGULAR or plain_pivot(s) <= SMALL:
-        best, scale = look_beside(s, t, y, fastest)
+        best, scale = look_beside(s, t, y, fastest, own)
         poses(s, y)
         constraints(s, t)
     factors_again(s)
@@ -172,41 +182,80 @@ def speed(s):
 
 
 @equation
-def look_beside(s, t, y, fastest):
-    """The limit into s.aside[FOUND]; by how much it changed at last, and the size of it."""
-    aside, n = s.aside, s.n_v + s.m
-    best, scale = 1e300, 0.0
-    for k in range(HALVED):
-        d = FARTHEST * 0.5**k / fastest
-        for i in range(n):
-            aside[BEFORE, i], aside[MEAN, i] = aside[MEAN, i], 0.0
-        if not (at(s, t, y, d) and at(s, t, y, -d)):
+def look_beside(s, t, y, fastest, own):
+    """The limit into s.aside[FOUND]; by how much it changed at last, and the size of it.
+
+    own: the pivot at y, 0 where rows depend on each other there.
+    """
+    found, limit, n = s.aside[FOUND], s.aside[LIMIT], s.n_v + s.m
+    best, scale, pairs = 1e300, 0.0, 0
+    for k in range(PAIRS):
+        d = FARTHEST * NEARER**k / fastest
+        went = between(s, t, y, d, own)
+        if went == NOT_THERE and (pairs > 0 or k >= TRIED):
             return 1e300, 0.0
-        if k == 0:
+        if went != THERE:
             continue
         for i in range(n):
-            aside[LIMIT, i] = aside[NEWER, i]
-            aside[NEWER, i] = (4.0 * aside[MEAN, i] - aside[BEFORE, i]) / 3.0
-        if k == 1:
+            limit[i] = s.aside[TABLE + max(min(pairs, MOST) - 1, 0), i]
+        newest = TABLE + min(pairs, MOST - 1)
+        extrapolate(s, d, newest, n)
+        pairs += 1
+        if pairs == 1:
             continue
         change = largest = 0.0
         for i in range(s.n_v):
-            change = max(change, abs(aside[NEWER, i] - aside[LIMIT, i]) / unit(s, i))
-            largest = max(largest, abs(aside[NEWER, i]) / unit(s, i))
+            change = max(change, abs(s.aside[newest, i] - limit[i]) / unit(s, i))
+            largest = max(largest, abs(s.aside[newest, i]) / unit(s, i))
         if change < best:
             best, scale = change, max(largest, fastest * fastest)
             for i in range(n):
-                aside[FOUND, i] = aside[NEWER, i]
+                found[i] = s.aside[newest, i]
         if best <= SETTLED * scale or change > 8.0 * best:
             break
     return best, scale
 
 
 @equation
+def between(s, t, y, d, own):
+    """The mean of accelerations and multipliers at d from y to both sides, into s.aside[MEAN].
+
+    Returns THERE, NOT_THERE (one of the places is none, or rows depend on each other beside y as
+    they do there) or TOO_NEAR (nearer than y to where they do).
+    """
+    clear(s.aside[MEAN])
+    for side in (1.0, -1.0):
+        pivot = at(s, t, y, side * d)
+        if pivot < 0.0 or (pivot == 0.0 and own == 0.0):
+            return NOT_THERE
+        if pivot <= NEAR_TO * own:
+            return TOO_NEAR
+    return THERE
+
+
+@equation
+def extrapolate(s, d, newest, n):
+    """Take the mean at d into the table: its row j becomes the value at y of the polynomial in d^2
+    through the last j + 1 of them, up to the row `newest`; Neville's scheme.  Behind the values of
+    a row is the largest d of it."""
+    aside, mean = s.aside, s.aside[MEAN]
+    for i in range(n):
+        before, now = aside[TABLE, i], mean[i]
+        aside[TABLE, i] = now
+        for row in range(TABLE + 1, newest + 1):
+            now += (now - before) / ((aside[row - 1, n] / d) ** 2 - 1.0)
+            before, aside[row, i] = aside[row, i], now
+    for row in range(newest, TABLE, -1):
+        aside[row, n] = aside[row - 1, n]
+    aside[TABLE, n] = d
+
+
+@equation
 def at(s, t, y, d):
     """Add half of the accelerations and multipliers at d from y along the motion to s.aside[MEAN].
 
-    Returns whether it gets there, and the rows are independent.
+    Returns the smallest pivot there; 0 where the rows depend on each other, less where it does not
+    get there.
     """
     place, mean = s.aside[PLACE], s.aside[MEAN]
     for i in range(y.size):
@@ -220,17 +269,18 @@ def at(s, t, y, d):
     for _ in range(NEWTON):
         worst = project_positions(s, t + d, place)
         if s.status[0] == SINGULAR:
-            return False
+            return 0.0
         if not worst > CLOSED * s.size:
             break
     if not worst < REACHED * s.size:
-        return False  # the mechanism locks between
+        return -1.0  # the mechanism locks between
     poses(s, place)
     constraints(s, t + d)
     rows(s)
     factorise(s)
     if s.status[0] == SINGULAR:
-        return False
+        return 0.0
+    pivot = smallest_pivot(s)
     project_velocities(s, place)
     poses(s, place)
     constraints(s, t + d)
@@ -243,7 +293,7 @@ def at(s, t, y, d):
         pull(s, f, s.x)
         for c in range(s.d):
             mean[s.d * (f - 1) + c] += 0.5 * s.free[f, c]
-    return True
+    return pivot
 
 
 @equation

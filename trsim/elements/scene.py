@@ -160,7 +160,7 @@ class Scene(Model):
     x: A1  # (n_x) right-hand side, then solution
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
-    aside: A2  # (7, n_y or n_v+m) states and accelerations beside this one   beside.py
+    aside: A2  # (10, n_y or n_v+m+1) states and accelerations beside this one   beside.py
     root: A2  # (3, n_x) sigma at the ends of the last step and of this one    solve/passes.py
     part_root: A2  # (3, n_x) the same of parts of a step
     kept_rows: A2  # (2, 6 slots) B, the factors and sigma at both ends of a step
@@ -227,7 +227,7 @@ def scene(model: Model) -> Scene:
             "x": (n_x,),
             "r": (n_x,),
             "r2": (n_x,),
-            "aside": (7, max(model.n_q + model.n_v + model.n_z, model.n_v + m)),
+            "aside": (10, max(model.n_q + model.n_v + model.n_z, model.n_v + m + 1)),
             "root": (3 * loops, n_x),
             "part_root": (3 * loops, n_x),
             "kept_rows": (2 * loops, 6 * slots),
