@@ -166,3 +166,33 @@ def test_a_step_that_ends_on_an_event_ends_at_its_time(method, part):
     text = TREMBLING.replace("VALUE", f"{-part * amplitude}").replace("METHOD", method)
     r = run(text)
     assert np.abs(r["turn"] - 1.5 * r.t).max() < 1e-9
+
+
+BESIDE = """
+bodies:
+  wheel: {{mass: 1, inertia: 0.02, at: [0.5, 0], angular_velocity: [0, 0, 2]}}
+  bob: {{mass: 1, inertia: 0.02, at: [{bent}, 1]}}
+joints:
+  O: {{type: revolute, bodies: [ground, wheel], at: [0.5, 0], axis: [0, 0, 1]}}
+  way: {{type: prismatic, bodies: [ground, bob], at: [0, 1], axis: [1, 0, 0]}}
+forces: {{spring: {{type: spring_damper, bodies: [ground, bob], points: [[-5, 1], [{bent}, 1]],
+         stiffness: {stiffness}, free_length: 5}}}}
+gravity: [0, 0]
+solver: {{end: {end}, method: {method}, tolerance: {tolerance}}}
+output: {{every: 2e-3, channels: ['*']}}
+"""
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
+def test_accelerations_of_a_vibration_beside_a_faster_motion(method, tolerance):
+    """Its speed is a tenth of the wheel's, at the rim, and its acceleration the largest there is:
+    what is allowed of speeds was ten times as much of that, and added up from turn to turn."""
+    rate, turns, largest = 60.0, 8, 13.0
+    bent = largest / rate**2
+    text = BESIDE.format(bent=bent, stiffness=rate**2, end=2 * np.pi * turns / rate,
+        method=method, tolerance=tolerance)  # fmt: skip
+    r = run(text)
+    off = np.abs(r["bob.acceleration"][:, 0] + largest * np.cos(rate * r.t)).max() / largest
+    print(f"{method} at {tolerance:g}: {off / tolerance:.3g} tolerances")
+    assert off < 100.0 * tolerance

@@ -15,10 +15,10 @@ those between, of the polynomial in d^2 through the last pairs of places:
 d is made smaller until that no longer changes.  Of a place at delta from where branches meet
 rounding makes eps/delta^3 (below), so the order is high and d is large: with 0.08 to 0.02 rad what
 is left out is 1e-13 of a motion that turns by a radian, and rounding 1e-10.  Pairs of which one
-place is nearer to where branches meet than the place itself are passed over.  Forces are those of the place itself, so stiff ones do
-not matter.  Reactions of the rows that depend on each other grow like 1/d with another sign on the
-other side; what is given is the mean of both.  Where nothing moves, or rows depend on each other
-beside the place too, nothing is changed.
+place is nearer to where branches meet than the place itself are passed over.  Forces are those of
+the place itself, so stiff ones do not matter.  Reactions of the rows that depend on each other grow
+like 1/d with another sign on the other side; what is given is the mean of both.  Where nothing
+moves, or rows depend on each other beside the place too, nothing is changed.
 
 Close to such a place, delta from it, the same is done where the limit is plainly another.  J has
 its full rank there, but what a state is off the rows, as states inside a step are, is felt 1/delta

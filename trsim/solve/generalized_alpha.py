@@ -26,14 +26,17 @@ from trsim.solve.jacobian import jacobian, missing
 from trsim.solve.record import (
     FACTORED_H,
     FRESH,
+    GAIN,
     HISTORY,
     ITERATIONS,
     JACOBIAN,
+    LENGTH,
     NEWTON_RATE,
     NEXT_JACOBIAN,
     NO_JACOBIAN,
     OLD,
     PAST_H,
+    SPEED,
 )
 from trsim.solve.works import first_work, works
 
@@ -55,6 +58,7 @@ B1, NEW, SCRATCH, MOVE = 3, 4, 5, 6  # rows of K: b_1, f at the end, two of scra
 FILTERED, BEFORE = hermite.ROWS, hermite.ROWS + 1  # rows of `past`: b_0, f one step before
 MOST_ITERATIONS = 10
 KAPPA = 0.02  # of the error allowed: what Newton may leave
+FURTHER = 10.0  # times the error of velocities: what that of accelerations counts at most
 ADDS = 5.0  # the errors of works as estimated are those made, and they add up
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
 HALVE = NO_STEP  # Newton failed: take about half the step
@@ -193,6 +197,8 @@ def estimate(s, r, b, setting, h):
         if weight[c] > 0.0:
             moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
     ratio = h / r.clock[PAST_H] if r.count[HISTORY] > 0 else 0.0
+    if ratio > 0.0:
+        moved = max(moved, min(accelerated(s, r, b, ratio), FURTHER * moved))
     worst = size = 0.0
     for c in range(first_work(s), first_work(s) + N_BOOK):
         bend = K[NEW, c] - r.yd[c]
@@ -202,6 +208,25 @@ def estimate(s, r, b, setting, h):
         size = max(size, 0.5 * h * (abs(K[NEW, c]) + abs(r.yd[c])))
     booked = works(r, setting, h, ADDS * worst, size)
     return max(moved, booked, 1e-10)
+
+
+@internal
+def accelerated(s, r, b, ratio):
+    """The same of accelerations, a 12th of the second difference of the derivative, in units of the
+    tolerance times the largest one met, or that of a turn at the largest speed.
+
+    A fast vibration beside a slow motion may have the larger accelerations and forces with speeds
+    that are small beside it: errors that are nothing of the speed are then much of these.  Waves of
+    bars are left to the speeds: steps are to pass over them.
+    """
+    K, weight = b.K, b.weight
+    most, bent = max(r.clock[GAIN], r.clock[SPEED] ** 2 / r.clock[LENGTH]), 0.0
+    for c in range(s.n_q, s.n_q + s.v_node):
+        r.clock[GAIN] = max(r.clock[GAIN], s.scale[c] * abs(r.yd[c]))
+        most = max(most, r.clock[GAIN], s.scale[c] * abs(K[NEW, c]))
+        bend = K[NEW, c] - r.yd[c] - ratio * (r.yd[c] - r.past[BEFORE, c])
+        bent = max(bent, abs(bend) / 12.0 * weight[c])
+    return bent * r.clock[SPEED] / most if most > 0.0 else 0.0
 
 
 @compiled(DENSE)

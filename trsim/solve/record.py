@@ -48,8 +48,9 @@ from trsim.elements.scene import Model
     LONGEST,  # s, the longest step since then, see LOOKED
     LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
     CROSSED_T,  # s, when the run first changed its branch                         crossed.py
+    GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
     N_CLOCK,
-) = range(42)
+) = range(43)
 
 # count: integer state of the march
 (
