@@ -38,6 +38,7 @@ LADDER = ((1e-12, 3e-11), (1e-10, 1e-9), (1e-9, 1e-8))  # rtol of the truth and 
 PARTS = (1.0, 0.4, 0.12)  # of the time a row may be off by
 LEAST_PIVOT = 1e-13
 APART = 1e-7  # perturbation of the second run
+CHANGES = 8  # of a run that is changed on the way
 MARGIN = 1e-3  # of 1: nearer turning points are told as grazing
 
 
@@ -456,8 +457,9 @@ class Course:
 
     def __init__(
         self, scene: Scene, times: np.ndarray, rtol: float, apart: float = 0.0, turn: float = 0.12,
-        speeds: Any = 0.0,
+        speeds: Any = 0.0, parts: int = 1,
     ) -> None:  # fmt: skip
+        """apart, speeds: a change of the start; parts: into which the run is cut by others."""
         self.s, self.times = scene, times
         self.stage = Stage()
         self.parts: list[tuple[Builder, list[int], np.ndarray, Any]] = []
@@ -465,9 +467,9 @@ class Course:
         self.grazing: list[tuple[str, float, float]] = []
         self.ended: float | None = None
         self.steps = 0
-        self.go(rtol, apart, turn, speeds)
+        self.go(rtol, apart, turn, speeds, parts)
 
-    def go(self, rtol: float, apart: float, turn: float, speeds: Any) -> None:
+    def go(self, rtol: float, apart: float, turn: float, speeds: Any, parts: int) -> None:
         b = Builder(self.s)
         y = start_state(b)
         kept = independent(b, y)
@@ -475,12 +477,10 @@ class Course:
         side, mem = begun(b, m, y)
         for _ in range(2):
             e.projected(m, 0.0, y, side)
+        rng = np.random.default_rng(7)
         if apart:
-            rng = np.random.default_rng(7)
-            for k in range(len(self.s.bodies)):
-                c = 13 * k + 7
-                y[c : c + 6] += apart * speeds * rng.uniform(-1, 1, 6) * self.in_plane()
-            e.projected(m, 0.0, y, side)
+            self.change(m, 0.0, y, side, apart * speeds, rng)
+        stops = sorted({-(-k * len(self.times) // parts) for k in range(1, parts + 1)})
         t, at, fired = 0.0, 0, dict.fromkeys((v.name for v in self.s.events), 0)
         deep = np.zeros(len(m.watch))
         h_max = self.s.end / 40
@@ -491,8 +491,9 @@ class Course:
         size[13 * len(self.s.bodies) :] = 1.0
         while True:
             found = e.march(
-                m, t, y, side, mem, deep, self.times[at:], h_max, turn, rtol, size, 20000, floor
-            )
+                m, t, y, side, mem, deep, self.times[at : stops[0]], h_max, turn, rtol, size, 20000,
+                floor,
+            )  # fmt: skip
             rows, crossed, grazed, (t, n, status, steps, worst, _), y = found
             self.steps += steps
             if status in (e.STUCK, e.TOO_MANY) or (status == e.SINGULAR and floor == LEAST_PIVOT):
@@ -508,7 +509,11 @@ class Course:
                     self.grazing.append((getattr(what, "name", what), line[0], line[2]))
             at += n
             if status == e.DONE:
-                break
+                stops.pop(0)
+                if not stops:
+                    break
+                self.change(m, t, y, side, apart * speeds, rng)
+                continue
             if status == e.SINGULAR:  # other rows say the same, and better
                 before = least_pivot(m, y, side, mem)
                 kept = independent(b, y)
@@ -539,6 +544,13 @@ class Course:
                 if c != k and g[c] * side[c] < 0:
                     side[c] = -side[c]
         self.deep = deep
+
+    def change(self, m: Any, t: float, y: np.ndarray, side: np.ndarray, by: Any, rng: Any) -> None:
+        """Change the speeds of all bodies a little, each to some side."""
+        for k in range(len(self.s.bodies)):
+            c = 13 * k + 7
+            y[c : c + 6] += by * rng.uniform(-1, 1, 6) * self.in_plane()
+        e.projected(m, t, y, side)
 
     def in_plane(self) -> np.ndarray:
         return np.array([1, 1, 0, 0, 0, 1.0]) if self.s.flat else np.ones(6)
@@ -719,6 +731,24 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
     t.felt = felt(t, apart, APART)
     t.crossings = list(listed(scene, main))
     return t
+
+
+def growth_of_later(scene: Scene, t: Truth) -> np.ndarray:
+    """What small changes grow by that are made on the way as well, (n), never less than t.growth.
+
+    A mechanism that starts slowly next to where it could stand still, and comes by there again, has
+    forgotten little changes of its start, but not those made while it was fast.
+    """
+    for _, loose in LADDER:
+        try:
+            apart = Course(
+                scene, t.times, loose, apart=APART,
+                speeds=np.repeat([t.top["speed"], t.top["spin"]], 3), parts=CHANGES,
+            )  # fmt: skip
+            return np.fmax(t.growth, spread(t, apart, APART))
+        except Unfit:
+            pass
+    return t.growth
 
 
 def size(scene: Scene) -> float:

@@ -44,3 +44,19 @@ def test_same_seed_same_scene():
     for family in FAMILIES:
         assert made(family, 3).scene.text() == made(family, 3).scene.text()
     assert not np.array_equal(made("spinning", 3).scene.turned, made("spinning", 4).scene.turned)
+
+
+def test_errors_made_on_the_way_may_grow_by_more_than_those_of_the_start():
+    """A four-bar that starts slowly next to where it could stand still, and comes by there again:
+    what changes its energy while it is fast decides when it leaves; the start changes it little."""
+    from .reference import growth_of_later, truth
+    from .trial import made
+
+    slow, quick = made("loop", 3070331963).scene, made("loop", 4198079357).scene
+    t = truth(slow, 0.1)
+    assert 100.0 < t.growth[-1] < 200.0
+    later = growth_of_later(slow, t)
+    assert later[-1] > 1e4
+    assert np.all(later >= t.growth)
+    t = truth(quick, 0.1)
+    assert growth_of_later(quick, t)[-1] < 1.1 * t.growth[-1]
