@@ -183,7 +183,7 @@ def complete(s, r, b, setting, method, h, built):
         call_sections(
             method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event or corner)
         )  # fmt: skip
-    if method[PASSES_AT] > 0:
+    if method[PASSES_AT] > 0 and s.near_rows > 0.0:  # there is a loop still
         call_passes(method[PASSES_AT], s, r, b, t1, last)
     accept(s, r, b, t1, projected, last)
     take_sides(s, r)
