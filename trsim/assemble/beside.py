@@ -24,11 +24,13 @@ Close to such a place, delta from it, the same is done where the limit is plainl
 its full rank there, but what a state is off the rows, as states inside a step are, is felt 1/delta
 times and rounding 1/delta^2 times: steps would shrink towards the place and end at rounding.
 Reactions are those of the state itself: they do grow like 1/delta; forces of drives do not, and are
-limits too.  Rows that only unequal masses make hard to tell apart are left alone.  States off the
-rows feel another derivative here than further away, which the error estimate of a step need not
-see: solve/complete.py looks at the energy of such steps.  Where nobody does (scipy's integrators)
-stages take the limit only where rows do depend on each other, and what is measured inside
-steps takes it as elsewhere; in open chains, which have no such places, all do.
+limits too.  Of the stages of a step a difference of a few tolerances is left to its error estimate:
+steps judged by their energy as well would be made again for it.  Rows that only unequal masses make
+hard to tell apart are left alone.  States off the rows feel another derivative here than further
+away, which the error estimate of a step need not see: solve/complete.py looks at the energy of such
+steps.  Where nobody does (scipy's integrators) stages take the limit only where rows do depend on
+each other, and what is measured inside steps takes it as elsewhere; in open chains, which have no
+such places, all do.
 """
 
 from collections.abc import Iterable, Sequence
@@ -68,7 +70,8 @@ THERE, NOT_THERE, TOO_NEAR = range(3)
 NEWTON, CLOSED, REACHED = 8, 1e-14, 1e-9  # steps; of the mechanism's size
 SURE = 1e-3  # of the accelerations: more than that, and there is no limit
 PLAINLY = 4.0  # times what is uncertain of a limit: an evaluation is not itself that
-SETTLED = 1e-11  # the same: nothing smaller is asked for
+SEEN = 10.0  # times the tolerance: what is less of a stage is left to the error estimate
+SETTLED = 1e-11  # of a limit: nothing smaller is asked for
 NOISE = 1e-13  # 500 times rounding, which is a 500th of the tolerance at NOISE / tolerance
 PLACE, WAY, MEAN, LIMIT, FOUND, TABLE = range(6)  # rows of s.aside, TABLE of MOST rows
 
@@ -133,7 +136,8 @@ def beside(s, t, y, yd):
     factors_again(s)
     s.status[2] = counted
     if best <= SURE * scale:
-        if went == SINGULAR or apart(s, yd) > PLAINLY * best:
+        seen = 0.0 if s.status[5] > 0 else SEEN * s.tolerance * scale
+        if went == SINGULAR or apart(s, yd) > max(PLAINLY * best, seen):
             if went != SINGULAR and s.near > 0.0:
                 s.status[4] += 1
             take(s, y, yd, went == SINGULAR)
