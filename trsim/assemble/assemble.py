@@ -322,6 +322,7 @@ def build(
         vector=np.zeros(0, np.int64),
         sought=np.zeros(0, np.int64),
         kin=np.zeros(0, np.int64),
+        lever=np.zeros(0),
         least=np.zeros(0),
         shared=np.zeros(0, np.int64),
         **watched(at.switches, size),

@@ -14,6 +14,8 @@ from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 
 NOT_BY_DEFAULT = ("*.rotation",)
+# units of what is about an axis, and of what is along a line at a distance from it
+ALONG = {"N*m": "N", "rad": "m", "rad/s": "m/s", "rad/s^2": "m/s^2"}
 WITH_PEAKS = ("joints", "drives", "forces", "sensors")  # sections whose channels' extremes are told
 
 
@@ -94,7 +96,7 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
         joint_out=np.array(joints, np.int64).reshape(-1, 4),
         column_energy=energy,
         n_out=width,
-        **compared(columns, of_peaks(instances)),
+        **compared(columns, of_peaks(instances), model.size),
     )
     return filled, columns
 
@@ -104,26 +106,35 @@ def of_peaks(instances: Iterable[Instance]) -> set[str]:
     return {instance.name for instance in instances if instance.section in WITH_PEAKS}
 
 
-def compared(columns: list[Column], told: set[str]) -> dict[str, Any]:
+def compared(columns: list[Column], told: set[str], size: float) -> dict[str, Any]:
     """Vectors whose magnitudes have extremes of their own, and which channels are of one kind.
 
     told: elements whose extremes are looked for between samples.  Those of the others, which nobody
-    is told, are of the samples.
+    is told, are of the samples.  size: of the mechanism, m; what is about an axis is of one kind
+    with what is along a line at that distance.
     """
     units: dict[str, int] = {}
     kin: list[int] = []
 
     def number(column: Column) -> int:
         sought = column.name.split(".")[0] in told and not column.for_points
-        return units.setdefault(column.unit, len(units)) if sought else -1
+        return of_kind(column) if sought else -1
+
+    def of_kind(column: Column) -> int:
+        return units.setdefault(ALONG.get(column.unit, column.unit), len(units))
+
+    def lever(column: Column) -> float:
+        return {"N*m": 1.0 / size}.get(column.unit, size) if column.unit in ALONG else 1.0
 
     for column in columns:
         kin += [number(column)] * column.size
     vectors = [c for c in columns if is_vector(c)]
     kin += [number(column) for column in vectors]
     turns = [c for c in columns if is_turn(c)]  # judged in any run: behind those that are told
-    kin += [units.setdefault(column.unit, len(units)) for column in turns]
+    kin += [of_kind(column) for column in turns]
     vectors += turns
+    levers = [lever(column) for column in columns for _ in range(column.size)]
+    levers += [lever(column) for column in vectors]
     of_forces = [column for column in columns if column.unit in ("N", "N*m")]
     shared = [column.start + k for column in of_forces for k in range(column.size)]
     least = [column.least for column in columns for _ in range(column.size)]
@@ -133,6 +144,7 @@ def compared(columns: list[Column], told: set[str]) -> dict[str, Any]:
         "vector": np.array([column.start for column in vectors], np.int64),
         "sought": np.array(sought, np.int64),
         "kin": np.array([kin[k] for k in sought], np.int64),
+        "lever": np.array([levers[k] for k in sought]),
         "least": np.array([least[k] for k in sought]),
         "shared": np.array(shared, np.int64),
     }

@@ -36,6 +36,7 @@ OUTPUTS = (
     "vector",
     "sought",
     "kin",
+    "lever",
     "least",
     "shared",
 )

@@ -98,7 +98,8 @@ class Model(Packed):
     wanted: I1  # (N) first output column of a row, or -1
     vector: I1  # first columns of the vectors whose magnitudes have extremes
     sought: I1  # (n_k) columns, and behind all those such magnitudes, with extremes inside steps
-    kin: I1  # (n_k) those of one unit have one number
+    kin: I1  # (n_k) those of one kind have one number
+    lever: A1  # (n_k) what brings them to one unit
     least: A1  # (n_k) what they are never below
     shared: I1  # columns of forces and moments, which rows may share between them
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column

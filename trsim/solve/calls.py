@@ -3,7 +3,8 @@
 STEP        b.y1 <- one step of size h from r.y, with b.K[0] = y'(t, y); returns the error, in
             units of the tolerance (<= 1 is accepted; 0 where there is no estimate; NO_STEP and more
             where no step was found, b.y1 is then nothing)
-            Row 1 of K is scratch of the march once step and dense output are made
+            Row 1 of K is scratch of the march once the step is made: DENSE of an explicit method
+            does not read it, that of an implicit one is made before
 DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
             is y'(t + h, y1) with y1 as finally accepted, projected
 INTERPOLATE y <- solution at t + theta h
@@ -61,13 +62,13 @@ FIELDS = (
     "rounding",  # what looks at rounding
     "search",  # what finds events
     "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
-    "sample",  # what keeps extremes
+    "sample", "finish",  # what keeps extremes, and what does where samples end
     "passes",  # what notes steps past places where branches of the motion may meet
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
-    BEYOND_AT, TURN_AT, SAMPLE_AT, PASSES_AT,
+    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 

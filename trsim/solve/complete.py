@@ -15,6 +15,7 @@ from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.calls import (
     BEYOND_AT,
     CORNERS_AT,
+    FINISH_AT,
     IMPLICIT_AT,
     INTERPOLATE_AT,
     LAST_AT,
@@ -34,12 +35,13 @@ from trsim.solve.calls import (
     call_step,
 )
 from trsim.solve.dense_output import build, measure_inside, move_end
+from trsim.solve.earlier import keep_step
 from trsim.solve.events import SAME
-from trsim.solve.features import call_meet
+from trsim.solve.features import call_meet, next_instant
 from trsim.solve.land import land
 from trsim.solve.norm import grow
 from trsim.solve.passes import call_passes
-from trsim.solve.peaks import call_sample
+from trsim.solve.peaks import call_finish, call_sample
 from trsim.solve.phases import change_phases, latch
 from trsim.solve.record import (
     BEHIND,
@@ -69,6 +71,7 @@ from trsim.solve.record import (
     STEPS,
     T_END,
     TOLERANCE,
+    WEAK,
     WORK_PROJECTION,
     WORST_PHI,
     WORST_PHI_DOT,
@@ -179,12 +182,15 @@ def complete(s, r, b, setting, method, h, built):
     built = call_sample(
         method[SAMPLE_AT], s, r, b, setting, method, t, h, t1, b.out, projected, built
     )  # fmt: skip
+    if event or corner or last_of_its_kind(s, r, setting, method, t, t1):
+        built = call_finish(method[FINISH_AT], s, r, b, setting, method, t, h, projected, built)
     if method[SECTIONS_AT] > 0:
         call_sections(
             method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event or corner)
         )  # fmt: skip
     if method[PASSES_AT] > 0 and s.near_rows > 0.0:  # there is a loop still
         call_passes(method[PASSES_AT], s, r, b, t1, last)
+    keep_step(r, b, method, h, projected, built)
     accept(s, r, b, t1, projected, last)
     take_sides(s, r)
     if method[IMPLICIT_AT] > 0:
@@ -307,6 +313,16 @@ def exact(s, r, b, setting, method, t, h, theta):
             b.moved[0] = 0.0
         h1 -= late
     return 0.0, 0.0, 0.0
+
+
+@internal
+def last_of_its_kind(s, r, setting, method, t, t1):
+    """Whether what follows on this step has other equations, or nothing follows."""
+    if t1 >= setting[T_END] or r.count[WEAK] > 0:
+        return True
+    if setting[LOCATE] == 0.0 and s.contact.size > 0:  # `latch` changes them in any step
+        return True
+    return method[MEET_AT] > 0 and t1 >= next_instant(s, t, setting[T_END])
 
 
 @internal

@@ -4,8 +4,9 @@ from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
 from trsim.elements.vectors import clear_table, copy_to, internal
 from trsim.solve.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
+from trsim.solve.earlier import this_step
 from trsim.solve.land import evaluate_inside
-from trsim.solve.record import DENSE_BUILT, ENERGY_0, WORK_PROJECTION, T
+from trsim.solve.record import DENSE_BUILT, ENERGY_0
 
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
 NOISE, PLAIN = 1e-12, 1e-2  # 100 times that; a pivot that always serves
@@ -50,26 +51,32 @@ def move_end(b, last, late):
 
 @internal
 def measure_inside(s, r, b, interpolate, at, theta, projected):
-    """All channels at the time `at`, theta of the step, into s.out; the state is in b.y2.
+    """`measure_in` of the step at hand; projected: the work of the projection at its end."""
+    measure_in(s, r, b, interpolate, this_step(r, b, projected), at, theta)
 
-    projected: the work of the projection at the step's end.  Where some rows are redundant, those
-    of the solve may depend on each other at a place where all of them together do not: what is
-    shared between them is chance there.  A force is then that of the polynomial through six places
-    around it, unless its own value is nearer to that than the one through four is.
+
+@internal
+def measure_in(s, r, b, interpolate, step, at, theta):
+    """All channels at the time `at`, theta of a step, into s.out; the state is in b.y2.
+
+    step: as earlier.py hands it on.  Where some rows are redundant, those of the solve may depend
+    on each other at a place where all of them together do not: what is shared between them is
+    chance there.  A force is then that of the polynomial through six places around it, unless its
+    own value is nearer to that than the one through four is.
     """
-    measure_at(s, r, b, interpolate, at, theta, projected)
+    measure_at(s, r, b, interpolate, step, at, theta)
     if s.redundant.shape[0] == 0 or theta == 0.0:
         return
     least = min(PLAIN, (NOISE / s.tolerance) ** (2.0 / 3.0))
     if not smallest_pivot(s) < least:
         return
-    start, apart = r.clock[T], NEAREST
+    start, apart = step[2], NEAREST
     while apart < FURTHEST:
         nearest = 1.0
         for side in (-1, 1):
             beside = theta + side * apart
             time = start + (at - start) * (beside / theta)
-            measure_at(s, r, b, interpolate, time, beside, projected)
+            measure_at(s, r, b, interpolate, step, time, beside)
             nearest = min(nearest, smallest_pivot(s))
         if nearest >= least:
             break
@@ -80,11 +87,11 @@ def measure_inside(s, r, b, interpolate, at, theta, projected):
             continue
         beside = theta + k * apart
         time = start + (at - start) * (beside / theta)
-        measure_at(s, r, b, interpolate, time, beside, projected)
+        measure_at(s, r, b, interpolate, step, time, beside)
         for c in range(s.n_out):
             b.mean[0, c] += OF_FOUR[abs(k)] * s.out[c]
             b.mean[1, c] += OF_SIX[abs(k)] * s.out[c]
-    measure_at(s, r, b, interpolate, at, theta, projected)
+    measure_at(s, r, b, interpolate, step, at, theta)
     for c in s.shared:
         rough, fine = b.mean[0, c], b.mean[1, c]
         if abs(s.out[c] - fine) > abs(fine - rough):
@@ -92,8 +99,9 @@ def measure_inside(s, r, b, interpolate, at, theta, projected):
 
 
 @internal
-def measure_at(s, r, b, interpolate, at, theta, projected):
+def measure_at(s, r, b, interpolate, step, at, theta):
     """The same of the place itself."""
-    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
-    evaluate_inside(s, r, at, b.y2, b.K[1])
-    measure(s, at, b.y2, r.clock[WORK_PROJECTION] + theta * projected, r.clock[ENERGY_0])
+    y, P, _, work, projected = step
+    call_interpolate(interpolate, P, y, theta, b.y2)
+    evaluate_inside(s, r, at, b.y2, b.rough[0])
+    measure(s, at, b.y2, work + theta * projected, r.clock[ENERGY_0])

@@ -26,7 +26,6 @@ from trsim.elements.packed import f8
 from trsim.elements.vectors import copy_to, internal
 from trsim.laws.functions import BY_TIME
 from trsim.solve.land import land
-from trsim.solve.peaks import restart
 from trsim.solve.record import (
     BUFFERS,
     ENERGY_0,
@@ -53,6 +52,7 @@ from trsim.solve.record import (
     WORK_PROJECTION,
     T,
 )
+from trsim.solve.samples import restart
 from trsim.solve.works import LONG
 
 ROW = FIRST_ROW  # of con of a drive: its constraint row, or -1

@@ -15,6 +15,7 @@ from trsim.solve.auto import calm, choose
 from trsim.solve.calls import (
     COMPLETE_AT,
     ESTIMATE_AT,
+    FINISH_AT,
     IMPLICIT_AT,
     NO_STEP,
     ROUNDING_AT,
@@ -36,7 +37,7 @@ from trsim.solve.complete import (
 )
 from trsim.solve.features import next_instant
 from trsim.solve.norm import units, weights
-from trsim.solve.peaks import restart, sample
+from trsim.solve.peaks import call_finish, finish, sample
 from trsim.solve.phases import evaluate_all
 from trsim.solve.record import (
     ACT,
@@ -89,6 +90,7 @@ from trsim.solve.record import (
     T,
 )
 from trsim.solve.rounding import blunted, call_look_closer, look_closer, remember, to_look
+from trsim.solve.samples import restart
 from trsim.solve.turns import longest_turn
 from trsim.solve.watch import take_sides
 
@@ -117,6 +119,7 @@ def method_table(method, **called):
         degree=method.DENSE_DEGREE,
         rounding=look_closer.address(),
         sample=sample.address(),
+        finish=finish.address(),
         **called,
     )
 
@@ -196,6 +199,8 @@ def march(s, r, b, setting, methods, most):
             shorten(r, setting, h)
         if methods.shape[0] > 1:
             choose(s, r, b, h, outcome == WITH_EVENT)
+            if methods[r.count[METHOD], STEP_AT] != method[STEP_AT]:  # another reads its own steps
+                call_finish(method[FINISH_AT], s, r, b, setting, method, t, h, 0.0, 0)
         elif method[STAGES_AT] > 0 and s.contact.size > 0:  # dop853
             calm(s, r, b, h, outcome == WITH_EVENT)
         if r.count[SAME_TIME] > MAX_SAME_TIME:

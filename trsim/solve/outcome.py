@@ -202,12 +202,13 @@ def first_step(scenario: Any, record: Record) -> float:
 
 
 def new_record(
-    model: Scene, begun: Start, left_out: Any, past_rows: int = 0, switches: int = 0
+    model: Scene, begun: Start, left_out: Any, rows: int, past_rows: int = 0, switches: int = 0
 ) -> Record:
     """A record at the start; memory and branches are the scene's own arrays.
 
     left_out: which rows are, see assemble/stages.py.
 
+    rows: stages of a step, or of its dense output: what there are more of.
     past_rows: of the dense output an implicit method draws on; 0 for explicit ones.
     switches: what user events can switch, see assemble/stages.py.
     """
@@ -230,6 +231,8 @@ def new_record(
         peak=np.zeros((rec.N_PEAK, model.n_out + len(model.vector))),
         book=np.zeros((1 + N_STORED, 2)),
         sampled=np.zeros(rec.POINTS),
+        earlier=np.zeros((4, begun.y.size)),
+        stages=np.zeros((rows, begun.y.size)),
         largest=np.zeros(len(model.kin)),
         sample=np.zeros((rec.POINTS, len(model.kin))),
         slope=np.zeros((rec.POINTS, len(model.kin))),

@@ -22,7 +22,6 @@ from trsim.laws.functions import BY_SENSORS, BY_TIME
 from trsim.solve.corners import look
 from trsim.solve.events import NONE, SAME, flip, hertz_step
 from trsim.solve.features import keep
-from trsim.solve.peaks import restart
 from trsim.solve.record import (
     BUFFERS,
     CORNERS,
@@ -55,6 +54,7 @@ from trsim.solve.record import (
     H,
     T,
 )
+from trsim.solve.samples import restart
 from trsim.solve.watch import fire, watch
 
 TINY = 1e-300

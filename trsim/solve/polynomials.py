@@ -1,16 +1,20 @@
 """Polynomials through few values of a channel: where they may be largest.
 
 The rows of `node` are times, values and slopes: nodes, those at both ends of the part of time that
-is looked at first, and Newton's form p(x) = f[t0] + f[t0, t1] (x - t0) + ...  The last term, which
-another node changed, counts as its error, DOUBT times.  What all channels with the same nodes share
+is looked at first, and Newton's form p(x) = f[t0] + f[t0, t1] (x - t0) + ...  Its error is that of
+the terms that it lacks, T_n + T_n+1 + ...: where the last ones it has fall by the factor rho from
+one to the next, T / (1 - rho) of the last (`lacking`).  What all channels with the same nodes share
 is made once: the products (x - t0) ... (x - ti) at PARTS + 1 places between the first two nodes
 (`lattice`), and 1 / (ti - tj) (`inverse`).
 """
 
+from math import sqrt
+
 from trsim.elements.vectors import internal
 from trsim.solve.record import PARTS, POINTS
 
-DOUBT = 1.0  # of the last term of a polynomial: its error
+ENOUGH = 5  # nodes of a polynomial whose last terms tell how fast they fall
+SLOWEST = 0.9  # rho: terms that fall no faster tell nothing
 ROUNDS = 3  # in which the top of a polynomial is looked for
 SURE = 0.2  # of what may be missed: a polynomial that doubts no more is believed
 BEFORE = 10.0  # times that: the same of the term before the last
@@ -43,6 +47,52 @@ def differences(b, n):
 
 
 @internal
+def lacking(last, second, third):
+    """The size of the terms a series lacks, from those of the last three that it has.
+
+    The last may be small by chance: it counts as what the two before it let expect.
+    """
+    if third > 0.0:
+        last = max(last, second * min(1.0, second / third))
+    if not last > 0.0:
+        return 0.0
+    rho = SLOWEST
+    if second > 0.0:
+        rho = min(rho, last / second)
+    if third > 0.0:
+        rho = min(rho, sqrt(last / third))
+    return last / (1.0 - rho)
+
+
+@internal
+def doubt(b, n):
+    """What stands for the last divided difference in the error of a polynomial, into b.doubt[0].
+
+    Places that were looked at lie anyhow: how fast terms fall says nothing there.
+    """
+    slope, times, size = b.node[2], b.node[0], b.node[5]
+    b.doubt[0] = abs(slope[n - 1])
+    if n < ENOUGH or b.found[0] > 0.0:
+        return
+    factors(times, size, n)
+    third, second = abs(slope[n - 3]) * size[n - 3], abs(slope[n - 2]) * size[n - 2]
+    b.doubt[0] = lacking(abs(slope[n - 1]) * size[n - 1], second, third) / size[n - 1]
+
+
+@internal
+def factors(times, size, n):
+    """What the products (x - t0) ... (x - tk-1), k >= 2, do not exceed between the first two nodes.
+
+    The first two factors do not exceed a quarter of the square of their distance, each other one
+    the distance of the further one.
+    """
+    product = 0.25 * (times[0] - times[1]) ** 2
+    for k in range(2, n):
+        size[k] = product
+        product *= max(abs(times[0] - times[k]), abs(times[1] - times[k]))
+
+
+@internal
 def reach(b, n):
     """What a polynomial plainly is not above, and not below, between its first two nodes.
 
@@ -56,7 +106,7 @@ def reach(b, n):
         for k in range(PARTS + 1):
             value[k] += slope[i] * lattice[i, k]
     most, least, bend = -1e300, 1e300, 0.0
-    last = DOUBT * abs(slope[n - 1])
+    last = b.doubt[0]
     for k in range(PARTS + 1):
         doubt = last * abs(lattice[n - 1, k])
         most, least = max(most, value[k] + doubt), min(least, value[k] - doubt)
@@ -83,7 +133,7 @@ def top(b, n, start, end, wanted):
         for k in range(PARTS + 1):
             value[k] += slope[i] * lattice[i, k]
     for k in range(PARTS + 1):
-        value[k] += DOUBT * abs(slope[n - 1] * lattice[n - 1, k])
+        value[k] += b.doubt[0] * abs(lattice[n - 1, k])
     for k in range(PARTS + 1):
         if value[k] > best:
             best, place = value[k], start + k * width
@@ -92,11 +142,11 @@ def top(b, n, start, end, wanted):
         before, last = last, value[k]
     if best + 0.25 * bend < wanted:
         return place, best
-    return higher(b.node, n, start, end, place, best)
+    return higher(b.node, n, start, end, place, best, b.doubt[0])
 
 
 @internal
-def higher(node, n, start, end, place, best):
+def higher(node, n, start, end, place, best, doubt):
     """`top`, from the best of PARTS + 1 places on."""
     low, high, width = start, end, (end - start) / PARTS
     for _ in range(1, ROUNDS):
@@ -104,17 +154,17 @@ def higher(node, n, start, end, place, best):
         width = (high - low) / PARTS
         for k in range(PARTS + 1):
             x = low + k * width
-            value = polynomial(node, n, x, DOUBT)
+            value = polynomial(node, n, x, doubt)
             if value > best:
                 best, place = value, x
     low, high = max(start, place - width), min(end, place + width)
     if low < place < high:
         # the vertex of the parabola through the last three
-        f0, f2 = polynomial(node, n, low, DOUBT), polynomial(node, n, high, DOUBT)
+        f0, f2 = polynomial(node, n, low, doubt), polynomial(node, n, high, doubt)
         left, right = (best - f0) / (place - low), (best - f2) / (high - place)
         if left + right > 0.0:
             x = place + 0.5 * (left * (high - place) - right * (place - low)) / (left + right)
-            value = polynomial(node, n, x, DOUBT)
+            value = polynomial(node, n, x, doubt)
             if value > best:
                 best, place = value, x
     return place, best
@@ -122,24 +172,24 @@ def higher(node, n, start, end, place, best):
 
 @internal
 def polynomial(node, n, x, doubt):
-    """Its value at x, and on top that much of the size of its last term."""
+    """Its value at x, and on top that much times the last product of distances from nodes."""
     times, slope = node[0], node[2]
     value, term = slope[0], 1.0
     for i in range(1, n):
         term *= x - times[i - 1]
         value += slope[i] * term
-    return value + doubt * abs(slope[n - 1] * term)
+    return value + doubt * abs(term)
 
 
 @internal
-def one_way(node, n):
+def one_way(b, n):
     """Whether it rises or falls all the time between its first two nodes, the third one being about
     in their middle: with slopes that plainly have one sign."""
-    times, slope = node[0], node[2]
+    times, slope = b.node[0], b.node[2]
     h = abs(times[0] - times[1])
     bend, product, rate = 0.0, 0.25 * h * h, h  # of (x - t0) (x - t1)
     for k in range(2, n):
-        bend += (1.0 + (DOUBT if k == n - 1 else 0.0)) * rate * abs(slope[k])
+        bend += rate * (abs(slope[k]) + (b.doubt[0] if k == n - 1 else 0.0))
         far = max(abs(times[0] - times[k]), abs(times[1] - times[k]))
         product, rate = product * far, rate * far + product
     return bend < PLAIN * abs(slope[1])
@@ -158,4 +208,4 @@ def settled(node, place, enough):
     than it is sampled the last one passes zero by chance."""
     with_it = polynomial(node, POINTS - 1, place, 0.0)
     without = polynomial(node, POINTS - 2, place, 0.0)
-    return DOUBT * abs(with_it - without) < BEFORE * SURE * enough
+    return abs(with_it - without) < BEFORE * SURE * enough

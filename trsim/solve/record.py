@@ -49,8 +49,12 @@ from trsim.elements.scene import Model
     LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
     CROSSED_T,  # s, when the run first changed its branch                         crossed.py
     GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
+    EARLIER_T,  # s, where the step began that is kept in `earlier`                earlier.py
+    EARLIER_H,  # s, its length
+    EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
+    EARLIER_PROJECTED,
     N_CLOCK,
-) = range(43)
+) = range(47)
 
 # count: integer state of the march
 (
@@ -94,8 +98,10 @@ from trsim.elements.scene import Model
     PASSED,  # ways noted that are still to be examined
     MEETINGS,  # places known where branches meet
     CROSSED,  # how often the run changed its branch
+    UNSEEN,  # 1: between the two newest samples no extremes were looked for yet
+    EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
     N_COUNT,
-) = range(41)
+) = range(43)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -165,7 +171,9 @@ class Record(Packed):
     sample: A2  # (POINTS, n_k) last values of those that are sought inside steps
     sampled: A1  # (POINTS) when those were taken
     slope: A2  # (POINTS, n_k) their divided differences, newest first
-    largest: A1  # (n_k) size of the channels of one unit, see `kin` of the scene
+    earlier: A2  # (4, n_y) of the step before: both its ends, and y' there        earlier.py
+    stages: A2  # (rows, n_y) its stages, or its dense output
+    largest: A1  # (n_k) size of the channels of one kind, see `kin` of the scene
     impact: A1  # (n_contacts) largest penetration so far
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
     by_place: A2  # (n_w, n_v) w' against displacements
@@ -211,6 +219,7 @@ class Buffers(Packed):
     points: A2  # (n, N_POINT) of Poincare sections; empty without any
     K: A2  # stages of the integrator
     P: A2  # dense output
+    P_earlier: A2  # that of the step before, while it is made
     y1: A1
     y2: A1
     weight: A1
@@ -221,10 +230,11 @@ class Buffers(Packed):
     full: A1  # (n_c) all channels and magnitudes
     inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
     found: A1  # (1 + FOUND) how often, and when
-    node: A2  # (6, POINTS) of polynomials: times, values, slopes; see `take` of peaks.py
+    node: A2  # (6, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), -, factors
     along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
+    doubt: A1  # (1) what stands for the last divided difference in its error
     laid: A1  # (1) how many places were found when those were made
     bound: A2  # (3, n_k) of channels between two samples: see `bounds` of peaks.py
     part: A2  # (2, n_y) both ends of a part of a step                            passes.py
@@ -263,6 +273,7 @@ def fresh_buffers(
         points=np.zeros((max(1024, 2 * points + 16) if points else 0, N_POINT)),
         K=np.zeros((stages, n_y)),
         P=np.zeros((dense_rows, n_y)),
+        P_earlier=np.zeros((dense_rows, n_y)),
         y1=np.zeros(n_y),
         y2=np.zeros(n_y),
         weight=np.zeros(n_y),
@@ -277,6 +288,7 @@ def fresh_buffers(
         along=np.zeros(1 + PARTS),
         lattice=np.zeros((POINTS, 1 + PARTS)),
         inverse=np.zeros((POINTS, POINTS)),
+        doubt=np.zeros(1),
         laid=np.zeros(1),
         bound=np.zeros((3, len(model.kin))),
         part=np.zeros((2, n_y)),

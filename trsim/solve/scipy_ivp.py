@@ -42,7 +42,7 @@ from trsim.solve.outcome import (
     settings,
     statistics,
 )
-from trsim.solve.peaks import sample
+from trsim.solve.peaks import finish, sample
 from trsim.solve.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.start import start
 from trsim.solve.works import ROUNDING
@@ -85,7 +85,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     setting = settings(scenario, mechanism, True)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     s, left_out = begun_with(mechanism, begun)
-    r = new_record(s, begun, left_out)
+    r = new_record(s, begun, left_out, NODES.size)
     b = fresh_buffers(
         s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0)),
         points=most_points(mechanism, setting),
@@ -97,6 +97,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         estimate=1,
         degree=NODES.size - 1,
         sample=sample.address(),
+        finish=finish.address(),
         **called_by(mechanism, setting),
     )
     clock0 = time.process_time()

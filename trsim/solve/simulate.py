@@ -145,7 +145,8 @@ def compiled(
     switches = mechanism.stages.switches
     sparse = next((m.SPARSE for m in used if hasattr(m, "SPARSE")), None)
     past_rows = dense_rows if implicit and not sparse else 0
-    r = new_record(work, begun, left_out, past_rows, len(switches.names))
+    rows = max(m.DENSE_ROWS if m.IMPLICIT else max(m.STAGES, m.DENSE_ROWS) for m in used)
+    r = new_record(work, begun, left_out, rows, past_rows, len(switches.names))
     room = most_points(mechanism, setting)
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned, room)
     if sparse:
