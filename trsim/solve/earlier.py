@@ -52,7 +52,12 @@ def keep_step(r, b, method, h, projected, built):
     place of the sample before.
     """
     t = r.clock[T]
-    if r.count[UNSEEN] == 0 or r.count[SAMPLES] < 2 or r.sampled[older(r, 1)] < t:
+    if (
+        r.earlier.shape[0] == 0
+        or r.count[UNSEEN] == 0
+        or r.count[SAMPLES] < 2
+        or r.sampled[older(r, 1)] < t
+    ):
         return
     copy_to(r.earlier[0], r.y)
     copy_to(r.earlier[1], b.y1)

@@ -263,17 +263,16 @@ def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
     if setting[FIXED_STEP] > 0.0:
         return
-    power = 1.0 / method[ESTIMATE_AT]
-    factor = 6.0 if error < 1e-8 else min(6.0, max(0.3, 0.9 * error**-power))
-    if method[IMPLICIT_AT] > 0:
-        # predictive: the error as it changed from the step before              [Gustafsson1994]
-        past = max(r.clock[PAST_ERROR], 1e-2)
-        if r.clock[PAST_ERROR] > 0.0 and not event:
-            factor = min(factor, 0.9 * h / r.clock[OLD_H] * (past / error**2) ** power)
-            factor = max(factor, 0.2)
-        r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
-        if 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:
-            factor = 1.0  # its factors stay good
+    power, error = 1.0 / method[ESTIMATE_AT], max(error, 1e-8)
+    factor = min(6.0, max(0.3, 0.9 * error**-power))
+    # predictive: the error as it changed from the step before                  [Gustafsson1994]
+    past = max(r.clock[PAST_ERROR], 1e-2)
+    if r.clock[PAST_ERROR] > 0.0 and not event:
+        factor = min(factor, 0.9 * h / r.clock[OLD_H] * (past / error**2) ** power)
+        factor = max(factor, 0.2)
+    r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
+    if method[IMPLICIT_AT] > 0 and 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:
+        factor = 1.0  # its factors stay good
     if r.count[AFTER_REJECTION] > 0:
         factor = min(factor, 1.0)
     r.count[AFTER_REJECTION] = 0

@@ -117,7 +117,7 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
         ready = built
     b.found[0], b.laid[0] = 0.0, NOT_LAID
     last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
-    if r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t or ahead == 0 and last_one:
+    if (r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t) or (ahead == 0 and last_one):
         if ready == 0 and not last_one:
             guess(s, r, b, method, h, projected, earlier)
         else:
@@ -126,39 +126,63 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
     bounds(r, b, ahead)
     for c in range(now.size):
         high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
-        bend, turn = b.bound[1, c], b.bound[2, c]
-        if turn < abs(b.bound[0, c]) and b.found[0] == 0.0:
-            continue  # it goes one way all the time
+        beyond = b.bound[1, c]
         above, below = max(now[c], last[c]), min(now[c], last[c])
         for k in range(int(b.found[0])):
             above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
-        bend += above - below if b.found[0] > 0.0 else 0.0
+        beyond += above - below if b.found[0] > 0.0 else 0.0
         enough = share * max(high - low, SMALL * r.largest[s.kin[c]] / s.lever[c])
-        rises = above + bend > high + enough
-        falls = low > s.least[c] and below - bend < low - enough
+        rises = above + beyond > high + enough
+        falls = low > s.least[c] and below - beyond < low - enough
         if not (rises or falls):
             continue
-        found = b.found[0]
-        if found <= POINTS - 2:  # one polynomial through all that was found
-            nodes_of = through(r, b, ahead, c, 1.0)
-            guessed = ready == 0 and found > 0.0
-            if guessed and one_way(b, nodes_of):
+        if b.found[0] == 0.0 or (ready > 0 and b.found[0] <= POINTS - 2):
+            rises, falls = reached(s, r, b, ahead, c, enough, rises, falls)
+            if not (rises or falls):
                 continue
-            up, down = reach(b, nodes_of)
-            margin = -GUESSED * apart(b.node) if guessed else enough
-            rises, falls = rises and up > high + margin, falls and down < low - margin
+        if ready == 0:
+            if b.found[0] == 0.0:
+                guess(s, r, b, method, h, projected, earlier)
+            rises, falls = guessed(s, r, b, ahead, c, rises, falls)
+            if not (rises or falls):
+                continue
+            b.found[0], b.laid[0] = 0.0, NOT_LAID
+            middle = 0.5 * (r.sampled[older(r, ahead)] + r.sampled[older(r, ahead + 1)])
+            ready = look(s, r, b, method, h, middle, projected, 0, earlier)
         if rises:
-            ready = search(s, r, b, enough, method, h, ahead, c, 1.0, projected, ready, earlier)
+            search(s, r, b, enough, method, h, ahead, c, 1.0, projected, earlier)
         if falls:
-            ready = search(s, r, b, enough, method, h, ahead, c, -1.0, projected, ready, earlier)
+            search(s, r, b, enough, method, h, ahead, c, -1.0, projected, earlier)
     if earlier:
         return built
     return ready
 
 
 @internal
-def search(s, r, b, enough, method, h, ahead, c, sign, projected, built, earlier):
-    """Look for an extreme of channel c between two neighbours, by its polynomial.
+def reached(s, r, b, ahead, c, enough, rises, falls):
+    """Whether the polynomial of channel c may rise above its extremes, and fall below them."""
+    up, down = reach(b, through(r, b, ahead, c, 1.0))
+    o = s.sought[c]
+    rises = rises and up > r.peak[PEAK_MAX, o] + enough
+    return rises, falls and down < r.peak[PEAK_MIN, o] - enough
+
+
+@internal
+def guessed(s, r, b, ahead, c, rises, falls):
+    """The same with a guess of the middle: plainly not, or it is to be looked at."""
+    n = through(r, b, ahead, c, 1.0)
+    if one_way(b, n):
+        return False, False
+    up, down = reach(b, n)
+    o, doubtful = s.sought[c], GUESSED * apart(b.node)
+    rises = rises and up > r.peak[PEAK_MAX, o] - doubtful
+    return rises, falls and down < r.peak[PEAK_MIN, o] + doubtful
+
+
+@internal
+def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
+    """Look for an extreme of channel c between two neighbours, by its polynomial; the dense output
+    is there.
 
     sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
     surer than that is taken at its word.
@@ -166,34 +190,18 @@ def search(s, r, b, enough, method, h, ahead, c, sign, projected, built, earlier
     o = s.sought[c]
     for _ in range(TRIES):
         best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]
-        guessed = built == 0 and b.found[0] > 0.0
         n = through(r, b, ahead, c, sign)
-        if guessed and one_way(b, n):
-            break
         low, high = b.node[0, 1], b.node[0, 0]
-        wanted = best - GUESSED * apart(b.node) if guessed else best + enough
-        place, promised = top(b, n, low, high, wanted)
-        if not promised > wanted:
+        place, promised = top(b, n, low, high, best + enough)
+        if not promised > best + enough or known_place(b, low, high, place):
             break
-        if not guessed:
-            if known_place(b, low, high, place):
-                break
-            said = polynomial(b.node, n, place, 0.0)
-            if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
-                extreme(r.peak, o, place, sign * said)
-                break
-        if built == 0 and not guessed:
-            guess(s, r, b, method, h, projected, earlier)
-            continue
-        if guessed:
-            b.found[0], b.laid[0] = 0.0, NOT_LAID
-            middle = 0.5 * (low + high)
-            built = look(s, r, b, method, h, middle, projected, built, earlier)
-            continue
+        said = polynomial(b.node, n, place, 0.0)
+        if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
+            extreme(r.peak, o, place, sign * said)
+            break
         if int(b.found[0]) + 1 >= b.found.size:
             break
-        built = look(s, r, b, method, h, place, projected, built, earlier)
-    return built
+        look(s, r, b, method, h, place, projected, 1, earlier)
 
 
 @internal

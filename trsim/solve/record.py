@@ -236,7 +236,7 @@ class Buffers(Packed):
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
     doubt: A1  # (1) what stands for the last divided difference in its error
     laid: A1  # (1) how many places were found when those were made
-    bound: A2  # (3, n_k) of channels between two samples: see `bounds` of peaks.py
+    bound: A2  # (2, n_k) of channels between two samples: see `bounds` of samples.py
     part: A2  # (2, n_y) both ends of a part of a step                            passes.py
     mean: A2  # (2, n_out) channels where rows of the solve depend on each other
     moved: A1  # (1) 1: the end of the step was moved on along its tangent
@@ -290,7 +290,7 @@ def fresh_buffers(
         inverse=np.zeros((POINTS, POINTS)),
         doubt=np.zeros(1),
         laid=np.zeros(1),
-        bound=np.zeros((3, len(model.kin))),
+        bound=np.zeros((2, len(model.kin))),
         part=np.zeros((2, n_y)),
         mean=np.zeros((2, model.n_out)),
         moved=np.zeros(1),

@@ -19,7 +19,7 @@ Samples on two sides of an event have nothing to do with each other: `restart`.
 from math import sqrt
 
 from trsim.elements.vectors import internal
-from trsim.solve.polynomials import ENOUGH, differences, doubt, factors, lacking, lay
+from trsim.solve.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, lay
 from trsim.solve.record import (
     NEWEST,
     PEAK_MAX,
@@ -34,6 +34,7 @@ from trsim.solve.record import (
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
 NOT_LAID = -1.0
+LEAST = 1e-300  # not to divide zero by zero
 # times the error of a polynomial next to a sample where its channel turns back: on which side of it
 # must be plain
 TURNED = 4.0
@@ -163,39 +164,39 @@ def other(r, ahead, k):
 
 @internal
 def bounds(r, b, ahead):
-    """What every channel bends by between two neighbours, and its slope changes by, at most, into
-    b.bound[1] and [2]; the slopes of their chords into b.bound[0]."""
+    """How far every channel goes beyond both its values between two neighbours, at most, into
+    b.bound[1]; the slopes of their chords into b.bound[0].
+
+    All terms but the chord have the factor (x - a) (x - b), so together they are at most
+    4 B u (1 - u) at the part u between the two, B the sum of their bounds.  With the chord, D from
+    end to end, that is beyond the higher end by (4 B - D)^2 / (16 B), and nowhere if 4 B < D.
+    """
     n, times, size = nodes(r, b, ahead), b.node[0], b.node[5]
-    chord, bend, turn, d = b.bound[0], b.bound[1], b.bound[2], r.slope
+    chord, beyond, d = b.bound[0], b.bound[1], r.slope
     end, start = r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
     h = times[0] - times[1]
-    for c in range(bend.size):
+    for c in range(beyond.size):
         chord[c] = (end[c] - start[c]) / h
-        bend[c] = turn[c] = 0.0
+        beyond[c] = 0.0
     if n == 2:
-        for c in range(bend.size):
-            bend[c], turn[c] = abs(end[c] - start[c]), 1e300
+        for c in range(beyond.size):
+            beyond[c] = abs(end[c] - start[c])
         return
     factors(times, size, n)
-    last, steep, rate = size[n - 1], 0.0, h
     for k in range(2, n):
         row, by = d[k], size[k]
-        for c in range(bend.size):
-            bend[c] += abs(row[c]) * by
-            turn[c] += abs(row[c]) * rate
-        steep = rate
-        rate = rate * max(abs(times[0] - times[k]), abs(times[1] - times[k])) + by
-    if n < ENOUGH:
-        for c in range(bend.size):
-            bend[c] += abs(d[n - 1, c]) * last
-            turn[c] += abs(d[n - 1, c]) * steep
-        return
-    steep /= last
-    second, third = size[n - 2], size[n - 3]
-    for c in range(bend.size):
-        more = lacking(abs(d[n - 1, c]) * last, abs(d[n - 2, c]) * second, abs(d[n - 3, c]) * third)
-        bend[c] += more
-        turn[c] += more * steep
+        for c in range(beyond.size):
+            beyond[c] += abs(row[c]) * by
+    last, size_of_last, size_of_second = d[n - 1], size[n - 1], 0.0
+    second = d[n - 2]
+    if n >= ENOUGH:  # no more than `lacking` may say
+        size_of_last /= 1.0 - SLOWEST
+        size_of_second = size[n - 2] / (1.0 - SLOWEST)
+    for c in range(beyond.size):
+        more = max(abs(last[c]) * size_of_last, abs(second[c]) * size_of_second)
+        bend = 4.0 * (beyond[c] + more)
+        rest = max(bend - abs(end[c] - start[c]), 0.0)
+        beyond[c] = rest * rest / max(4.0 * bend, LEAST)
 
 
 @internal
