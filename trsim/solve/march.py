@@ -8,7 +8,7 @@ from math import isfinite
 
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
-from trsim.elements.contract import SCENE, compiled
+from trsim.elements.contract import CONTACT, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
 from trsim.solve.auto import calm, choose
@@ -61,6 +61,7 @@ from trsim.solve.record import (
     JACOBIAN,
     LEAPT,
     LOAD,
+    LOCATE,
     LOST,
     METHOD,
     NEXT_ROW,
@@ -95,6 +96,9 @@ from trsim.solve.turns import longest_turn
 from trsim.solve.watch import take_sides
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
+# times the step before: the next one, where that met hardly any error, and none at all
+LONGER, NOTHING, MUCH_LONGER, LEAST = 6.0, 1e-8, 40.0, 1e-16
+JUST_BEHIND, SHORTEST = 1.2, 0.01  # times the way to a separation; of the step as controlled
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
@@ -253,9 +257,24 @@ def next_step(s, r, b, setting):
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
     if s.wound.size + s.section.shape[0] + s.looped.size > 0:
         h = min(h, longest_turn(s, r))
+    if s.contact.size > 0 and setting[LOCATE] > 0.0:
+        h = min(h, until_apart(s, r, h))
     if h >= left * (1.0 - 1e-12):
         return left
     return 0.5 * left if 2.0 * h > left else h
+
+
+@internal
+def until_apart(s, r, h):
+    """A step to just behind the first separation of a contact that opens, as its rate promises.
+
+    A longer one would be made again and again: no error estimate gets past the end of a contact.
+    """
+    for c in range(s.contact.size):
+        depth, rate = r.gap[c, 0], r.gap[c, 1]
+        if rate < 0.0 < depth and r.mem[s.contact[c], PHASE] == CONTACT:
+            h = min(h, max(-JUST_BEHIND * depth / rate, SHORTEST * h))
+    return h
 
 
 @internal
@@ -263,8 +282,11 @@ def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
     if setting[FIXED_STEP] > 0.0:
         return
-    power, error = 1.0 / method[ESTIMATE_AT], max(error, 1e-8)
-    factor = min(6.0, max(0.3, 0.9 * error**-power))
+    power, most = 1.0 / method[ESTIMATE_AT], LONGER
+    if error < NOTHING and method[IMPLICIT_AT] == 0:
+        most = MUCH_LONGER
+    error = max(error, LEAST)
+    factor = min(most, max(0.3, 0.9 * error**-power))
     # predictive: the error as it changed from the step before                  [Gustafsson1994]
     past = max(r.clock[PAST_ERROR], 1e-2)
     if r.clock[PAST_ERROR] > 0.0 and not event:
