@@ -77,10 +77,12 @@ def look_at_parts(s, r, b, t1, last, way):
             inside(r.y, r.yd, b.y1, b.K[last], h, (k - 1) / n, y0)
             inside(r.y, r.yd, b.y1, b.K[last], h, k / n, y1)
             start, end = t + (k - 1) / n * h, t + k / n * h
-            if known(s, r, y0, y1) == 0 and which_turned(s, start, end, y0, y1, way / n) >= 0:
-                close_positions(s, start, y0, CLOSED * s.size, NEWTON)
-                close_positions(s, end, y1, CLOSED * s.size, NEWTON)
-                note_turned(s, r, b, t1, last, (k - 1) / n, k / n, y0, y1, way / n)
+            if known(s, r, y0, y1) == 0:
+                ways = (way / n, before)
+                if which_turned(s, start, end, y0, y1, roots, ways) >= 0:
+                    close_positions(s, start, y0, CLOSED * s.size, NEWTON)
+                    close_positions(s, end, y1, CLOSED * s.size, NEWTON)
+                    note_turned(s, r, b, t1, last, (k - 1) / n, k / n, y0, y1, roots, ways)
         copy_to(roots[0], roots[1])
         copy_to(roots[1], roots[2])
         before = way / n
@@ -92,40 +94,49 @@ def may_turn(s, roots, way, last):
 
     last: the length of the first one; 0: there is none.
     """
-    for k in range(s.first.size):
-        before, now = roots[1, k], roots[2, k]
-        if before + now < STEEPEST * way and s.row[s.column_start[k]] < s.m:
-            if not last > 0.0:
-                return True
-            along = before - (roots[0, k] - before) * way / last
-            bent = min(BENT * way * (way + last), SHARE * (before + now))
-            if abs(now + along) <= PLAINER * abs(now - along) + bent:
-                return True
+    for k in range(s.first.size):  # noqa: SIM110 - a generator does not compile
+        if row_may_turn(s, roots, way, last, k):
+            return True
     return False
 
 
 @internal
-def which_turned(s, t0, t1, y0, y1, way):
-    """Which row turned round between two states, in the order of elimination; -1 if none did."""
+def row_may_turn(s, roots, way, last, k):
+    """Whether that one may have, which is eliminated k-th."""
+    before, now = roots[1, k], roots[2, k]
+    if before + now >= STEEPEST * way or s.row[s.column_start[k]] >= s.m:
+        return False
+    if not last > 0.0:
+        return True
+    along = before - (roots[0, k] - before) * way / last
+    bent = min(BENT * way * (way + last), SHARE * (before + now))
+    return abs(now + along) <= PLAINER * abs(now - along) + bent
+
+
+@internal
+def which_turned(s, t0, t1, y0, y1, roots, ways):
+    """Which row turned round between two states, in the order of elimination; -1 if none did.
+
+    Of those that may have on the second of two ways, which ends there: `row_may_turn`.
+    """
     look_at(s, t0, y0)
     keep_rows(s, 0)
     look_at(s, t1, y1)
     keep_rows(s, 1)
     for k in range(s.first.size):
-        near = s.kept_roots[0, k] + s.kept_roots[1, k] < STEEPEST * way
-        if near and s.row[s.column_start[k]] < s.m and turned_round(s, k):
+        if row_may_turn(s, roots, ways[0], ways[1], k) and turned_round(s, k):
             return k
     return -1
 
 
 @internal
-def note_turned(s, r, b, t1, last, start, end, y0, y1, way):
+def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
     """Note a part of a step in which a row turned round, by the states at its ends.
 
     Where that is because branches meet, the place is kept instead.
     """
     t, h = r.clock[T], t1 - r.clock[T]
-    k = which_turned(s, t + start * h, t + end * h, y0, y1, way)
+    k = which_turned(s, t + start * h, t + end * h, y0, y1, roots, ways)
     if k < 0:
         return
     if s.redundant.shape[0] == 0 and meet(s, r, b, t1, last, start, end, k):
