@@ -188,11 +188,13 @@ output: {{every: 2e-3, channels: ['*']}}
 def test_accelerations_of_a_vibration_beside_a_faster_motion(method, tolerance):
     """Its speed is a tenth of the wheel's, at the rim, and its acceleration the largest there is:
     what is allowed of speeds was ten times as much of that, and added up from turn to turn."""
-    rate, turns, largest = 60.0, 8, 13.0
-    bent = largest / rate**2
-    text = BESIDE.format(bent=bent, stiffness=rate**2, end=2 * np.pi * turns / rate,
-        method=method, tolerance=tolerance)  # fmt: skip
-    r = run(text)
-    off = np.abs(r["bob.acceleration"][:, 0] + largest * np.cos(rate * r.t)).max() / largest
-    print(f"{method} at {tolerance:g}: {off / tolerance:.3g} tolerances")
-    assert off < 100.0 * tolerance
+    turns, largest, off = 8, 13.0, []
+    for rate in np.linspace(45.0, 75.0, 13):  # of any one steps may happen to fit well or badly
+        bent = largest / rate**2
+        text = BESIDE.format(bent=bent, stiffness=rate**2, end=2 * np.pi * turns / rate,
+            method=method, tolerance=tolerance)  # fmt: skip
+        r = run(text)
+        off.append(np.abs(r["bob.acceleration"][:, 0] + largest * np.cos(rate * r.t)).max())
+    mean = np.exp(np.mean(np.log(off))) / largest
+    print(f"{method} at {tolerance:g}: {mean / tolerance:.3g} tolerances")
+    assert mean < 100.0 * tolerance

@@ -21,7 +21,7 @@ from ..linkages import REVERSER
 from ..runs import run
 
 SETS = ["solver.method=radau", "solver.tolerance=1e-3", "output.every=1", "output.channels=[]"]
-LATER = 600  # steps: pins are loaded and slip
+LATER = 650  # steps: pins are loaded and slip
 AT = 1e-6  # m/s: so near to a corner, whose speeds are 1e-4 and 1e-3
 SHORT = 1e-9  # s: a step that Newton's method cannot fail
 

@@ -40,6 +40,7 @@ from trsim.solve.events import SAME
 from trsim.solve.features import call_meet, next_instant
 from trsim.solve.land import land
 from trsim.solve.norm import grow
+from trsim.solve.output_rows import at_end, due, rows_until
 from trsim.solve.passes import call_passes
 from trsim.solve.peaks import call_finish, call_sample
 from trsim.solve.phases import change_phases, latch
@@ -61,7 +62,6 @@ from trsim.solve.record import (
     NEXT_ROW,
     OFF,
     OFF_RATE,
-    OPENED,
     PAST_H,
     RECORD,
     ROWS,
@@ -323,46 +323,6 @@ def last_of_its_kind(s, r, setting, method, t, t1):
     if setting[LOCATE] == 0.0 and s.contact.size > 0:  # `latch` changes them in any step
         return True
     return method[MEET_AT] > 0 and t1 >= next_instant(s, t, setting[T_END])
-
-
-@internal
-def due(r, setting, t1):
-    """Whether an output time lies at or before t1."""
-    return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
-
-
-@internal
-def at_end(t_o, t1):
-    """Whether an output time is the end of the step, as far as rounding can tell."""
-    return t_o >= t1 * (1.0 - 2e-15)
-
-
-@internal
-def rows_until(s, r, b, setting, method, t, h, t1, projected):
-    """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
-
-    Returns False, and writes none of them, where a value is not finite.
-    """
-    rows, next_row = r.count[ROWS], r.count[NEXT_ROW]
-    while r.count[ROWS] < b.rows.shape[0]:
-        t_o = setting[EVERY] * r.count[NEXT_ROW]
-        if t_o > t1 * (1.0 + 1e-15):
-            break
-        row = b.rows[r.count[ROWS]]
-        row[0] = t_o
-        if at_end(t_o, t1):
-            copy_to(row[1:], b.out)
-        else:
-            measure_inside(s, r, b, method[INTERPOLATE_AT], t_o, (t_o - t) / h, projected)
-            copy_to(row[1:], s.out)
-            if method[LOOK_AT] > 0:
-                call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2, 0)
-        if not all_finite(row):
-            r.count[ROWS], r.count[NEXT_ROW], r.count[OPENED] = rows, next_row, 0
-            return False
-        r.count[ROWS] += 1
-        r.count[NEXT_ROW] += 1
-    return True
 
 
 @internal

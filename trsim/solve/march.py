@@ -8,7 +8,7 @@ from math import isfinite
 
 from trsim.assemble.outputs import measure
 from trsim.elements import signatures as types
-from trsim.elements.contract import CONTACT, PHASE, SCENE, compiled
+from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
 from trsim.solve.auto import calm, choose
@@ -61,7 +61,6 @@ from trsim.solve.record import (
     JACOBIAN,
     LEAPT,
     LOAD,
-    LOCATE,
     LOST,
     METHOD,
     NEXT_ROW,
@@ -90,15 +89,15 @@ from trsim.solve.record import (
     H,
     T,
 )
-from trsim.solve.rounding import blunted, call_look_closer, look_closer, remember, to_look
+from trsim.solve.rounding import blunted, call_look_closer, look_closer, overdue, remember, to_look
 from trsim.solve.samples import restart
 from trsim.solve.turns import longest_turn
 from trsim.solve.watch import take_sides
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
-# times the step before: the next one, where that met hardly any error, and none at all
-LONGER, NOTHING, MUCH_LONGER, LEAST = 6.0, 1e-8, 40.0, 1e-16
-JUST_BEHIND, SHORTEST = 1.2, 0.01  # times the way to a separation; of the step as controlled
+LONGER = 6.0  # times the step before: the next one at most
+AIM = 0.9  # times the step that would just meet the error allowed
+STRETCH = 1.05  # times the step as controlled: what may be added to end where it is to end
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
@@ -171,6 +170,9 @@ def march(s, r, b, setting, methods, most):
                 return NOT_FINITE
             shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
             r.clock[H] = h * (shorter if isfinite(error) else 0.1)
+            continue
+        if overdue(r, h):
+            call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             continue
         outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
         if outcome == WORTHLESS:
@@ -252,29 +254,15 @@ def next_step(s, r, b, setting):
     corner of a function.
     """
     left = next_instant(s, r.clock[T], setting[T_END]) - r.clock[T]
-    h = min(r.clock[H], setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
+    most = min(setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
     if setting[FIXED_STEP] > 0.0:
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
     if s.wound.size + s.section.shape[0] + s.looped.size > 0:
-        h = min(h, longest_turn(s, r))
-    if s.contact.size > 0 and setting[LOCATE] > 0.0:
-        h = min(h, until_apart(s, r, h))
-    if h >= left * (1.0 - 1e-12):
+        most = min(most, longest_turn(s, r))
+    h = min(r.clock[H], most)
+    if min(STRETCH * h, most) >= left * (1.0 - 1e-12):
         return left
     return 0.5 * left if 2.0 * h > left else h
-
-
-@internal
-def until_apart(s, r, h):
-    """A step to just behind the first separation of a contact that opens, as its rate promises.
-
-    A longer one would be made again and again: no error estimate gets past the end of a contact.
-    """
-    for c in range(s.contact.size):
-        depth, rate = r.gap[c, 0], r.gap[c, 1]
-        if rate < 0.0 < depth and r.mem[s.contact[c], PHASE] == CONTACT:
-            h = min(h, max(-JUST_BEHIND * depth / rate, SHORTEST * h))
-    return h
 
 
 @internal
@@ -282,15 +270,12 @@ def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
     if setting[FIXED_STEP] > 0.0:
         return
-    power, most = 1.0 / method[ESTIMATE_AT], LONGER
-    if error < NOTHING and method[IMPLICIT_AT] == 0:
-        most = MUCH_LONGER
-    error = max(error, LEAST)
-    factor = min(most, max(0.3, 0.9 * error**-power))
+    power, error = 1.0 / method[ESTIMATE_AT], max(error, 1e-8)
+    factor = min(LONGER, max(0.3, AIM * error**-power))
     # predictive: the error as it changed from the step before                  [Gustafsson1994]
     past = max(r.clock[PAST_ERROR], 1e-2)
     if r.clock[PAST_ERROR] > 0.0 and not event:
-        factor = min(factor, 0.9 * h / r.clock[OLD_H] * (past / error**2) ** power)
+        factor = min(factor, AIM * h / r.clock[OLD_H] * (past / error**2) ** power)
         factor = max(factor, 0.2)
     r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
     if method[IMPLICIT_AT] > 0 and 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:

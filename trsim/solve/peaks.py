@@ -61,7 +61,7 @@ from trsim.solve.samples import (
     through,
 )
 
-SMALL = 0.1  # of what may be missed of the largest channel of its kind: less is no extreme
+SMALL = 0.01  # of what may be missed of the largest channel of its kind: less is no extreme
 YOUNG = 2  # samples since an event: with no more the middle between them is looked at in any case
 TINY = 0.02  # of the mean step: in a shorter one nothing turns
 GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be

@@ -19,8 +19,9 @@ Where rows nearly depend on each other, d from where they do, rounding is felt 1
 seen there is forgotten as soon as they are independent again, or longer steps behind would be
 judged by it.
 
-Steps that do not fail cost nothing: of those that do one is looked at in APART steps, where many
-fail, and where steps stay short: after a touch they grow again.
+Of steps that fail one is looked at in APART steps, where many fail, and where steps stay short:
+after a touch they grow again.  Of those that do not one is looked at in OVERDUE of one length: a
+controller that sees errors come may keep steps short enough for none to fail.
 """
 
 from trsim.assemble.equations import evaluate
@@ -53,6 +54,7 @@ from trsim.solve.record import (
 
 EPS = 2.2e-16
 APART = 32  # steps between two looks
+OVERDUE = 400  # the same where none need fail
 MARGIN = 4.0  # between the difference of two steps and what others may be
 FADES = 0.5  # of what was seen, every APART steps
 STUCK = 5.0  # times a step that fails: none before it was longer, where rounding is to blame
@@ -104,6 +106,16 @@ def to_look(r, h):
     steps, failed = r.count[STEPS] - r.count[LOOKED], r.count[REJECTED] - r.count[FAILED]
     second = r.count[AFTER_REJECTION] == 1
     if steps < APART or (MANY if second else MOST) * failed < steps:
+        return False
+    stuck = r.clock[LONGEST] <= STUCK * h
+    again(r)
+    return stuck
+
+
+@internal
+def overdue(r, h):
+    """Whether a trial that did not fail is to be looked at, and made again."""
+    if r.count[STEPS] - r.count[LOOKED] < OVERDUE or r.count[AFTER_REJECTION] > 0:
         return False
     stuck = r.clock[LONGEST] <= STUCK * h
     again(r)
