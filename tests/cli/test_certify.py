@@ -75,7 +75,8 @@ def test_a_chaotic_motion_has_a_horizon(scenario, answer, trsim):
     assert told["agree"] > 0.9 * (told["agree"] + told["differ"]) > 50
     [contact] = told["contacts"]
     assert contact["before"] == contact["twin_before"] > 10
-    assert contact["impacts"] != contact["twin"]
+    assert contact["before"] < min(contact["impacts"], contact["twin"])
+    assert told["windows"][-1]["share"] > 0.5
     _, document = answer("show", "runs/crank.h5")
     shown = document["certificate"]
     assert {key: shown[key] for key in told} == told

@@ -311,7 +311,10 @@ output: {{every: {every}}}
 # many channels turn in few long steps; one is met where another was looked for
 DRAWN = [("chain_planar", 0), ("chain_planar", 2), ("loop", 0), ("loop", 9), ("loop", 13),
          ("chain_spatial", 0), ("starts", 11), ("events", 0), ("clearance", 2),
-         ("stops", 4)]  # fmt: skip
+         ("stops", 4),
+         # met by polynomials through samples before and behind them alone
+         ("chain_planar", 10), ("spinning", 24), ("loop", 14), ("spinning", 46),
+         ("chain_spatial", 39)]  # fmt: skip
 
 
 @pytest.mark.parametrize(("family", "seed"), DRAWN)
@@ -326,15 +329,17 @@ def test_as_of_forty_times_as_many_rows(family, seed):
     few, many = found
     assert few.statistics["steps"] == many.statistics["steps"]
     allowed, kin = 10 * scenario.solver.tolerance, np.full(len(few.peaks), -1)
+    lever = np.ones(len(few.peaks))
     kin[mechanism.model.sought] = mechanism.model.kin
+    lever[mechanism.model.sought] = mechanism.model.lever
     low, high = many.peaks[:, 2], many.peaks[:, 0]
-    sizes = np.maximum(abs(high), abs(low))
+    sizes = np.maximum(abs(high), abs(low)) * lever
     for group in set(kin[kin >= 0].tolist()):
         largest = sizes[kin == group].max()
         if largest < 1e-9 * sizes.max():
             continue  # moments where there are none
         for c in np.flatnonzero(kin == group).tolist():
-            scale = max(high[c] - low[c], 1e-3 * largest)
+            scale = max(high[c] - low[c], 1e-3 * largest / lever[c])
             assert few.peaks[c, 0] >= high[c] - allowed * scale, c
             if c < mechanism.model.n_out:
                 assert few.peaks[c, 2] <= low[c] + allowed * scale, c
