@@ -56,6 +56,7 @@ from trsim.solve.record import (
     FASTEST,
     FIRED,
     FIXED_STEP,
+    FREED,
     FULL,
     H_MAX,
     JACOBIAN,
@@ -284,8 +285,10 @@ def control(r, setting, method, h, error, event):
         factor = min(factor, 1.0)
     r.count[AFTER_REJECTION] = 0
     if event:
-        # change_phases may have set a shorter first step after a touch
-        r.clock[H] = min(r.clock[H], h * factor)
+        # change_phases may have set a shorter first step after a touch, or that of free motion
+        if r.count[FREED] == 0:
+            r.clock[H] = min(r.clock[H], h * factor)
+        r.count[FREED] = 0
     elif h >= r.clock[H] or factor < 1.0:
         r.clock[H] = h * factor
     else:

@@ -131,6 +131,8 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
         for k in range(int(b.found[0])):
             above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
         beyond += above - below if b.found[0] > 0.0 else 0.0
+        if above + beyond <= high and below - beyond >= low:
+            continue
         enough = share * max(high - low, SMALL * r.largest[s.kin[c]] / s.lever[c])
         rises = above + beyond > high + enough
         falls = low > s.least[c] and below - beyond < low - enough

@@ -36,6 +36,8 @@ from trsim.solve.record import (
     EVENT_WORK,
     EVENTS,
     FACTORED_H,
+    FREE_H,
+    FREED,
     HISTORY,
     JACOBIAN,
     LAST_EVENT,
@@ -81,7 +83,7 @@ def change_phases(s, r, b, setting, t1):
             r.stale[s.con[e, I]] = r.stale[s.con[e, J]] = 1
             r.count[CORNERS] += 1
     touched = fire(s, r, b, first) > 0
-    h = 1e300
+    h, were_closed = 1e300, closed(s, r)
     for c in range(s.contact.size):
         if b.root[c] > first + SAME:
             continue
@@ -111,6 +113,9 @@ def change_phases(s, r, b, setting, t1):
                                   speed, setting[TOLERANCE]))  # fmt: skip
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
+    if were_closed == 0 and closed(s, r) > 0:
+        r.clock[FREE_H] = r.clock[H]
+    r.count[FREED] = int(were_closed > 0 and closed(s, r) == 0)
     if touched:
         r.clock[LAST_EVENT] = t1
         r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
@@ -125,7 +130,18 @@ def change_phases(s, r, b, setting, t1):
     restart(s, r, b, t1)
     if h < 1e300:
         r.clock[H] = min(r.clock[H], h)
+    if r.count[FREED] > 0:  # steps are again as they were before all this
+        r.clock[H] = max(r.clock[H], r.clock[FREE_H])
     return touched
+
+
+@internal
+def closed(s, r):
+    """How many contacts are closed."""
+    many = 0
+    for c in range(s.contact.size):
+        many += int(r.mem[s.contact[c], PHASE] == CONTACT)
+    return many
 
 
 @internal

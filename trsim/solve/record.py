@@ -53,8 +53,9 @@ from trsim.elements.scene import Model
     EARLIER_H,  # s, its length
     EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
     EARLIER_PROJECTED,
+    FREE_H,  # s, the step to try next when a contact last closed while all were open
     N_CLOCK,
-) = range(47)
+) = range(48)
 
 # count: integer state of the march
 (
@@ -99,9 +100,10 @@ from trsim.elements.scene import Model
     MEETINGS,  # places known where branches meet
     CROSSED,  # how often the run changed its branch
     UNSEEN,  # 1: between the two newest samples no extremes were looked for yet
+    FREED,  # 1: the step ended where the last closed contact opened
     EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
     N_COUNT,
-) = range(43)
+) = range(44)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
