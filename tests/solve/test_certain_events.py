@@ -147,6 +147,21 @@ solver: {end: 0.1}
     assert times(r, ONSET) == pytest.approx(first[first < 0.1], abs=1e-7)
 
 
+@pytest.mark.parametrize("first", [1e-4, 3e-3, 7e-3, 0.02])
+def test_a_stop_that_is_left_in_a_step_over_several_swings(first):
+    """It begins on its upper limit and moves away from it: that is no touch."""
+    text = f"""
+bodies: {{slider: {{mass: 1, inertia: 1, velocity: [-10, 0]}}}}
+joints: {{rail: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}}}
+forces: {{ends: {{type: limit_stop, joint: rail, lower: -0.02, upper: 0, stiffness: 1e9}}}}
+solver: {{end: 0.03, first_step: {first}}}
+"""
+    r = run(text)
+    stay, fly = pi / np.sqrt(1e9), 0.02 / 10
+    touches = fly + (stay + fly) * np.arange(100)
+    assert times(r, ONSET) == pytest.approx(touches[touches < 0.03], abs=1e-7)
+
+
 @pytest.mark.parametrize("axis", AXES.values(), ids=AXES)
 @pytest.mark.parametrize("rate", [10, 100])
 def test_every_point_of_a_section(axis, rate):

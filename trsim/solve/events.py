@@ -165,8 +165,9 @@ def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolat
         if rate > 0.0 or trial == 0:
             reach, M = end, inf
             for _ in range(HALVINGS):
-                _, M = spread(s, r, b, c, sign, at, reach, h)
-                if inf > M:
+                L, M = spread(s, r, b, c, sign, at, reach, h)
+                # not as far as to its other branch: bounds hold on one
+                if inf > M and not f0 + L * (reach - at) * h > s.kink[c]:
                     break
                 reach = at + 0.5 * (reach - at)
             # f >= f_0 + r_0 tau - M tau^2 / 2 is largest there; what is not known is looked at soon

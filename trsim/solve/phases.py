@@ -37,6 +37,7 @@ from trsim.solve.record import (
     EVENTS,
     FACTORED_H,
     FREE_H,
+    FREE_SINCE,
     FREED,
     HISTORY,
     JACOBIAN,
@@ -60,6 +61,7 @@ from trsim.solve.samples import restart
 from trsim.solve.watch import fire, watch
 
 TINY = 1e-300
+AS_LONG = 4.0  # times the last free motion: the first step of the next one at most
 
 
 @internal
@@ -114,8 +116,10 @@ def change_phases(s, r, b, setting, t1):
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
     if were_closed == 0 and closed(s, r) > 0:
-        r.clock[FREE_H] = r.clock[H]
+        r.clock[FREE_H] = min(r.clock[H], AS_LONG * (t1 - r.clock[FREE_SINCE]))
     r.count[FREED] = int(were_closed > 0 and closed(s, r) == 0)
+    if r.count[FREED] > 0:
+        r.clock[FREE_SINCE] = t1
     if touched:
         r.clock[LAST_EVENT] = t1
         r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN

@@ -53,9 +53,10 @@ from trsim.elements.scene import Model
     EARLIER_H,  # s, its length
     EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
     EARLIER_PROJECTED,
-    FREE_H,  # s, the step to try next when a contact last closed while all were open
+    FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
+    FREE_SINCE,  # s, when they last opened
     N_CLOCK,
-) = range(48)
+) = range(49)
 
 # count: integer state of the march
 (
