@@ -147,6 +147,20 @@ solver: {end: 0.1}
     assert times(r, ONSET) == pytest.approx(first[first < 0.1], abs=1e-7)
 
 
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
+def test_a_soft_stop_with_a_narrow_gap(gap, method):
+    """It is left on one side and met on the other in much less than a step."""
+    text = f"""
+bodies: {{slider: {{mass: 1, inertia: 1, velocity: [1, 0]}}}}
+joints: {{rail: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}}}
+forces: {{ends: {{type: limit_stop, joint: rail, lower: -{gap}, upper: {gap}, stiffness: 1}}}}
+solver: {{end: 20, method: {method}}}
+"""
+    touches = gap + (pi + 2 * gap) * np.arange(10)
+    assert times(run(text), ONSET) == pytest.approx(touches[touches < 20], abs=1e-7)
+
+
 @pytest.mark.parametrize("first", [1e-4, 3e-3, 7e-3, 0.02])
 def test_a_stop_that_is_left_in_a_step_over_several_swings(first):
     """It begins on its upper limit and moves away from it: that is no touch."""

@@ -51,7 +51,7 @@ def stays(f0, r0, f1, r1, L, M, length, kink):
     bend = max(bend, 2.0 * abs(f1 - f0 - r1 * length) / length**2)
     if L < 0.0:
         M = GUESS * bend
-    elif f0 + f1 + L * length > 2.0 * kink:
+    elif f0 + f1 + L * length > 2.0 * kink or through(f0, f1, L, length, kink):
         return False  # it may be on its other branch in between
     M = max(M, bend)
     if not inf > M:
@@ -61,6 +61,16 @@ def stays(f0, r0, f1, r1, L, M, length, kink):
         return min(f0, f1) > 0.0
     meet = min(max((f0 - f1 + r1 * length + 0.5 * M * length**2) / both, 0.0), length)
     return f0 + meet * (r0 - 0.5 * M * meet) > 0.0
+
+
+@internal
+def through(f0, f1, L, length, kink):
+    """Whether f, positive at both ends, may have been below -kink between them, where its other
+    branch begins: a stop that swings through between its limits from one to the other.
+
+    There and back is f0 + f1 + 2 kink; half of what is below zero is left to rounding.
+    """
+    return L * length - f0 - f1 > kink
 
 
 @internal
@@ -128,7 +138,9 @@ def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate)
             g1, rate = b.gap1[c, 0], b.gap1[c, 1]
         f1, r1, length = sign * g1, sign * rate, (high - low) * h
         L, M = spread(s, r, b, c, sign, low, high, h)
-        short = high - low < FINEST or hides(s, r, setting, c, M, length)
+        short = high - low < FINEST or (
+            hides(s, r, setting, c, M, length) and not through(f0, f1, L, length, s.kink[c])
+        )
         least = 0.0 if high >= end else beyond  # at an end what comes after is not known
         if f1 < -least or (f1 == 0.0 and least == 0.0 and r1 < 0.0):
             if short or falls(r0, r1, M, length) or (M < 0.0 and high - low <= PART):
