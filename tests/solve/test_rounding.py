@@ -131,3 +131,9 @@ def test_ordinary_runs_hear_nothing_of_it(method):
 )  # fmt: skip
 def test_entries_have_names(planar, entry, told):
     assert whose(built(four_bar(planar)), entry) == told
+
+
+def test_fixed_steps_are_not_looked_at():
+    """No tolerance decides how long they are: none of them is made again."""
+    sets = ("solver.method=rk4", "solver.step=1 ms", "solver.force=true")
+    assert "rounding_of_tolerance" not in run(NEEDLE % "1e-12", *sets).outcome.statistics

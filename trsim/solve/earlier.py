@@ -30,10 +30,12 @@ def this_step(r, b, projected):
 
 
 @internal
-def earlier_step(r):
-    """The step that was kept."""
-    clock = r.clock
-    return r.earlier[0], r.stages, clock[EARLIER_T], clock[EARLIER_WORK], clock[EARLIER_PROJECTED]
+def either_step(r, b, projected, earlier):
+    """The step that was kept, or the one at hand."""
+    if earlier:
+        t, work, done = r.clock[EARLIER_T], r.clock[EARLIER_WORK], r.clock[EARLIER_PROJECTED]
+        return r.earlier[0], r.stages, t, work, done
+    return this_step(r, b, projected)
 
 
 @internal

@@ -172,7 +172,7 @@ def march(s, r, b, setting, methods, most):
             shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
             r.clock[H] = h * (shorter if isfinite(error) else 0.1)
             continue
-        if overdue(r, h):
+        if setting[FIXED_STEP] == 0.0 and overdue(r, h):
             call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             continue
         outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)

@@ -25,16 +25,13 @@ from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import internal
 from trsim.solve.calls import INTERPOLATE_AT
 from trsim.solve.dense_output import build, measure_in
-from trsim.solve.earlier import build_earlier, earlier_step, ends, this_step
+from trsim.solve.earlier import build_earlier, either_step, ends
 from trsim.solve.land import evaluate_inside
 from trsim.solve.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
 from trsim.solve.record import (
     BUFFERS,
     EARLIER_BUILT,
     EARLIER_H,
-    EARLIER_PROJECTED,
-    EARLIER_T,
-    EARLIER_WORK,
     ENERGY_0,
     MISSED,
     NEWEST,
@@ -46,7 +43,6 @@ from trsim.solve.record import (
     STEPS,
     T_END,
     UNSEEN,
-    WORK_PROJECTION,
     T,
 )
 from trsim.solve.samples import (
@@ -116,12 +112,12 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
     else:
         ready = built
     b.found[0], b.laid[0] = 0.0, NOT_LAID
+    middle = 0.5 * (r.sampled[older(r, ahead)] + r.sampled[older(r, ahead + 1)])
     last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
     if (r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t) or (ahead == 0 and last_one):
         if ready == 0 and not last_one:
             guess(s, r, b, method, h, projected, earlier)
         else:
-            middle = 0.5 * (r.sampled[older(r, ahead)] + r.sampled[older(r, ahead + 1)])
             ready = look(s, r, b, method, h, middle, projected, ready, earlier)
     bounds(r, b, ahead)
     for c in range(now.size):
@@ -149,7 +145,6 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
             if not (rises or falls):
                 continue
             b.found[0], b.laid[0] = 0.0, NOT_LAID
-            middle = 0.5 * (r.sampled[older(r, ahead)] + r.sampled[older(r, ahead + 1)])
             ready = look(s, r, b, method, h, middle, projected, 0, earlier)
         if rises:
             search(s, r, b, enough, method, h, ahead, c, 1.0, projected, earlier)
@@ -209,11 +204,9 @@ def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
 @internal
 def look(s, r, b, method, h, place, projected, built, earlier):
     """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
-    step = this_step(r, b, projected)
-    if earlier:
-        step = earlier_step(r)
-        if built == 0:
-            build_earlier(s, r, b, method)
+    step = either_step(r, b, projected, earlier)
+    if built == 0 and earlier:
+        build_earlier(s, r, b, method)
     elif built == 0:
         build(s, r, b, method, r.clock[T], h)
     k, t = int(b.found[0]), step[2]
@@ -230,9 +223,7 @@ def guess(s, r, b, method, h, projected, earlier):
     """The channels in the middle of the step, of the cubic through both ends and their rates,
     into b.inside: what tells whether the dense output is worth building."""
     y0, y1, yd0, yd1 = ends(r, b, method, earlier)
-    t, work, done = r.clock[T], r.clock[WORK_PROJECTION], projected
-    if earlier:
-        t, work, done = r.clock[EARLIER_T], r.clock[EARLIER_WORK], r.clock[EARLIER_PROJECTED]
+    _, _, t, work, done = either_step(r, b, projected, earlier)
     for k in range(b.y2.size):
         b.y2[k] = 0.5 * (y0[k] + y1[k]) + 0.125 * h * (yd0[k] - yd1[k])
     middle = t + 0.5 * h

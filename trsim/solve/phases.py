@@ -115,9 +115,10 @@ def change_phases(s, r, b, setting, t1):
                                   speed, setting[TOLERANCE]))  # fmt: skip
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
-    if were_closed == 0 and closed(s, r) > 0:
+    are_closed = closed(s, r)
+    if were_closed == 0 and are_closed > 0:
         r.clock[FREE_H] = min(r.clock[H], AS_LONG * (t1 - r.clock[FREE_SINCE]))
-    r.count[FREED] = int(were_closed > 0 and closed(s, r) == 0)
+    r.count[FREED] = int(were_closed > 0 and are_closed == 0)
     if r.count[FREED] > 0:
         r.clock[FREE_SINCE] = t1
     if touched:

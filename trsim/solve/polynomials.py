@@ -65,18 +65,20 @@ def lacking(last, second, third):
 
 
 @internal
-def doubt(b, n):
+def doubt(b, n, surer):
     """What stands for the last divided difference in the error of a polynomial, into b.doubt[0].
 
-    Places that were looked at lie anyhow: how fast terms fall says nothing there.
+    surer: how many times it counts.  Places that were looked at lie anyhow: how fast terms fall
+    says nothing there.
     """
-    slope, times, size = b.node[2], b.node[0], b.node[5]
-    b.doubt[0] = abs(slope[n - 1])
+    slope, times, size = b.node[2], b.node[0], b.node[4]
+    b.doubt[0] = surer * abs(slope[n - 1])
     if n < ENOUGH or b.found[0] > 0.0:
         return
     factors(times, size, n)
     third, second = abs(slope[n - 3]) * size[n - 3], abs(slope[n - 2]) * size[n - 2]
-    b.doubt[0] = lacking(abs(slope[n - 1]) * size[n - 1], second, third) / size[n - 1]
+    last = abs(slope[n - 1]) * size[n - 1]
+    b.doubt[0] = surer * lacking(last, second, third) / size[n - 1]
 
 
 @internal

@@ -233,7 +233,7 @@ class Buffers(Packed):
     full: A1  # (n_c) all channels and magnitudes
     inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
     found: A1  # (1 + FOUND) how often, and when
-    node: A2  # (6, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), -, factors
+    node: A2  # (5, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), factors
     along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
@@ -287,7 +287,7 @@ def fresh_buffers(
         full=np.zeros(model.n_out + len(model.vector)),
         inside=np.zeros((FOUND, len(model.kin))),
         found=np.zeros(1 + FOUND),
-        node=np.zeros((6, POINTS)),
+        node=np.zeros((5, POINTS)),
         along=np.zeros(1 + PARTS),
         lattice=np.zeros((POINTS, 1 + PARTS)),
         inverse=np.zeros((POINTS, POINTS)),

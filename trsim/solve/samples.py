@@ -146,7 +146,7 @@ def extreme(p, c, t, value):
 @internal
 def nodes(r, b, ahead):
     """Fill the times of b.node for polynomials between two neighbours; how many there are."""
-    times, found, n = b.node[0], int(b.found[0]), 0
+    times, found = b.node[0], int(b.found[0])
     n = min(r.count[SAMPLES] + found, POINTS)
     times[0], times[1] = r.sampled[older(r, ahead)], r.sampled[older(r, ahead + 1)]
     for k in range(2, min(2 + found, n)):
@@ -171,7 +171,7 @@ def bounds(r, b, ahead):
     4 B u (1 - u) at the part u between the two, B the sum of their bounds.  With the chord, D from
     end to end, that is beyond the higher end by (4 B - D)^2 / (16 B), and nowhere if 4 B < D.
     """
-    n, times, size = nodes(r, b, ahead), b.node[0], b.node[5]
+    n, times, size = nodes(r, b, ahead), b.node[0], b.node[4]
     chord, beyond, d = b.bound[0], b.bound[1], r.slope
     end, start = r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
     h = times[0] - times[1]
@@ -227,7 +227,7 @@ def through(r, b, ahead, c, sign):
         lay(b, n)
         b.laid[0] = NOT_LAID
         differences(b, n)
-        doubt(b, n)
+        doubt(b, n, 1.0)
         return n
     n, surer = min(r.count[SAMPLES] + found, POINTS), 1.0
     if turns(r, ahead, c) or turns(r, ahead + 1, c):
@@ -240,16 +240,14 @@ def through(r, b, ahead, c, sign):
         slope[0], slope[1] = values[0], sign * b.bound[0, c]
         for k in range(2, n):
             slope[k] = sign * r.slope[k, c]
-        doubt(b, n)
-        b.doubt[0] *= surer
+        doubt(b, n, surer)
         return n
     for k in range(found):
         values[2 + k] = sign * b.inside[k, c]
     for k in range(2 + found, n):
         values[k] = sign * r.sample[other(r, ahead, k - found), c]
     differences(b, n)
-    doubt(b, n)
-    b.doubt[0] *= surer
+    doubt(b, n, surer)
     return n
 
 
