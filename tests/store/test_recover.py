@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 
+from tests import small
 from tests.sizes import size
 from tests.store import outside
 from trsim.errors import FileError
@@ -156,6 +157,25 @@ def test_tables_are_cut_to_what_is_whole(result, tmp_path):
     assert broken(lambda file: file["stroke"].resize(200, axis=0)) == 200
     assert broken(unwritten) == 250
     assert broken(falls) == 120
+
+
+def test_two_at_one_time(tmp_path):
+    """Steps that are shorter than the time resolves, and events recorded together, are no end."""
+    event = "{when: crank_angle, value: 0.3, do: {record: true}}"
+    both = f"events:\n  one: {event}\n  other: {event}\n"
+    small.run(tmp_path / "p", text=small.SLIDER_CRANK + both)
+    with h5py.File(tmp_path / "p", "r+") as file:
+        steps, recorded = file["steps/B/time"], file["recorded/time"]
+        steps[7] = steps[6]
+        many = len(steps), len(recorded)
+        assert many[0] > 20 and many[1] == 2 and recorded[0] == recorded[1]
+        peak = file["steps/B/contact_force"][:].max()
+    copy(tmp_path / "p", tmp_path / "x.h5")
+    run = read(tmp_path / "x.h5")
+    assert run.summary["contacts"]["B"]["steps"] == many[0]
+    assert run.summary["contacts"]["B"]["peak_force"] == peak
+    with h5py.File(tmp_path / "x.h5") as file:
+        assert len(file["recorded/time"]) == many[1]
 
 
 def test_what_was_never_written_is_not_zero(scenario, mechanism, tmp_path):

@@ -172,9 +172,10 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
     n = max(end - begin, 0)
     time = piece["time"][:n]
     later = np.diff(time, prepend=last)
-    # several events may happen at once
-    together = source.name == "/events" or source.name.startswith("/poincare/")
-    n = _first(~(later >= 0.0) if together else ~(later > 0.0), n)
+    # of output rows no two are at one time; several events may happen at once, and be recorded, and
+    # a step that ends at a corner may be shorter than the time resolves
+    alone = source.name == "/"
+    n = _first(~(later > 0.0) if alone else ~(later >= 0.0), n)
     for name, values in piece.items():
         if name in MAY_BE_NAN:
             continue
