@@ -8,6 +8,10 @@ memory changes its speed by some per cent: every TOGETHER pairs two new ones go 
 is of the CPU times of both; the median over the pairs is given with the bounds of its 95 %
 interval, which are order statistics of the ratios (binomial), so that nothing is assumed of how
 they are distributed.
+
+Where steps happen to lie changes their number by some per cent, next to singular places and in
+chaotic motion by more.  So a case is DRAWS runs, with tolerances from the one named to SPREAD times
+that; clearances that are in chaotic motion differ by CHANCE too.
 """
 
 import argparse
@@ -25,6 +29,7 @@ ROOT = Path(__file__).parent.parent
 VALIDATION, REVERSER = ROOT / "scenarios/validation", ROOT / "scenarios/thrust_reverser"
 TOGETHER = 2  # pairs of one process of each tree
 LEAST = 0.03  # s of CPU of one measurement: shorter runs are repeated
+DRAWS, SPREAD, CHANCE = 8, 1.3, 1e-5
 
 
 def cases() -> dict[str, tuple[str, list[str]]]:
@@ -58,18 +63,26 @@ from pathlib import Path
 from trsim.spec.load import load, loads
 from trsim.assemble.assemble import assemble
 from trsim.analyse.trajectory import marched
-source, sets = json.loads(sys.stdin.readline())
+source, sets, draws, spread, chance = json.loads(sys.stdin.readline())
 read = (lambda s: loads(source, s)) if "\n" in source else (lambda s: load(Path(source), s))
-end = read(sets).solver.end
-scenario = read([*sets, f"output.every={end!r}", "output.channels=[]"])
-mechanism = assemble(scenario)
+given = read(sets)
+end, tolerance, ready = given.solver.end, given.solver.tolerance, []
+for k in range(draws):
+    other = [f"solver.tolerance={tolerance * spread ** (k / (draws - 1))!r}"]
+    for name, joint in given.joints.items():
+        if getattr(joint, "clearance", None):
+            other.append(f"joints.{name}.clearance={joint.clearance * (1 + chance * k)!r}")
+    scenario = read([*sets, *other, f"output.every={end!r}", "output.channels=[]"])
+    ready.append((scenario, assemble(scenario)))
 for line in sys.stdin:
-    total = 0.0
+    total, counts = 0.0, dict.fromkeys(("steps", "rejected_steps", "evaluations"), 0)
     for _ in range(int(line)):
-        numbers = marched(scenario, mechanism)[1].statistics
-        total += numbers["integration_cpu"]
-    keep = ("steps", "rejected", "evaluations", "dense_outputs_built")
-    print(json.dumps([total, {k: numbers[k] for k in keep if k in numbers}]), flush=True)
+        for scenario, mechanism in ready:
+            numbers = marched(scenario, mechanism)[1].statistics
+            total += numbers["integration_cpu"] / draws
+            for k in counts:
+                counts[k] += numbers[k] / draws / int(line)
+    print(json.dumps([total, counts]), flush=True)
 """
 
 
@@ -82,7 +95,7 @@ def worker(tree: Path, source: str, sets: list[str]) -> Iterator[Any]:
     )  # fmt: skip
     ask, answer = process.stdin, process.stdout
     assert ask is not None and answer is not None
-    ask.write(json.dumps([source, sets]) + "\n")
+    ask.write(json.dumps([source, sets, DRAWS, SPREAD, CHANCE]) + "\n")
 
     def run(times: int) -> tuple[float, dict[str, float]]:
         ask.write(f"{times}\n")
@@ -125,7 +138,7 @@ def main() -> None:
         while len(first) < a.pairs:
             with worker(a.folder, source, sets) as there, worker(ROOT, source, sets) as here:
                 there(1), here(1)
-                times = max(1, round(LEAST / min(there(1)[0], here(1)[0])))
+                times = max(1, round(LEAST / DRAWS / min(there(1)[0], here(1)[0])))
                 for pair in range(len(first), min(len(first) + TOGETHER, a.pairs)):
                     if pair % 2:
                         one, before = there(times)

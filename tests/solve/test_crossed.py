@@ -106,6 +106,15 @@ def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
     assert wrong > 4  # else nothing was tested
 
 
+def test_a_part_that_ends_between_the_branches_hides_no_change():
+    """A row turns round in two parts of a step, in each by some 80 degrees."""
+    made, sets = upright(-1e-6, SPACES["tilted"])
+    ways = ("solver.method=radau", "solver.tolerance=1e-2", "solver.first_step=0.1473")
+    r = run(made, *sets, *ways)
+    assert of_cranks(r, np.asarray(SPACES["tilted"])) > 0
+    assert told(r)
+
+
 @pytest.mark.parametrize("R", SPACES.values(), ids=SPACES)
 @pytest.mark.parametrize("method", ["auto", "dop853", "radau", "ggl"])
 @pytest.mark.parametrize("number", [2, 3])

@@ -320,7 +320,18 @@ DRAWN = [("chain_planar", 0), ("chain_planar", 2), ("loop", 0), ("loop", 9), ("l
 @pytest.mark.parametrize(("family", "seed"), DRAWN)
 def test_as_of_forty_times_as_many_rows(family, seed):
     """Steps are the same whatever the rows; the extremes of what lies between them are too."""
-    scenario = loads(made(family, seed).scene.text(), [])
+    assert_the_same_extremes(loads(made(family, seed).scene.text(), []))
+
+
+@pytest.mark.parametrize("first", [3.8777448066272844e-4, 2.339214190570292e-3])
+def test_places_looked_at_for_other_channels_may_say_little(first):
+    """Two of them are so close together that the polynomial through them is largest right beside a
+    third one, though the extreme is elsewhere."""
+    text = made("loop", 13).scene.text()
+    assert_the_same_extremes(loads(text, [f"solver.first_step={first!r}"]))
+
+
+def assert_the_same_extremes(scenario):
     every, found = scenario.output.every, []
     for rows in (min(4 * every, scenario.solver.end), every / 40):
         same = changed(scenario, "output", every=rows, channels=("*",))

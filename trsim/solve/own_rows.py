@@ -14,7 +14,10 @@ from trsim.assemble.schur import rows
 from trsim.elements.vectors import clear, copy_to, internal
 
 FINEST = 1e-15  # of the diagonal: rounding of a pivot
-PLAINLY = 0.1  # cosine: below that a row turned by more than it does on a branch
+# cosine: below that a row turned by more than it does in half of a way on its branch.  One that
+# changes it turns round by two right angles, less what it turns by anyhow, and half of that where
+# the way ends between the branches
+PLAINLY = 0.5
 
 
 @internal

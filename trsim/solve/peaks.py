@@ -47,6 +47,7 @@ from trsim.solve.record import (
 )
 from trsim.solve.samples import (
     NOT_LAID,
+    aside,
     bounds,
     extreme,
     gather,
@@ -78,6 +79,10 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
 
     built: whether b.P holds the dense output.  Returns whether it does now.
     """
+    if s.sought.size == 0:  # no channel is told
+        gather(s, b.full, values, b.inside[0])
+        known_extremes(s, r, b.full, at)
+        return built
     if r.count[SAMPLES] > 0 and at <= r.sampled[r.count[NEWEST]]:
         return built
     own = push(s, r, b, at, values)
@@ -184,14 +189,19 @@ def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
     sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
     surer than that is taken at its word.
     """
-    o = s.sought[c]
+    o, aside_before = s.sought[c], False
     for _ in range(TRIES):
         best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]
         n = through(r, b, ahead, c, sign)
         low, high = b.node[0, 1], b.node[0, 0]
         place, promised = top(b, n, low, high, best + enough)
-        if not promised > best + enough or known_place(b, low, high, place):
+        if not promised > best + enough:
             break
+        if known_place(b, low, high, place):  # its places lie so that it says little of this one
+            place = aside(b, low, high, place)
+            if aside_before or known_place(b, low, high, place):
+                break
+            aside_before = True
         said = polynomial(b.node, n, place, 0.0)
         if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
             extreme(r.peak, o, place, sign * said)

@@ -23,14 +23,21 @@ PLAIN = 0.9  # of the mean slope: what changes in it less leaves its sign
 
 @internal
 def lay(b, n):
-    """Fill b.lattice and b.inverse for the times of the first n nodes."""
-    times, lattice, inverse = b.node[0], b.lattice, b.inverse
+    """Fill b.lattice for the times of the first n nodes."""
+    times, lattice = b.node[0], b.lattice
     low, width = times[1], (times[0] - times[1]) / PARTS
     for k in range(PARTS + 1):
         lattice[0, k] = 1.0
     for i in range(1, n):
         for k in range(PARTS + 1):
             lattice[i, k] = lattice[i - 1, k] * (low + k * width - times[i - 1])
+
+
+@internal
+def invert(b, n):
+    """Fill b.inverse for them."""
+    times, inverse = b.node[0], b.inverse
+    for i in range(1, n):
         for j in range(i):
             inverse[i, j] = 1.0 / (times[i] - times[j])
 
@@ -69,13 +76,12 @@ def doubt(b, n, surer):
     """What stands for the last divided difference in the error of a polynomial, into b.doubt[0].
 
     surer: how many times it counts.  Places that were looked at lie anyhow: how fast terms fall
-    says nothing there.
+    says nothing there.  Where none was, b.node[4] holds the `factors` of these nodes.
     """
-    slope, times, size = b.node[2], b.node[0], b.node[4]
+    slope, size = b.node[2], b.node[4]
     b.doubt[0] = surer * abs(slope[n - 1])
     if n < ENOUGH or b.found[0] > 0.0:
         return
-    factors(times, size, n)
     third, second = abs(slope[n - 3]) * size[n - 3], abs(slope[n - 2]) * size[n - 2]
     last = abs(slope[n - 1]) * size[n - 1]
     b.doubt[0] = surer * lacking(last, second, third) / size[n - 1]

@@ -19,7 +19,7 @@ Samples on two sides of an event have nothing to do with each other: `restart`.
 from math import sqrt
 
 from trsim.elements.vectors import internal
-from trsim.solve.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, lay
+from trsim.solve.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
 from trsim.solve.record import (
     NEWEST,
     PEAK_MAX,
@@ -33,6 +33,7 @@ from trsim.solve.record import (
 
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
+AWAY = 0.1  # of the way to the next known place
 NOT_LAID = -1.0
 LEAST = 1e-300  # not to divide zero by zero
 # times the error of a polynomial next to a sample where its channel turns back: on which side of it
@@ -212,6 +213,17 @@ def known_place(b, start, end, place):
 
 
 @internal
+def aside(b, start, end, place):
+    """A place away from one that is known, towards the further of the two known ones next to it."""
+    near, low, high = NEAR * (end - start), start, end
+    for k in range(int(b.found[0])):
+        x = b.found[1 + k]
+        low = x if low < x < place - near else low
+        high = x if place + near < x < high else high
+    return place + AWAY * ((high if high - place > place - low else low) - place)
+
+
+@internal
 def through(r, b, ahead, c, sign):
     """The polynomial through sign times channel c, into b.node and b.lattice; how many nodes.
 
@@ -225,6 +237,7 @@ def through(r, b, ahead, c, sign):
         b.node[0, 0], b.node[0, 1] = r.sampled[end], r.sampled[start]
         n = around_best(b, found, c, sign)
         lay(b, n)
+        invert(b, n)
         b.laid[0] = NOT_LAID
         differences(b, n)
         doubt(b, n, 1.0)
@@ -234,6 +247,8 @@ def through(r, b, ahead, c, sign):
         surer = TURNED
     if b.laid[0] != found:
         lay(b, nodes(r, b, ahead))
+        if found > 0:
+            invert(b, n)
         b.laid[0] = found
     values[0], values[1] = sign * r.sample[end, c], sign * r.sample[start, c]
     if found == 0:  # as `take` and `bounds` have them
