@@ -96,20 +96,25 @@ def test_stated_errors_cover_the_true_ones(sets, tmp_path):
 
 
 def test_stated_errors_of_the_thrust_reverser(tmp_path):
-    """Rows ten times as coarse as its own, so that there is an error to state."""
-    file = SCENARIOS / "thrust_reverser/clearance_b_0.3mm.yaml"
-    scenario = load(file, ["solver.end=0.45", "output.every=0.5 ms"])
-    mechanism = assemble(scenario)
-    write(tmp_path / "run.h5", scenario, mechanism, simulate(scenario, mechanism))
-    run = read(tmp_path / "run.h5")
-    located = run.poincare["B_orbit"]
-    found = section(run, "B.eccentricity_x_rate", "B.eccentricity_x", "B.eccentricity_y")
-    assert 10 < len(found.time) <= len(located.time)
-    nearest = np.abs(located.time[:, None] - found.time).argmin(axis=0)
-    for axis in ("time", "x", "y"):
-        true = np.abs(getattr(found, axis) - getattr(located, axis)[nearest])
-        covered = true <= getattr(found, f"{axis}_error") + 1e-15
-        assert np.mean(covered) > 0.95, axis
+    """Rows ten times as coarse as its own, so that there is an error to state, of three runs: of
+    the twenty points of one a single one would be more than the 5 % that may be beyond it."""
+    covered: dict[str, list[bool]] = {"time": [], "x": [], "y": []}
+    for k in range(3):
+        file = SCENARIOS / "thrust_reverser/clearance_b_0.3mm.yaml"
+        other = f"joints.B.clearance={3e-4 * (1 + 1e-3 * k)!r}"
+        scenario = load(file, ["solver.end=0.45", "output.every=0.5 ms", other])
+        mechanism = assemble(scenario)
+        write(tmp_path / f"{k}.h5", scenario, mechanism, simulate(scenario, mechanism))
+        run = read(tmp_path / f"{k}.h5")
+        located = run.poincare["B_orbit"]
+        found = section(run, "B.eccentricity_x_rate", "B.eccentricity_x", "B.eccentricity_y")
+        assert 10 < len(found.time) <= len(located.time)
+        nearest = np.abs(located.time[:, None] - found.time).argmin(axis=0)
+        for axis, seen in covered.items():
+            true = np.abs(getattr(found, axis) - getattr(located, axis)[nearest])
+            seen.extend(true <= getattr(found, f"{axis}_error") + 1e-15)
+    for axis, seen in covered.items():
+        assert np.mean(seen) > 0.95, axis
 
 
 def test_touches_between_two_rows():

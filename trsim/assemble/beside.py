@@ -67,11 +67,13 @@ TRIED = 4  # pairs further away that may be none: a mechanism that locks there
 MOST = 5  # pairs that a polynomial goes through
 NEAR_TO = 0.25  # times the pivot of the place itself
 THERE, NOT_THERE, TOO_NEAR = range(3)
-NEWTON, CLOSED, REACHED = 8, 1e-14, 1e-9  # steps; of the mechanism's size
+# steps; of the mechanism's size: before the last one, which squares it, and where it is reached
+NEWTON, CLOSED, REACHED = 8, 1e-9, 1e-9
 SURE = 1e-3  # of the accelerations: more than that, and there is no limit
 PLAINLY = 4.0  # times what is uncertain of a limit: an evaluation is not itself that
 SEEN = 10.0  # times the tolerance: what is less of a stage is left to the error estimate
 SETTLED = 1e-11  # of a limit: nothing smaller is asked for
+ENOUGH = 0.025  # of what is seen of a stage
 NOISE = 1e-13  # 500 times rounding, which is a 500th of the tolerance at NOISE / tolerance
 PLACE, WAY, MEAN, LIMIT, FOUND, TABLE = range(6)  # rows of s.aside, TABLE of MOST rows
 
@@ -130,14 +132,13 @@ def beside(s, t, y, yd):
         return
     best, scale = 1e300, 0.0
     if went == SINGULAR or plain_pivot(s) <= SMALL:
-        best, scale = look_beside(s, t, y, fastest, own)
+        best, scale = look_beside(s, t, y, yd, fastest, own)
         poses(s, y)
         constraints(s, t)
     factors_again(s)
     s.status[2] = counted
     if best <= SURE * scale:
-        seen = 0.0 if s.status[5] > 0 else SEEN * s.tolerance * scale
-        if went == SINGULAR or apart(s, yd) > max(PLAINLY * best, seen):
+        if went == SINGULAR or apart(s, yd) > max(PLAINLY * best, seen(s, scale)):
             if went != SINGULAR and s.near > 0.0:
                 s.status[4] += 1
             take(s, y, yd, went == SINGULAR)
@@ -170,6 +171,21 @@ def apart(s, yd):
 
 
 @equation
+def seen(s, scale):
+    """What is less of a difference from the limit is left to the error estimate."""
+    return 0.0 if s.status[5] > 0 else SEEN * s.tolerance * scale
+
+
+@equation
+def idle(s, yd, best, scale):
+    """Whether a limit known to `best` is known well enough not to be taken for what is in yd."""
+    for k in range(s.m):
+        if s.phi_t[k] != 0.0:
+            return False  # that of drives is taken
+    return apart(s, yd) + PLAINLY * best <= seen(s, scale)
+
+
+@equation
 def unit(s, i):
     """Of the i-th velocity: the mechanism's size or 1."""
     return s.size if i % s.d < s.d // 2 + s.d % 2 else 1.0
@@ -186,10 +202,10 @@ def speed(s):
 
 
 @equation
-def look_beside(s, t, y, fastest, own):
+def look_beside(s, t, y, yd, fastest, own):
     """The limit into s.aside[FOUND]; by how much it changed at last, and the size of it.
 
-    own: the pivot at y, 0 where rows depend on each other there.
+    yd: the evaluation at y, own: its pivot, 0 where rows depend on each other there.
     """
     found, limit, n = s.aside[FOUND], s.aside[LIMIT], s.n_v + s.m
     best, scale, pairs = 1e300, 0.0, 0
@@ -215,7 +231,10 @@ def look_beside(s, t, y, fastest, own):
             best, scale = change, max(largest, fastest * fastest)
             for i in range(n):
                 found[i] = s.aside[newest, i]
-        if best <= SETTLED * scale or change > 8.0 * best:
+        enough = 0.0 if own == 0.0 else ENOUGH * seen(s, scale)
+        if best <= max(SETTLED * scale, enough) or change > 8.0 * best:
+            break
+        if own > 0.0 and idle(s, yd, best, scale):
             break
     return best, scale
 
@@ -276,7 +295,7 @@ def at(s, t, y, d):
             return 0.0
         if not worst > CLOSED * s.size:
             break
-    if not worst < REACHED * s.size:
+    if not worst <= REACHED * s.size:
         return -1.0  # the mechanism locks between
     poses(s, place)
     constraints(s, t + d)

@@ -64,7 +64,7 @@ def choose(s, r, b, h, event):
         rate = explicit_rate(s, r, b, h)
         load, held = h * rate, calmed(s, r, h, rate)
         if load > STABLE or held:
-            r.count[STIFF] += 2 if held else 1
+            r.count[STIFF] += 1
             r.count[NOT_STIFF] = 0
             if r.count[STIFF] >= max(STIFF_STEPS, s.n_v // DEAR):
                 change(s, r, b, IMPLICIT, load)
@@ -101,7 +101,8 @@ def forget(r):
 
 @internal
 def calmed(s, r, h, rate):
-    """Whether the next step is shortened to where it is stable, after a step h at this rate.
+    """Shorten the next step to where it is stable, after a step h at this rate; whether it would
+    have been beyond the limit.
 
     Only where something touches, and by the lesser of two rates in a row.  Between 5 and 6.1 on the
     real axis the error estimate sees down to an eighth of the error: what is stiff trembles there
@@ -111,8 +112,9 @@ def calmed(s, r, h, rate):
     r.clock[EXPLICIT_RATE] = rate
     if s.contact.size == 0 or h * sure <= NEAR or r.clock[H] * sure <= CALM:
         return False
+    stiff = r.clock[H] * sure > STABLE
     r.clock[H] = CALM / sure
-    return True
+    return stiff
 
 
 @internal

@@ -241,10 +241,16 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
         yield from of_jumps(mechanism, outcome.record)
     given = numbers.get("work_of_projection_relative", 0.0)
     if given > GIVEN and work > NOTHING * natural and outcome.status in WELL:
+        bends = (
+            "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
+            "the way may be those of the other branch?  "
+            if mechanism.model.near_rows > 0.0
+            else ""
+        )
         yield (
             f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
-            "largest energy exchanged; does a drive jump?  Else `tolerance` or the step is too "
-            "coarse"
+            f"largest energy exchanged; does a drive jump?  {bends}"
+            "Else `tolerance` or the step is too coarse"
         )
     apart = numbers.get("joints_open_relative", 0.0)
     if apart > OPEN and mechanism.model.stabilisation != PROJECTION:
