@@ -17,7 +17,6 @@ that; clearances that are in chaotic motion differ by CHANCE too.
 import argparse
 import json
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import comb
@@ -129,7 +128,8 @@ def main() -> None:
     read.add_argument("case", nargs="*", help="those whose names begin with it; all unless given")
     read.add_argument("--pairs", type=int, default=31)
     a = read.parse_intermixed_args()
-    print("  case                            ms there   ms here   ratio   95 %             counts")
+    print("| case | ms there | ms here | ratio | 95 % | steps | rejected | evaluations |")
+    print("|---|---|---|---|---|---|---|---|")
     for name, (source, sets) in cases().items():
         if a.case and not any(name.startswith(one) for one in a.case):
             continue
@@ -150,10 +150,10 @@ def main() -> None:
                     second.append(two / times)
         ratios = [two / one for one, two in zip(first, second, strict=True)]
         low, high = interval(ratios)
-        counts = " ".join(f"{k[:5]} {before[k]:.0f}/{after[k]:.0f}" for k in after if k in before)
-        print(f"  {name:30s} {1e3 * median(first):9.2f} {1e3 * median(second):9.2f}   "
-              f"{median(ratios):.3f}   {low:.3f}..{high:.3f}   {counts}", flush=True)  # fmt: skip
-    sys.stdout.flush()
+        counts = " | ".join(f"{before[k]:.0f}, {after[k]:.0f}" for k in after)
+        took = f"{1e3 * median(first):.2f} | {1e3 * median(second):.2f}"
+        ratio = f"{median(ratios):.3f} | {low:.3f}..{high:.3f}"
+        print(f"| {name} | {took} | {ratio} | {counts} |", flush=True)
 
 
 if __name__ == "__main__":
