@@ -7,7 +7,10 @@ from benchmarks.problems import bending_chain, windows
 from trsim.assemble.equations import derivative
 from trsim.assemble.pattern import pattern
 from trsim.assemble.reduce import jacobian
+from trsim.assemble.schur import rows
+from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import scene
+from trsim.elements.signatures import void
 from trsim.spec.load import loads
 
 from ..linkages import DOOR, slider_crank
@@ -30,6 +33,12 @@ SCENES = {
     "redundant rows": DOOR,
     "chain": bending_chain(6),
 }
+
+
+@compiled(void(SCENE))
+def filled(s):
+    """S of the last evaluation into s.value, in place of its factors."""
+    rows(s)
 
 
 def evaluated(text):
@@ -55,13 +64,15 @@ def dense(work, y):
 @pytest.mark.parametrize("name", SCENES)
 def test_entries_and_factors(name):
     work, y = evaluated(SCENES[name])
+    factors = work.value.copy()
+    filled(work)
     found, L, D = np.zeros((work.m, work.m)), np.eye(work.m), np.zeros(work.m)
     order = work.row[work.column_start[:-1]]
     rank = np.argsort(order)
     for k, (start, end) in enumerate(zip(work.column_start, work.column_start[1:], strict=False)):
-        rows = work.row[start:end]
-        found[rows, rows[0]] = found[rows[0], rows] = work.original[start:end]
-        D[k], L[rank[rows[1:]], k] = work.value[start], work.value[start + 1 : end]
+        k_rows = work.row[start:end]
+        found[k_rows, k_rows[0]] = found[k_rows[0], k_rows] = work.value[start:end]
+        D[k], L[rank[k_rows[1:]], k] = factors[start], factors[start + 1 : end]
     expected = dense(work, y)
     scale = np.abs(expected).max()
     assert found == pytest.approx(expected, abs=1e-13 * scale)

@@ -20,6 +20,7 @@ held only; what is refined is right all the same, since residuals are those of S
 from math import sqrt
 
 from trsim.assemble.on_beams import RESIDUAL, call_beams
+from trsim.assemble.schur import rows
 from trsim.elements.vectors import clear_table, copy_to, internal
 
 SOUND, POOR, SINGULAR = 0, 1, 2  # how a factorisation went, in s.status[0]
@@ -34,18 +35,14 @@ LEFT_OVER = 1e-3  # of the right-hand side: more shows that the rows ask for dif
 
 @internal
 def factorise(s):
-    """Factorise s.value in place; s.status[0] tells how it went.
-
-    S must have just been filled by `rows`; its entries are kept in `original`.
-    """
+    """Factorise s.value in place, just filled by `rows`; s.status[0] tells how it went."""
     s.status[2] += 1
     s.status[0] = SOUND
     diagonal(s)
-    copy_to(s.original, s.value)
     smallest = eliminate(s, TINY)
     if smallest <= TINY:
         s.status[0] = SINGULAR
-        copy_to(s.value, s.original)
+        rows(s)
         for k in range(s.first.size):
             if s.row[s.column_start[k]] < s.m:
                 s.value[s.column_start[k]] += SHIFT * s.first[k]

@@ -155,7 +155,6 @@ class Scene(Model):
     B: T6  # (slots, 6) rows of J in the axes of the solve
     W: T6  # (slots, 6) M^-1 B^T
     value: A1  # (places) S = J M^-1 J^T, then its factors
-    original: A1  # (places) S
     first: A1  # (n_x) its diagonal, in elimination order
     through: A1  # (m) what of the diagonal acts through hubs
     x: A1  # (n_x) right-hand side, then solution
@@ -222,7 +221,6 @@ def scene(model: Model) -> Scene:
             "B": (slots, 6),
             "W": (slots, 6),
             "value": (len(model.row),),
-            "original": (len(model.row),),
             "first": (n_x,),
             "through": (m,),
             "x": (n_x,),
