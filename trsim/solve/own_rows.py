@@ -73,16 +73,24 @@ def cosine(s):
 
 @internal
 def own(s, end, k):
-    """d of the row eliminated k-th, into s.own[end]: of bodies, of hubs those eliminated before."""
-    w, L, B, d = s.r2, s.kept_factors[end], s.kept_rows[end], s.own[end]
+    """d of the row eliminated k-th, into s.own[end]: of bodies, of hubs those eliminated before.
+
+    Rows whose elimination changed others before it, but not this one, have no part in it: those the
+    next of whose column has none.
+    """
+    w, has_part, L, B, d = s.r2, s.r, s.kept_factors[end], s.kept_rows[end], s.own[end]
     row, column_start = s.row, s.column_start
     clear(w)
-    w[row[column_start[k]]] = 1.0
+    clear(has_part)
+    w[row[column_start[k]]] = has_part[row[column_start[k]]] = 1.0
     for j in range(k - 1, -1, -1):
+        start, beyond = column_start[j], column_start[j + 1]
+        if beyond == start + 1 or has_part[row[start + 1]] == 0.0:
+            continue
         total = 0.0
-        for p in range(column_start[j] + 1, column_start[j + 1]):
+        for p in range(start + 1, beyond):
             total -= L[p] * w[row[p]]
-        w[row[column_start[j]]] = total
+        w[row[start]], has_part[row[start]] = total, 1.0
     clear(d)
     for f in range(1, s.n_r):
         if s.hub[f] >= 0 and not moves(s, w, f):

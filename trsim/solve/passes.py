@@ -64,13 +64,16 @@ def look_at_parts(s, r, b, t1, last, way):
     """
     y0, y1, t, h = b.part[0], b.part[1], r.clock[T], t1 - r.clock[T]
     n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.clock[LAST_WAY]
+    held = False  # the rows at the beginning of a part: kept when they were those at an end
     for k in range(s.first.size):
         roots[0, k], roots[1, k], roots[2, k] = s.root[0, k], s.root[1, k], s.root[2, k]
     for k in range(1, n + 1):
+        lost = k == n
         if k < n:
             inside(r.y, r.yd, b.y1, b.K[last], h, k / n, y1)
             look_at(s, t + k / n * h, y1)
             keep_roots(s, roots[2])
+            keep_rows(s, k % 2)
         else:
             copy_to(roots[2], s.root[2])
         if may_turn(s, roots, way / n, before):
@@ -79,13 +82,20 @@ def look_at_parts(s, r, b, t1, last, way):
             start, end = t + (k - 1) / n * h, t + k / n * h
             if known(s, r, y0, y1) == 0:
                 ways = (way / n, before)
-                if which_turned(s, start, end, y0, y1, roots, ways) >= 0:
+                if not held:
+                    look_at(s, start, y0)
+                    keep_rows(s, (k - 1) % 2)
+                if k == n:
+                    look_at(s, end, y1)
+                    keep_rows(s, k % 2)
+                if turned(s, roots, ways) >= 0:
                     close_positions(s, start, y0, CLOSED * s.size, NEWTON)
                     close_positions(s, end, y1, CLOSED * s.size, NEWTON)
                     note_turned(s, r, b, t1, last, (k - 1) / n, k / n, y0, y1, roots, ways)
+                    lost = True
         copy_to(roots[0], roots[1])
         copy_to(roots[1], roots[2])
-        before = way / n
+        before, held = way / n, not lost
 
 
 @internal
@@ -114,15 +124,12 @@ def row_may_turn(s, roots, way, last, k):
 
 
 @internal
-def which_turned(s, t0, t1, y0, y1, roots, ways):
-    """Which row turned round between two states, in the order of elimination; -1 if none did.
+def turned(s, roots, ways):
+    """Which row turned round between the states whose rows are kept, in the order of elimination;
+    -1 if none did.
 
     Of those that may have on the second of two ways, which ends there: `row_may_turn`.
     """
-    look_at(s, t0, y0)
-    keep_rows(s, 0)
-    look_at(s, t1, y1)
-    keep_rows(s, 1)
     for k in range(s.first.size):
         if row_may_turn(s, roots, ways[0], ways[1], k) and turned_round(s, k):
             return k
@@ -136,7 +143,11 @@ def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
     Where that is because branches meet, the place is kept instead.
     """
     t, h = r.clock[T], t1 - r.clock[T]
-    k = which_turned(s, t + start * h, t + end * h, y0, y1, roots, ways)
+    look_at(s, t + start * h, y0)
+    keep_rows(s, 0)
+    look_at(s, t + end * h, y1)
+    keep_rows(s, 1)
+    k = turned(s, roots, ways)
     if k < 0:
         return
     if s.redundant.shape[0] == 0 and meet(s, r, b, t1, last, start, end, k):
