@@ -116,6 +116,17 @@ def test_sections_that_a_run_does_not_read_are_told():
     assert found.startswith("`sweep`: one run takes the scenario as it stands")
 
 
+MOUNTED = """
+planar: {planar}
+bodies: {{b: {{mass: 1, inertia: [0.1, 0.1, 0.1], angular_velocity: [0, 0, {speed}]}}}}
+forces:
+  mount: {{type: bushing, bodies: [ground, b], at: [0, 0, 0], stiffness: [1, 1, 1],
+          rotational_stiffness: [{k}, {k}, {k}]}}
+output: {{every: 2, channels: ["{recorded}"]}}
+solver: {{end: 2, tolerance: 1e-5{more}}}
+"""
+
+
 @pytest.mark.parametrize("planar", ["true", "false"])
 @pytest.mark.parametrize("recorded", ["*", "b.velocity"])
 @pytest.mark.parametrize(
@@ -124,13 +135,16 @@ def test_sections_that_a_run_does_not_read_are_told():
     [(20, 1.0, True), (5, 1e-9, True), (400, 1e-3, True), (9.95, 1.0, True), (9.0, 1.0, False)],
 )
 def test_bushings_turned_over_are_told(speed, stiffness, beyond, recorded, planar):
-    found = told(f"""
-planar: {planar}
-bodies: {{b: {{mass: 1, inertia: [0.1, 0.1, 0.1], angular_velocity: [0, 0, {speed}]}}}}
-forces:
-  mount: {{type: bushing, bodies: [ground, b], at: [0, 0, 0], stiffness: [1, 1, 1],
-          rotational_stiffness: [{stiffness}, {stiffness}, {stiffness}]}}
-output: {{every: 2, channels: ["{recorded}"]}}
-solver: {{end: 2, tolerance: 1e-5}}
-""")
+    found = told(
+        MOUNTED.format(planar=planar, speed=speed, k=stiffness, recorded=recorded, more="")
+    )
     assert any("forces.mount: turned by" in text for text in found) == beyond
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("first", [0.0014, 0.0527566, 0.38, 2.0])
+def test_turns_of_bushings_are_not_passed_over(first, planar):
+    """Steps that nothing else bounds; the first two of them ended where they had turned back."""
+    more = f", first_step: {first}"
+    found = told(MOUNTED.format(planar=planar, speed=5, k=1e-9, recorded="b.velocity", more=more))
+    assert any("forces.mount: turned by" in text for text in found)

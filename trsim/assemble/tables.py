@@ -63,6 +63,12 @@ def turns_by(instance: Instance, index: int) -> bool:
     return instance.element.rows[index].startswith(("tilt", "turn"))
 
 
+def judged(instances: Sequence[Instance]) -> NDArray[np.int64]:
+    """The frames (n, 2) of instances whose channels are judged."""
+    found = [x.row.con[:2] for x in instances if x.element.judged(x.row)]
+    return np.array(found, np.int64).reshape(-1, 2)
+
+
 def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
     """Per kind of kernel a table of (address, first row, end row)."""
     spans: dict[str, list[int]] = {}

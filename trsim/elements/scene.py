@@ -83,6 +83,7 @@ class Model(Packed):
     near: f8  # pivot below which it is asked; 0: where rows do depend on each other only
     near_rows: f8  # the same of what is measured
     looped: I1  # rigid bodies in kinematic loops    assemble/loops.py
+    judged: I2  # (n, 2) frames of what judges how far one is turned against the other: bushings
     tolerance: f8  # asked for, of the units of the error norm
     plain: i8  # address of what leaves Baumgarte's feedback out of what is measured, or 0
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION

@@ -258,7 +258,7 @@ def next_step(s, r, b, setting):
     most = min(setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
     if setting[FIXED_STEP] > 0.0:
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
-    if s.wound.size + s.section.shape[0] + s.looped.size > 0:
+    if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
         most = min(most, longest_turn(s, r))
     h = min(r.clock[H], most)
     if min(STRETCH * h, most) >= left * (1.0 - 1e-12):

@@ -41,8 +41,9 @@ def too_far(s, r, b, h):
 def longest_turn(s, r):
     """The longest step that turns no joint by more than is sure to be counted, s.
 
-    Where points of sections are looked for none turns a body by more than WHOLE.  In loops none
-    moves a body further than passes.py can follow what becomes of its rows.
+    Nor is a turn passed over that is judged, as that of a bushing.  Where points of sections are
+    looked for none turns a body by more than WHOLE.  In loops none moves a body further than
+    passes.py can follow what becomes of its rows.
     """
     longest = 1e300
     if s.section.shape[0] > 0:
@@ -52,9 +53,23 @@ def longest_turn(s, r):
         longest = min(longest, MOST_WAVES / max(w, 1e-300))
     if s.looped.size > 0:
         longest = min(longest, IN_LOOPS / max(fastest_in_loops(s, r.y), 1e-300))
+    for n in range(s.judged.shape[0]):
+        rate = turning(s, r.y, s.judged[n, 0]) + turning(s, r.y, s.judged[n, 1])
+        longest = min(longest, NEXT * MOST / max(rate, 1e-300))
     for n in range(s.wound.size):
         longest = min(longest, NEXT * MOST / max(abs(r.turning[s.wound[n]]), 1e-300))
     return longest
+
+
+@internal
+def turning(s, y, f):
+    """The angular velocity of a rigid body, rad/s; 0 of the ground and of nodes."""
+    if f == 0 or f >= s.n_r:
+        return 0.0
+    o = s.n_q + s.d * (f - 1)
+    if s.d == 3:
+        return abs(y[o + 2])
+    return sqrt(y[o + 3] ** 2 + y[o + 4] ** 2 + y[o + 5] ** 2)
 
 
 @internal
