@@ -11,7 +11,8 @@ they are distributed.
 
 Where steps happen to lie changes their number by some per cent, next to singular places and in
 chaotic motion by more.  So a case is DRAWS runs, with tolerances from the one named to SPREAD times
-that; clearances that are in chaotic motion differ by CHANCE too.
+that; clearances that are in chaotic motion differ by CHANCE too.  Of all settings of a problem the
+geometric mean of their ratios is taken pair by pair.
 """
 
 import argparse
@@ -21,7 +22,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from math import comb
 from pathlib import Path
-from statistics import median
+from statistics import geometric_mean, median
 from typing import Any
 
 ROOT = Path(__file__).parent.parent
@@ -47,7 +48,7 @@ def cases() -> dict[str, tuple[str, list[str]]]:
             str(VALIDATION / "andrews.yaml"),
             [f"solver.tolerance={tolerance}"],
         )
-    for n, tolerance in ((2, "1e-6"), (10, "1e-6"), (2, "1e-8")):
+    for n, tolerance in ((2, "1e-6"), (10, "1e-6"), (40, "1e-6"), (2, "1e-8")):
         found[f"P4 N={n} {tolerance}"] = (windows(n), [f"solver.tolerance={tolerance}"])
     found["P5 n=40 1e-8"] = (chain(40), [])
     found["P5 n=40 bending 1e-8"] = (bending_chain(40), [])
@@ -122,6 +123,40 @@ def interval(ratios: list[float]) -> tuple[float, float]:
     return ordered[max(k - 1, 0)], ordered[min(n - k, n - 1)]
 
 
+def measured(there: Any, here: Any, times: int, swap: bool) -> tuple[Any, Any]:
+    """CPU and counts of a pair, the first of both in turn."""
+    if swap:
+        two = here(times)
+        return there(times), two
+    one = there(times)
+    return one, here(times)
+
+
+def compared(folder: Path, name: str, source: str, sets: list[str], pairs: int) -> list[float]:
+    """The ratios of all pairs of one case, whose row of the table is printed."""
+    first: list[float] = []
+    second: list[float] = []
+    while len(first) < pairs:
+        with worker(folder, source, sets) as there, worker(ROOT, source, sets) as here:
+            there(1), here(1)
+            times = max(1, round(LEAST / DRAWS / min(there(1)[0], here(1)[0])))
+            for pair in range(len(first), min(len(first) + TOGETHER, pairs)):
+                (one, before), (two, after) = measured(there, here, times, pair % 2 == 0)
+                first.append(one / times)
+                second.append(two / times)
+    took = f"{1e3 * median(first):.2f} | {1e3 * median(second):.2f}"
+    counts = " | ".join(f"{before[k]:.0f}, {after[k]:.0f}" for k in after)
+    ratios = [two / one for one, two in zip(first, second, strict=True)]
+    print(f"| {name} | {took} | {told(ratios)} | {counts} |", flush=True)
+    return ratios
+
+
+def told(ratios: list[float]) -> str:
+    """Their median and its interval, as two columns."""
+    low, high = interval(ratios)
+    return f"{median(ratios):.3f} | {low:.3f}..{high:.3f}"
+
+
 def main() -> None:
     read = argparse.ArgumentParser(prog="python -m benchmarks.against", description=__doc__)
     read.add_argument("folder", type=Path)
@@ -130,30 +165,15 @@ def main() -> None:
     a = read.parse_intermixed_args()
     print("| case | ms there | ms here | ratio | 95 % | steps | rejected | evaluations |")
     print("|---|---|---|---|---|---|---|---|")
+    problems: dict[str, list[list[float]]] = {}
     for name, (source, sets) in cases().items():
-        if a.case and not any(name.startswith(one) for one in a.case):
-            continue
-        first: list[float] = []
-        second: list[float] = []
-        while len(first) < a.pairs:
-            with worker(a.folder, source, sets) as there, worker(ROOT, source, sets) as here:
-                there(1), here(1)
-                times = max(1, round(LEAST / DRAWS / min(there(1)[0], here(1)[0])))
-                for pair in range(len(first), min(len(first) + TOGETHER, a.pairs)):
-                    if pair % 2:
-                        one, before = there(times)
-                        two, after = here(times)
-                    else:
-                        two, after = here(times)
-                        one, before = there(times)
-                    first.append(one / times)
-                    second.append(two / times)
-        ratios = [two / one for one, two in zip(first, second, strict=True)]
-        low, high = interval(ratios)
-        counts = " | ".join(f"{before[k]:.0f}, {after[k]:.0f}" for k in after)
-        took = f"{1e3 * median(first):.2f} | {1e3 * median(second):.2f}"
-        ratio = f"{median(ratios):.3f} | {low:.3f}..{high:.3f}"
-        print(f"| {name} | {took} | {ratio} | {counts} |", flush=True)
+        if not a.case or any(name.startswith(one) for one in a.case):
+            ratios = compared(a.folder, name, source, sets, a.pairs)
+            problems.setdefault(name.split()[0], []).append(ratios)
+    print("\n| problem | settings | ratio | 95 % |\n|---|---|---|---|")
+    for name, settings in problems.items():
+        together = [geometric_mean(of_pair) for of_pair in zip(*settings, strict=True)]
+        print(f"| {name} | {len(settings)} | {told(together)} |")
 
 
 if __name__ == "__main__":
