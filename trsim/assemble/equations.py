@@ -11,7 +11,7 @@ S = J M^-1 J^T,
 and the reactions on the bodies are -J^T lam.  `derivative` is the table of contents of the physics.
 """
 
-from math import cos, nan, sin
+from math import nan
 
 from trsim.assemble.linear import (
     POOR,
@@ -30,6 +30,7 @@ from trsim.elements.scene import BAUMGARTE
 from trsim.elements.signatures import A1, f8, float64, void
 from trsim.elements.vectors import clear, clear_table
 from trsim.elements.vectors import internal as equation
+from trsim.laws.sine import sine_cosine
 
 #                        scene  t   y   y'
 DERIVATIVE = void(SCENE, f8, A1, A1)
@@ -109,7 +110,7 @@ def poses(s, y):
     if s.d == 3:
         for f in range(1, s.n_r):
             q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
-            cosine, sine = cos(y[q + 2]), sin(y[q + 2])
+            sine, cosine = sine_cosine(y[q + 2])
             X[f, 0], X[f, 1] = y[q], y[q + 1]
             X[f, 3], X[f, 4], X[f, 6], X[f, 7] = cosine, -sine, sine, cosine
             V[f, 0], V[f, 1], V[f, 5] = y[v], y[v + 1], y[v + 2]

@@ -17,10 +17,11 @@ has corners too, though it is the same function on both sides: steps end at its 
 passed over by one that begins before it and ends behind.
 """
 
-from math import atan2, cos, exp, inf, log, pi, sin, sqrt, tan
+from math import atan2, exp, inf, log, pi, sqrt, tan
 
 from trsim.expressions import NOTHING, SOME
 from trsim.laws import law
+from trsim.laws.sine import sine_cosine
 from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
 
 ADD, SUB, MUL, DIV, POW, MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE = range(14)
@@ -152,9 +153,9 @@ def single(code, a):
     if code == SQRT:
         return sqrt(a)
     if code == SIN:
-        return sin(a)
+        return sine_cosine(a)[0]
     if code == COS:
-        return cos(a)
+        return sine_cosine(a)[1]
     if code == TAN:
         return tan(a)
     if code == EXP:
@@ -201,9 +202,11 @@ def single_rates(code, a):
         f = sqrt(a)
         return f, 0.5 / f, -0.25 / (f * a)
     if code == SIN:
-        return sin(a), cos(a), -sin(a)
+        s, c = sine_cosine(a)
+        return s, c, -s
     if code == COS:
-        return cos(a), -sin(a), -cos(a)
+        s, c = sine_cosine(a)
+        return c, -s, -c
     if code == TAN:
         f = tan(a)
         return f, 1.0 + f * f, 2.0 * f * (1.0 + f * f)
