@@ -36,8 +36,8 @@ NEAR = 1e-4  # of it: an extreme so near a known place is known
 AWAY = 0.1  # of the way to the next known place
 NOT_LAID = -1.0
 LEAST = 1e-300  # not to divide zero by zero
-# times the error of a polynomial next to a sample where its channel turns back: on which side of it
-# must be plain
+# times the error of a polynomial next to a sample where its channel turns back, or that no sample
+# follows: on which side of it must be plain
 TURNED = 4.0
 
 
@@ -193,6 +193,8 @@ def bounds(r, b, ahead):
     if n >= ENOUGH:  # no more than `lacking` may say
         size_of_last /= 1.0 - SLOWEST
         size_of_second = size[n - 2] / (1.0 - SLOWEST)
+    if ahead == 0:
+        size_of_last, size_of_second = TURNED * size_of_last, TURNED * size_of_second
     for c in range(beyond.size):
         more = max(abs(last[c]) * size_of_last, abs(second[c]) * size_of_second)
         bend = 4.0 * (beyond[c] + more)
@@ -243,7 +245,7 @@ def through(r, b, ahead, c, sign):
         doubt(b, n, 1.0)
         return n
     n, surer = min(r.count[SAMPLES] + found, POINTS), 1.0
-    if turns(r, ahead, c) or turns(r, ahead + 1, c):
+    if ahead == 0 or turns(r, ahead, c) or turns(r, ahead + 1, c):
         surer = TURNED
     if b.laid[0] != found:
         lay(b, nodes(r, b, ahead))
