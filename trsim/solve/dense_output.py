@@ -103,5 +103,5 @@ def measure_at(s, r, b, interpolate, step, at, theta):
     """The same of the place itself."""
     y, P, _, work, projected = step
     call_interpolate(interpolate, P, y, theta, b.y2)
-    evaluate_inside(s, r, at, b.y2, b.rough[0])
+    evaluate_inside(s, r, at, b.y2, b.rough[0], b.rough[1])
     measure(s, at, b.y2, work + theta * projected, r.clock[ENERGY_0])

@@ -15,7 +15,7 @@ from trsim.assemble.projection import (
 )
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
-from trsim.elements.vectors import internal
+from trsim.elements.vectors import copy_to, internal
 from trsim.solve.own_rows import keep_roots
 from trsim.solve.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.watch import watch
@@ -24,6 +24,8 @@ PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be belo
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 NEWTON = 8
 CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
+# of the fastest rate: what velocities change by where a state inside a step comes to another branch
+ASTRAY, OF_TOLERANCE, MOST_ASTRAY = 1e-6, 100.0, 0.1
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
@@ -83,12 +85,15 @@ def land(s, r, b, t, y, yd):
 
 
 @internal
-def evaluate_inside(s, r, t, y, yd):
+def evaluate_inside(s, r, t, y, yd, kept):
     """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
 
     With an eigenvalue of S of d^2 accelerations feel 1/d^2 times what interpolation opens rows by;
     redundant rows are held by others times their levers only.  With Baumgarte's stabilisation too:
     what interpolation opens is not drift.  Without any it would hide the drift.
+
+    Where branches meet, nearer than interpolation is off the rows by, the nearest place on them may
+    be on another branch, whose velocities are others: then y stays as it is.  kept: room for it.
     """
     evaluate(s, t, y, yd)
     if s.m == 0 or s.stabilisation == NONE:
@@ -98,10 +103,23 @@ def evaluate_inside(s, r, t, y, yd):
         pivot = smallest_pivot(s)
         if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
             return
+    copy_to(kept, y)
     close_positions(s, t, y, CLOSED * s.size, NEWTON)
     poses_and_rows(s, t, y)
     project_velocities(s, y)
+    if s.near_rows > 0.0 and elsewhere(s, y, kept):
+        copy_to(y, kept)
     evaluate_to_measure(s, t, y, yd)
+
+
+@internal
+def elsewhere(s, y, kept):
+    """Whether velocities were changed by what no interpolation is off by."""
+    most, change = 0.0, 0.0
+    for k in range(s.n_q, s.n_q + s.n_v):
+        by = s.size if (k - s.n_q) % s.d < s.d // 2 + s.d % 2 and k - s.n_q < s.v_node else 1.0
+        most, change = max(most, abs(kept[k]) / by), max(change, abs(y[k] - kept[k]) / by)
+    return change > max(ASTRAY, min(OF_TOLERANCE * s.tolerance, MOST_ASTRAY)) * most
 
 
 @internal

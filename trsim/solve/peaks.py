@@ -237,7 +237,7 @@ def guess(s, r, b, method, h, projected, earlier):
     for k in range(b.y2.size):
         b.y2[k] = 0.5 * (y0[k] + y1[k]) + 0.125 * h * (yd0[k] - yd1[k])
     middle = t + 0.5 * h
-    evaluate_inside(s, r, middle, b.y2, b.rough[0])
+    evaluate_inside(s, r, middle, b.y2, b.rough[0], b.rough[1])
     measure(s, middle, b.y2, work + 0.5 * done, r.clock[ENERGY_0])
     gather(s, b.full, s.out, b.inside[0])
     b.found[0], b.found[1] = 1.0, middle
