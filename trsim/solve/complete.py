@@ -77,6 +77,7 @@ from trsim.solve.record import (
     WORST_PHI_DOT,
     T,
 )
+from trsim.solve.samples import firmness
 from trsim.solve.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.turns import too_far
 from trsim.solve.watch import take_sides
@@ -160,6 +161,7 @@ def complete(s, r, b, setting, method, h, built):
                 projected = land(s, r, b, t1, b.y1, b.K[last])
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     copy_to(b.out, s.out)
+    b.firm[1] = firmness(s)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
     inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.count[NEXT_ROW], t1)
@@ -172,13 +174,14 @@ def complete(s, r, b, setting, method, h, built):
         if not rows_until(s, r, b, setting, method, t, h, t1, projected):
             return WORTHLESS
         for k in range(first, r.count[ROWS]):
-            row = b.rows[k]
+            row, b.firm[0] = b.rows[k], b.row_firm[k]
             built = call_sample(
                 method[SAMPLE_AT], s, r, b, setting, method, t, h, row[0], row[1:], projected, built
             )  # fmt: skip
     if unseen:
         for k in range(1, LOOKS):
             look_inside(s, r, b, setting, method, t, h, t + k / LOOKS * (t1 - t), projected)
+    b.firm[0] = b.firm[1]
     built = call_sample(
         method[SAMPLE_AT], s, r, b, setting, method, t, h, t1, b.out, projected, built
     )  # fmt: skip

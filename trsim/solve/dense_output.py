@@ -7,6 +7,7 @@ from trsim.solve.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
 from trsim.solve.earlier import this_step
 from trsim.solve.land import evaluate_inside
 from trsim.solve.record import DENSE_BUILT, ENERGY_0
+from trsim.solve.samples import firmness
 
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
 NOISE, PLAIN = 1e-12, 1e-2  # 100 times that; a pivot that always serves
@@ -65,6 +66,7 @@ def measure_in(s, r, b, interpolate, step, at, theta):
     own value is nearer to that than the one through four is.
     """
     measure_at(s, r, b, interpolate, step, at, theta)
+    b.firm[0] = firmness(s)
     if s.redundant.shape[0] == 0 or theta == 0.0:
         return
     least = min(PLAIN, (NOISE / s.tolerance) ** (2.0 / 3.0))

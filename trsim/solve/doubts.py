@@ -10,6 +10,7 @@ waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
 energy     the book of the run does not close
 branches   the run changed from one to another where they nearly meet     solve/crossed.py
+extremes   of forces are chance, next to where rows depend on each other     solve/chance.py
 rows       that were left out as redundant are open, though not so far that the run ended
 """
 
@@ -28,6 +29,7 @@ from trsim.elements.contract import STORED
 from trsim.elements.scene import PROJECTION, scene
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
+from trsim.solve.chance import of_extremes
 from trsim.solve.crossed import of_branches
 from trsim.solve.mesh_error import of_meshes
 from trsim.solve.openings import apart
@@ -71,6 +73,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_rows(mechanism, outcome),
         *of_events(outcome),
         *of_branches(mechanism, outcome.record),
+        *of_extremes(mechanism, outcome),
     )
 
 

@@ -229,6 +229,7 @@ def new_record(
         clock=np.zeros(rec.N_CLOCK),
         count=np.zeros(rec.N_COUNT, np.int64),
         peak=np.zeros((rec.N_PEAK, model.n_out + len(model.vector))),
+        firm=np.ones((2, model.n_out + len(model.vector))),
         book=np.zeros((1 + N_STORED, 2)),
         sampled=np.zeros(rec.POINTS),
         earlier=np.zeros((4 if len(model.kin) else 0, begun.y.size)),

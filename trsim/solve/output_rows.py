@@ -33,9 +33,11 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
         row[0] = t_o
         if at_end(t_o, t1):
             copy_to(row[1:], b.out)
+            b.row_firm[r.count[ROWS]] = b.firm[1]
         else:
             measure_inside(s, r, b, method[INTERPOLATE_AT], t_o, (t_o - t) / h, projected)
             copy_to(row[1:], s.out)
+            b.row_firm[r.count[ROWS]] = b.firm[0]
             if method[LOOK_AT] > 0:
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2, 0)
         if not all_finite(row):

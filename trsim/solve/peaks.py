@@ -81,12 +81,12 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
     """
     if s.sought.size == 0:  # no channel is told
         gather(s, b.full, values, b.inside[0])
-        known_extremes(s, r, b.full, at)
+        known_extremes(s, r, b, at)
         return built
     if r.count[SAMPLES] > 0 and at <= r.sampled[r.count[NEWEST]]:
         return built
     own = push(s, r, b, at, values)
-    known_extremes(s, r, b.full, at)
+    known_extremes(s, r, b, at)
     if own:
         if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 2:
             built = between(s, r, b, setting, method, t, h, 1, projected, built)
@@ -204,7 +204,7 @@ def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
             aside_before = True
         said = polynomial(b.node, n, place, 0.0)
         if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
-            extreme(r.peak, o, place, sign * said)
+            extreme(r, o, place, sign * said, b.firm[0])
             break
         if int(b.found[0]) + 1 >= b.found.size:
             break
@@ -223,7 +223,7 @@ def look(s, r, b, method, h, place, projected, built, earlier):
     place = min(place, t + h)
     measure_in(s, r, b, method[INTERPOLATE_AT], step, place, (place - t) / h)
     gather(s, b.full, s.out, b.inside[k])
-    known_extremes(s, r, b.full, place)
+    known_extremes(s, r, b, place)
     b.found[0], b.found[1 + k] = k + 1.0, place
     return 1
 

@@ -170,6 +170,7 @@ class Record(Packed):
     clock: A1
     count: I1
     peak: A2  # (N_PEAK, n_c) extremes of channels and magnitudes
+    firm: A2  # (2, n_c) the least pivot of rows where each was taken, 1 in open chains   samples.py
     book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
     sample: A2  # (POINTS, n_k) last values of those that are sought inside steps
     sampled: A1  # (POINTS) when those were taken
@@ -231,6 +232,8 @@ class Buffers(Packed):
     gap1: A2  # (n_contacts + n_w, 2)
     corner1: A1  # (n_contacts)
     full: A1  # (n_c) all channels and magnitudes
+    firm: A1  # (2) the least pivot of rows where channels were measured last, and at the step's end
+    row_firm: A1  # (n) the same of every output row
     inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
     found: A1  # (1 + FOUND) how often, and when
     node: A2  # (5, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), factors
@@ -285,6 +288,8 @@ def fresh_buffers(
         gap1=np.zeros((contacts + watched, 2)),
         corner1=np.zeros(contacts),
         full=np.zeros(model.n_out + len(model.vector)),
+        firm=np.ones(2),
+        row_firm=np.ones(max(1024, 2 * step_rows + 16)),
         inside=np.zeros((FOUND, len(model.kin))),
         found=np.zeros(1 + FOUND),
         node=np.zeros((5, POINTS)),

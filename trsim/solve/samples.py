@@ -18,6 +18,7 @@ Samples on two sides of an event have nothing to do with each other: `restart`.
 
 from math import sqrt
 
+from trsim.assemble.linear import smallest_pivot
 from trsim.elements.vectors import internal
 from trsim.solve.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
 from trsim.solve.record import (
@@ -45,7 +46,8 @@ TURNED = 4.0
 def restart(s, r, b, t):
     """Begin anew with the channels in s.out, those behind an event."""
     gather(s, b.full, s.out, r.sample[0])
-    known_extremes(s, r, b.full, t)
+    b.firm[0] = firmness(s)
+    known_extremes(s, r, b, t)
     for c in range(s.sought.size):
         r.slope[0, c] = r.sample[0, c]
     r.count[NEWEST], r.count[SAMPLES], r.count[UNSEEN], r.sampled[0] = 0, 1, 0, t
@@ -119,26 +121,35 @@ def gather(s, full, values, sought):
 
 
 @internal
-def known_extremes(s, r, full, t):
-    """Take all channels of one time into their extremes; the sizes of those of one kind follow."""
-    high, low, beyond = r.peak[PEAK_MAX], r.peak[PEAK_MIN], 0
+def known_extremes(s, r, b, t):
+    """Take all channels of one time, in b.full, into their extremes; the sizes of those of one kind
+    follow.  b.firm[0] is the least pivot there."""
+    full, high, low, beyond = b.full, r.peak[PEAK_MAX], r.peak[PEAK_MIN], 0
     for c in range(full.size):
         beyond += int(full[c] > high[c]) + int(full[c] < low[c])
     if beyond == 0:
         return
     for c in range(full.size):
-        extreme(r.peak, c, t, full[c])
+        extreme(r, c, t, full[c], b.firm[0])
     for k in range(s.kin.size):
         r.largest[s.kin[k]] = max(r.largest[s.kin[k]], s.lever[k] * abs(full[s.sought[k]]))
 
 
 @internal
-def extreme(p, c, t, value):
-    """Take a value into the extremes p of channel c."""
+def extreme(r, c, t, value, pivot):
+    """Take a value into the extremes of channel c; pivot: the least of the rows there."""
+    p = r.peak
     if value > p[PEAK_MAX, c]:
-        p[PEAK_MAX, c], p[PEAK_MAX_T, c] = value, t
+        p[PEAK_MAX, c], p[PEAK_MAX_T, c], r.firm[0, c] = value, t, pivot
     if value < p[PEAK_MIN, c]:
-        p[PEAK_MIN, c], p[PEAK_MIN_T, c] = value, t
+        p[PEAK_MIN, c], p[PEAK_MIN_T, c], r.firm[1, c] = value, t, pivot
+
+
+@internal
+def firmness(s):
+    """How far rows are from depending on each other at the last evaluation: where they nearly do,
+    what they carry is chance (doubts.py).  Of open chains, which have no such places, 1."""
+    return smallest_pivot(s) if s.near_rows > 0.0 else 1.0
 
 
 # --- polynomials between two neighbours: `ahead` samples are newer than the later of them --------
