@@ -814,15 +814,31 @@ def copied(a, b):
 
 
 @compiled
-def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singular):
+def kept_end(ends, k, t, stretch, y, yd, lam, told):
+    """The end of a step kept as the k-th, if there is room; how many there are."""
+    if k >= len(ends[0]):
+        return k
+    ends[0][k, 0], ends[0][k, 1] = t, stretch
+    copied(y, ends[1][k])
+    copied(yd, ends[2][k])
+    copied(lam, ends[3][k])
+    for f in range(len(told)):
+        copied(told[f], ends[4][k, f])
+    return k + 1
+
+
+@compiled
+def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singular, room):
     """Integrate over the times.
 
     deep (w): how far each has been on the side it is on.  singular: the least pivot let pass.
+    room: for so many ends of steps, which are returned too; a crossing is there twice, with the
+    sides before it and behind it.
 
     Returns rows of y, y', multipliers, forces; crossings (time, watched, rate, new side, how far it
     was on the old side, all coordinates, all rates); touches of zero that turned back or nearly
     got there (time, watched, distance); time, rows, status, steps, the worst residual of a row,
-    the smallest pivot; y.
+    the smallest pivot; y; ends of steps: time, which stretch between crossings, as rows.
     """
     n, n_w, n_t = len(y), len(m.watch), len(times)
     Y, YD = np.full((n_t, n), np.nan), np.full((n_t, n), np.nan)
@@ -837,6 +853,10 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
     g0, g1, gt = np.zeros(n_w), np.zeros(n_w), np.zeros(n_w)
     s0, s1, sm = np.zeros(n_w), np.zeros(n_w), np.zeros(n_w)
     pivot = derivative(m, t, y, side, mem, yd, lam, told)
+    when_at, ends_y, ends_yd = np.empty((room, 2)), np.empty((room, n)), np.empty((room, n))
+    ends_lam, ends_f = np.empty((room, len(m.row))), np.empty((room, len(m.force), 4))
+    ends = (when_at, ends_y, ends_yd, ends_lam, ends_f)
+    n_e, stretch = kept_end(ends, 0, t, 0, y, yd, lam, told), 0
     watched(m, t, y, g0)
     h, row, worst, status, steps = min(h_max, 1e-3), 0, 0.0, DONE, 0
     rejected = False
@@ -939,6 +959,7 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
         t = times[row] if hit and which < 0 else t + when
         copied(out, y)
         pivot = min(pivot, derivative(m, t, y, side, mem, yd, lam, told))
+        n_e = kept_end(ends, n_e, t, stretch, y, yd, lam, told)
         watched(m, t, y, g0)
         for k in range(n_w):
             if k != which:
@@ -966,10 +987,14 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
                 mem[m.watch[which, 1]] = m.force_par[m.watch[which, 1], 13]
             h = min(h, 1e-2 * h + 1e-6)
             derivative(m, t, y, side, mem, yd, lam, told)
-            ends = m.watch[which, 2]
-            if ends == 1 and (m.watch[which, 3] == 0 or m.watch[which, 3] == side[which]):
+            stretch += 1
+            n_e = kept_end(ends, n_e, t, stretch, y, yd, lam, told)
+            if m.watch[which, 2] == 1 and (
+                m.watch[which, 3] == 0 or m.watch[which, 3] == side[which]
+            ):
                 status = STOPPED
                 break
     return (
         (Y, YD, LAM, F), crossed[:n_x], grazed[:n_g], (t, row, status, steps, worst, pivot), y,
+        (when_at[:n_e], ends_y[:n_e], ends_yd[:n_e], ends_lam[:n_e], ends_f[:n_e]),
     )  # fmt: skip

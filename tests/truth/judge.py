@@ -4,7 +4,7 @@ wrong: ended well, with a number off by more than
 
     bound = min(WHOLE, max(100 tolerance, 10 stated error)) growth
 
-of its scale; growth is by how much more than EASY times a small change of the start has grown by
+of its scale, at a row or in an extreme between rows (extremes.py); growth is by how much more than EASY times a small change of the start has grown by
 then (1 at least), by the reference itself, in places and speeds (before a scene is told to be wrong
 also changes of the speeds on the way, at eight times); where a channel has grown by more at a row,
 as forces do in contacts, its growth there is taken.  Nothing is judged where the bound is above
@@ -25,6 +25,7 @@ from trsim.solve.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
 from trsim.solve.simulate import simulate
 from trsim.spec.load import loads
 
+from .extremes import beyond
 from .reference import Channel, Crossing, Truth, size
 from .scene import Event, Limit, Scene, Section, Wall
 
@@ -76,6 +77,9 @@ class Ran:
     user: dict[str, np.ndarray] = field(default_factory=dict)  # times of user events
     status: str = ""
     time: float = 0.0
+    # (k, 4) of what is told between rows: largest, when, least, when; a magnitude's: the largest
+    extremes: dict[str, np.ndarray] = field(default_factory=dict)
+    magnitudes: dict[str, np.ndarray] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.rows[:, self.place[name]]
@@ -110,8 +114,17 @@ def ran(text: str) -> Ran:
             event.name: events[events[:, EVENT_ROW] == len(mechanism.instances) + 1 + k, EVENT_TIME]
             for k, event in enumerate(mechanism.stages.switches.events)
         },
-        str(outcome.status), outcome.time,
+        str(outcome.status), outcome.time, *told_extremes(mechanism, outcome.peaks),
     )  # fmt: skip
+
+
+def told_extremes(mechanism: Any, peaks: np.ndarray) -> tuple[dict[str, np.ndarray], ...]:
+    """Extremes of the channels that are looked at between rows, and of magnitudes."""
+    m = mechanism.model
+    sought, columns = set(m.sought.tolist()), mechanism.columns
+    of = {c.start: c.name for c in columns}
+    single = {c.name: peaks[c.start : c.start + c.size] for c in columns if c.start in sought}
+    return single, {of[at]: peaks[m.n_out + k] for k, at in enumerate(m.vector.tolist())}
 
 
 def stated(r: Ran) -> float:
@@ -170,6 +183,8 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
         if name in r.place and len(k):
             worst.append(compared(scene, t, r, name, c, top, bound, k, at, share))
     crossings(scene, t, r, tolerance, bound, use, top, worst)
+    if use.all():
+        worst += beyond(scene, t, r, float(bound.max()), top, share)
     v.ratio, v.what = max(worst, key=lambda x: x[0] if x[0] == x[0] else np.inf)
     v.grazing = len(t.grazing)
     if not v.ratio <= 1.0:

@@ -1,6 +1,6 @@
 """The truth about a scene: read by rules of its own, integrated by engine.py, told as channels."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -38,6 +38,7 @@ LADDER = ((1e-12, 3e-11), (1e-10, 1e-9), (1e-9, 1e-8))  # rtol of the truth and 
 PARTS = (1.0, 0.4, 0.12)  # of the time a row may be off by
 LEAST_PIVOT = 1e-13
 APART = 1e-7  # perturbation of the second run
+ROOM = 20000  # ends of steps
 CHANGES = 8  # of a run that is changed on the way
 MARGIN = 1e-3  # of 1: nearer turning points are told as grazing
 
@@ -412,6 +413,14 @@ class Channel:
 
 
 @dataclass
+class Smooth:
+    """Channels where nothing changes its equations."""
+
+    times: np.ndarray
+    values: dict[str, np.ndarray]  # (n, k) each
+
+
+@dataclass
 class Crossing:
     name: str
     time: float
@@ -435,6 +444,9 @@ class Truth:
     felt: dict[str, np.ndarray] = field(default_factory=dict)  # the same of every channel and row
     about: list[dict[str, Channel]] = field(default_factory=list)  # a little before and after
     steps: int = 0
+    smooth: list[Smooth] | None = None  # between the rows, for extremes
+    # the same of a run that began a little apart, made when it is asked for
+    beside: Callable[[], list[Smooth] | None] = lambda: None
     size: float = 1.0
     mass: float = 0.0  # of the lightest body
     gravity: float = 0.0
@@ -457,16 +469,18 @@ class Course:
 
     def __init__(
         self, scene: Scene, times: np.ndarray, rtol: float, apart: float = 0.0, turn: float = 0.12,
-        speeds: Any = 0.0, parts: int = 1,
+        speeds: Any = 0.0, parts: int = 1, room: int = 0,
     ) -> None:  # fmt: skip
-        """apart, speeds: a change of the start; parts: into which the run is cut by others."""
+        """apart, speeds: a change of the start; parts: into which the run is cut by others;
+        room: for ends of steps, which are kept for extremes."""
         self.s, self.times = scene, times
         self.stage = Stage()
         self.parts: list[tuple[Builder, list[int], np.ndarray, Any]] = []
         self.crossings: list[tuple[Any, np.ndarray, float]] = []
         self.grazing: list[tuple[str, float, float]] = []
         self.ended: float | None = None
-        self.steps = 0
+        self.steps, self.room = 0, room
+        self.ends: list[tuple[Builder, list[int], Any]] = []
         self.go(rtol, apart, turn, speeds, parts)
 
     def go(self, rtol: float, apart: float, turn: float, speeds: Any, parts: int) -> None:
@@ -492,9 +506,10 @@ class Course:
         while True:
             found = e.march(
                 m, t, y, side, mem, deep, self.times[at : stops[0]], h_max, turn, rtol, size, 20000,
-                floor,
+                floor, self.room,
             )  # fmt: skip
-            rows, crossed, grazed, (t, n, status, steps, worst, _), y = found
+            rows, crossed, grazed, (t, n, status, steps, worst, _), y, ends = found
+            self.ends.append((b, kept, ends))
             self.steps += steps
             if status in (e.STUCK, e.TOO_MANY) or (status == e.SINGULAR and floor == LEAST_PIVOT):
                 raise Unfit(f"the reference stopped at {t:g} with {status}")
@@ -574,6 +589,20 @@ class Course:
             stage.locked[name] = float(q[b.coordinate[name]])
         for name in event.unlock:
             stage.locked.pop(name, None)
+
+    def smooth(self) -> list[Smooth] | None:
+        """All channels at the ends of steps, a stretch between crossings each; None where there
+        was no room for all."""
+        found = []
+        for b, kept, ends in self.ends:
+            if len(ends[0]) == self.room:
+                return None
+            values = {name: c for name, c, *_ in told(self.s, b, kept, ends[0], ends[1:])}
+            t, number = ends[0].T
+            for k in np.unique(number):
+                part = number == k
+                found.append(Smooth(t[part], {name: c[part] for name, c in values.items()}))
+        return found
 
     def channels(self) -> dict[str, Channel]:
         """All channels at the times, from the parts."""
@@ -711,10 +740,11 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
     shifts = [sign * part * dt for part in PARTS for sign in (-1, 1)]
     every = [np.clip(rows + x, 0, scene.end) for x in shifts]
     times = np.unique(np.concatenate([rows, *every]))
-    main = Course(scene, times, tight)
+    main = Course(scene, times, tight, room=ROOM)
     apart = Course(
-        scene, rows, loose, apart=APART, speeds=np.repeat([top["speed"], top["spin"]], 3)
-    )
+        scene, rows, loose, apart=APART, speeds=np.repeat([top["speed"], top["spin"]], 3),
+        room=ROOM,
+    )  # fmt: skip
     all_of = main.channels()
     n = sum(len(part[2]) for part in main.parts)
 
@@ -730,6 +760,7 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
     t.sure, t.growth = spread(t, other, 1.0), spread(t, apart, APART)
     t.felt = felt(t, apart, APART)
     t.crossings = list(listed(scene, main))
+    t.smooth, t.beside = main.smooth(), apart.smooth
     return t
 
 

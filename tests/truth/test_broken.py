@@ -36,6 +36,17 @@ BREAKS = {
             ),
         ],
     ),
+    # extremes are those of rows and ends of steps
+    "peaks": (
+        "loop",
+        [
+            (
+                "trsim/solve/peaks.py",
+                "    if s.sought.size == 0:  #",
+                "    if s.sought.size >= 0:  #",
+            )
+        ],
+    ),
     # steps may turn a joint by any angle
     "branch": (
         "turns",

@@ -7,8 +7,8 @@ import pytest
 import yaml
 
 from .families import FAMILIES
-from .judge import RIGHT, TOLD, UNJUDGED
-from .trial import cautious
+from .judge import RIGHT, TIMES, TOLD, UNJUDGED, WRONG, Verdict, judged, ran
+from .trial import cautious, made, true
 
 SEEDS = range(5)
 LISTED = yaml.safe_load((Path(__file__).parent / "regressions.yaml").read_text())
@@ -38,9 +38,30 @@ def test_scenes_that_were_wrong_are_right(one):
     assert v.verdict in (RIGHT, TOLD), told(v)
 
 
-def test_same_seed_same_scene():
-    from .trial import made
+@pytest.mark.parametrize(("family", "seed"), [("chain_planar", 1), ("loop", 4), ("events", 3)])
+def test_extremes_of_rows_alone_are_wrong(family, seed):
+    drawn = made(family, seed)
+    s, r = drawn.scene, ran(drawn.scene.text())
+    t = true(drawn, TIMES * s.tolerance)
+    assert judged(s, t, r, Verdict(family, seed, RIGHT, s.method, s.tolerance)).verdict == RIGHT
+    for name, extremes in r.extremes.items():
+        extremes[:, 0], extremes[:, 2] = r[name].max(axis=0), r[name].min(axis=0)
+    v = judged(s, t, r, Verdict(family, seed, RIGHT, s.method, s.tolerance))
+    assert v.verdict == WRONG
+    assert "largest" in v.what or "least" in v.what
 
+
+def test_extremes_beyond_what_there_is_are_wrong():
+    drawn = made("loop", 4)
+    s, r = drawn.scene, ran(drawn.scene.text())
+    t = true(drawn, TIMES * s.tolerance)
+    for extremes in r.extremes.values():
+        extremes[:, 0] += 0.01 * (extremes[:, 0] - extremes[:, 2])
+    v = judged(s, t, r, Verdict("loop", 4, RIGHT, s.method, s.tolerance))
+    assert v.verdict == WRONG
+
+
+def test_same_seed_same_scene():
     for family in FAMILIES:
         assert made(family, 3).scene.text() == made(family, 3).scene.text()
     assert not np.array_equal(made("spinning", 3).scene.turned, made("spinning", 4).scene.turned)
@@ -50,7 +71,6 @@ def test_errors_made_on_the_way_may_grow_by_more_than_those_of_the_start():
     """A four-bar that starts slowly next to where it could stand still, and comes by there again:
     what changes its energy while it is fast decides when it leaves; the start changes it little."""
     from .reference import growth_of_later, truth
-    from .trial import made
 
     slow, quick = made("loop", 3070331963).scene, made("loop", 4198079357).scene
     t = truth(slow, 0.1)

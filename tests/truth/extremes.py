@@ -1,0 +1,121 @@
+"""Extremes as trsim stores them against those of the reference at the ends of its own steps.
+
+Those are many (a fiftieth of a turn, all crossings from both sides), and hold on one side: no
+stored extreme is nearer than the largest of them.  On the other side it is not further than the
+polynomial through the ends around it goes, and what one of lower order says otherwise.  Allowed is
+what is allowed at the rows, and what a small change of the start makes of the extreme itself.
+Forces that the run calls chance are not judged.
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from .reference import APART, Smooth, Truth
+from .scene import Scene
+
+FEWEST = 5  # ends of steps in a stretch whose polynomials say anything
+APART_BY = 0.2  # of the median step: nearer ends say nothing more
+PLACES = 33
+UNSURE = 3.0  # times the difference of both polynomials
+PLAIN = 0.1  # of what is allowed: so much beyond an end of a step needs no polynomial
+CLOSE = 0.01  # of the range: lower tops are no extremes
+CHANCE = "are chance"
+
+
+def beyond(
+    scene: Scene, t: Truth, r: Any, bound: float, top: dict[str, float], share: float
+) -> Iterator[tuple[float, str]]:
+    """How far each extreme is off over what is allowed, and where."""
+    if not t.smooth:
+        return
+    loose = any(CHANCE in text for text in r.warnings)
+    beside: list[Smooth] | None = None
+    for name, c in t.channels.items():
+        if name not in r.extremes or (loose and c.kind in ("force", "moment")):
+            continue
+        unit = scene.unit(c.dims)  # type: ignore[arg-type]
+        soft = max((np.nanmax(np.abs(a[name].values - c.values)) for a in t.about), default=0.0)
+        soft += share * float(np.max(t.felt[name], initial=0.0)) if name in t.felt else 0.0
+        Q = scene.turned if c.vector else np.eye(c.values.shape[1])
+        parts = series(t.smooth, name, Q)
+        largest = max(float(np.abs(x).max(initial=0.0)) for _, x in parts)
+        allowed = bound * max(top[c.kind], largest) + soft
+        for what, got, when, of in stored(name, r, unit):
+            ratio, want = off(got, [(x, of(v)) for x, v in parts], allowed)
+            if ratio > 1.0:  # a small change of the start may make more of it
+                beside = (t.beside() or []) if beside is None else beside
+                two = [of(v).max() for _, v in series(beside, name, Q)]
+                ends = max(of(v).max() for _, v in parts)
+                more = share * abs(max(two) - ends) / APART if two else 0.0
+                ratio, want = off(got, [(x, of(v)) for x, v in parts], allowed + more)
+            yield ratio, f"{what}, {got:.8g} at {when:.6g} for {want:.8g}"
+
+
+def stored(name: str, r: Any, unit: float) -> Iterator[tuple[str, float, float, Any]]:
+    """Extremes of a channel: which, its value (of a least one with the other sign), its time, and
+    what of the channel it is the largest of."""
+    for k, (high, t_high, low, t_low) in enumerate(r.extremes[name]):
+        yield f"largest {name}[{k}]", high / unit, t_high, lambda v, k=k: v[:, k]
+        yield f"least {name}[{k}] (-)", -low / unit, t_low, lambda v, k=k: -v[:, k]
+    if name in r.magnitudes:
+        high, t_high = r.magnitudes[name][:2]
+        yield f"largest |{name}|", high / unit, t_high, lambda v: np.linalg.norm(v, axis=1)
+
+
+def series(smooth: list[Smooth], name: str, Q: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """A channel, in the axes trsim reads, on every stretch that has it."""
+    return [(p.times, p.values[name] @ Q.T) for p in smooth if name in p.values]
+
+
+def off(got: float, parts: Any, allowed: float) -> tuple[float, float]:
+    """How far a largest value is off over what is allowed; what it should be."""
+    ends = max(float(v.max()) for _, v in parts)
+    allowed = max(allowed, 1e-300)
+    if not np.isfinite(got):
+        return np.inf, ends
+    if got <= ends + PLAIN * allowed:
+        return abs(got - ends) / allowed, ends
+    most, unsure = between(parts, ends)
+    return max(got - most, 0.0) / (allowed + UNSURE * unsure), most
+
+
+def between(parts: Any, ends: float) -> tuple[float, float]:
+    """The largest value of polynomials around the highest ends, and how unsure it is."""
+    most, unsure = ends, 0.0
+    low = min(float(v.min()) for _, v in parts)
+    for t, v in parts:
+        if v.max() < ends - CLOSE * (ends - low):
+            continue
+        if len(t) < FEWEST:
+            return ends, np.inf
+        near = np.append(v, -np.inf) >= ends - CLOSE * (ends - low)
+        tops = np.flatnonzero(near[:-1] & (v >= np.append(v[1:], -np.inf))
+                              & (v >= np.append(-np.inf, v[:-1])))  # fmt: skip
+        for i in tops:
+            x = np.linspace(t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)], PLACES)
+            fine, rough = (through(t, v, i, n, x) for n in (7, 5))
+            k = int(np.argmax(fine))
+            most = max(most, float(fine[k]))
+            unsure = max(unsure, float(np.abs(fine - rough).max()))
+    return most, unsure
+
+
+def through(t: np.ndarray, v: np.ndarray, i: int, n: int, x: np.ndarray) -> np.ndarray:
+    """The polynomial through n ends around the i-th, those apart from each other, at x."""
+    apart = APART_BY * float(np.median(np.diff(t)))
+    chosen = [i]
+    for k in sorted(range(len(t)), key=lambda k: abs(t[k] - t[i])):
+        if len(chosen) < n and min(abs(t[k] - t[j]) for j in chosen) > apart:
+            chosen.append(k)
+    nodes = t[chosen]
+    weight = np.array([1.0 / np.prod(a - np.delete(nodes, j)) for j, a in enumerate(nodes)])
+    d = x[:, None] - nodes
+    at = np.abs(d) < 1e-300
+    d[at] = 1.0
+    terms = weight / d
+    out = terms @ v[chosen] / terms.sum(axis=1)
+    exact = at.any(axis=1)
+    out[exact] = v[chosen][np.argmax(at[exact], axis=1)]
+    return np.asarray(out)
