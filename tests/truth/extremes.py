@@ -2,7 +2,8 @@
 
 Those are many (a fiftieth of a turn, all crossings from both sides), and hold on one side: no
 stored extreme is nearer than the largest of them.  On the other side it is not further than the
-polynomial through the ends around it goes, and what one of lower order says otherwise.  Allowed is
+polynomial through the ends around it goes, what one of lower order says otherwise, and 1e-5 of the
+range, which is what these know.  Allowed is
 what is allowed at the rows, and what a small change of the start makes of the extreme itself.
 Forces that the run calls chance are not judged.
 """
@@ -16,10 +17,11 @@ from .reference import APART, Smooth, Truth
 from .scene import Scene
 
 FEWEST = 5  # ends of steps in a stretch whose polynomials say anything
-APART_BY = 0.2  # of the median step: nearer ends say nothing more
+AROUND, APART_BY = 20, 0.3  # ends; of their mean distance: nearer ones say nothing more
 PLACES = 33
 UNSURE = 3.0  # times the difference of both polynomials
 PLAIN = 0.1  # of what is allowed: so much beyond an end of a step needs no polynomial
+KNOWN = 1e-5  # of the range: how well polynomials know what no end of a step shows
 CLOSE = 0.01  # of the range: lower tops are no extremes
 CHANCE = "are chance"
 
@@ -78,7 +80,8 @@ def off(got: float, parts: Any, allowed: float) -> tuple[float, float]:
     if got <= ends + PLAIN * allowed:
         return abs(got - ends) / allowed, ends
     most, unsure = between(parts, ends)
-    return max(got - most, 0.0) / (allowed + UNSURE * unsure), most
+    scale = max(float(np.ptp(np.concatenate([v for _, v in parts]))), abs(ends))
+    return max(got - most, 0.0) / (allowed + UNSURE * unsure + KNOWN * scale), most
 
 
 def between(parts: Any, ends: float) -> tuple[float, float]:
@@ -104,11 +107,18 @@ def between(parts: Any, ends: float) -> tuple[float, float]:
 
 def through(t: np.ndarray, v: np.ndarray, i: int, n: int, x: np.ndarray) -> np.ndarray:
     """The polynomial through n ends around the i-th, those apart from each other, at x."""
-    apart = APART_BY * float(np.median(np.diff(t)))
-    chosen = [i]
-    for k in sorted(range(len(t)), key=lambda k: abs(t[k] - t[i])):
-        if len(chosen) < n and min(abs(t[k] - t[j]) for j in chosen) > apart:
-            chosen.append(k)
+    first, last = max(i - AROUND, 0), min(i + AROUND, len(t) - 1)
+    apart = APART_BY * (t[last] - t[first]) / (last - first)
+    sides: list[list[int]] = [[], []]
+    for side, places in zip(
+        sides, (range(i - 1, first - 1, -1), range(i + 1, last + 1)), strict=True
+    ):
+        for k in places:
+            if abs(t[k] - t[(side or [i])[-1]]) > apart:
+                side.append(k)
+    fewer = min(len(side) for side in sides)
+    half = max(n // 2, n - 1 - fewer)  # where one side has not enough the other has more
+    chosen = [i, *(k for side in sides for k in side[:half])][:n]
     nodes = t[chosen]
     weight = np.array([1.0 / np.prod(a - np.delete(nodes, j)) for j, a in enumerate(nodes)])
     d = x[:, None] - nodes

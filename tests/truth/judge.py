@@ -4,10 +4,11 @@ wrong: ended well, with a number off by more than
 
     bound = min(WHOLE, max(100 tolerance, 10 stated error)) growth
 
-of its scale, at a row or in an extreme between rows (extremes.py); growth is by how much more than EASY times a small change of the start has grown by
-then (1 at least), by the reference itself, in places and speeds (before a scene is told to be wrong
-also changes of the speeds on the way, at eight times); where a channel has grown by more at a row,
-as forces do in contacts, its growth there is taken.  Nothing is judged where the bound is above
+of its scale, at a row or in an extreme between rows (extremes.py); growth is by how much more than
+EASY times a small change of the start has grown by then (1 at least), by the reference itself, in
+places and speeds (before a scene is told to be wrong also changes of the speeds on the way, at
+eight times); where a channel has grown by more at a row, as forces do in contacts, its growth there
+is taken.  Nothing is judged where the bound is above
 WHOLE by its growth: beyond the horizon of prediction.  Times of rows may be off by what their
 places may.  Missed crossings are wrong where they are deeper than 10 tolerances.
 """

@@ -16,16 +16,16 @@ from math import sqrt
 import numpy as np
 
 from trsim.assemble.linear import SINGULAR
-from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.mechanism import Column, Mechanism
 from trsim.assemble.projection import project_positions
 from trsim.elements.scene import scene
 from trsim.solve.locked import dependent
 from trsim.solve.outcome import Outcome
 from trsim.solve.record import MEETINGS
 
-# pivots: of places that are no extreme, whatever lies beyond; where branches are known to meet, or
-# rows are redundant; above which rounding is always below the tolerance
-NEAR, KNOWN, FAR = 1e-4, 1e-3, 1e-2
+# pivots below which an extreme is none: where branches are known to meet or rows are redundant; by
+# methods that nobody looks for such places with; anywhere; and above which rounding is no reason
+KNOWN, UNSEEN, NEAR, FAR = 1e-3, 1e-4, 1e-6, 1e-2
 ROUNDING = 1e-14  # 50 times eps: felt 1 / pivot^1.5 times
 REGULAR = 1e-3  # least singular value at a start that is no such place itself
 OF = ("joints", "drives")
@@ -37,39 +37,66 @@ def of_extremes(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     model, r = mechanism.model, outcome.record
     if r is None or not model.near_rows > 0.0 or not np.min(r.firm, initial=1.0) < FAR:
         return
-    known = len(model.redundant) > 0 or r.count[MEETINGS] > 0
-    least = max(KNOWN if known else NEAR, min(FAR, (ROUNDING / model.tolerance) ** (2.0 / 3.0)))
-    least *= of_masses(mechanism, outcome)
-    section = {instance.name: instance.section for instance in mechanism.instances}
+    regular = dependent(mechanism, 0.0, outcome.start.y)[1]
+    least = min(FAR, (ROUNDING / model.tolerance) ** (2.0 / 3.0))
+    least = max(least, certain(mechanism, outcome, regular))
+    least *= of_masses(mechanism, outcome, regular)
+    sizes = [(c, forces(mechanism, outcome, c)) for c in of_joints(mechanism)]
+    enough = model.tolerance * max((max(largest) for _, largest in sizes), default=0.0)
     found: dict[str, tuple[float, float, float, str]] = {}
-    for column in mechanism.columns:
-        name = column.name.split(".")[0]
-        if column.unit not in ("N", "N*m") or section.get(name) not in OF or not column.wanted:
-            continue
-        for c in range(column.start, column.start + column.size):
-            for side in (0, 1):
+    for column, largest in sizes:
+        for k, much in enumerate(largest):
+            c, side = column.start + k // 2, k % 2
+            if r.firm[side, c] < least and much > enough:
                 value, t = outcome.peaks[c, 2 * side : 2 * side + 2].tolist()
-                if r.firm[side, c] < least and value != 0.0:
-                    one = (abs(value), t, float(r.firm[side, c]), f"{value:.3g} {column.unit}")
-                    found[column.name] = max(found.get(column.name, one), one)
-    if not found:
-        return
+                one = (much, t, float(r.firm[side, c]), f"{value:.3g} {column.unit}")
+                found[column.name] = max(found.get(column.name, one), one)
+    if found:
+        yield sentence(mechanism, found)
+
+
+def sentence(mechanism: Mechanism, found: dict[str, tuple[float, float, float, str]]) -> str:
+    """The largest first: its size, when it was, the pivot there, its value in words."""
     first = max(found, key=lambda name: found[name][0])
     _, t, pivot, value = found[first]
     names = [first, *(name for name in found if name != first)]
     others = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
-    told = ", ".join(names[:TOLD]) + others
-    yield (
-        f"{section[first.split('.')[0]]}.{first.split('.')[0]}: extremes of {told} are chance: "
-        f"{value} of {first} is that of t = {t:.6g} s, {sqrt(pivot):.1g} from where rows of joints "
-        "depend on each other, and what they carry grows there like one over the distance.  The "
-        "motion is right; for the forces give joints clearance or compliance"
+    part = first.split(".")[0]
+    section = next(i.section for i in mechanism.instances if i.name == part)
+    return (
+        f"{section}.{part}: extremes of {', '.join(names[:TOLD])}{others} are chance: {value} of "
+        f"{first} is that of t = {t:.6g} s, {sqrt(pivot):.1g} from where rows of joints depend on "
+        "each other, and what they carry grows there like one over the distance.  The motion is "
+        "right; for the forces give joints clearance or compliance"
     )
 
 
-def of_masses(mechanism: Mechanism, outcome: Outcome) -> float:
+def of_joints(mechanism: Mechanism) -> list[Column]:
+    """What joints and drives carry."""
+    names = {instance.name for instance in mechanism.instances if instance.section in OF}
+    return [
+        c for c in mechanism.columns
+        if c.unit in ("N", "N*m") and c.wanted and c.name.split(".")[0] in names
+    ]  # fmt: skip
+
+
+def forces(mechanism: Mechanism, outcome: Outcome, column: Column) -> list[float]:
+    """How large both extremes of each of its components are, a moment as a force at the size."""
+    lever = mechanism.model.size if column.unit == "N*m" else 1.0
+    extremes = outcome.peaks[column.start : column.start + column.size, [0, 2]]
+    return (np.abs(extremes).ravel() / lever).tolist()
+
+
+def certain(mechanism: Mechanism, outcome: Outcome, regular: float) -> float:
+    """The pivot below which there is a pole, or nobody looked whether there is."""
+    r = outcome.record
+    if len(mechanism.model.redundant) or not regular > REGULAR or (r and r.count[MEETINGS]):
+        return KNOWN
+    return NEAR if mechanism.model.near > 0.0 else UNSEEN  # methods of scipy
+
+
+def of_masses(mechanism: Mechanism, outcome: Outcome, regular: float) -> float:
     """What unequal masses make of the least pivot at the start, 1 at most."""
-    regular = dependent(mechanism, 0.0, outcome.start.y)[1]
     if not regular > REGULAR:
         return 1.0
     work = scene(mechanism.model)
