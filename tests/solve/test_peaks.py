@@ -331,9 +331,16 @@ def test_places_looked_at_for_other_channels_may_say_little(first):
     assert_the_same_extremes(loads(text, [f"solver.first_step={first!r}"]))
 
 
-def assert_the_same_extremes(scenario):
+@pytest.mark.parametrize(("family", "seed"), [("loop", 54), ("stops", 7)])
+def test_an_extreme_just_before_what_no_sample_follows(family, seed):
+    """Where other rows are solved from, or a contact opens."""
+    scenario = loads(made(family, seed).scene.text(), ())
+    assert_the_same_extremes(scenario, scenario.solver.end)
+
+
+def assert_the_same_extremes(scenario, few=None):
     every, found = scenario.output.every, []
-    for rows in (min(4 * every, scenario.solver.end), every / 40):
+    for rows in (few or min(4 * every, scenario.solver.end), every / 40):
         same = changed(scenario, "output", every=rows, channels=("*",))
         mechanism = assemble(same)
         found.append(marched(same, mechanism)[1])
@@ -365,3 +372,15 @@ def test_force_of_a_drive_near_dead_centres(rocker, tolerance):
         found.append(extremes(r, "m.force"))
     (high, _, low, _), (most, _, least, _) = found
     assert (high, low) == pytest.approx((most, least), abs=10 * tolerance * (most - least))
+
+
+def test_rows_stay_on_their_branch_where_branches_meet():
+    """Nearer to the flat place of cranks than interpolation is exact, the nearest place on the rows
+    is on the other branch, where the coupler stands still."""
+    scenario = loads(made("drifting", 0).scene.text(), ())
+    scenario = changed(scenario, "output", every=scenario.solver.end / 8000, channels=("*",))
+    mechanism = assemble(scenario)
+    rows, outcome = marched(scenario, mechanism)
+    (rate,) = [1 + c.start for c in mechanism.columns if c.name == "angle.rate"]
+    assert rows[:, rate].max() < -7.5
+    assert outcome.peaks[rate - 1, 0] < -7.5

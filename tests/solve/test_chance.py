@@ -1,0 +1,65 @@
+"""Extremes of forces that are chance are told, and only those."""
+
+import numpy as np
+import pytest
+
+from trsim.solve.doubts import doubts
+
+from ..runs import run
+from ..truth.trial import made
+
+FLAT = """
+bodies:
+  left: {{mass: 1, inertia: 0.02, at: [0, 0.25]}}
+  right: {{mass: 1, inertia: 0.02, at: [1, 0.25]}}
+  coupler: {{mass: 2, inertia: 0.1, at: [0.5, 0.5], velocity: [-2, 0]}}
+joints:
+  A: {{type: revolute, bodies: [ground, left], at: [0, 0]}}
+  B: {{type: revolute, bodies: [ground, right], at: [1, 0]}}
+  C: {{type: revolute, bodies: [left, coupler], at: [0, 0.5]}}
+  D: {{type: revolute, bodies: [right, coupler], at: [1, 0.5]}}
+forces:
+  load: {{type: applied_load, body: left, direction: [0, 1], at: [0, 0.25], force: 12}}
+solver: {{end: {end}, tolerance: 1e-6}}
+output: {{every: {end}}}
+"""
+
+
+def told(r):
+    return [text for text in doubts(r.scenario, r.mechanism, r.outcome) if "are chance" in text]
+
+
+def test_past_a_flat_place_reactions_have_no_extreme():
+    """The load on one crank cannot reach the other one there; branches of the motion meet."""
+    r = run(FLAT.format(end=1.5))
+    (text,) = told(r)
+    largest = max(
+        np.abs(r.outcome.peaks[r.place[f"{j}.reaction"][0], [0, 2]]).max() for j in "ABCD"
+    )
+    assert largest > 1e3  # N, of bodies of 1 kg with 12 N
+    assert text.startswith("joints.")
+    assert "A.reaction" in text
+    assert "at t = " in text.replace("that of t = ", "at t = ")
+
+
+def test_on_the_way_there_they_have():
+    r = run(FLAT.format(end=0.3))
+    assert not told(r)
+
+
+@pytest.mark.parametrize(("family", "seed"), [("loop", 6), ("loop", 39), ("redundant", 0)])
+def test_moments_that_are_zero_to_rounding_are_no_doubt(family, seed):
+    assert not told(run(made(family, seed).scene.text()))
+
+
+def test_redundant_rows_that_share_a_force_by_chance():
+    """Two welds: rows of one and the other hold the body, and at an instant they cannot."""
+    text = made("redundant", 57).scene.text()
+    (said,) = told(run(text))
+    assert "again.reaction" in said
+
+
+def test_unequal_masses_are_no_such_place():
+    """A light coupler makes pivots small everywhere."""
+    text = FLAT.format(end=0.3).replace("mass: 2, inertia: 0.1", "mass: 1e-7, inertia: 1e-8")
+    assert not told(run(text))
