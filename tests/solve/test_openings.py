@@ -85,7 +85,9 @@ def test_what_is_redundant_stays_closed(R, method):
                          R=R, angle=1.0), *method)  # fmt: skip
     assert r.mechanism.redundant
     assert r.outcome.statistics["redundant_open_relative"] < 1e-5
-    assert not doubts(r.scenario, r.mechanism, r.outcome)
+    # where the cranks lie flat reactions have no extreme, which may be said
+    said = doubts(r.scenario, r.mechanism, r.outcome)
+    assert not [text for text in said if "are chance" not in text]
 
 
 @pytest.mark.parametrize("stabilisation", ["none", "baumgarte"])
@@ -255,7 +257,8 @@ def test_cranks_start_lying_flat(R, method):
     assert way[:, 1] == pytest.approx(np.sin(3 * r.t), abs=1e-5)
     assert r.outcome.statistics["energy_residual_relative"] < 100 * r.scenario.solver.tolerance
     # rounding is large where rows are nearly dependent, which may be said
-    assert not any("rows" in text for text in doubts(r.scenario, r.mechanism, r.outcome))
+    said = doubts(r.scenario, r.mechanism, r.outcome)
+    assert not any("rows" in text for text in said if "are chance" not in text)
 
 
 def test_of_the_branches_that_meet_the_nearest_to_the_given_velocity_is_taken():
