@@ -24,8 +24,7 @@ PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be belo
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 NEWTON = 8
 CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
-# of the fastest rate: what velocities change by where a state inside a step comes to another branch
-ASTRAY, OF_TOLERANCE, MOST_ASTRAY = 1e-6, 100.0, 0.1
+ASTRAY = 0.1  # of the fastest rate: by as much velocities of another branch are others
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
@@ -119,7 +118,7 @@ def elsewhere(s, y, kept):
     for k in range(s.n_q, s.n_q + s.n_v):
         by = s.size if (k - s.n_q) % s.d < s.d // 2 + s.d % 2 and k - s.n_q < s.v_node else 1.0
         most, change = max(most, abs(kept[k]) / by), max(change, abs(y[k] - kept[k]) / by)
-    return change > max(ASTRAY, min(OF_TOLERANCE * s.tolerance, MOST_ASTRAY)) * most
+    return change > ASTRAY * most
 
 
 @internal
