@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
+from trsim.solve.doubts import doubts
 
 from ..runs import built, run
 
@@ -141,3 +142,35 @@ def test_check_says_that_it_changes_nothing():
     quiet = built(three(actuator="stiffness: 1e6"))
     assert any("its torque is told" in note for note in quiet.notes)
     assert not any("its torque is told" in note for note in built(three()).notes)
+
+
+def slow(text, by):
+    """The same motion, so many times slower: forces and strokes as before at times by t."""
+    for speed in ("0.11", "0.1"):
+        text = text.replace(f"velocity: {speed},", f"velocity: {float(speed) / by},")
+    return text
+
+
+@pytest.mark.parametrize("efficiency", [0.8, 0.55])
+def test_losses_do_not_depend_on_the_speed(efficiency):
+    """A shaft that turns 500 times slower, dampers 500 times stronger: the same forces."""
+    supply = "stiffness: 1e6, damping: 5e5, supply: {stiffness: 5e5, damping: 5e5, mass: 2.5e5}"
+    shaft = f"stiffness: 0.4, damping: 0.1, efficiency: {efficiency}, turning_speed: 2e-6"
+    text = slow(three((0.1, 0.11, 0.1), supply, shaft, end=100), 500.0)
+    there = run(text.replace("mass: 2,", "mass: 5e5,").replace("every: 1 ms", "every: 0.5"))
+    back = 2.0 - 1.0 / efficiency
+    helped = 700 * there["shaft.torque_1"][-1]
+    held = 700 * (there["shaft.torque_2"][-1] - there["shaft.torque_1"][-1])
+    assert helped > 0.0 > held
+    assert there["shaft.force_1"][-1] == pytest.approx(efficiency * helped, rel=1e-3)
+    assert there["shaft.force_2"][-1] == pytest.approx(held / back, rel=1e-3)
+    assert not [x for x in doubts(there.scenario, there.mechanism, there.outcome) if "turn" in x]
+
+
+def test_friction_that_is_not_whole_is_told():
+    """At half a millimetre a second, with the turning speed nobody asked about."""
+    there = run(three((5e-4, 5.5e-4, 5e-4), shaft=f"{SHAFT}, efficiency: 0.8"))
+    (told,) = doubts(there.scenario, there.mechanism, there.outcome)
+    assert told.startswith("forces.shaft.turning_speed: its actuators move with at most 0.00055")
+    there = run(three((5e-4, 5.5e-4, 5e-4), shaft=SHAFT))
+    assert not doubts(there.scenario, there.mechanism, there.outcome)

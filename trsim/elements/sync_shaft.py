@@ -9,9 +9,10 @@ between two pistons, which pulls who lags and holds who leads.  Of the ideal for
     (1 - eta) |G|           where the shaft moves the piston (G u' > 0)
     (1 / eta_b - 1) |G|     where the piston moves the shaft, eta_b = 2 - 1 / eta      [Shigley2015]
 
-to friction, against the motion.  With eta <= 1/2 a piston cannot turn the shaft at all: the gear is
-self-locking.  A piston that leads is then held as by eta_b = LOCKED, a hundred times harder than by
-an ideal gear: next to nothing is left of its lead.
+to friction, against the motion: times u' / sqrt(u'^2 + v_t^2), so that it turns round smoothly over
+the speed v_t, `turning_speed`, and is whole well above it only.  With eta <= 1/2 a piston cannot
+turn the shaft at all: the gear is self-locking.  A piston that leads is then held as by
+eta_b = LOCKED, a hundred times harder than by an ideal gear: next to nothing is left of its lead.
 
 Pistons are moved where their actuators have a `supply`.  Without one their motion is prescribed:
 then the shaft changes nothing, and its torque is only told.
@@ -49,6 +50,7 @@ class SyncShaft(Spec):
     ratio         turn of the shaft per stroke
     efficiency    of the worm gears where the shaft moves a piston
     self_locking  whether no piston can turn the shaft; by nature so up to an efficiency of 0.5
+    turning_speed speed of a piston over which the friction of its gear turns round
     lost_at       difference of the strokes of neighbours at which synchronism counts as lost and
                   the run ends as `jammed`; of a shaft of strength M it is M / (stiffness ratio)
     """
@@ -60,6 +62,7 @@ class SyncShaft(Spec):
     ratio: Annotated[float, Gt(0), Unit("rad/m")]
     efficiency: Annotated[float, Gt(0), Le(1), Unit("-")] = 1.0
     self_locking: Flag | None = None
+    turning_speed: Annotated[float, Gt(0), Unit("m/s")] = 1e-3
     lost_at: Annotated[float, Gt(0), Unit("m")] | None = None
 
     @model_validator(mode="after")
@@ -73,10 +76,9 @@ class SyncShaft(Spec):
         return self
 
 
-K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST = range(6)  # par
-MASSES = 6  # and on: of the pistons
+K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST, TURNING = range(7)  # par
+MASSES = 7  # and on: of the pistons
 COUNT, STATIONS = 2, 3  # con: how many pistons, then of each its place and its slip in z, or -1
-SMOOTH = 1e-3  # m/s: friction turns round over such a speed
 LOCKED = 0.01  # eta_b of a self-locking gear
 
 
@@ -107,7 +109,7 @@ def pack(name, spec, at):
     back = LOCKED if locks else max(2.0 - 1.0 / spec.efficiency, LOCKED)
     par = (
         spec.stiffness, spec.damping, spec.ratio, 1.0 - spec.efficiency,
-        1.0 / back - 1.0, spec.lost_at or 0.0, *masses,
+        1.0 / back - 1.0, spec.lost_at or 0.0, spec.turning_speed, *masses,
     )  # fmt: skip
     n = len(spec.actuators)
     said = "synchronism was lost: the strokes of two neighbours differ too much"
@@ -157,7 +159,7 @@ def gear(scene, e, k):
     par = scene.par
     ideal = par[e, RATIO] * (torque(scene, e, k) - torque(scene, e, k - 1))
     _, speed = place(scene, e, k)
-    way = speed / sqrt(speed * speed + SMOOTH * SMOOTH)
+    way = speed / sqrt(speed * speed + par[e, TURNING] * par[e, TURNING])
     if ideal * speed > 0.0:
         return ideal, ideal - par[e, LOSS] * abs(ideal) * way, speed
     return ideal, ideal - par[e, LOSS_BACK] * abs(ideal) * way, speed

@@ -5,6 +5,7 @@ contacts   pressed in by more than their law is made for: a half width of the co
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                          solve/strained.py
 bushings   turned to half a turn, beyond which theirs is the one from the other side
+shafts     that moved too slowly for the friction of their gears to be whole
 meshes     of bars bent further than their elements follow                   solve/mesh_error.py
 waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
@@ -33,7 +34,7 @@ from trsim.solve.chance import of_extremes
 from trsim.solve.crossed import of_branches
 from trsim.solve.mesh_error import of_meshes
 from trsim.solve.openings import apart
-from trsim.solve.outcome import Outcome, whose
+from trsim.solve.outcome import NOTHING, Outcome, natural, whose
 from trsim.solve.projected import given_velocities, projected
 from trsim.solve.record import JOLTS, ROUNDED_AT, ROUNDED_BY, Record, T
 from trsim.solve.skipped import unread
@@ -47,11 +48,11 @@ MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits
 VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
 CHANGED = 1e-3  # of a speed that was given
 OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
+WHOLE = 10.0  # turning speeds: from here on friction of gears is whole to half a per cent
 NEXT_TO_HALF = 0.1  # rad: so near to half a turn a bushing is told
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
 GIVEN = 1e-2  # of it: more done by projection says so too
-NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
 AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
 PASSED = 2.0  # periods of the fastest wave in a mean step
 TOLD = 3  # jumps of velocities, one by one
@@ -65,6 +66,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
         *of_bushings(mechanism, outcome.peaks),
+        *of_shafts(scenario, mechanism, outcome.peaks),
         *of_meshes(scenario, mechanism, outcome.bent),
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_waves(mechanism, outcome),
@@ -170,6 +172,22 @@ def of_bushings(mechanism: Mechanism, peaks: Array) -> Iterator[str]:
             )
 
 
+def of_shafts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """Shafts whose pistons are slow beside the speed over which their friction turns round."""
+    column = {c.name: c.start for c in mechanism.columns}
+    for name, shaft in scenario.forces.items():
+        if shaft.type != "sync_shaft" or shaft.efficiency == 1.0:
+            continue
+        speeds = peaks[[column[f"{one}.velocity"] for one in shaft.actuators]]
+        fastest = float(np.abs(speeds[:, [0, 2]]).max())
+        if 0.0 < fastest < WHOLE * shaft.turning_speed:
+            yield (
+                f"forces.{name}.turning_speed: its actuators move with at most {fastest:.3g} m/s, "
+                f"and friction of its gears turns round over {shaft.turning_speed:g} m/s: it is "
+                f"not whole below {WHOLE:g} times that; give a smaller one"
+            )
+
+
 def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """Motion of flexible bars that implicit steps went past: it is damped out, not followed."""
     if outcome.record is None:
@@ -222,7 +240,7 @@ def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterat
 def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """An open energy book, work of the projection, open joints; nothing of what is at rest."""
     numbers = outcome.statistics
-    natural = float(np.sum(mechanism.model.mass)) * outcome.start.speed**2
+    least = NOTHING * natural(mechanism.model, outcome.start)
     work = abs(numbers.get("work_of_projection", 0.0))
     lost = numbers.get("energy_residual_relative", 0.0)
     if lost > LOST:
@@ -243,7 +261,7 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
     if outcome.record is not None:
         yield from of_jumps(mechanism, outcome.record)
     given = numbers.get("work_of_projection_relative", 0.0)
-    if given > GIVEN and work > NOTHING * natural and outcome.status in WELL:
+    if given > GIVEN and work > least and outcome.status in WELL:
         bends = (
             "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
             "the way may be those of the other branch?  "
