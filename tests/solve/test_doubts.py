@@ -148,3 +148,18 @@ def test_turns_of_bushings_are_not_passed_over(first, planar):
     more = f", first_step: {first}"
     found = told(MOUNTED.format(planar=planar, speed=5, k=1e-9, recorded="b.velocity", more=more))
     assert any("forces.mount: turned by" in text for text in found)
+
+
+@pytest.mark.parametrize("place", ["0.4660195429836131, 0.18117887723833682", "0.3, 0.4"])
+def test_a_balance_that_stores_nothing_is_no_open_book(place):
+    """An arm that its spring holds at the length at which it is free: energies are rounding."""
+    assert not told(f"""
+initial: {{equilibrium: all}}
+bodies: {{arm: {{mass: 1, inertia: 0.01, at: [{place}]}}}}
+joints: {{p: {{type: revolute, bodies: [ground, arm], at: [0, 0]}}}}
+forces:
+  k: {{type: spring_damper, bodies: [ground, arm], points: [[0, 0.7], [{place}]],
+      stiffness: 100, free_length: 0.5}}
+solver: {{end: 0.1}}
+output: {{every: 0.05}}
+""")

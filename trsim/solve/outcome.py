@@ -66,6 +66,7 @@ FEEDBACK = 3.0
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
 CROSSINGS = 256.0  # of a step, at most, see WHOLE of turns.py
+NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 FINEST = 1e-14  # of the run: the last of shorter steps would hardly move the time, or not at all
 MOST_ROWS = 10_000  # output rows one fixed step may span
@@ -322,7 +323,8 @@ def whose(mechanism: Mechanism, c: int) -> str:
 
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
     """Counts, residuals and the energy book's error."""
-    scale = max(float(r.clock[rec.LARGEST_ENERGY]), of_what_is_locked(r, work, begun), 1e-300)
+    book, least = float(r.clock[rec.LARGEST_ENERGY]), NOTHING * natural(work, begun)
+    scale = max(book, of_what_is_locked(r, work, begun), least, 1e-300)
     redundant = float(r.clock[rec.WORST_OPEN])
     held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
     unprojected = 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size
@@ -361,6 +363,11 @@ def rounding(r: Record) -> dict[str, float]:
     return {"rounding_of_tolerance": rounded} if rounded > 1.0 else {}
 
 
+def natural(work: Any, begun: Start) -> float:
+    """The energy of all bodies at the speed that the run expects, J."""
+    return float(np.sum(work.mass) * begun.speed**2)
+
+
 def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
     """An energy that goes with the forces on what cannot move, J; 0 where something can.
 
@@ -371,7 +378,7 @@ def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
     kinetic, drives = work.column_energy, work.column_energy + 1 + N_STORED + DRIVES
     force = np.abs(work.F[:, :3]).max(initial=0.0)
     force = max(force, np.abs(work.lam[:, None] * work.J[:, :3]).max(initial=0.0))
-    natural = float(force * work.size + np.sum(work.mass) * begun.speed**2)
+    there = float(force * work.size) + natural(work, begun)
     driven = np.any(r.peak[[rec.PEAK_MAX, rec.PEAK_MIN], drives])
-    still = r.peak[rec.PEAK_MAX, kinetic] <= AT_REST * natural
-    return natural if still and not driven else 0.0
+    still = r.peak[rec.PEAK_MAX, kinetic] <= AT_REST * there
+    return there if still and not driven else 0.0
