@@ -16,6 +16,7 @@ each of them `held` says on which piece the function is evaluated, drawn on beyo
 `watched` whether the time alone decides when the corner is met (BY_TIME) or sensors too
 (BY_SENSORS).  FREE of both, a function is evaluated as it is written.
 
+    held of a root     FREE, DRAWN where it is one of what is never negative; so of a power
     held of a table    FREE, BELOW its first point, k: between points k and k + 1, n: above
 
 The slots are scratch space of the evaluation inside `tab` itself, which spares an allocation
@@ -34,15 +35,20 @@ from trsim.laws.operations import (
     CORNERED,
     COS,
     DIV,
+    DRAWN,
     EXP,
     FREE,
     MAX,
     MIN,
+    MONOTONE,
     MUL,
     NEG,
+    NEVER_NEGATIVE,
+    POW,
     QUINTIC,
     SIN,
     SMOOTHSTEP,
+    SQRT,
     SUB,
     TAN,
     UNARY,
@@ -129,6 +135,26 @@ class _Code:
             out.append((BY_SENSORS if by_sensors else BY_TIME) if cornered else UNWATCHED)
         return out
 
+    def never_negative(self, slot):
+        """Whether a slot is zero or more whatever t and the sensors are, by the way it is made."""
+        if slot[0] == "constant":
+            return slot[1] >= 0.0
+        if slot[0] != "step":
+            return False
+        code, a, b = list(self.steps)[slot[1]]
+        if code in NEVER_NEGATIVE or (code == MUL and a == b):
+            return True
+        if code == MAX:
+            return self.never_negative(a) or self.never_negative(b)
+        if code == POW:
+            return self.never_negative(a)
+        return code in MONOTONE and self.never_negative(a) and self.never_negative(b)
+
+    def drawn(self, code, a, b):
+        """Whether an operation is a root or a broken power of what is never negative."""
+        broken = code == POW and b[0] == "constant" and not float(b[1]).is_integer()
+        return (broken or code == SQRT) and self.never_negative(a)
+
     def slot(self, node):
         """The slot of a node of the tree, after writing whatever it needs."""
         kind, word = node[0], node[1]
@@ -193,7 +219,7 @@ def expression(node, sensors):
     out = [EXPRESSION, len(code.inputs), len(code.steps), first, place[result]]
     out += [sensors[name] for name in code.inputs]
     for (op, a, b), watched in zip(code.steps, code.watched(), strict=True):
-        out += [op, place[a], place[b], watched, FREE]
+        out += [op, place[a], place[b], watched, DRAWN if code.drawn(op, a, b) else FREE]
     for slot in place:
         out += [slot[1] if slot[0] == "constant" else 0.0, 0.0, 0.0]
     return [float(x) for x in out]

@@ -11,6 +11,9 @@ branch: it is then drawn on beyond its ends, as a step needs it that ends at the
     branch   BELOW u < 0, ABOVE u > 0          of a smooth step BELOW u < 0, INSIDE, ABOVE u > 1
     FREE     whatever a and b say
 
+A root or a broken power of what is never negative, as max(x, 0)**1.5 and sqrt(abs(x)), is DRAWN on
+as well, to -(-a)**b: a step that ends at the corner of max or abs looks a little beyond it.
+
 exp is smooth, but beside 1 it is nothing below u = -37 and 1 is nothing beside it above 37: in the
 middle of a long run a bump exp(-((x - a)/w)^2) or a switch 1/(1 + exp(x/w)) is a short event.  It
 has corners too, though it is the same function on both sides: steps end at its edges, and none is
@@ -32,8 +35,11 @@ BINARY |= {"<": LT, "<=": LE, ">": GT, ">=": GE, "==": EQ, "!=": NE}
 UNARY = {"abs": ABS, "sqrt": SQRT, "sin": SIN, "cos": COS, "tan": TAN, "exp": EXP, "log": LOG}
 UNARY |= {"smoothstep": SMOOTHSTEP}
 
+MONOTONE = frozenset({ADD, MUL, DIV, MIN})  # of what is never negative they make nothing negative
+NEVER_NEGATIVE = frozenset({LT, LE, GT, GE, EQ, NE, ABS, SQRT, EXP, SMOOTHSTEP, QUINTIC})
 CORNERED = frozenset({MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE, ABS, EXP, SMOOTHSTEP, QUINTIC})
 FREE, BELOW, INSIDE, ABOVE = 0.0, -1.0, 2.0, 1.0  # what such an operation is held on
+DRAWN = 1.0  # the same of a root or a power
 RISING, LARGE = 3.0, 4.0  # exp between its second and third edge, and up to its fourth
 
 
@@ -126,12 +132,16 @@ def held_angle(a, b, held):
 
 @law
 def held_single(code, a, held):
-    """abs, exp or a smooth step on a branch: value, first and second derivative in a."""
+    """abs, exp, a smooth step or a root on a branch: value, first and second derivative in a."""
     if code == ABS:
         return held * a, held, 0.0
     if code == EXP:
         f = exp(a)
         return f, f, f
+    if code == SQRT:
+        f = sqrt(abs(a))
+        f_a = 0.5 / f
+        return f if a >= 0.0 else -f, f_a, -0.5 * f_a / a
     if held != INSIDE:
         return 0.0 if held == BELOW else 1.0, 0.0, 0.0
     if code == SMOOTHSTEP:
@@ -177,7 +187,7 @@ def operation(code, a, b, held):
     if code == DIV:
         return a / b
     if code == POW:
-        return a**b
+        return a**b if held == FREE or a >= 0.0 else -((-a) ** b)
     if code == MIN:
         return b if (b < a if held == FREE else held > 0.0) else a
     if code == MAX:
@@ -254,7 +264,10 @@ def operation_rates(code, a, a1, a2, b, b1, b2, held):
         f1 = (a1 - f * b1) / b
         return f, f1, (a2 - 2.0 * f1 * b1 - f * b2) / b
     if code == POW:
-        return power_rates(a, a1, a2, b, b1, b2)
+        if held == FREE or a >= 0.0:
+            return power_rates(a, a1, a2, b, b1, b2)
+        f, f1, f2 = power_rates(-a, -a1, -a2, b, b1, b2)
+        return -f, -f1, -f2
     if code == MIN:
         return (b, b1, b2) if (b < a if held == FREE else held > 0.0) else (a, a1, a2)
     if code == MAX:

@@ -183,6 +183,9 @@ def one(code, a, b, r0, r1, held):
             return c0, c1, m, n
         l, h = times(c0, c1, r0, r1)
         return quotient(s0, s1, l, h, c0, c1, m, n)
+    if code == SQRT and a < 0.0 and held != FREE:
+        l, h = widened(-sqrt(-a), sqrt(b) if b > 0.0 else -sqrt(-b))
+        return l, h, -inf, inf
     if code == SQRT:
         l, h = widened(sqrt(max(a, 0.0)), sqrt(max(b, 0.0)))
         m, n = over(r0, r1, 2.0 * l, 2.0 * h)
