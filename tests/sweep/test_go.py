@@ -15,6 +15,7 @@ import pytest
 
 from tests import small
 from tests.sizes import size
+from trsim.analyse.cases import unfinished
 from trsim.errors import FileError, UsageError
 from trsim.store.lock import writing
 from trsim.store.read import verify
@@ -200,6 +201,29 @@ def test_shards_of_another_plan(scenario, tmp_path):
 def test_a_study_whose_ledger_is_lost(copy):
     before = contents(copy)
     (copy / "ledger.jsonl").unlink()
+    assert contents(copy) == before
+
+
+def test_a_study_reads_no_file_that_is_of_something_else(copy):
+    """In the place of a case: that of another, of a run of other numbers, or half of one."""
+    taken, other, broken, touched = study(copy).cases
+    before = contents(copy)
+    os.replace(other.file, taken.file)
+    broken.file.write_bytes(broken.file.read_bytes()[:1000])
+    os.utime(touched.file)
+    cases = study(copy).cases
+    assert [case.status for case in cases] == ["missing", "missing", "missing", "done"]
+    changed = "its file was changed"
+    assert [case.reason for case in cases] == [changed, "", changed, ""]
+    assert [case.there for case in cases] == [False, False, False, True]
+    assert unfinished(study(copy)) == [
+        f"2 of 4 cases have a file that was changed and are left out: {taken.name}, {broken.name}",
+        f"1 of 4 cases have no result and are left out: {other.name}",
+    ]
+    with pytest.raises(FileError, match="no result, missing: its file was changed"):
+        cases[0].run()
+    small.run(taken.file, "solver.end=1 ms")
+    assert study(copy).cases[0].reason == changed
     assert contents(copy) == before
 
 

@@ -112,7 +112,8 @@ def unfinished(study: Any) -> list[str]:
     lost = [case for case in study.cases if case.status not in WELL]
     kinds = {
         "did not end well": [case.name for case in lost if case.there],
-        "have no result": [case.name for case in lost if not case.there],
+        "have a file that was changed": [case.name for case in lost if case.changed],
+        "have no result": [case.name for case in lost if not (case.there or case.changed)],
     }
     return [
         f"{len(names)} of {len(study.cases)} cases {kind} and are left out: {listed(names)}"

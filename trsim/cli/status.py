@@ -20,6 +20,7 @@ def command(answer: Answer, folder: str) -> None:
     found = study(Path(folder))
     told = counts(case.status for case in found.cases)
     bad = [case for case in found.cases if case.failed]
+    changed = [case for case in found.cases if case.changed]
     walls = [case.entry.wall for case in found.cases if case.entry and case.entry.wall]
     mean = sum(walls) / len(walls) if walls else None
     answer.data |= {
@@ -34,6 +35,8 @@ def command(answer: Answer, folder: str) -> None:
     answer.put(f"{folder}: {len(found.cases)} cases of {found.source}: {said}")
     if told.get(MISSING) and mean:
         answer.put(f"missing: about {told[MISSING] * mean:.0f} s of one processor")
+    for case in changed[:SHOWN]:
+        answer.put(f"{case.name}: {case.reason}")
     for case in bad[:SHOWN]:
         answer.put(f"{case.name}: {case.status}: {in_a_line(case.reason)[:300]}")
     if len(bad) > SHOWN:

@@ -12,6 +12,7 @@ from trsim.sweep.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
 from trsim.sweep.plan import Case, Plan, named_file
 
 DAMAGED = (OSError, LookupError, RuntimeError, ValueError, TypeError, AttributeError)
+CHANGED = "its file was changed"
 SHOWN = 4  # differences that are told
 
 
@@ -38,16 +39,21 @@ def need(case: Case, entry: Entry | None, folder: Path, engine: str) -> Need:
         return Need(f"tried again: {entry.status}", entry)
     if entry.status == REFUSED:
         return Need("", entry)
+    if found := stands(entry, file, engine):
+        return Need("", found)
+    return Need(CHANGED if stamp(file)[0] else "its file is gone", entry)
+
+
+def stands(entry: Entry, file: Path, engine: str) -> Entry | None:
+    """The entry with the stamp of its file; None where the file is gone or not what it tells of."""
     size, changed = stamp(file)
-    if not size:
-        return Need("its file is gone", entry)
-    if (size, changed) == (entry.size, entry.changed):
-        return Need("", entry)
+    if not size or (size, changed) == (entry.size, entry.changed):
+        return entry if size else None
     # copied, perhaps: what it says of itself decides
-    found = adopted(case.name, case.digest, file, engine)
+    found = adopted(entry.case, entry.digest, file, engine)
     if found and found.content == entry.content:
-        return Need("", entry._replace(size=size, changed=changed))
-    return Need("its file was changed", entry)
+        return entry._replace(size=size, changed=changed)
+    return None
 
 
 def adopted(name: str, digest: str, file: Path, engine: str) -> Entry | None:

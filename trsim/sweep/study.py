@@ -8,7 +8,7 @@ from trsim.errors import FileError
 from trsim.store.read import Run, read
 from trsim.sweep.folder import read_plan
 from trsim.sweep.ledger import FAILED, Entry, entries, stamp
-from trsim.sweep.needed import adopted
+from trsim.sweep.needed import CHANGED, adopted, stands
 from trsim.sweep.plan import named_file
 
 MISSING = "missing"
@@ -29,6 +29,11 @@ class Case:
     def there(self) -> bool:
         """Whether it has a result file, whatever its status."""
         return self.entry is not None and bool(self.entry.content) and self.status != MISSING
+
+    @property
+    def changed(self) -> bool:
+        """Whether what has the name of its file is something else."""
+        return self.status == MISSING and self.reason == CHANGED
 
     @property
     def failed(self) -> bool:
@@ -74,10 +79,9 @@ def study(folder: str | Path) -> Study:
             entry = None
         if entry is None and file.is_file():  # its line was lost; the file says what it is
             entry = adopted(one["name"], one["digest"], file, told["engine"])
-        status = entry.status if entry else MISSING
-        if entry and entry.content and not stamp(file)[0]:
-            status = MISSING
-        reason = entry.reason if entry else ""
+        status, reason = (entry.status, entry.reason) if entry else (MISSING, "")
+        if entry and entry.content and not stands(entry, file, told["engine"]):
+            status, reason = MISSING, CHANGED if stamp(file)[0] else ""
         cases.append(Case(one["name"], file, status, reason, one["values"], entry))
     keys, method = tuple(told["keys"]), told["method"]
     samples, seed = told["samples"], told["seed"]
