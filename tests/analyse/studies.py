@@ -13,6 +13,7 @@ class Case:
     file: Path
     status: str = "done"
     reason: str = ""
+    changed: bool = False
 
     @property
     def there(self):

@@ -9,6 +9,8 @@ from tests import small
 from trsim.analyse.fluctuation import fluctuation
 from trsim.analyse.outputs import KINDS, scalar, scalars
 from trsim.errors import UsageError
+from trsim.report.display import compared
+from trsim.report.studies import usual
 from trsim.store.read import read
 
 
@@ -146,3 +148,16 @@ def test_a_run_of_one_row_has_no_fluctuation(run):
     one = replace(run, rows=1)
     assert np.isnan(scalar(one, "fluctuation:stroke")[0])
     assert scalar(one, "mean:stroke")[0] == run.channel("stroke")[0]
+
+
+@pytest.mark.parametrize(("every", "there"), [("4 ms", True), ("5 ms", True), ("10 ms", False)])
+def test_rows_too_far_apart_have_no_fluctuation(every, there, tmp_path):
+    """The average is over one row then, and what it leaves rounding: 1e-15 of a swinging crank."""
+    small.run(tmp_path / "run.h5", "solver.end=0.1", f"output.every={every}")
+    coarse = read(tmp_path / "run.h5")
+    assert any(word.startswith("fluctuation:") for word in usual(compared([coarse])[0])) == there
+    if there:
+        assert scalar(coarse, "fluctuation:stroke.rate")[0] > 1.0
+        return
+    with pytest.raises(UsageError, match=r"rows 0.01 s apart show nothing that is faster than 0.0"):
+        scalar(coarse, "fluctuation:stroke.rate")

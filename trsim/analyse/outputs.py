@@ -10,7 +10,7 @@ all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of 
     range                peak - least
     mean, rms, std       of the rows, each counting alike: sums over n rows by n, no integral over
                          time, in which the first and the last row count half
-    fluctuation          rms of what is faster than 10 ms (fluctuation.py)
+    fluctuation          rms of what is faster than 10 ms (fluctuation.py), of rows that show it
     final                last row
     dispersion:SECTION   sqrt(var x + var y) of the points of a section; SECTION.x, SECTION.y: one
     points:SECTION       how many there are
@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.analyse.fluctuation import fluctuation
+from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
 from trsim.analyse.window import Window, parted, scalar_channel, window
 from trsim.errors import UsageError, described, known
@@ -111,6 +111,12 @@ def _range(run: Run, channel: str, within: Window, part: bool) -> Number:
 
 def _fluctuation(run: Run, channel: str, within: Window, _: bool) -> Number:
     time, x = run.time, scalar_channel(run, channel)
+    if len(time) > 1 and not shows(time):
+        what = f"rows {time[1] - time[0]:.3g} s apart show nothing that is faster than {WIDTH:g} s"
+        raise UsageError(
+            f"{run.path}: {what}: no fluctuation of {channel}",
+            f"Run it with `output: {{every: {0.1 * WIDTH:g}}}`.",
+        )
     return fluctuation(time, x, *within), run.unit(channel)
 
 

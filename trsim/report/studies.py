@@ -17,6 +17,7 @@ from trsim.analyse.cases import (
     varied,
     without,
 )
+from trsim.analyse.fluctuation import shows
 from trsim.errors import FileError, UsageError, known
 from trsim.report import maps
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
@@ -69,14 +70,15 @@ def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
 
 
 def usual(one: Shown) -> list[str]:
-    """The numbers of a study that was asked for none: peaks of contacts and drives."""
+    """The numbers of a study that was asked for none: peaks of contacts and drives, fluctuations."""
     run = one.run
     found = [f"peak:{n}.{k}" for n in run.contacts for k in ("contact_force", "normal_force")
              if f"{n}.{k}" in run.units]  # fmt: skip
     found += [f"{kind}:{n}.force" for n, part in run.parts.items() if part.section == "drives"
               for kind in ("peak", "least") if f"{n}.force" in run.units]  # fmt: skip
+    fast = shows(run.time)
     found += [f"fluctuation:{n}.rate" for n, part in run.parts.items()
-              if part.section == "sensors" and f"{n}.rate" in run.units]  # fmt: skip
+              if fast and part.section == "sensors" and f"{n}.rate" in run.units]  # fmt: skip
     return found or ["summary:time"]
 
 
