@@ -25,6 +25,7 @@ from trsim.elements.vectors import clear_table, copy_to, internal
 
 SOUND, POOR, SINGULAR = 0, 1, 2  # how a factorisation went, in s.status[0]
 TINY = 1e-10  # of the diagonal: a smaller pivot is a dependent row
+WEAK = 1e-2  # of the diagonal: accelerations feel by what a state is off its rows
 SMALL = 1e-4  # of the diagonal: with a smaller pivot solutions are refined
 ENOUGH = 1e-7  # of the solution: what follows a smaller correction is below rounding
 PLAIN = 1e-6  # the same, of J J^T: whether the rows depend on each other, whatever the masses
@@ -40,6 +41,8 @@ def factorise(s):
     s.status[0] = SOUND
     diagonal(s)
     smallest = eliminate(s, TINY)
+    if smallest < WEAK:
+        s.status[6] += 1
     if smallest <= TINY:
         s.status[0] = SINGULAR
         rows(s)
@@ -72,7 +75,7 @@ def hub_diagonal(s, k):
 
 @internal
 def eliminate(s, tiny):
-    """Right-looking elimination; returns the smallest pivot, as a share of its diagonal."""
+    """Right-looking elimination; returns the smallest pivot if WEAK, as a share of its diagonal."""
     value, target, column_start = s.value, s.target, s.column_start
     smallest, u = 1.0, 0
     for k in range(s.first.size):
@@ -81,7 +84,7 @@ def eliminate(s, tiny):
         if s.row[start] >= s.m:
             hub_diagonal(s, k)
             D, sign = -D, -1.0
-        if SMALL * s.first[k] >= D:
+        if WEAK * s.first[k] >= D:
             smallest = min(smallest, D / s.first[k] if s.first[k] > 0.0 else 0.0)
             if tiny * s.first[k] >= D:
                 D = tiny * s.first[k]

@@ -178,7 +178,8 @@ class Scene(Model):
     # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
     # [3] evaluations with contradictory constraints since the last accepted step,
     # [4] evaluations of the step at hand that took a limit where branches meet,
-    # [5] 1: what is evaluated lies inside a step, and will be measured
+    # [5] 1: what is evaluated lies inside a step, and will be measured,
+    # [6] factorisations of the step at hand with a small pivot
     status: I1
 
 
@@ -243,7 +244,7 @@ def scene(model: Model) -> Scene:
             "out": (max(model.n_out, 1),),
         },
         tab=model.tab.copy(),  # scratch, and what functions are held on
-        status=np.zeros(6, np.int64),
+        status=np.zeros(7, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
     made.X[:, 2] = model.depth

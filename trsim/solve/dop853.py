@@ -4,7 +4,7 @@ Order 8, error estimate from embedded orders 5 and 3, dense output of order 7 fr
 stages, built only when asked for.    [HairerNorsettWanner1993]
 """
 
-from math import comb
+from math import comb, sqrt
 
 import numpy as np
 
@@ -12,7 +12,9 @@ from trsim.assemble.equations import equation, evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import internal
 from trsim.solve import dop853_tableau as tableau
+from trsim.solve.accelerations import EACH, frequency, held, in_units, largest
 from trsim.solve.calls import CONTROL, DENSE, INTERPOLATE, STEP
+from trsim.solve.record import GAIN, LENGTH, MET, SPEED, TOLERANCE
 from trsim.solve.works import first_work, works
 
 ORDER = 8
@@ -27,41 +29,53 @@ ADAPTIVE, IMPLICIT = True, False
 A, C, D, E3, E5 = tableau.A, tableau.C, tableau.D, tableau.E3, tableau.E5
 
 
-# of each stage: the columns of A that are not zero, in fours, and how many fours there are
-IN_FOURS = np.zeros((16, 16), np.int64)
-WEIGHTS = np.zeros((16, 16))
-FOURS = np.zeros(16, np.int64)
-for _s in range(16):
-    _columns = np.flatnonzero(A[_s, :_s])
+# rows of sums: stages, then what the error estimates are made of, into these rows of K
+OF_FIFTH, OF_THIRD, OF_PLACES = 16, 17, 18
+FIFTH, THIRD, PLACES = 13, 14, 15
+_sums = np.zeros((19, 16))
+_sums[:16] = A
+_sums[OF_FIFTH, :12], _sums[OF_THIRD, :12] = E5[:12], E3[:12]
+_sums[OF_PLACES, :12] = E5[:12] @ A[:12, :12]  # h times that: places at the stages, by weights E5
+# of each: the columns that are not zero, in fours, and how many fours there are
+IN_FOURS = np.zeros((19, 16), np.int64)
+WEIGHTS = np.zeros((19, 16))
+FOURS = np.zeros(19, np.int64)
+for _s in range(19):
+    _columns = np.flatnonzero(_sums[_s])
     FOURS[_s] = -(-_columns.size // 4)
-    IN_FOURS[_s, : _columns.size], WEIGHTS[_s, : _columns.size] = _columns, A[_s, _columns]
+    IN_FOURS[_s, : _columns.size], WEIGHTS[_s, : _columns.size] = _columns, _sums[_s, _columns]
 IN_ERROR = np.flatnonzero((E3 != 0.0) | (E5 != 0.0))  # stages that an error estimate sees
-
+FAR = 2.5  # rad: the dense output errs by three times the estimate, of longer steps by more
 
 IN_DENSE = np.flatnonzero(np.any(D != 0.0, axis=0))  # and those that the dense output does
 
 
 @equation
 def stage(K, y, h, s, out):
-    """out = y + h sum_j A[s, j] K[j].
+    """out = y + h sum_j A[s, j] K[j]."""
+    combined(K, s, 0, y.size, out)
+    for c in range(y.size):
+        out[c] = y[c] + h * out[c]
+
+
+@equation
+def combined(K, s, first, beyond, out):
+    """out = sum_j (row s of the sums)[j] K[j] of these entries.
 
     Four stages at a time, in their order: each pass over y is one through memory.  What fills up
     the last four has the weight zero.
     """
-    n = y.size
     for g in range(FOURS[s]):
         j0, j1, j2, j3 = (IN_FOURS[s, 4 * g], IN_FOURS[s, 4 * g + 1], IN_FOURS[s, 4 * g + 2],
                           IN_FOURS[s, 4 * g + 3])  # fmt: skip
         a0, a1, a2, a3 = (WEIGHTS[s, 4 * g], WEIGHTS[s, 4 * g + 1], WEIGHTS[s, 4 * g + 2],
                           WEIGHTS[s, 4 * g + 3])  # fmt: skip
         if g == 0:
-            for c in range(n):
+            for c in range(first, beyond):
                 out[c] = a0 * K[j0, c] + a1 * K[j1, c] + a2 * K[j2, c] + a3 * K[j3, c]
         else:
-            for c in range(n):
+            for c in range(first, beyond):
                 out[c] = out[c] + a0 * K[j0, c] + a1 * K[j1, c] + a2 * K[j2, c] + a3 * K[j3, c]
-    for c in range(n):
-        out[c] = y[c] + h * out[c]
 
 
 @compiled(STEP)
@@ -70,23 +84,60 @@ def step(scene, r, b, setting, t, h):
     for s in range(1, 12):
         stage(K, y, h, s, y1)
         evaluate(scene, t + C[s] * h, y1, K[s])
+    combined(K, OF_FIFTH, 0, y.size, K[FIFTH])
+    combined(K, OF_THIRD, 0, y.size, K[THIRD])
     error5 = error3 = 0.0
     counted = 0
     for c in range(y.size):
-        if weight[c] == 0.0:
-            continue
-        counted += 1
-        e5 = e3 = 0.0
-        for i in range(IN_ERROR.size):
-            s = IN_ERROR[i]
-            e5 += E5[s] * K[s, c]
-            e3 += E3[s] * K[s, c]
-        error5 += (e5 * weight[c]) ** 2
-        error3 += (e3 * weight[c]) ** 2
+        if weight[c] != 0.0:
+            counted += 1
+            error5 += (K[FIFTH, c] * weight[c]) ** 2
+            error3 += (K[THIRD, c] * weight[c]) ** 2
     stage(K, y, h, 12, y1)
     bottom = error5 + 0.01 * error3
-    error = abs(h) * error5 / np.sqrt(bottom * max(counted, 1)) if bottom > 0.0 else 0.0
+    error = abs(h) * error5 / sqrt(bottom * max(counted, 1)) if bottom > 0.0 else 0.0
+    if held(scene):
+        error = max(error, of_accelerations(scene, r, b, setting, h))
     return max(error, of_works(scene, r, b, setting, h))
+
+
+@internal
+def of_accelerations(s, r, b, setting, h):
+    """The error of accelerations: both estimates of places and velocities in one size, by body.
+
+    Inside a step that holds more than FAR rad the dense output is off by more than its end.
+    """
+    K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
+    combined(K, OF_PLACES, 0, s.n_q, K[PLACES])
+    r.clock[GAIN] = most = largest(s, K[0], r.clock[GAIN])
+    length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
+    q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
+    error5 = error3 = moved = turned = 0.0
+    for _ in range(1, s.n_r):
+        x5 = x3 = v5 = v3 = placed = 0.0
+        for c in range(q, q + of_q):
+            x5 += (K[FIFTH, c] * weight[c]) ** 2
+            x3 += (K[THIRD, c] * weight[c]) ** 2
+            placed += (K[PLACES, c] * weight[c]) ** 2
+        for c in range(v, v + of_v):
+            v5 += (K[FIFTH, c] * weight[c]) ** 2
+            v3 += (K[THIRD, c] * weight[c]) ** 2
+        q, v = q + of_q, v + of_v
+        if v5 > 0.0:
+            ww = frequency(speed * v5, h * h * length * placed, h)
+            far = max(1.0, ww * h * h / FAR**2)
+            by = ww * length * x5 + speed * v5
+            moved, turned = moved + by, turned + ww * by
+            error5 += far * far * ww * by
+            error3 += far * far * ww * (ww * length * x3 + speed * v3)
+    if error5 == 0.0:
+        return 0.0
+    off = h * error5 / sqrt((error5 + 0.01 * error3) * EACH * (s.n_r - 1))
+    # stages of a step too long may be anywhere: no more than the speeds so far may turn to
+    mean = turned / moved
+    inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.clock[MET])
+    most = max(most, inside)
+    return in_units(s, r, setting, off, most, mean)
 
 
 @internal
@@ -94,12 +145,9 @@ def of_works(scene, r, b, setting, h):
     """The error of the works: the two estimates of the step itself, entry by entry."""
     K, worst, size = b.K, 0.0, 0.0
     for c in range(first_work(scene), first_work(scene) + N_BOOK):
-        e5 = e3 = moved = 0.0
+        e5, e3, moved = K[FIFTH, c], K[THIRD, c], 0.0
         for i in range(IN_ERROR.size):
-            s = IN_ERROR[i]
-            e5 += E5[s] * K[s, c]
-            e3 += E3[s] * K[s, c]
-            moved += abs(K[s, c])
+            moved += abs(K[IN_ERROR[i], c])
         if moved == 0.0:
             continue
         bottom = e5 * e5 + 0.01 * e3 * e3

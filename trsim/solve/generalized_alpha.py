@@ -19,6 +19,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve import hermite
+from trsim.solve.accelerations import ALLOWED, FURTHEST, held, in_units, largest
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
 from trsim.solve.displacements import active, turn, w_index
@@ -37,6 +38,8 @@ from trsim.solve.record import (
     OLD,
     PAST_H,
     SPEED,
+    TOLERANCE,
+    WRITTEN,
 )
 from trsim.solve.works import first_work, works
 
@@ -58,6 +61,9 @@ B1, NEW, SCRATCH, MOVE = 3, 4, 5, 6  # rows of K: b_1, f at the end, two of scra
 FILTERED, BEFORE = hermite.ROWS, hermite.ROWS + 1  # rows of `past`: b_0, f one step before
 MOST_ITERATIONS = 10
 KAPPA = 0.02  # of the error allowed: what Newton may leave
+RESOLVED = 1.5  # times the first difference: the second one of what a step resolves
+UNKNOWN = 0.1  # of the first difference: what the second one of a first step is at least
+LOST = 0.02  # of the largest acceleration, the same: with more of it nothing is resolved
 FURTHER = 10.0  # times the error of velocities: what that of accelerations counts at most
 ADDS = 5.0  # the errors of works as estimated are those made, and they add up
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
@@ -87,7 +93,7 @@ def step(s, r, b, setting, t, h):
             return np.inf
     else:
         return HALVE
-    error = estimate(s, r, b, setting, h)
+    error = estimate(s, r, b, setting, t, h)
     r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
     return error
 
@@ -182,7 +188,7 @@ def newton(s, r, b, t, h):
 
 
 @internal
-def estimate(s, r, b, setting, h):
+def estimate(s, r, b, setting, t, h):
     """The local error, h/12 of the second difference of the derivative, over the part of a radian
     that the motion turns in the step: h/12 of the first difference.
 
@@ -197,8 +203,10 @@ def estimate(s, r, b, setting, h):
         if weight[c] > 0.0:
             moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
     ratio = h / r.clock[PAST_H] if r.count[HISTORY] > 0 else 0.0
-    if ratio > 0.0:
-        moved = max(moved, min(accelerated(s, r, b, ratio), FURTHER * moved))
+    if ratio == 0.0 and held(s):
+        halved(s, r, b, t, h)
+    if ratio > 0.0 or held(s):
+        moved = max(moved, accelerated(s, r, b, setting, ratio, FURTHER * moved))
     worst = size = 0.0
     for c in range(first_work(s), first_work(s) + N_BOOK):
         bend = K[NEW, c] - r.yd[c]
@@ -211,22 +219,42 @@ def estimate(s, r, b, setting, h):
 
 
 @internal
-def accelerated(s, r, b, ratio):
+def halved(s, r, b, t, h):
+    """The derivative at the middle of a step with none before it, into K[SCRATCH]."""
+    K = b.K
+    for c in range(r.y.size):
+        K[MOVE, c] = 0.5 * (r.y[c] + b.y1[c]) + 0.125 * h * (r.yd[c] - K[NEW, c])
+    evaluate(s, t + 0.5 * h, K[MOVE], K[SCRATCH])
+
+
+@internal
+def accelerated(s, r, b, setting, ratio, further):
     """The same of accelerations, a 12th of the second difference of the derivative, in units of the
-    tolerance times the largest one met, or that of a turn at the largest speed.
+    tolerance times the largest one met; at most `further` where a step does not resolve them.
 
     A fast vibration beside a slow motion may have the larger accelerations and forces with speeds
-    that are small beside it: errors that are nothing of the speed are then much of these.  Waves of
-    bars are left to the speeds: steps are to pass over them.
+    that are small beside it: errors that are nothing of the speed are then much of these.  What is
+    not resolved turns back from step to step, and is left to the damping of the method unless it is
+    a plain part of the largest acceleration.  Waves of bars are left to the speeds: steps are to
+    pass over them.
     """
     K, weight = b.K, b.weight
-    most, bent = max(r.clock[GAIN], r.clock[SPEED] ** 2 / r.clock[LENGTH]), 0.0
+    r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
+    most, bent, moved = largest(s, K[NEW], most), 0.0, 0.0
     for c in range(s.n_q, s.n_q + s.v_node):
-        r.clock[GAIN] = max(r.clock[GAIN], s.scale[c] * abs(r.yd[c]))
-        most = max(most, r.clock[GAIN], s.scale[c] * abs(K[NEW, c]))
-        bend = K[NEW, c] - r.yd[c] - ratio * (r.yd[c] - r.past[BEFORE, c])
-        bent = max(bent, abs(bend) / 12.0 * weight[c])
-    return bent * r.clock[SPEED] / most if most > 0.0 else 0.0
+        by = K[NEW, c] - r.yd[c]
+        if ratio > 0.0:
+            bend = by - ratio * (r.yd[c] - r.past[BEFORE, c])
+        else:  # of half the step, or a part of the first difference
+            bend = max(4.0 * abs(by - 2.0 * (K[SCRATCH, c] - r.yd[c])), UNKNOWN * abs(by))
+        bent = max(bent, abs(bend) * weight[c])
+        moved = max(moved, abs(by) * weight[c])
+    off = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0
+    if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
+        strict = ALLOWED * setting[WRITTEN] / setting[TOLERANCE]  # errors add up: one tolerance
+        return min(strict * in_units(s, r, setting, off, most, 0.0), FURTHEST * further)
+    turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
+    return min(off / (setting[TOLERANCE] * turned), further) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)

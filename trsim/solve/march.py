@@ -158,7 +158,7 @@ def march(s, r, b, setting, methods, most):
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
-        s.status[4] = 0
+        s.status[4] = s.status[6] = 0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
             error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)

@@ -16,14 +16,16 @@ from math import isfinite, sqrt
 
 import numpy as np
 
+from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
+from trsim.solve.accelerations import EACH, frequency, held, in_units, largest
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
 from trsim.solve.displacements import active, moved_by, twisted, w_index
 from trsim.solve.jacobian import jacobian, missing
-from trsim.solve.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, C, E, T
+from trsim.solve.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 from trsim.solve.record import (
     AFTER_REJECTION,
     AHEAD,
@@ -31,16 +33,21 @@ from trsim.solve.record import (
     CONTRACTION,
     FACTORED_H,
     FRESH,
+    GAIN,
     HISTORY,
     ITERATIONS,
     JACOBIAN,
+    LENGTH,
     NEWTON_RATE,
     NEXT_JACOBIAN,
     NO_HISTORY,
     NO_JACOBIAN,
     NO_RATES,
     OLD,
+    OLD_H,
     PAST_H,
+    SPEED,
+    TOLERANCE,
 )
 from trsim.solve.rounding import jitter, noted, to_look
 from trsim.solve.works import first_work, works
@@ -54,6 +61,10 @@ DENSE_DEGREE = 3
 ADAPTIVE, IMPLICIT = True, True
 
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
+# second differences over the stages: of what Z is, and of its rate times h; that rate at the end
+BENT = np.array([1.0 / ((C[0] - C[1]) * (C[0] - 1.0)), 1.0 / ((C[1] - C[0]) * (C[1] - 1.0)),
+    1.0 / ((1.0 - C[0]) * (1.0 - C[1]))])  # fmt: skip
+TURNED, LEAVING = BENT @ inverse(A), inverse(A)[2]
 MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
 SHARPEST = 0.01  # contraction that is believed without a second iteration
@@ -286,7 +297,50 @@ def estimate(s, r, b, setting, t, h):
             e[c] += K[F + 1, c]
         corrected(s, r, e, K[DW], GAMMA / h)
         error = norm(e, weight)
+    if held(s):
+        error = max(error, of_accelerations(s, r, b, setting, h))
     return max(error, booked, 1e-10)
+
+
+@internal
+def of_accelerations(s, r, b, setting, h):
+    """The error of accelerations that the estimate in K[F] makes, by body.
+
+    What it consists of turns by w^2 = |D v'| / |D x|, D the second difference over the stages.  In
+    a first step, which may be of any length, the filter of the estimate may have left nothing of
+    it: there what was filtered counts as well.
+    """
+    K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
+    r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
+    for c in range(s.n_q + s.n_v):
+        K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]
+        K[F + 2, c] = TURNED[0] * K[Z, c] + TURNED[1] * K[Z + 1, c] + TURNED[2] * K[Z + 2, c]
+        if c >= s.n_q:  # at the end of the step
+            rate = LEAVING[0] * K[Z, c] + LEAVING[1] * K[Z + 1, c] + LEAVING[2] * K[Z + 2, c]
+            most = max(most, s.scale[c] * abs(rate) / h)
+    length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
+    q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
+    off = bent = 0.0
+    moved, begins = 1e-300, r.count[HISTORY] != BEHIND and r.clock[OLD_H] == 0.0
+    for _ in range(1, s.n_r):
+        x = w = placed = turned = bare = 0.0
+        for c in range(q, q + of_q):
+            x += (K[F, c] * weight[c]) ** 2
+            placed += (K[F + 1, c] * weight[c]) ** 2
+        for c in range(v, v + of_v):
+            w += (K[F, c] * weight[c]) ** 2
+            turned += (K[F + 2, c] * weight[c]) ** 2
+            if begins:
+                rate = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
+                bare += ((r.yd[c] + rate) * weight[c]) ** 2
+        q, v = q + of_q, v + of_v
+        if turned > 0.0:
+            ww = frequency(speed * turned / h**2, length * placed, h)
+            by = ww * length * x + speed * w
+            moved, bent = moved + by, bent + ww * by
+            off += ww * by
+            off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
+    return in_units(s, r, setting, sqrt(off / (EACH * (s.n_r - 1))), most, bent / moved)
 
 
 @internal

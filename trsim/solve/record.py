@@ -120,8 +120,9 @@ NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
     CHOOSES,  # 1: between two methods, by the fastest motion
     MISSED,  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
     HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
+    WRITTEN,  # the tolerance as it is written, which TOLERANCE is made of
     N_SETTINGS,
-) = range(10)
+) = range(11)
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5

@@ -1,0 +1,103 @@
+"""A small vibration beside a larger, slower motion, by closed forms.
+
+    x_k = A_k cos(w_k t + p_k),    w_2 = 3..300 w_1,    A_2 = 1..1e-4 A_1
+
+At loose tolerances a first step may hold many radians of it, and its accelerations may be the
+largest there are though its speeds are small.
+"""
+
+import numpy as np
+import pytest
+
+from ..runs import run
+from ..sizes import size
+
+SEEDS = size(60, 4000)
+TOGETHER = 30  # in one test
+ALLOWED = 100.0  # tolerances of the largest of its kind: phases add up over the turns
+TILTED = np.array([[0.48, -0.8, 0.36], [0.6, 0.0, -0.8], [0.64, 0.6, 0.48]]).T
+
+SCENE = """
+planar: {planar}
+bodies:
+  slow: {{mass: 1, inertia: {inertia}, at: {at[0]}, velocity: {velocity[0]}}}
+  fast: {{mass: {mass!r}, inertia: {inertia}, at: {at[1]}, velocity: {velocity[1]}}}
+joints:
+  a: {{type: prismatic, bodies: [ground, slow], at: {way[0]}, axis: {axis}}}
+  b: {{type: prismatic, bodies: [ground, fast], at: {way[1]}, axis: {axis}}}
+forces:
+  soft: {{type: spring_damper, bodies: [ground, slow], points: [{anchor[0]}, {at[0]}],
+         stiffness: {stiffness[0]!r}, free_length: 3}}
+  hard: {{type: spring_damper, bodies: [ground, fast], points: [{anchor[1]}, {at[1]}],
+         stiffness: {stiffness[1]!r}, free_length: 3}}
+sensors: {{x: {{joint: a}}, y: {{joint: b}}}}
+gravity: [0, 0, 0]
+solver: {{end: {end!r}, tolerance: {tolerance!r}, first_step: {first!r}}}
+output: {{every: {every!r}}}
+"""
+
+
+def numbers(x):
+    return [float(v) for v in x]
+
+
+def drawn(seed):
+    """Text of a scene, the direction of its ways, frequencies, amplitudes and phases."""
+    rng = np.random.default_rng(seed)
+    ratio, small = 10 ** rng.uniform(0.5, 2.5), 10 ** rng.uniform(-4, 0)
+    w = 10 ** rng.uniform(-1, 1.5) * np.array([1.0, ratio])
+    A = 10 ** rng.uniform(-1.5, 0) * np.array([1.0, small])
+    p = rng.uniform(0, 2 * np.pi, 2) * (rng.random() < 0.5)  # else from rest
+    driven = rng.random() < 0.3  # the slow one goes on and on instead
+    spatial, tolerance = rng.random() < 0.4, 10 ** rng.uniform(-5, -2)
+    R = TILTED if spatial else np.eye(3)
+    ways = [np.zeros(3), R[:, 1]]
+    mass = float(10 ** rng.uniform(-1, 1))
+    end = float(2 * np.pi / w[1] * 10 ** rng.uniform(0, 1.2))
+    x = A * np.cos(p)
+    v = -A * w * np.sin(p)
+    if driven:
+        x[0], v[0] = 0.0, A[0] * w[0]
+    text = SCENE.format(
+        planar=str(not spatial).lower(), inertia="[1, 1, 1]" if spatial else 1,
+        at=[numbers(way + R[:, 0] * d) for way, d in zip(ways, x, strict=True)],
+        velocity=[numbers(R[:, 0] * d) for d in v], way=[numbers(way) for way in ways],
+        axis=numbers(R[:, 0]), mass=mass,
+        anchor=[numbers(way - 3 * R[:, 0]) for way in ways],
+        stiffness=[0.0 if driven else float(w[0] ** 2), float(mass * w[1] ** 2)], end=end,
+        tolerance=float(tolerance), first=min(float(10 ** rng.uniform(-1.5, 1.5) / w[1]), end),
+        every=float(2 * np.pi / w[1] / 10 ** rng.uniform(0.5, 1.6)),
+    )  # fmt: skip
+
+    def exact(t):
+        """Place, velocity and acceleration of both along their ways."""
+        turn = np.outer(t, w) + p
+        found = [A * np.cos(turn), -A * w * np.sin(turn), -A * w**2 * np.cos(turn)]
+        if driven:
+            found[0][:, 0], found[1][:, 0], found[2][:, 0] = v[0] * t, v[0], 0.0
+        return found
+
+    return text, R[:, 0], ways, exact
+
+
+def off(seed, method):
+    """By how many tolerances places, velocities and accelerations are off, of the largest."""
+    text, axis, ways, exact = drawn(seed)
+    r = run(text, f"solver.method={method}")
+    kinds = ("position", "velocity", "acceleration")
+    found = []
+    for kind, true in zip(kinds, exact(r.t), strict=True):
+        rows = [r[f"{name}.{kind}"] for name in ("slow", "fast")]
+        if kind == "position":
+            rows = [x - way[: x.shape[1]] for x, way in zip(rows, ways, strict=True)]
+        got = np.column_stack([x @ axis[: x.shape[1]] for x in rows])
+        found.append(np.abs(got - true).max() / np.abs(true).max())
+    return np.array(found) / r.scenario.solver.tolerance
+
+
+@pytest.mark.parametrize("first", range(0, SEEDS, TOGETHER))
+@pytest.mark.parametrize("method", ["dop853", "auto", "radau", "generalized_alpha"])
+def test_a_small_vibration_beside_a_larger_motion(method, first):
+    worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER)}
+    wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
+    assert not wrong

@@ -1,0 +1,75 @@
+"""The error of accelerations, where it says more than that of places and velocities.
+
+A small vibration beside a larger, slower motion has places and speeds that are little of the
+largest, and may have all of the acceleration.  What an error (x, v) of a step makes of it is
+
+    a = w sqrt(w^2 |x|^2 + |v|^2)            turned by the phase, of the same size in any
+
+at the frequency w of what the error consists of.  With a sum D of stages that leaves nothing of
+what is slow, w^2 = |D v'| / |D x|: any phase and, of motions of several frequencies, that of the
+fastest that is seen.  In units of the tolerance and the largest acceleration met this is no more
+than the error of the motion, unless accelerations are small for the speeds there are.
+
+Nothing is asked for that rounding makes: of the forces, or of what joints take of them.
+"""
+
+from math import sqrt
+
+from trsim.elements.vectors import internal
+from trsim.solve.record import LENGTH, NOISY, SPEED, WRITTEN
+
+ROUNDING = 2e-14  # of accelerations that cancel: what is left
+WIDEST = 20.0  # rad: w h of a step that sees what it passes over
+EACH = 6.0  # entries of a body that errors are the mean of
+FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
+ALLOWED = 10.0  # times the tolerance as written: what accelerations of a step may be off by
+
+
+@internal
+def held(s):
+    """Whether accelerations of the step at hand are held to the tolerance.
+
+    Contacts have units of their own, and waves in bars are to be passed over.  Where the rows of a
+    loop nearly depend on each other accelerations tell of what a state is off them, not of motion.
+    """
+    sound = s.status[6] == 0 or s.near_rows == 0.0
+    return sound and s.contact.size == 0 and 1 < s.n_r == s.n
+
+
+@internal
+def largest(s, yd, most):
+    """The larger of `most` and the accelerations in yd, of turns at their arm."""
+    for c in range(s.n_q, s.n_q + s.v_node):
+        most = max(most, s.scale[c] * abs(yd[c]))
+    return most
+
+
+@internal
+def frequency(turned, placed, h):
+    """w^2 by the squares of |D v'| and |D x|, as far as a step h sees it."""
+    widest = (WIDEST / h) ** 2
+    return min(sqrt(turned / placed), widest) if turned < placed * widest**2 else widest
+
+
+@internal
+def in_units(s, r, setting, off, most, mean):
+    """An error of accelerations in units of what is allowed, none of it rounding.
+
+    most: the largest acceleration; mean: w^2 of what the error consists of.  Where accelerations
+    are less than a FURTHEST of what speeds give at that, it is rounding as well.
+    """
+    most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
+    allowed = ALLOWED * setting[WRITTEN] * most
+    error = off / allowed if allowed > 0.0 else 0.0
+    if error <= 1.0:
+        return error
+    free, noise = r.clock[SPEED] ** 2 / r.clock[LENGTH], 0.0
+    for f in range(1, s.n_r):
+        for c in range(s.d):
+            turns = c == 2 if s.d == 3 else c > 2
+            free = max(free, abs(s.free[f, c]) * (s.reach if turns else 1.0))
+    if r.clock[NOISY] > 0.0:
+        for c in range(s.n_q, s.n_q + s.v_node):
+            noise = max(noise, s.scale[c] * r.noise[c])
+    rounded = max(ROUNDING * free, WIDEST * noise)
+    return off / max(allowed, rounded)
