@@ -49,4 +49,25 @@ def test_chain_of_equal_masses_and_springs():
 
 
 def test_a_body_in_space_is_free():
-    assert {mode.kind for mode in found(free_top(omega=(0.0, 0.0, 0.0))[0])} == {"free"}
+    assert [mode.kind for mode in found(free_top(omega=(0.0, 0.0, 0.0))[0])] == ["free"] * 6
+
+
+def test_as_many_modes_as_freedoms():
+    """Two bodies on a spring: five motions are free, also across the spring, each told once."""
+    every = found("""
+        bodies: {a: {mass: 1, inertia: 1}, b: {mass: 2, inertia: 1, at: [1, 0]}}
+        forces: {s: {type: spring_damper, bodies: [a, b], points: [[0, 0], [1, 0]], stiffness: 100}}
+        """)
+    assert [mode.kind for mode in every] == ["free"] * 5 + ["oscillates"]
+    assert every[-1].frequency == pytest.approx(sqrt(150.0) / (2 * pi), rel=1e-9)
+    moved = np.zeros((5, 2, 3))
+    for told, mode in zip(moved, every, strict=False):
+        for body in mode.shape:
+            told["ab".index(body.body)] = (*body.translation[:2], body.rotation[2])
+    assert np.linalg.svd(moved.reshape(5, 6))[1].min() > 0.3  # in different directions
+
+
+def test_a_damped_free_motion_is_one_that_is_free_and_one_that_decays():
+    still, slows = found(oscillator(2.0, 0.0, 6.0))
+    assert (still.kind, slows.kind) == ("free", "decays")
+    assert slows.rate == pytest.approx(-3.0, rel=1e-6)

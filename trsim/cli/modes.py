@@ -42,5 +42,6 @@ def shape(moved: list[dict[str, Any]]) -> str:
         named = zip("xyzXYZ", (*one["translation"], *one["rotation"]), strict=True)
         parts = [f"{axis if axis.islower() else 'turn ' + axis.lower()} {value:+.2f}"
                  for axis, value in named if abs(value) > 0.005]  # fmt: skip
-        told.append(f"{one['body']} {', '.join(parts)}")
+        if parts:
+            told.append(f"{one['body']} {', '.join(parts)}")
     return "; ".join(told)

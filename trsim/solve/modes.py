@@ -15,10 +15,12 @@ import numpy as np
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import scene
-from trsim.solve.linearised import linearised, rounding
+from trsim.solve.linearised import Linearised, linearised, rounding
 from trsim.solve.start import Start
 
 UNDAMPED = 1e-6  # damping ratio: a smaller one is the rounding of the differences
+PARALLEL = 1e-3  # free motions that differ by less are one
+NOTHING = 1e-9  # of a vector: what rounding moves in one of states of elements
 OSCILLATES, DECAYS, GROWS, FREE = "oscillates", "decays", "grows", "free"
 
 
@@ -43,13 +45,19 @@ class Mode:
 
 
 def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
-    """All modes, slowest first; free motions, whose eigenvalues are zero, before them."""
-    linear = linearised(mechanism, begun)
+    """All modes, slowest first; before them free motions, a mode for each direction.
+
+    The eigenvalue of a free motion is zero twice where nothing damps it: it has a place and a speed.
+    """
+    linear = linearised(mechanism, begun, order=4)
     if not linear.A.size:
         return []
     values, vectors = np.linalg.eig(linear.A)
     least = rounding(values, begun)
-    moved = turned(mechanism, begun, linear.twists) @ vectors[: linear.Z.shape[1]]
+    still = np.abs(values) <= least
+    ways = np.column_stack((vectors[: linear.Z.shape[1], ~still], free(linear, vectors[:, still])))
+    values = np.append(values[~still], np.zeros(ways.shape[1] - np.sum(~still)))
+    moved = turned(mechanism, begun, linear.twists) @ ways
     found = []
     for value, vector in zip(values, moved.T, strict=True):
         if value.imag < 0.0:
@@ -65,6 +73,30 @@ def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
             shape=shape(mechanism, vector),
         ))  # fmt: skip
     return sorted(found, key=lambda mode: (mode.kind != FREE, mode.frequency, abs(mode.rate)))
+
+
+def free(linear: Linearised, vectors: np.ndarray) -> np.ndarray:
+    """The motions of eigenvectors whose eigenvalue is zero, those that are independent, columns.
+
+    Both of a double zero have the same motion, and those of a pair are the sum and the difference
+    of two.  Vectors of states of elements alone, which move nothing, are all kept.
+    """
+    kept: list[np.ndarray] = []
+    basis: list[np.ndarray] = []
+    f = linear.Z.shape[1]
+    for vector in vectors.T:
+        motion = vector[:f]
+        largest = motion[int(np.argmax(np.abs(motion)))] if f else 0.0
+        if abs(largest) <= NOTHING * np.abs(vector).max():
+            kept.append(np.zeros(f))
+            continue
+        for part in ((motion / largest).real, (motion / largest).imag):
+            size = np.linalg.norm(part)
+            rest = part - sum((b * (b @ part) for b in basis), np.zeros(f))
+            if np.linalg.norm(rest) > PARALLEL * max(1.0, size):
+                kept.append(part)
+                basis.append(rest / np.linalg.norm(rest))
+    return np.array(kept).reshape(-1, f).T
 
 
 def turned(mechanism: Mechanism, begun: Start, rates: np.ndarray) -> np.ndarray:
