@@ -31,7 +31,7 @@ def high_pass(t: Array, x: Array, width: float = WIDTH) -> Array:
 
 
 def shows(t: Array, width: float = WIDTH) -> bool:
-    """Whether rows are near enough to show what is faster than width; there are two at least."""
+    """Whether rows, two at least, are near enough to show what is faster than width."""
     return len(t) > 1 and bool(t[1] - t[0] <= 0.5 * width * (1 + ROUNDING))
 
 

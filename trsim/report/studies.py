@@ -70,7 +70,7 @@ def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
 
 
 def usual(one: Shown) -> list[str]:
-    """The numbers of a study that was asked for none: peaks of contacts, drives; fluctuations."""
+    """The numbers of a study asked for none: peaks of contacts and drives, fluctuations."""
     run = one.run
     found = [f"peak:{n}.{k}" for n in run.contacts for k in ("contact_force", "normal_force")
              if f"{n}.{k}" in run.units]  # fmt: skip

@@ -47,7 +47,7 @@ class Mode:
 def modes(mechanism: Mechanism, begun: Start) -> list[Mode]:
     """All modes, slowest first; before them free motions, a mode for each direction.
 
-    The eigenvalue of a free motion is zero twice where nothing damps it: it has a place and a speed.
+    Where nothing damps a free motion its eigenvalue is zero twice: it has a place and a speed.
     """
     linear = linearised(mechanism, begun, order=4)
     if not linear.A.size:
