@@ -91,9 +91,9 @@ def free(linear: Linearised, vectors: np.ndarray) -> np.ndarray:
             kept.append(np.zeros(f))
             continue
         for part in ((motion / largest).real, (motion / largest).imag):
-            size = np.linalg.norm(part)
+            size = float(np.linalg.norm(part))
             rest = part - sum((b * (b @ part) for b in basis), np.zeros(f))
-            if np.linalg.norm(rest) > PARALLEL * max(1.0, size):
+            if float(np.linalg.norm(rest)) > PARALLEL * max(1.0, size):
                 kept.append(part)
                 basis.append(rest / np.linalg.norm(rest))
     return np.array(kept).reshape(-1, f).T
