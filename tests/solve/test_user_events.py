@@ -488,3 +488,35 @@ solver: {end: 1, tolerance: 1e-8}
 """)
     loose = r.t > 0.201
     np.testing.assert_array_equal(r["jack.position"][loose], r["jack.stroke"][loose])
+
+
+SHAKEN = """
+bodies:
+  arm: {mass: 1, inertia: 0.02, at: [0, -0.3]}
+  hand: {mass: 0.5, inertia: 0.01, at: [0, -0.9]}
+joints:
+  shoulder: {type: revolute, bodies: [ground, arm], at: [0, 0]}
+  elbow: {type: revolute, bodies: [arm, hand], at: [0, -0.6]}
+sensors: {bend: {joint: elbow}}
+drives: {motor: {joint: shoulder, velocity: "5*sin(20*t)"}}
+gravity: [0, -9.81]
+events: {catch: {when: bend, value: 0.1, crosses: both, do: {lock: [elbow]}}}
+solver: {end: 10, tolerance: 1e-9}
+"""
+
+
+def test_what_is_locked_at_a_value_is_not_looked_at():
+    """Its sensor stays next to the value whatever moves: no crossing can be excluded there."""
+    r = run(SHAKEN)
+    locked = r.events[-1, 0]
+    assert len(r.events) == 1 and locked < 9.0
+    assert r["bend"][r.t > locked] == pytest.approx(0.1, abs=1e-14)
+    assert r.outcome.statistics["unproved_searches"] == 0
+
+
+def test_what_is_unlocked_is_looked_at_again():
+    free = "go: {when: t, value: 9, do: {unlock: [elbow]}}"
+    r = run(SHAKEN.replace("{catch:", "{" + free + ", catch:"))
+    locked, opened, *again = r.events[:, 0]
+    assert locked < opened == 9.0 and np.all(np.array(again) > 9.0)
+    assert len(again) == 1 and r["bend"][-1] == pytest.approx(0.1, abs=1e-14)

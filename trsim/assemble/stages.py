@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from trsim.assemble.better import better
 from trsim.assemble.mechanism import Instance, Mechanism, RowName
 from trsim.assemble.rows import all_rows
-from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, Switches, lock_name
+from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, MOST, Switches, lock_name
 from trsim.elements.prescribed import OWN_MOTION, OWN_STATE, C, K
 from trsim.elements.scene import Model, Scene
 
@@ -105,7 +105,7 @@ class Stages:
             kept = [row for row in rows if not left_out[self._place[key(row)]]]
             dropped = [row for row in rows if left_out[self._place[key(row)]]]
             model = self._rebuild(self._switched(stage), kept, dropped)
-            self._made[position] = Choice(self._with_outputs(model), kept, dropped)
+            self._made[position] = Choice(self._finished(model, stage), kept, dropped)
         return self._made[position]
 
     def anew(
@@ -125,15 +125,21 @@ class Stages:
         at = dict(zip(self.switches.names, stage.tolist(), strict=True))
         return [switched(i, at, self.switches) for i in self.instances]
 
-    def _with_outputs(self, model: Model) -> Model:
-        return model.replaced(**{name: getattr(self.first, name) for name in OUTPUTS})
+    def _finished(self, model: Model, stage: NDArray[np.int64]) -> Model:
+        """With the outputs of all stages; what is locked crosses no value, and is not looked at."""
+        at = zip(self.switches.names, stage.tolist(), strict=True)
+        held = {name for (section, name), to in at if (section, to) == ("locks", HELD)}
+        watch = model.watch.copy()
+        watch[[event.joint in held for event in self.switches.events], MOST] = 0
+        outputs = {name: getattr(self.first, name) for name in OUTPUTS}
+        return model.replaced(watch=watch, **outputs)
 
     def _found(self, stage: NDArray[np.int64]) -> Choice:
         position = tuple(stage.tolist())
         if position not in self._made:
             at = dict(zip(self.switches.names, position, strict=True))
             made = self._build(self._switched(stage), in_force(self.instances, at))
-            self._made[position] = made._replace(model=self._with_outputs(made.model))
+            self._made[position] = made._replace(model=self._finished(made.model, stage))
         return self._made[position]
 
 

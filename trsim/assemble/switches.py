@@ -26,6 +26,7 @@ from trsim.units import fits
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
+MOST = 2  # column of a model's `watch`: how often an event happens (tables.py, solve/watch.py)
 # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
 TIME, LIMITS = -1, -2
 SECTION = "events"  # of the instances of locks
@@ -48,6 +49,7 @@ class UserEvent:
     when: str  # what is watched
     status: Ended = "done"  # of the run where it ends here
     unit: str = ""  # of the value, where the kind does not tell
+    joint: str = ""  # whose coordinate is watched
 
     @property
     def rate(self) -> str:
@@ -148,7 +150,7 @@ class _Packing:
         return UserEvent(
             name, entry, spec.value, kind, DIRECTIONS[spec.crosses],
             spec.times or ALWAYS, tuple(turned), spec.do.record, spec.do.end, spec.do.said(),
-            spec.when,
+            spec.when, joint=self.joint(spec.when),
         )  # fmt: skip
 
     def watched(self, name: str, spec: Event) -> tuple[int, str]:
@@ -159,6 +161,11 @@ class _Packing:
             kind = self.at.sensor_kind(spec.when)
         self.check_value(name, spec.when, UNITS[kind])
         return (TIME if kind == "time" else self.at.sensor(spec.when)), kind
+
+    def joint(self, when: str) -> str:
+        """The joint whose coordinate a sensor is; empty for t, and for a displacement."""
+        sensor = self.scenario.sensors.get(when)
+        return getattr(sensor, "joint", "")
 
     def check_value(self, name: str, when: str, wanted: str) -> None:
         """Refuse a written unit that does not fit what is watched."""
