@@ -44,15 +44,15 @@ from trsim.fields import Flag, Spec, Unit
 class SyncShaft(Spec):
     """A shaft that keeps actuators together.
 
-    actuators     along the shaft, each driven by a `velocity`
-    stiffness     torsional, of a segment between two neighbours
-    damping       torsional, of a segment
-    ratio         turn of the shaft per stroke
-    efficiency    of the worm gears where the shaft moves a piston
-    self_locking  whether no piston can turn the shaft; by nature so up to an efficiency of 0.5
-    turning_speed speed of a piston over which the friction of its gear turns round
-    lost_at       difference of the strokes of neighbours at which synchronism counts as lost and
-                  the run ends as `jammed`; of a shaft of strength M it is M / (stiffness ratio)
+    actuators      along the shaft, each driven by a `velocity`
+    stiffness      torsional, of a segment between two neighbours
+    damping        torsional, of a segment
+    ratio          turn of the shaft per stroke
+    efficiency     of the worm gears where the shaft moves a piston
+    self_locking   whether no piston can turn the shaft; by nature so up to an efficiency of 0.5
+    turning_speed  speed of a piston over which the friction of its gear turns round
+    lost_at        difference of the strokes of neighbours at which synchronism counts as lost and
+                   the run ends as `jammed`; of a shaft of strength M it is M / (stiffness ratio)
     """
 
     type: ClassVar[str] = "sync_shaft"

@@ -19,7 +19,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve import hermite
-from trsim.solve.accelerations import ALLOWED, FURTHEST, held, in_units, largest
+from trsim.solve.accelerations import FURTHEST, held, in_units, largest
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
 from trsim.solve.displacements import active, turn, w_index
@@ -39,7 +39,6 @@ from trsim.solve.record import (
     PAST_H,
     SPEED,
     TOLERANCE,
-    WRITTEN,
 )
 from trsim.solve.works import first_work, works
 
@@ -61,6 +60,7 @@ B1, NEW, SCRATCH, MOVE = 3, 4, 5, 6  # rows of K: b_1, f at the end, two of scra
 FILTERED, BEFORE = hermite.ROWS, hermite.ROWS + 1  # rows of `past`: b_0, f one step before
 MOST_ITERATIONS = 10
 KAPPA = 0.02  # of the error allowed: what Newton may leave
+STRICT = 12.0  # times the error of one step: errors of accelerations add up from step to step
 RESOLVED = 1.5  # times the first difference: the second one of what a step resolves
 UNKNOWN = 0.1  # of the first difference: what the second one of a first step is at least
 LOST = 0.02  # of the largest acceleration, the same: with more of it nothing is resolved
@@ -249,12 +249,11 @@ def accelerated(s, r, b, setting, ratio, further):
             bend = max(4.0 * abs(by - 2.0 * (K[SCRATCH, c] - r.yd[c])), UNKNOWN * abs(by))
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
-    off = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0
+    off, strict = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0, 0.0
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
-        strict = ALLOWED * setting[WRITTEN] / setting[TOLERANCE]  # errors add up: one tolerance
-        return min(strict * in_units(s, r, setting, off, most, 0.0), FURTHEST * further)
+        strict = min(STRICT * in_units(s, r, setting, off, most, 0.0), FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
-    return min(off / (setting[TOLERANCE] * turned), further) if turned > 0.0 else 0.0
+    return max(strict, min(off / (setting[TOLERANCE] * turned), further)) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)
