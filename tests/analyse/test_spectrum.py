@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests import small
-from trsim.analyse.spectrum import beyond, of_channel, sampling, spectrum
+from trsim.analyse.spectrum import beyond, of_channel, rate, sampling, spectrum
 from trsim.analyse.window import Window, window
 from trsim.errors import UsageError
 from trsim.store.read import read
@@ -113,3 +113,35 @@ def test_one_row_is_too_few(run):
     one = replace(run, rows=1)
     with pytest.raises(UsageError, match="fewer than two rows"):
         of_channel(one, "stroke", window(one))
+
+
+SHAKEN = """
+bodies: {m: {mass: 1, inertia: 1}}
+joints: {g: {type: prismatic, bodies: [ground, m], axis: [1, 0, 0]}}
+drives: {d: {joint: g, position: "0.01*sin(2*pi*900*t) + 0.002*sin(2*pi*70*t)"}}
+sensors: {s: {joint: g}}
+solver: {end: 1, tolerance: 1e-8}
+"""
+
+
+@pytest.mark.parametrize("every", ["1 ms", "0.3 ms"])
+def test_a_pure_tone_beyond_nyquist_is_told_by_its_rate(every, tmp_path):
+    """900 Hz in rows of 1 kHz is a line at 100 Hz; 70 Hz beside it is right."""
+    small.run(tmp_path / "run.h5", f"output.every={every}", text=SHAKEN)
+    shaken = read(tmp_path / "run.h5")
+    folded = every == "1 ms"
+    for channel in ("s", "s.rate", "m.position.x", "m.velocity.x", "d.position"):
+        found = of_channel(shaken, channel, window(shaken))
+        line = found.peaks[0].frequency
+        assert line == pytest.approx(100.0 if folded else 900.0, abs=0.5)
+        told = [f"the line at {line:.5g} Hz was folded back from beyond 500 Hz: "] * folded
+        assert [text[: len(told[0])] for text in found.warnings] == told
+        assert all(f"goes with {900:.4g} Hz" in text for text in found.warnings)
+
+
+def test_the_rate_of_a_channel(run):
+    assert rate(run, "stroke") == "stroke.rate"
+    assert rate(run, "stroke.rate") == "stroke.acceleration"
+    assert rate(run, "B.eccentricity_x") == "B.eccentricity_x_rate"
+    assert rate(run, "rod.velocity.y") == "rod.acceleration.y"
+    assert rate(run, "rod.acceleration.y") == rate(run, "B.contact_force") == ""

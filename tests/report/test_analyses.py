@@ -460,3 +460,11 @@ def test_the_same_every_time(paths, tmp_path):
     first, second = (analysed(paths, tmp_path / name, asked) for name in "ab")
     assert [p.read_bytes() for p in first.files] == [p.read_bytes() for p in second.files]
     assert json.dumps(first.lines) == json.dumps(second.lines)
+
+
+@pytest.mark.filterwarnings("error::UserWarning")
+def test_the_spectrum_of_what_does_not_move_is_drawn(paths, tmp_path):
+    """A logarithmic axis has no value to show, and a command would say so in Python's words."""
+    told = analysed([paths[0]], tmp_path, Asked(spectrum=("slider.position.y",)))
+    assert "slider.position.y: rms 0 m" in told.lines[0]
+    assert (tmp_path / "spectrum_slider_position_y.png").exists()

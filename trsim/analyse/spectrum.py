@@ -21,9 +21,15 @@ as follows from the transform of a Hann window.
 Rows are samples.  What moves faster than half of their rate appears at frequencies where it does
 not belong, and nothing in the rows tells; two signs of it are looked for.  Were P to fall like
 1/f^2 above the Nyquist frequency f_N, P_N f_N of the variance would be folded back, P_N being the
-level near f_N; and extremes the solver kept may lie beyond all rows.
+level near f_N; and extremes the solver kept may lie beyond all rows.  A third one needs the rate x'
+of the channel, where that is a channel too: a line at f has A' = 2 pi f A there, one that was
+folded back from F has A' = 2 pi F A.  It is told where F is beyond f_N, and more than a tenth of A
+may come from fs - f or beyond, where it has at least 2 pi (fs - f) times its part of A:
+
+    part <= (F - f) / (fs - f)
 """
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +37,7 @@ from numpy.typing import NDArray
 
 from trsim.analyse.window import Window, scalar_channel
 from trsim.errors import UsageError
+from trsim.store.points import split
 from trsim.store.read import Run
 
 Array = NDArray[np.float64]
@@ -43,8 +50,16 @@ PROMINENT = 6.0  # dB a peak rises above its surroundings
 PEAKS = 6  # told
 TOP = 0.9  # of the Nyquist frequency: what lies above is near it
 FOLDED = 0.01  # of the variance: more is told
+STRANGE = 0.1  # of a line: what may come from beyond, more is told
 MISSED = 0.1  # of the range: an extreme between the rows that is further out is told
 LEVEL = 0.95
+# the last word of a channel -> that of its rate, where that is another word
+RATES = {
+    "position": "velocity",
+    "velocity": "acceleration",
+    "angular_velocity": "angular_acceleration",
+    "rate": "acceleration",
+}
 UNEVEN = 1e-6  # of the interval: rows that differ by more are not evenly spaced
 
 
@@ -153,7 +168,38 @@ def of_channel(run: Run, channel: str, within: Window, segments: int = SEGMENTS)
             "too far apart for what happens there"
         )
         found = found._replace(warnings=(*found.warnings, text))
+    if faster := rate(run, channel):
+        moves = spectrum(time, scalar_channel(run, faster)[inside][: len(x)], segments)
+        told = tuple(strangers(found, moves, faster))
+        found = found._replace(warnings=(*found.warnings, *told))
     return found
+
+
+def rate(run: Run, channel: str) -> str:
+    """The channel, or component, that is the derivative of one; empty where there is none."""
+    stored, component = split(channel, run.sizes)
+    tail = channel.removeprefix(stored) if component is not None else ""
+    first, _, last = stored.rpartition(".")
+    names = [f"{stored}.rate", f"{stored}_rate"]
+    names += [f"{first}.{RATES[last]}"] if first and last in RATES else []
+    units = (f"{run.unit(channel)}/s", run.unit(channel).removesuffix("/s") + "/s^2")
+    there = (f"{name}{tail}" for name in names)
+    return next((name for name in there if run.stores(name) and run.unit(name) in units), "")
+
+
+def strangers(found: Spectrum, moves: Spectrum, of: str) -> Iterator[str]:
+    """Which lines come from beyond the Nyquist frequency, by the spectrum of the rate."""
+    for peak in found.peaks:
+        k = round(peak.frequency / float(found.frequency[1]))
+        f = float(found.frequency[k])
+        beyond = 2.0 * found.nyquist - f
+        speed = float(moves.density[k]) / (2.0 * np.pi * float(found.density[k]))
+        if speed > found.nyquist and (speed - f) / beyond > STRANGE:
+            yield (
+                f"the line at {peak.frequency:.5g} Hz was folded back from beyond "
+                f"{found.nyquist:.4g} Hz: {of} has there what goes with {speed:.4g} Hz; write rows "
+                "more often"
+            )
 
 
 def beyond(run: Run, channel: str, within: Window, x: Array) -> float:

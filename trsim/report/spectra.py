@@ -60,8 +60,8 @@ def figure(runs: list[Shown], spectra: list[Spectrum], channel: str) -> Any:
             a.fill_between(f, d * one.low, d * one.high, color=colour(k), alpha=0.18, lw=0,
                            label="95 % interval")  # fmt: skip
             name_peaks(a, one, factor, unit)
-    a.set(xscale="log", yscale="log")
     largest = max(float(np.max(one.density[1:])) for one in spectra) * factor
+    a.set(xscale="log", yscale="log" if largest > 0.0 else "linear")
     if largest > 0.0:
         low = a.get_ylim()[0]
         a.set_ylim(max(low, largest * 10.0**-DECADES), 6.0 * largest)
