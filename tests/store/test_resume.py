@@ -1,8 +1,10 @@
 """A run that ended early goes on from its checkpoint: the result is that of an unbroken run."""
 
+import errno
 import io
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -18,6 +20,7 @@ from tests import small
 from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.assemble.mechanism import Column
+from trsim.errors import FileError
 from trsim.solve import simulate as solver
 from trsim.spec.load import loads
 from trsim.store import checkpoint, describe, hdf5, peaks, resume
@@ -164,6 +167,28 @@ def test_no_checkpoint_unless_asked_for(tmp_path, scenario, mechanism, monkeypat
     with pytest.raises(KeyboardInterrupt):
         write(path, scenario, mechanism, begun())
     assert not checkpoint.beside(path).exists()
+
+
+def full(*_):
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism, at_once):
+    """Before the old part is replaced, or at the next checkpoint: it is told how to go on."""
+    path = tmp_path / "run.h5"
+    monkeypatch.setattr(solver, "VISIT", 15)
+    cut(path, scenario, mechanism, 2, closed=True)
+    kept = checkpoint.load(checkpoint.beside(path))
+    left = r"run\.h5\.part holds the run until t = \S+ s; `trsim recover .*` goes on with the run"
+    for module, name in ((hdf5, "see_room"), (checkpoint, "synced")):
+        running = solver.simulate(scenario, mechanism, kept.state)
+        with monkeypatch.context() as patch, pytest.raises(FileError) as error:
+            patch.setattr(module, name, full)
+            write(path, scenario, mechanism, running, "trsim run x.yaml", ALWAYS, kept)
+        assert "No space left on device" in error.value.what and error.value.file
+        assert re.search(left, error.value.hint), error.value.hint
+    resumed(path, scenario, mechanism)
+    assert verify(path)
 
 
 # --- in processes of their own ---

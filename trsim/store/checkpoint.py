@@ -171,7 +171,7 @@ def store(path: Path, kept: Checkpoint) -> None:
     except OSError as error:
         with suppress(OSError, FileError):
             own.remove(fresh, CHECKPOINT)
-        raise FileError(f"{path}: cannot be written: {error.strerror}") from None
+        raise FileError(f"{path}: cannot be written: {error.strerror}", file=str(path)) from None
 
 
 def forget(path: Path) -> None:

@@ -129,11 +129,16 @@ class Running:
             yield
         except (OSError, RuntimeError) as error:
             reason = describe.cause(error)
-            if self.file is None:
-                raise FileError(f"{self.final}: {reason}", file=str(self.final)) from None
+            if self.file is None:  # where a run is gone on with, what it left is untouched
+                hint = self.left(self.kept) if self.kept else ""
+                raise FileError(f"{self.final}: {reason}", hint, file=str(self.final)) from None
             size = self.part.stat().st_size if self.part.exists() else 0
             what = f"{self.part}: cannot be written beyond {size} bytes: {reason}"
             raise FileError(what, self.left(self.kept), file=str(self.part)) from None
+        except FileError as error:  # of a checkpoint
+            if self.file is None or error.hint:
+                raise
+            raise FileError(error.what, self.left(self.kept), file=error.file) from None
 
     def take_all(self, blocks: Generator[Any, None, Any]) -> Any:
         """Store all blocks; the outcome."""
@@ -178,6 +183,7 @@ class Running:
         if kept is None:
             return
         checkpoints.see_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
+        self.time = self.kept = kept.time
         with self.told():
             file = self.begun(self.fresh, kept)
             file.flush()
@@ -187,7 +193,6 @@ class Running:
         self.file = file
         for name, array in self.extremes.items():
             array[:] = kept.extremes[name]
-        self.time = self.kept = kept.time
         self.resumed = [*kept.resumed, f"t = {kept.time:g} s on {describe.stamp(time.time())}"]
 
     def declare(self, file: h5py.File) -> None:
