@@ -1,6 +1,7 @@
 """A run reaches nothing outside: no socket, no process, no text that becomes code."""
 
 import ast
+import shutil
 import socket
 import subprocess
 import sys
@@ -91,3 +92,14 @@ def test_it_would_be_seen():
         subprocess.run([sys.executable, "-c", ""], check=True)
     assert seen[0].startswith("socket.")
     assert any(event.startswith("subprocess.Popen") for event in seen)
+
+
+def test_the_repository_has_no_links():
+    """One would lead to a place of another machine; `.venv` is made, never kept."""
+    git = shutil.which("git")
+    if git is None or not (ROOT / ".git").exists():
+        pytest.skip("this is no checkout")
+    listed = subprocess.run(  # noqa: S603
+        [git, "ls-files", "--stage"], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout.splitlines()
+    assert [line for line in listed if line.startswith("120000")] == []
