@@ -14,6 +14,7 @@ from trsim.solve.doubts import doubts
 
 from ..overconstrained import METHODS, ORDINARY, TILTED, Z, cranks, text
 from ..runs import run
+from ..sizes import size
 from .test_branches import flat, turning
 
 SPACES = {"plane": ORDINARY, "tilted": TILTED}
@@ -132,6 +133,46 @@ def test_crank_and_rod_of_one_length_go_on_along_their_branch(R):
         r = run(made, *sets, f"solver.tolerance={tolerance}")
         assert of_rod(r, np.asarray(R)) > 4
         assert not told(r)
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha", "auto"])
+def test_no_first_step_hides_a_change(method):
+    """What a step goes past depends on where steps happen to lie.
+
+    Where the rows of a place nearly decide, a run may lose its speed there instead: what brings it
+    back to the joints then does most of the energy, and says that branches nearly meet.
+    """
+    rng, wrong = np.random.default_rng(11), 0
+    for _ in range(size(30, 1500)):
+        R = SPACES[str(rng.choice(list(SPACES)))]
+        drawn, branches = [(upright, of_cranks), (crank_and_rod, of_rod)][rng.integers(2)]
+        longer = 10.0 ** -float(rng.integers(5, 10))
+        made, sets = drawn(-longer if drawn is upright and rng.random() < 0.3 else longer, R)
+        tolerance, first = 10 ** rng.uniform(-6, -2), rng.choice(np.geomspace(1e-3, 1.0, 60))
+        ways = (f"method={method}", f"tolerance={tolerance}", f"first_step={first}")
+        given = [f"solver.{way}" for way in ways]
+        r = run(made, *sets, *given, "output.every=0.01", fails=None)
+        if r.outcome.status == "failed":
+            continue  # it says so
+        changed = branches(r, np.asarray(R)) > 0
+        said = [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "branch" in x]
+        assert said or not changed, (longer, ways)
+        wrong += changed
+    assert wrong > 3  # else nothing was tested
+
+
+def test_a_motion_that_lost_its_speed_is_not_called_right():
+    """Extremes next to such a place are chance, and the motion behind it is another one."""
+    made, sets = upright(1e-9, SPACES["plane"])
+    found = 0
+    for first in np.geomspace(1e-3, 1.0, 12):
+        ways = ("solver.method=radau", "solver.tolerance=1.1e-6", f"solver.first_step={first}")
+        r = run(made, *sets, *ways, fails=None)
+        said = list(doubts(r.scenario, r.mechanism, r.outcome))
+        if any("bringing" in x or "another branch" in x for x in said):
+            found += any("are chance" in x for x in said)
+            assert not any("motion is right" in x for x in said), first
+    assert found  # else nothing was tested
 
 
 def test_what_is_said():

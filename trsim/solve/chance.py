@@ -21,7 +21,7 @@ from trsim.assemble.projection import project_positions
 from trsim.elements.scene import scene
 from trsim.solve.locked import dependent
 from trsim.solve.outcome import Outcome
-from trsim.solve.record import MEETINGS
+from trsim.solve.record import CROSSED, MEETINGS
 
 # pivots below which an extreme is none: where branches are known to meet or rows are redundant; by
 # methods that nobody looks for such places with; anywhere; and above which rounding is no reason
@@ -30,6 +30,7 @@ ROUNDING = 1e-14  # 50 times eps: felt 1 / pivot^1.5 times
 REGULAR = 1e-3  # least singular value at a start that is no such place itself
 OF = ("joints", "drives")
 TOLD = 4  # names
+GIVEN = 1e-2  # of the largest energy, by projection: more, and the motion is another one
 
 
 def of_extremes(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
@@ -52,7 +53,9 @@ def of_extremes(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
                 one = (much, t, float(r.firm[side, c]), f"{value:.3g} {column.unit}")
                 found[column.name] = max(found.get(column.name, one), one)
     if found:
-        yield sentence(mechanism, found)
+        motion = "For" if astray(outcome) else "The motion is right; for"
+        remedy = f"{motion} the forces give joints clearance or compliance"
+        yield f"{sentence(mechanism, found)}  {remedy}"
 
 
 def sentence(mechanism: Mechanism, found: dict[str, tuple[float, float, float, str]]) -> str:
@@ -66,9 +69,15 @@ def sentence(mechanism: Mechanism, found: dict[str, tuple[float, float, float, s
     return (
         f"{section}.{part}: extremes of {', '.join(names[:TOLD])}{others} are chance: {value} of "
         f"{first} is that of t = {t:.6g} s, {sqrt(pivot):.1g} from where rows of joints depend on "
-        "each other, and what they carry grows there like one over the distance.  The motion is "
-        "right; for the forces give joints clearance or compliance"
+        "each other, and what they carry grows there like one over the distance."
     )
+
+
+def astray(outcome: Outcome) -> bool:
+    """Whether the motion changed its branch there, or lost its energy, as is told elsewhere."""
+    given = outcome.statistics.get("work_of_projection_relative", 0.0)
+    r = outcome.record
+    return given > GIVEN or (r is not None and r.count[CROSSED] > 0)
 
 
 def of_joints(mechanism: Mechanism) -> list[Column]:
