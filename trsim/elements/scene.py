@@ -164,9 +164,9 @@ class Scene(Model):
     aside: A2  # (10, n_y or n_v+m+1) states and accelerations beside this one   beside.py
     root: A2  # (3, n_x) sigma at the ends of the last step and of this one    solve/passes.py
     part_root: A2  # (3, n_x) the same of parts of a step
-    kept_rows: A2  # (2, 6 slots) B, the factors and sigma at both ends of a step
-    kept_factors: A2  # (2, places)
-    kept_roots: A2  # (2, n_x)
+    kept_rows: A2  # (4, 6 slots) B and the factors of two places, and of both ends of a step
+    kept_factors: A2  # (4, places)
+    kept_roots: A2  # (2, n_x) sigma of those two places
     own: A2  # (2, 6 n) what a row has of its own
     moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: T6  # (n, 6) accelerations without constraints, axes of the solve
@@ -231,8 +231,8 @@ def scene(model: Model) -> Scene:
             "aside": (10, max(model.n_q + model.n_v + model.n_z, model.n_v + m + 1)),
             "root": (3 * loops, n_x),
             "part_root": (3 * loops, n_x),
-            "kept_rows": (2 * loops, 6 * slots),
-            "kept_factors": (2 * loops, len(model.row)),
+            "kept_rows": (4 * loops, 6 * slots),
+            "kept_factors": (4 * loops, len(model.row)),
             "kept_roots": (2 * loops, n_x),
             "own": (2 * loops, 6 * n),
             "moved": (n, 6),

@@ -3,7 +3,7 @@
 from math import nan
 
 from trsim.assemble.equations import corners, evaluate, gaps, kinetic
-from trsim.assemble.linear import SOUND, smallest_pivot
+from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import (
     DOUBTFUL,
@@ -16,7 +16,7 @@ from trsim.assemble.projection import (
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
 from trsim.elements.vectors import copy_to, internal
-from trsim.solve.own_rows import keep_roots
+from trsim.solve.own_rows import ends_in, keep_roots, keep_rows, look_at
 from trsim.solve.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.watch import watch
 
@@ -63,6 +63,9 @@ def land(s, r, b, t, y, yd):
     evaluate(s, t, y, yd)
     if s.near_rows > 0.0:
         keep_roots(s, s.root[2])
+        if s.status[0] == SINGULAR:  # its factors are shifted
+            look_at(s, t, y)
+        keep_rows(s, ends_in(r))
     if s.stabilisation == PROJECTION and s.m > 0:
         done += position_work(s, b.y2, y)
     else:

@@ -8,7 +8,7 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1
 from trsim.elements.vectors import internal
 from trsim.solve.illinois import between, narrowed
-from trsim.solve.own_rows import cosine, keep_rows, look_at, own
+from trsim.solve.own_rows import cosine, keep_roots, keep_rows, look_at, own
 from trsim.solve.record import MEETINGS, RECORD, T
 
 MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
@@ -16,7 +16,9 @@ APART = 1e-2  # pivots that do not take part
 NEARER = 12  # places looked at, at most
 NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-12  # steps; of the mechanism's size
 NEAR_ENOUGH = 1e-3  # of the square of sigma: it is not felt
-AROUND = 1.5  # of the square of a way: how far from its middle a known place is next to it
+# of the square of a way: the sum of those of both its ends from a known place next to it, which is
+# 1.2 ways from its middle
+AROUND = 3.5
 
 
 @internal
@@ -38,7 +40,7 @@ def meet(s, r, b, t1, last, start, end, k):
         about = s.kept_roots[1, k]
         if about <= MEET:
             return closed(s, t1 + (x - 1.0) * h, place, 0.0) and alone(s, k)
-        own(s, 1, k)
+        own(s, 1, k, 1)
         bracket = narrowed(bracket, x, about if cosine(s) > 0.0 else -about, False)
     return False
 
@@ -54,6 +56,7 @@ def closed(s, t, y, about):
         return False
     look_at(s, t, y)
     keep_rows(s, 1)
+    keep_roots(s, s.kept_roots[1])
     return True
 
 
@@ -79,18 +82,25 @@ def inside(y0, yd0, y1, yd1, h, x, y):
 @compiled(types.int64(SCENE, RECORD, A1, A1))
 def known(s, r, y0, y1):
     """Whether branches meet, as was found out before, between two states."""
-    for k in range(min(r.count[MEETINGS], r.meeting.shape[0])):
-        place = r.meeting[k]
-        if away(s, place, y0, y1) <= AROUND * apart(s, y0, y1):
+    many = min(r.count[MEETINGS], r.meeting.shape[0])
+    most = AROUND * apart(s, y0, y1, 1e300) if many > 0 else 0.0
+    for k in range(many):
+        first = apart(s, r.meeting[k], y0, most)
+        if first <= most and first + apart(s, r.meeting[k], y1, most - first) <= most:
             return 1
     return 0
 
 
 @internal
-def apart(s, y0, y1):
-    """The square of the distance of two states, a turn taken times the mechanism's size."""
+def apart(s, y0, y1, most):
+    """The square of the distance of two states, a turn taken times the mechanism's size.
+
+    Where it is more than `most` a part of it that is more too.
+    """
     total = 0.0
     for f in range(s.n_r - 1):
+        if total > most:
+            return total
         if s.d == 3:
             q = 3 * f
             total += (y1[q] - y0[q]) ** 2 + (y1[q + 1] - y0[q + 1]) ** 2
@@ -105,9 +115,3 @@ def apart(s, y0, y1):
     for k in range(s.q_node, s.n_q):
         total += (y1[k] - y0[k]) ** 2
     return total
-
-
-@internal
-def away(s, place, y0, y1):
-    """The square of the distance of a place from the middle of two states."""
-    return 0.5 * (apart(s, place, y0) + apart(s, place, y1)) - 0.25 * apart(s, y0, y1)

@@ -12,6 +12,7 @@ from trsim.assemble.equations import constraints, poses
 from trsim.assemble.linear import diagonal, eliminate
 from trsim.assemble.schur import rows
 from trsim.elements.vectors import clear, copy_to, internal
+from trsim.solve.record import KEPT
 
 FINEST = 1e-15  # of the diagonal: rounding of a pivot
 # cosine: below that a row turned by more than it does in half of a way on its branch.  One that
@@ -39,22 +40,33 @@ def keep_roots(s, roots):
 
 
 @internal
-def keep_rows(s, end):
-    """B, L and sigma of the rows just factorised, of the beginning (0) or the end (1) of a step."""
-    B, n = s.kept_rows[end], 0
+def begun_in(r):
+    """Which of the four places has the rows where the step begins; `ends_in`: where it ends."""
+    return 3 if r.count[KEPT] == 2 else 2
+
+
+@internal
+def ends_in(r):
+    """Which of them has those where it ends: the two change places with every step."""
+    return 5 - begun_in(r)
+
+
+@internal
+def keep_rows(s, place):
+    """B and L of the rows just factorised, in one of four places."""
+    B, n = s.kept_rows[place], 0
     for p in range(s.slot_row.size):
         for c in range(s.d):
             B[n] = s.B[p, c]
             n += 1
-    copy_to(s.kept_factors[end], s.value)
-    keep_roots(s, s.kept_roots[end])
+    copy_to(s.kept_factors[place], s.value)
 
 
 @internal
-def turned_round(s, k):
-    """Whether what the row eliminated k-th has of its own points elsewhere at the end."""
-    own(s, 0, k)
-    own(s, 1, k)
+def turned_round(s, k, one, other):
+    """Whether what the row eliminated k-th has of its own points elsewhere at the other place."""
+    own(s, 0, k, one)
+    own(s, 1, k, other)
     return cosine(s) <= PLAINLY
 
 
@@ -72,13 +84,14 @@ def cosine(s):
 
 
 @internal
-def own(s, end, k):
-    """d of the row eliminated k-th, into s.own[end]: of bodies, of hubs those eliminated before.
+def own(s, end, k, place):
+    """d of the row eliminated k-th, kept in that place, into s.own[end]: of bodies, and of hubs
+    those eliminated before.
 
     Rows whose elimination changed others before it, but not this one, have no part in it: those the
     next of whose column has none.
     """
-    w, has_part, L, B, d = s.r2, s.r, s.kept_factors[end], s.kept_rows[end], s.own[end]
+    w, has_part, L, B, d = s.r2, s.r, s.kept_factors[place], s.kept_rows[place], s.own[end]
     row, column_start = s.row, s.column_start
     clear(w)
     clear(has_part)
@@ -91,14 +104,36 @@ def own(s, end, k):
         for p in range(start + 1, beyond):
             total -= L[p] * w[row[p]]
         w[row[start]], has_part[row[start]] = total, 1.0
-    clear(d)
+    if s.d == 3:
+        planar_part(s, B, w, d)
+    else:
+        spatial_part(s, B, w, d)
+
+
+@internal
+def planar_part(s, B, w, d):
+    """d <- w^T B of x', y' and omega_z of bodies, and of hubs that give way."""
     for f in range(1, s.n_r):
-        if s.hub[f] >= 0 and not moves(s, w, f):
-            continue
-        for p in range(s.frame_start[f], s.frame_start[f + 1]):
-            w_p = w[s.slot_row[p]]
-            for c in range(s.d):
-                d[s.d * f + c] += B[s.d * p + c] * w_p
+        d0 = d1 = d2 = 0.0
+        if s.hub[f] < 0 or moves(s, w, f):
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                w_p, o = w[s.slot_row[p]], 3 * p
+                d0, d1, d2 = d0 + B[o] * w_p, d1 + B[o + 1] * w_p, d2 + B[o + 2] * w_p
+        d[3 * f], d[3 * f + 1], d[3 * f + 2] = d0, d1, d2
+
+
+@internal
+def spatial_part(s, B, w, d):
+    """The same of the velocity and the body-axes angular velocity."""
+    for f in range(1, s.n_r):
+        d0 = d1 = d2 = d3 = d4 = d5 = 0.0
+        if s.hub[f] < 0 or moves(s, w, f):
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                w_p, o = w[s.slot_row[p]], 6 * p
+                d0, d1, d2 = d0 + B[o] * w_p, d1 + B[o + 1] * w_p, d2 + B[o + 2] * w_p
+                d3, d4, d5 = d3 + B[o + 3] * w_p, d4 + B[o + 4] * w_p, d5 + B[o + 5] * w_p
+        o = 6 * f
+        d[o], d[o + 1], d[o + 2], d[o + 3], d[o + 4], d[o + 5] = d0, d1, d2, d3, d4, d5
 
 
 @internal

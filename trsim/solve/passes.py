@@ -19,7 +19,14 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import f8, i8
 from trsim.elements.vectors import copy_to, internal
 from trsim.solve.meetings import CLOSED, NEWTON, inside, known, meet
-from trsim.solve.own_rows import keep_roots, keep_rows, look_at, turned_round
+from trsim.solve.own_rows import (
+    begun_in,
+    ends_in,
+    keep_roots,
+    keep_rows,
+    look_at,
+    turned_round,
+)
 from trsim.solve.record import BUFFERS, KEPT, LAST_WAY, MEETINGS, PASSED, RECORD, T
 from trsim.solve.turns import fastest_in_loops
 
@@ -47,13 +54,14 @@ def note_passes(s, r, b, t1, last):
     if r.count[KEPT] == 0:
         look_at(s, t, r.y)
         keep_roots(s, s.root[1])
+        keep_rows(s, begun_in(r))
         r.clock[LAST_WAY], r.count[KEPT] = 0.0, 1
     way = h * max(fastest_in_loops(s, r.y), fastest_in_loops(s, b.y1))
     if may_turn(s, s.root, way, r.clock[LAST_WAY]):
         look_at_parts(s, r, b, t1, last, way)
     for k in range(s.root.shape[1]):
         s.root[0, k], s.root[1, k] = s.root[1, k], s.root[2, k]
-    r.clock[LAST_WAY] = way
+    r.clock[LAST_WAY], r.count[KEPT] = way, 3 - r.count[KEPT]
 
 
 @internal
@@ -64,17 +72,16 @@ def look_at_parts(s, r, b, t1, last, way):
     """
     y0, y1, t, h = b.part[0], b.part[1], r.clock[T], t1 - r.clock[T]
     n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.clock[LAST_WAY]
-    held = False  # the rows at the beginning of a part: kept when they were those at an end
     for k in range(s.first.size):
         roots[0, k], roots[1, k], roots[2, k] = s.root[0, k], s.root[1, k], s.root[2, k]
+    one, other = begun_in(r), ends_in(r)
     for k in range(1, n + 1):
-        lost = k == n
         if k < n:
-            inside(r.y, r.yd, b.y1, b.K[last], h, k / n, y1)
-            look_at(s, t + k / n * h, y1)
+            other = k % 2
+            keep_inside(s, r, b, last, h, k / n, other)
             keep_roots(s, roots[2])
-            keep_rows(s, k % 2)
         else:
+            other = ends_in(r)
             copy_to(roots[2], s.root[2])
         if may_turn(s, roots, way / n, before):
             inside(r.y, r.yd, b.y1, b.K[last], h, (k - 1) / n, y0)
@@ -82,20 +89,23 @@ def look_at_parts(s, r, b, t1, last, way):
             start, end = t + (k - 1) / n * h, t + k / n * h
             if known(s, r, y0, y1) == 0:
                 ways = (way / n, before)
-                if not held:
-                    look_at(s, start, y0)
-                    keep_rows(s, (k - 1) % 2)
-                if k == n:
-                    look_at(s, end, y1)
-                    keep_rows(s, k % 2)
-                if turned(s, roots, ways) >= 0:
+                if turned(s, roots, ways, one, other) >= 0:
                     close_positions(s, start, y0, CLOSED * s.size, NEWTON)
                     close_positions(s, end, y1, CLOSED * s.size, NEWTON)
                     note_turned(s, r, b, t1, last, (k - 1) / n, k / n, y0, y1, roots, ways)
-                    lost = True
+                    if k < n:  # others took their place
+                        keep_inside(s, r, b, last, h, k / n, other)
         copy_to(roots[0], roots[1])
         copy_to(roots[1], roots[2])
-        before, held = way / n, not lost
+        before, one = way / n, other
+
+
+@internal
+def keep_inside(s, r, b, last, h, x, place):
+    """Keep the rows at the part x of the step, on the cubic."""
+    inside(r.y, r.yd, b.y1, b.K[last], h, x, b.part[1])
+    look_at(s, r.clock[T] + x * h, b.part[1])
+    keep_rows(s, place)
 
 
 @internal
@@ -124,14 +134,14 @@ def row_may_turn(s, roots, way, last, k):
 
 
 @internal
-def turned(s, roots, ways):
-    """Which row turned round between the states whose rows are kept, in the order of elimination;
-    -1 if none did.
+def turned(s, roots, ways, one, other):
+    """Which row turned round between the states whose rows are kept in two places, in the order of
+    elimination; -1 if none did.
 
     Of those that may have on the second of two ways, which ends there: `row_may_turn`.
     """
     for k in range(s.first.size):
-        if row_may_turn(s, roots, ways[0], ways[1], k) and turned_round(s, k):
+        if row_may_turn(s, roots, ways[0], ways[1], k) and turned_round(s, k, one, other):
             return k
     return -1
 
@@ -145,9 +155,11 @@ def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
     t, h = r.clock[T], t1 - r.clock[T]
     look_at(s, t + start * h, y0)
     keep_rows(s, 0)
+    keep_roots(s, s.kept_roots[0])
     look_at(s, t + end * h, y1)
     keep_rows(s, 1)
-    k = turned(s, roots, ways)
+    keep_roots(s, s.kept_roots[1])
+    k = turned(s, roots, ways, 0, 1)
     if k < 0:
         return
     if s.redundant.shape[0] == 0 and meet(s, r, b, t1, last, start, end, k):

@@ -96,7 +96,7 @@ from trsim.elements.scene import Model
     FAILED,  # and how many trials were rejected then
     NEWEST,  # which of the last samples of the channels is the newest, and how many there are
     SAMPLES,
-    KEPT,  # 1: sigma is known where the step begins
+    KEPT,  # 0: no rows are known where the step begins; 1, 2: they are kept in one of two places
     PASSED,  # ways noted that are still to be examined
     MEETINGS,  # places known where branches meet
     CROSSED,  # how often the run changed its branch
