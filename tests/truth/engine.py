@@ -751,6 +751,13 @@ def watched(m, t, y, out):
 
 
 @compiled
+def remembers(m, k):
+    """Whether what is watched is a contact whose force depends on how it began."""
+    of = m.watch[k, 1]
+    return m.watch[k, 0] == W_GAP and m.force[of, 0] == CLEARANCE and m.force_par[of, 12] < 1.0
+
+
+@compiled
 def step(m, t, y, h, side, mem, first, K, lam, told, rtol, size, out):
     """One step of order 8 into out; its error in units of the tolerance."""
     n = len(y)
@@ -846,6 +853,7 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
     F = np.full((n_t, len(m.force), 4), np.nan)
     n_c, n_b = len(m.coordinate), len(m.mass)
     crossed, grazed = np.empty((limit, 5 + 2 * n_c)), np.empty((limit, 3))
+    opening, n_o, opened = np.empty((limit, 3)), 0, np.full(n_w, -1.0)
     n_x, n_g = 0, 0
     K, yd, out = np.zeros((12, n)), np.zeros(n), np.zeros(n)
     trial, ydt = np.zeros(n), np.zeros(n)
@@ -908,7 +916,12 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
                     inside = hs
                 elif s0[k] * sd < 0.0 and s1[k] * sd > 0.0 and g0[k] * sd > 0.0:
                     near = min(abs(g0[k]), abs(g1[k]))
-                    if near < 2.0 * hs * max(abs(s0[k]), abs(s1[k])):
+                    if near >= 2.0 * hs * max(abs(s0[k]), abs(s1[k])):
+                        # no step from it: it turns back at half of that, at least
+                        if remembers(m, k) and sd > 0.0 and n_o < limit:
+                            opening[n_o, 0], opening[n_o, 1], opening[n_o, 2] = t, k, near
+                            n_o += 1
+                    else:
                         # the turning point, by halving the slope's sign
                         lo, hi = 0.0, hs
                         for _ in range(60):
@@ -928,6 +941,9 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
                             if hi - lo < 1e-7 * hs:
                                 break
                         low = abs(gt[k])
+                        if inside < 0.0 and remembers(m, k) and sd > 0.0 and n_o < limit:
+                            opening[n_o, 0], opening[n_o, 1], opening[n_o, 2] = t + mid, k, low
+                            n_o += 1
                         if n_g < limit and low < NEAR:
                             grazed[n_g, 0], grazed[n_g, 1], grazed[n_g, 2] = t + mid, k, gt[k]
                             n_g += 1
@@ -980,6 +996,14 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
                 crossed[n_x, 5 + c], crossed[n_x, 5 + n_c + c] = q[c], qd[c]
             n_x += 1
             side[which] = -side[which]
+            if remembers(m, which) and side[which] > 0.0 and opened[which] >= 0.0 and n_o < limit:
+                opening[n_o, 0], opening[n_o, 1], opening[n_o, 2] = (
+                    opened[which],
+                    which,
+                    deep[which],
+                )
+                n_o += 1
+            opened[which] = t
             deep[which] = 0.0
             if m.watch[which, 0] == W_GAP and side[which] > 0:
                 mem[m.watch[which, 1]] = max(s1[which], mem[m.watch[which, 1]])
@@ -995,6 +1019,7 @@ def march(m, t, y, side, mem, deep, times, h_max, turn, rtol, size, limit, singu
                 status = STOPPED
                 break
     return (
-        (Y, YD, LAM, F), crossed[:n_x], grazed[:n_g], (t, row, status, steps, worst, pivot), y,
+        (Y, YD, LAM, F), crossed[:n_x], grazed[:n_g], opening[:n_o],
+        (t, row, status, steps, worst, pivot), y,
         (when_at[:n_e], ends_y[:n_e], ends_yd[:n_e], ends_lam[:n_e], ends_f[:n_e]),
     )  # fmt: skip

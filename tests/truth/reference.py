@@ -439,6 +439,9 @@ class Truth:
     crossings: list[Crossing]
     grazing: list[tuple[str, float, float]]
     ended: float | None = None
+    # times at which a contact in clearance opens for an instant or nearly so, and by how much
+    openings: list[tuple[float, float]] = field(default_factory=list)
+    until: float = np.inf  # nothing is judged from then on
     sure: np.ndarray = field(default_factory=lambda: np.zeros(0))  # at each row, of the scales
     growth: np.ndarray = field(default_factory=lambda: np.ones(0))  # of a small change at the start
     felt: dict[str, np.ndarray] = field(default_factory=dict)  # the same of every channel and row
@@ -478,6 +481,7 @@ class Course:
         self.parts: list[tuple[Builder, list[int], np.ndarray, Any]] = []
         self.crossings: list[tuple[Any, np.ndarray, float]] = []
         self.grazing: list[tuple[str, float, float]] = []
+        self.openings: list[tuple[float, float]] = []
         self.ended: float | None = None
         self.steps, self.room = 0, room
         self.ends: list[tuple[Builder, list[int], Any]] = []
@@ -508,7 +512,7 @@ class Course:
                 m, t, y, side, mem, deep, self.times[at : stops[0]], h_max, turn, rtol, size, 20000,
                 floor, self.room,
             )  # fmt: skip
-            rows, crossed, grazed, (t, n, status, steps, worst, _), y, ends = found
+            rows, crossed, grazed, opening, (t, n, status, steps, worst, _), y, ends = found
             self.ends.append((b, kept, ends))
             self.steps += steps
             if status in (e.STUCK, e.TOO_MANY) or (status == e.SINGULAR and floor == LEAST_PIVOT):
@@ -522,6 +526,7 @@ class Course:
                 what = b.of_watch[int(line[1])]
                 if what is not None:
                     self.grazing.append((getattr(what, "name", what), line[0], line[2]))
+            self.openings += [(line[0], line[2]) for line in opening]
             at += n
             if status == e.DONE:
                 stops.pop(0)
@@ -760,6 +765,7 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
     t.sure, t.growth = spread(t, other, 1.0), spread(t, apart, APART)
     t.felt = felt(t, apart, APART)
     t.crossings = list(listed(scene, main))
+    t.openings = main.openings
     t.smooth, t.beside = main.smooth(), apart.smooth
     return t
 

@@ -31,7 +31,10 @@ size.
 The bound grows with what a small change of the start grows by, divided by 20 (where a scene would
 be wrong also by what changes of speeds at eight times on the way do): of places and speeds,
 and at single rows of a channel itself, since forces in contacts grow by more. Where it passes the
-whole scale, the horizon of prediction is passed and nothing more is judged. Of rk4, whose step is
+whole scale, the horizon of prediction is passed and nothing more is judged; nor,
+before a scene is told to be wrong, behind an instant at which a contact in clearance opens by less
+than a tolerance of the size in one of both and not in the other, since where it opens another
+impact begins, with other damping: such scenes are counted as grazing. Of rk4, whose step is
 chosen, the tolerance is 1e-6 at 200 steps a turn. What is refused is counted: a scene that is valid
 is to run. `told` are scenes that have no motion, or whose way is chance without projection: they
 were refused as they must be. Not compared are reactions of joints with redundant rows, which no

@@ -20,6 +20,7 @@ from .judge import (
     Verdict,
     against,
     judged,
+    parted,
     ran,
     rigid,
     stated,
@@ -91,6 +92,7 @@ def verdict(family: str, seed: int) -> Verdict:
     v = judged(s, t, r, v)
     if v.verdict == WRONG and drawn.truth is None:
         # the bound knows what changes of the start grow by; errors are made later too
+        t.until = parted(s, t, r, v.tolerance)
         t.growth, v.verdict = growth_of_later(s, t), RIGHT
         v = judged(s, t, r, v)
     return v
