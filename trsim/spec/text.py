@@ -159,6 +159,9 @@ def _events(text: str, place: Any) -> Iterator[Any]:
             mark = error.context_mark  # where it was opened says more than the end of the file
         where = place(mark.line, mark.column) if mark else None
         problem = error.problem or error.context or "unreadable"
+        if "nesting depth" in problem:  # of a C loader, which reads ahead of the events it gives
+            what = f"nested more than {DEEPEST} deep"
+            raise ScenarioError(what, place=place(*too_deep(text))) from None
         hint = next((hint for part, hint in _HINTS.items() if part in problem), "")
         if where and "\t" in where.excerpt[: where.column]:
             hint = "Indent with spaces: YAML does not allow tabs."
@@ -167,6 +170,20 @@ def _events(text: str, place: Any) -> Iterator[Any]:
         if isinstance(error, ScenarioError):
             raise
         raise ScenarioError(f"not YAML: {described(str(error))}", place=place(0, 0)) from None
+
+
+def too_deep(text: str) -> tuple[int, int]:
+    """Line and column, from 0, of the first collection that stands in more than DEEPEST others."""
+    within = 0
+    for event in yaml.parse(text, Loader=yaml.SafeLoader):
+        if isinstance(event, yaml.CollectionStartEvent):
+            mark: Any = event.start_mark
+            if within > DEEPEST:
+                return mark.line, mark.column
+            within += 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            within -= 1
+    return 0, 0
 
 
 def _node(event: Any, events: Iterator[Any], tree: Tree, path: Path, place: Any) -> Any:
