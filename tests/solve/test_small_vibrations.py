@@ -3,17 +3,27 @@
     x_k = A_k cos(w_k t + p_k),    w_2 = 3..300 w_1,    A_2 = 1..1e-4 A_1
 
 At loose tolerances a first step may hold many radians of it, and its accelerations may be the
-largest there are though its speeds are small.
+largest there are though its speeds are small.  With w_2 up to 1e4 w_1 and A_2 down to 1e-8 A_1
+steps are not held to them, and the run says so.
 """
+
+import re
 
 import numpy as np
 import pytest
+
+from trsim.solve.doubts import doubts
 
 from ..runs import run
 from ..sizes import size
 
 SEEDS = size(60, 4000)
+FAINT_SEEDS = size(60, 260)
 TOGETHER = 30  # in one test
+TOLD, SILENT = (
+    10.0,
+    400.0,
+)  # tolerances: a run that doubts is off by more, one that does not by less
 ALLOWED = 100.0  # tolerances of the largest of its kind: phases add up over the turns
 TILTED = np.array([[0.48, -0.8, 0.36], [0.6, 0.0, -0.8], [0.64, 0.6, 0.48]]).T
 
@@ -32,7 +42,7 @@ forces:
          stiffness: {stiffness[1]!r}, free_length: 3}}
 sensors: {{x: {{joint: a}}, y: {{joint: b}}}}
 gravity: [0, 0, 0]
-solver: {{end: {end!r}, tolerance: {tolerance!r}, first_step: {first!r}}}
+solver: {{end: {end!r}, tolerance: {tolerance!r}{first}}}
 output: {{every: {every!r}}}
 """
 
@@ -41,15 +51,21 @@ def numbers(x):
     return [float(v) for v in x]
 
 
-def drawn(seed):
+def drawn(seed, faint=False):
     """Text of a scene, the direction of its ways, frequencies, amplitudes and phases."""
     rng = np.random.default_rng(seed)
-    ratio, small = 10 ** rng.uniform(0.5, 2.5), 10 ** rng.uniform(-4, 0)
+    ratio, small = (
+        10 ** rng.uniform(0.5, 4 if faint else 2.5),
+        10 ** rng.uniform(-8 if faint else -4, 0),
+    )
     w = 10 ** rng.uniform(-1, 1.5) * np.array([1.0, ratio])
     A = 10 ** rng.uniform(-1.5, 0) * np.array([1.0, small])
     p = rng.uniform(0, 2 * np.pi, 2) * (rng.random() < 0.5)  # else from rest
     driven = rng.random() < 0.3  # the slow one goes on and on instead
-    spatial, tolerance = rng.random() < 0.4, 10 ** rng.uniform(-5, -2)
+    spatial, tolerance = (
+        rng.random() < 0.4,
+        10 ** (rng.uniform(-10, -5) if faint else rng.uniform(-5, -2)),
+    )
     R = TILTED if spatial else np.eye(3)
     ways = [np.zeros(3), R[:, 1]]
     mass = float(10 ** rng.uniform(-1, 1))
@@ -58,6 +74,7 @@ def drawn(seed):
     v = -A * w * np.sin(p)
     if driven:
         x[0], v[0] = 0.0, A[0] * w[0]
+    first = min(float(10 ** rng.uniform(-1.5, 1.5) / w[1]), end)
     text = SCENE.format(
         planar=str(not spatial).lower(), inertia="[1, 1, 1]" if spatial else 1,
         at=[numbers(way + R[:, 0] * d) for way, d in zip(ways, x, strict=True)],
@@ -65,7 +82,7 @@ def drawn(seed):
         axis=numbers(R[:, 0]), mass=mass,
         anchor=[numbers(way - 3 * R[:, 0]) for way in ways],
         stiffness=[0.0 if driven else float(w[0] ** 2), float(mass * w[1] ** 2)], end=end,
-        tolerance=float(tolerance), first=min(float(10 ** rng.uniform(-1.5, 1.5) / w[1]), end),
+        tolerance=float(tolerance), first="" if faint else f", first_step: {first!r}",
         every=float(2 * np.pi / w[1] / 10 ** rng.uniform(0.5, 1.6)),
     )  # fmt: skip
 
@@ -82,8 +99,10 @@ def drawn(seed):
 
 def off(seed, method):
     """By how many tolerances places, velocities and accelerations are off, of the largest."""
-    text, axis, ways, exact = drawn(seed)
-    r = run(text, f"solver.method={method}")
+    return off_of(run(drawn(seed)[0], f"solver.method={method}"), *drawn(seed)[1:])
+
+
+def off_of(r, axis, ways, exact):
     kinds = ("position", "velocity", "acceleration")
     found = []
     for kind, true in zip(kinds, exact(r.t), strict=True):
@@ -101,3 +120,40 @@ def test_a_small_vibration_beside_a_larger_motion(method, first):
     worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER)}
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
     assert not wrong
+
+
+def doubted(r):
+    """What the run says of its accelerations."""
+    said = [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "something vibrates" in x]
+    return said[0] if said else ""
+
+
+@pytest.mark.parametrize("first", range(0, FAINT_SEEDS, TOGETHER))
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+def test_accelerations_that_steps_are_not_held_to_are_doubted(method, first):
+    silent, false = {}, {}
+    for seed in range(first, min(first + TOGETHER, FAINT_SEEDS)):
+        text, *true = drawn(seed, faint=True)
+        r = run(text, f"solver.method={method}")
+        worst = off_of(r, *true).max()
+        if doubted(r) and worst < TOLD:
+            false[seed] = worst
+        if not doubted(r) and worst > SILENT:
+            silent[seed] = worst
+    assert not silent
+    assert not false
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])
+def test_the_doubt_says_how_fast_and_what_tolerance(method):
+    text, *true = drawn(72, faint=True)
+    coarse = run(text, f"solver.method={method}")
+    said = doubted(coarse)
+    tolerance = re.search("`tolerance: ([^`]*)` holds them", said)[1]
+    if method != "generalized_alpha":
+        frequency = float(re.search("at about (.*) Hz", said)[1])
+        assert frequency == pytest.approx(164, rel=0.05)
+    finer = run(text, f"solver.method={method}", f"solver.tolerance={tolerance}")
+    before, after = (off_of(r, *true).max() * r.scenario.solver.tolerance for r in (coarse, finer))
+    assert before > ALLOWED * coarse.scenario.solver.tolerance
+    assert after < 2.0 * TOLD * coarse.scenario.solver.tolerance

@@ -16,7 +16,17 @@ Nothing is asked for that rounding makes: of the forces, or of what joints take 
 from math import sqrt
 
 from trsim.elements.vectors import internal
-from trsim.solve.record import LENGTH, NOISY, SPEED, WRITTEN
+from trsim.solve.record import (
+    BLUR,
+    BLUR_W,
+    BLURRED,
+    BLURRED_H,
+    BLURRED_W,
+    LENGTH,
+    NOISY,
+    SPEED,
+    WRITTEN,
+)
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
@@ -61,8 +71,22 @@ def in_units(s, r, setting, off, most, mean):
     most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
     allowed = ALLOWED * setting[WRITTEN] * most
     error = off / allowed if allowed > 0.0 else 0.0
-    if error <= 1.0:
-        return error
+    return error if error <= 1.0 else off / max(allowed, rounded(s, r))
+
+
+@internal
+def doubted(s, r, setting, off, most, w):
+    """Note what accelerations may be off by where that is more than is allowed and no rounding.
+
+    w: rad/s, how fast what the error consists of turns, 0 where it is not known.
+    """
+    if off > ALLOWED * setting[WRITTEN] * most and off > rounded(s, r):
+        r.clock[BLUR], r.clock[BLUR_W] = off, w
+
+
+@internal
+def rounded(s, r):
+    """What rounding makes of accelerations, m/s^2."""
     free, noise = r.clock[SPEED] ** 2 / r.clock[LENGTH], 0.0
     for f in range(1, s.n_r):
         for c in range(s.d):
@@ -71,5 +95,16 @@ def in_units(s, r, setting, off, most, mean):
     if r.clock[NOISY] > 0.0:
         for c in range(s.n_q, s.n_q + s.v_node):
             noise = max(noise, s.scale[c] * r.noise[c])
-    rounded = max(ROUNDING * free, WIDEST * noise)
-    return off / max(allowed, rounded)
+    return max(ROUNDING * free, WIDEST * noise)
+
+
+@internal
+def blurred(r, h):
+    """Keep the largest error of accelerations that an accepted step h was not held for.
+
+    How fast it turns is that of the longest such step: in short ones rounding is seen.
+    """
+    if r.clock[BLUR] > 0.0:
+        r.clock[BLURRED] = max(r.clock[BLURRED], r.clock[BLUR])
+        if h > r.clock[BLURRED_H]:
+            r.clock[BLURRED_H], r.clock[BLURRED_W] = h, r.clock[BLUR_W]

@@ -12,7 +12,7 @@ from trsim.assemble.equations import equation, evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import internal
 from trsim.solve import dop853_tableau as tableau
-from trsim.solve.accelerations import EACH, frequency, held, in_units, largest
+from trsim.solve.accelerations import EACH, doubted, frequency, held, in_units, largest
 from trsim.solve.calls import CONTROL, DENSE, INTERPOLATE, STEP
 from trsim.solve.record import GAIN, LENGTH, MET, SPEED, TOLERANCE
 from trsim.solve.works import first_work, works
@@ -137,6 +137,7 @@ def of_accelerations(s, r, b, setting, h):
     mean = turned / moved
     inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.clock[MET])
     most = max(most, inside)
+    doubted(s, r, setting, off, most, sqrt(mean))
     return in_units(s, r, setting, off, most, mean)
 
 

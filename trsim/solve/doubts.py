@@ -9,6 +9,7 @@ shafts     that moved too slowly for the friction of their gears to be whole
 meshes     of bars bent further than their elements follow                   solve/mesh_error.py
 waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
+vibrations are too small for the tolerance, but not their accelerations         solve/faint.py
 energy     the book of the run does not close
 branches   the run changed from one to another where they nearly meet     solve/crossed.py
 extremes   of forces are chance, next to where rows depend on each other     solve/chance.py
@@ -32,6 +33,7 @@ from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
 from trsim.solve.chance import of_extremes
 from trsim.solve.crossed import of_branches
+from trsim.solve.faint import of_vibrations
 from trsim.solve.mesh_error import of_meshes
 from trsim.solve.openings import apart
 from trsim.solve.outcome import NOTHING, Outcome, natural, whose
@@ -71,6 +73,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_waves(mechanism, outcome),
         *of_rounding(scenario, mechanism, outcome),
+        *of_vibrations(scenario, outcome),
         *of_books(scenario, mechanism, outcome),
         *of_rows(mechanism, outcome),
         *of_events(outcome),

@@ -19,7 +19,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve import hermite
-from trsim.solve.accelerations import FURTHEST, held, in_units, largest
+from trsim.solve.accelerations import FURTHEST, doubted, held, in_units, largest
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
 from trsim.solve.displacements import active, turn, w_index
@@ -63,6 +63,7 @@ KAPPA = 0.02  # of the error allowed: what Newton may leave
 STRICT = 12.0  # times the error of one step: errors of accelerations add up from step to step
 RESOLVED = 1.5  # times the first difference: the second one of what a step resolves
 UNKNOWN = 0.1  # of the first difference: what the second one of a first step is at least
+LEFT = 3.0  # times it: what is left of such errors where steps are not held to them
 LOST = 0.02  # of the largest acceleration, the same: with more of it nothing is resolved
 FURTHER = 10.0  # times the error of velocities: what that of accelerations counts at most
 ADDS = 5.0  # the errors of works as estimated are those made, and they add up
@@ -250,6 +251,8 @@ def accelerated(s, r, b, setting, ratio, further):
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
     off, strict = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0, 0.0
+    if held(s):
+        doubted(s, r, setting, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
         strict = min(STRICT * in_units(s, r, setting, off, most, 0.0), FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed

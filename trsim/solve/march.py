@@ -11,6 +11,7 @@ from trsim.elements import signatures as types
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.packed import A1, I2, i8
 from trsim.elements.vectors import clear_table, copy_to, internal
+from trsim.solve.accelerations import blurred
 from trsim.solve.auto import calm, choose
 from trsim.solve.calls import (
     COMPLETE_AT,
@@ -43,6 +44,7 @@ from trsim.solve.record import (
     ACT,
     ADRIFT,
     AFTER_REJECTION,
+    BLUR,
     BUFFERS,
     CHATTER,
     CRAWL,
@@ -159,6 +161,7 @@ def march(s, r, b, setting, methods, most):
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
         s.status[4] = s.status[6] = 0
+        r.clock[BLUR] = 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
             error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)
@@ -192,6 +195,7 @@ def march(s, r, b, setting, methods, most):
             continue
         accepted += 1
         remember(s, r, setting, h)
+        blurred(r, h)
         if r.count[TORN] > 0:
             return LEAPT
         if too_fast(s, r):

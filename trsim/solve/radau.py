@@ -20,7 +20,7 @@ from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
-from trsim.solve.accelerations import EACH, frequency, held, in_units, largest
+from trsim.solve.accelerations import EACH, doubted, frequency, held, in_units, largest
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
 from trsim.solve.displacements import active, moved_by, twisted, w_index
@@ -340,7 +340,9 @@ def of_accelerations(s, r, b, setting, h):
             moved, bent = moved + by, bent + ww * by
             off += ww * by
             off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
-    return in_units(s, r, setting, sqrt(off / (EACH * (s.n_r - 1))), most, bent / moved)
+    off, mean = sqrt(off / (EACH * (s.n_r - 1))), bent / moved
+    doubted(s, r, setting, off, most, sqrt(mean))
+    return in_units(s, r, setting, off, most, mean)
 
 
 @internal

@@ -49,6 +49,11 @@ from trsim.elements.scene import Model
     LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
     CROSSED_T,  # s, when the run first changed its branch                         crossed.py
     GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
+    BLUR,  # m/s^2, error of accelerations the last trial was not held for    accelerations.py
+    BLUR_W,  # rad/s, how fast what it consists of turns, 0: not known
+    BLURRED,  # m/s^2, the largest of accepted steps
+    BLURRED_W,  # rad/s, of the longest of them, and its length
+    BLURRED_H,
     EARLIER_T,  # s, where the step began that is kept in `earlier`                earlier.py
     EARLIER_H,  # s, its length
     EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
@@ -56,7 +61,7 @@ from trsim.elements.scene import Model
     FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
     FREE_SINCE,  # s, when they last opened
     N_CLOCK,
-) = range(49)
+) = range(54)
 
 # count: integer state of the march
 (

@@ -1,0 +1,42 @@
+"""Vibrations too small for the tolerance to be seen, with accelerations that are not small.
+
+An amplitude A beside a motion of the size L at w times its rate has w^2 A/L of the accelerations.
+With A below the tolerance and w in the thousands steps are not held to them (accelerations.py),
+since rounding would make them; the largest estimate of such a step is told here instead.
+"""
+
+from collections.abc import Iterator
+from math import pi
+from typing import Any
+
+from trsim.solve.accelerations import ALLOWED
+from trsim.solve.outcome import Outcome
+from trsim.solve.record import BLURRED, BLURRED_W, GAIN
+
+TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
+ADDS = 0.1  # of the tolerance that leaves ALLOWED in one step: errors add up
+FINEST = 1e-11  # tolerance: less leaves what rounding makes of such accelerations
+
+
+def of_vibrations(scenario: Any, outcome: Outcome) -> Iterator[str]:
+    """What a step leaves in accelerations, how fast that turns, and the tolerance it takes."""
+    if outcome.record is None:
+        return
+    off, w, largest = (float(outcome.record.clock[k]) for k in (BLURRED, BLURRED_W, GAIN))
+    tolerance = scenario.solver.tolerance
+    if not off > TOLD * tolerance * largest:
+        return
+    finer = ADDS * tolerance * ALLOWED * tolerance * largest / off
+    at = f" at about {w / (2.0 * pi):.2g} Hz" if w > 0.0 else ""
+    remedy = (
+        f"`tolerance: {finer:.0e}` holds them"
+        if finer >= FINEST
+        else "no tolerance holds them, since rounding is next; soften or damp what vibrates "
+        "(`stiffness`, `compliance`, `damping`), or run it by itself"
+    )
+    yield (
+        f"solver.tolerance: accelerations, and forces with them, may be off by "
+        f"{min(off / largest, 1.0):.1g} of the largest in a single step, and more as steps add up: "
+        f"something vibrates{at}, by less of the motion than {tolerance:g} shows but with a plain "
+        f"part of the accelerations; {remedy}"
+    )
