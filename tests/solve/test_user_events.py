@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import quad
 
 from trsim.errors import ScenarioError
+from trsim.solve.doubts import doubts
 from trsim.solve.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
 
 from ..runs import energy_error, run
@@ -270,6 +271,60 @@ def test_a_released_pendulum_flies():
     assert np.all(r["hinge.reaction"][flying] == 0.0)
     assert user(r)[0, EVENT_WORK] == 0.0
     assert energy_error(r) < 1e-9
+
+
+APART = """
+planar: false
+bodies:
+  door: {mass: 2, inertia: [0.1, 0.2, 0.15], at: [0.3, 0, 0]}
+  arm: {mass: 1, inertia: [0.1, 0.12, 0.13], at: [0.8, 0.1, 0.1]}
+joints:
+  hinge: {type: revolute, bodies: [ground, door], at: [0, 0, 0], axis: [0, 0, 1]}
+  knee: {type: revolute, bodies: [door, arm], at: [0.6, 0, 0], axis: [0, 0.6, 0.8]}
+forces:
+  rope: {type: spring_damper, bodies: [ground, arm], points: [[1, 1, 0], [0.8, 0.1, 0.1]],
+         stiffness: 10, damping: 1}
+sensors: {turn: {joint: hinge}}
+gravity: [1, 0, -9.81]
+solver: {end: 3, method: dop853}
+events:
+  go: {when: t, value: 0.2, do: {release: [hinge]}}
+"""
+HOLDS_NOTHING = "holds nothing once an event has released the hinge 'hinge'"
+
+
+@pytest.mark.parametrize("at", [0.23, 0.652, 1.931])
+def test_a_lock_of_a_hinge_that_is_apart_in_space_holds_nothing(at):
+    free = run(APART)
+    r = run(APART + f"  stop: {{when: t, value: {at}, do: {{lock: [hinge]}}}}\n")
+    np.testing.assert_allclose(r["arm.position"], free["arm.position"], atol=1e-6)
+    assert np.all(r["hinge.lock.force"] == 0.0)
+    assert any(HOLDS_NOTHING in x for x in doubts(r.scenario, r.mechanism, r.outcome))
+    assert not any(HOLDS_NOTHING in x for x in doubts(free.scenario, free.mechanism, free.outcome))
+
+
+@pytest.mark.parametrize("motion", ["velocity: 2", "position: 2*t"])
+def test_a_rigid_drive_lets_go_when_its_hinge_in_space_comes_apart(motion):
+    r = run(APART.replace("forces:", f"drives: {{motor: {{joint: hinge, {motion}}}}}\nforces:"))
+    loose = r.t > 0.2001
+    assert np.all(r["motor.force"][loose] == 0.0) and np.any(r["motor.force"][~loose] != 0.0)
+    np.testing.assert_array_equal(r["motor.position"][loose], r["turn"][loose])
+    assert energy_error(r) < 1e-9
+    assert any(HOLDS_NOTHING in x for x in doubts(r.scenario, r.mechanism, r.outcome))
+
+
+def test_a_lock_goes_on_to_hold_what_is_apart_in_the_plane():
+    flat = """
+bodies: {door: {mass: 2, inertia: 0.1, at: [0.3, 0], velocity: [0, 0.6], angular_velocity: [0, 0, 2]}}
+joints: {hinge: {type: revolute, bodies: [ground, door], at: [0, 0]}}
+sensors: {turn: {joint: hinge}}
+solver: {end: 1}
+events:
+  go: {when: t, value: 0.2, do: {release: [hinge]}}
+  stop: {when: t, value: 0.3, do: {lock: [hinge]}}
+"""
+    r = run(flat)
+    assert r["turn"][r.t > 0.3] == pytest.approx(0.6, abs=1e-8)
 
 
 def test_a_locked_joint_takes_part_of_the_energy():

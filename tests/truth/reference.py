@@ -212,11 +212,19 @@ class Builder:
         (kind, i, j), par = self.coordinates[k]
         if drive.k is not None:
             self.force(drive.name, e.SOFT_DRIVE, i, j, k, g, (drive.k, drive.c))
-        else:
+        elif not self.gone(drive.joint or ""):
             row = e.ALONG if kind == e.SLIDE else e.ANGLE
             self.row(drive.name, row, i, j, k, (*par[:9], offset), g)
 
+    def gone(self, joint: str) -> bool:
+        """Whether a joint has no coordinate to hold: a hinge in space that is apart."""
+        k = self.coordinate[joint]
+        apart = joint in self.stage.released and not self.s.flat
+        return apart and self.coordinates[k][0][0] == e.TURN
+
     def hold(self, joint: str, value: float) -> None:
+        if self.gone(joint):
+            return
         k = self.coordinate[joint]
         (kind, i, j), par = self.coordinates[k]
         g = self.function(Fn("constant", (value,)))

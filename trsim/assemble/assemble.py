@@ -57,6 +57,7 @@ from trsim.assemble.travel import travels
 from trsim.elements.contract import (
     N_BOOK,
 )
+from trsim.elements.prescribed import ENTRY
 from trsim.elements.scene import BAUMGARTE, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
@@ -153,7 +154,13 @@ def stages(
         own = hubs(full, y6, rows, kept, planar, spans(at))
         return build(scenario, at, instances, kept, d, own, left)
 
-    return Stages(at.switches, instances, first, built, rebuilt)
+    angles = {} if planar else {x.entry: n for n, x in at.coordinates.items() if x.kind == "angle"}
+    turning = {
+        (i.section, i.name): angles[i.row.con[ENTRY]]
+        for i in instances
+        if i.section in ("drives", SECTION) and not i.row.is_force and i.row.con[ENTRY] in angles
+    }
+    return Stages(at.switches, instances, first, built, rebuilt, turning)
 
 
 def notes(scenario: Any) -> tuple[str, ...]:

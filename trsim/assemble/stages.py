@@ -9,7 +9,7 @@ moves, where others would not.  `anew` then chooses others of the same stage (be
 is a part of the record of a run.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -62,11 +62,13 @@ class Stages:
         self, switches: Switches, instances: list[Instance], first: Choice,
         build: Callable[[list[Instance], Rows], Choice],
         rebuild: Callable[[list[Instance], Rows, Rows], Model],
+        turning: Mapping[tuple[str, str], str],
     ) -> None:  # fmt: skip
         """build: (instances, rows that are in force) -> a choice, its model without outputs;
-        rebuild: (instances, rows to solve, rows to leave out) -> such a model."""
+        rebuild: (instances, rows to solve, rows to leave out) -> such a model;
+        turning: rigid drives and locks (section, name) of hinges in space, and which hinge."""
         self.switches, self.instances, self.first = switches, instances, first.model
-        self._build, self._rebuild = build, rebuild
+        self._build, self._rebuild, self._turning = build, rebuild, turning
         self._made = {(0,) * len(switches.names): first}
         locks = [name for section, name in switches.names if section == "locks"]
         every = all_rows(instances, [lock_name(name) for name in locks])
@@ -129,16 +131,32 @@ class Stages:
         """With the outputs of all stages; what is locked crosses no value, and is not looked at."""
         at = zip(self.switches.names, stage.tolist(), strict=True)
         held = {name for (section, name), to in at if (section, to) == ("locks", HELD)}
+        held -= {joint for _, joint in self.without_hinge(stage)}
         watch = model.watch.copy()
         watch[[event.joint in held for event in self.switches.events], MOST] = 0
         outputs = {name: getattr(self.first, name) for name in OUTPUTS}
         return model.replaced(watch=watch, **outputs)
 
+    def without_hinge(self, stage: NDArray[np.int64]) -> list[tuple[tuple[str, str], str]]:
+        """Rigid drives and closed locks (section, name) whose hinge in space is apart, and it.
+
+        What is seen of its angle is that of a line that leaves the plane of the hinge: there is
+        nothing to turn, so they let go.
+        """
+        at = dict(zip(self.switches.names, stage.tolist(), strict=True))
+        return [
+            (of, joint)
+            for of, joint in self._turning.items()
+            if at.get(("joints", joint)) == LOOSE
+            and (at.get(of) != LOOSE if of[0] == "drives" else at.get(("locks", joint)) == HELD)
+        ]
+
     def _found(self, stage: NDArray[np.int64]) -> Choice:
         position = tuple(stage.tolist())
         if position not in self._made:
             at = dict(zip(self.switches.names, position, strict=True))
-            made = self._build(self._switched(stage), in_force(self.instances, at))
+            gone = {of for of, _ in self.without_hinge(stage)}
+            made = self._build(self._switched(stage), in_force(self.instances, at, gone))
             self._made[position] = made._replace(model=self._finished(made.model, stage))
         return self._made[position]
 
@@ -161,10 +179,15 @@ def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switc
     return replace(instance, row=replace(instance.row, con=tuple(con), par=tuple(par)))
 
 
-def in_force(instances: list[Instance], at: dict[tuple[str, str], int]) -> Rows:
-    """The rows of the joints that are together, of the drives that hold, of the closed locks."""
+def in_force(
+    instances: list[Instance], at: dict[tuple[str, str], int], gone: set[tuple[str, str]]
+) -> Rows:
+    """The rows of the joints that are together, of the drives that hold, of the closed locks.
+
+    gone: drives and locks (section, name) that hold nothing.
+    """
     closed = [name for (section, name), to in at.items() if (section, to) == ("locks", HELD)]
-    loose = {key for key, to in at.items() if to == LOOSE}
+    loose = {key for key, to in at.items() if to == LOOSE} | gone
     rows = all_rows(instances, [lock_name(name) for name in closed])
     of = [(instances[r.instance].section, instances[r.instance].name) for r in rows]
     return [row for row, key in zip(rows, of, strict=True) if key not in loose]

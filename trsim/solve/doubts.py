@@ -11,6 +11,7 @@ waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                   solve/rounding.py
 vibrations are too small for the tolerance, but not their accelerations         solve/faint.py
 energy     the book of the run does not close
+hinges     that came apart with a drive or a lock on them        solve/unhinged.py
 branches   the run changed from one to another where they nearly meet     solve/crossed.py
 extremes   of forces are chance, next to where rows depend on each other     solve/chance.py
 rows       that were left out as redundant are open, though not so far that the run ended
@@ -42,6 +43,7 @@ from trsim.solve.record import JOLTS, ROUNDED_AT, ROUNDED_BY, Record, T
 from trsim.solve.skipped import unread
 from trsim.solve.start import Start
 from trsim.solve.strained import of_bars
+from trsim.solve.unhinged import of_hinges
 from trsim.statuses import WELL
 
 Array = NDArray[np.float64]
@@ -76,6 +78,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_vibrations(scenario, outcome),
         *of_books(scenario, mechanism, outcome),
         *of_rows(mechanism, outcome),
+        *of_hinges(mechanism, outcome.record),
         *of_events(outcome),
         *of_branches(mechanism, outcome.record),
         *of_extremes(mechanism, outcome),
