@@ -446,9 +446,9 @@ def forces(m, t, side, mem, r, v, w, R, q, qd, Q, told, power):
             on_coordinate(m, Q, k, T, r, R)
             power[DAMPERS] += p[f, 1] * qd[k] ** 2
             told[f, 0] = T
-        elif kind == SOFT_DRIVE:
+        elif kind == SOFT_DRIVE:  # k, c, offset
             u, ud, _ = evaluated(m, g, t, side)
-            T = -p[f, 0] * (q[k] - u) - p[f, 1] * (qd[k] - ud)
+            T = -p[f, 0] * (q[k] - u - p[f, 2]) - p[f, 1] * (qd[k] - ud)
             on_coordinate(m, Q, k, T, r, R)
             power[DRIVES] += T * ud
             power[DAMPERS] += p[f, 1] * (qd[k] - ud) ** 2

@@ -205,13 +205,13 @@ class Builder:
                 par = (*arms, 0.0, 0.0, 0.0, length + offset)
                 self.row(drive.name, e.DISTANCE, i, j, 0, par, g)
             else:
-                par = (*arms, drive.k, drive.c, length)
+                par = (*arms, drive.k, drive.c, length + offset)
                 self.force(drive.name, e.SOFT_LINE, i, j, -1, g, par)
             return
         k = self.coordinate[drive.joint or ""]
         (kind, i, j), par = self.coordinates[k]
         if drive.k is not None:
-            self.force(drive.name, e.SOFT_DRIVE, i, j, k, g, (drive.k, drive.c))
+            self.force(drive.name, e.SOFT_DRIVE, i, j, k, g, (drive.k, drive.c, offset))
         elif not self.gone(drive.joint or ""):
             row = e.ALONG if kind == e.SLIDE else e.ANGLE
             self.row(drive.name, row, i, j, k, (*par[:9], offset), g)

@@ -80,3 +80,16 @@ def test_errors_made_on_the_way_may_grow_by_more_than_those_of_the_start():
     assert np.all(later >= t.growth)
     t = truth(quick, 0.1)
     assert growth_of_later(quick, t)[-1] < 1.1 * t.growth[-1]
+
+
+@pytest.mark.parametrize("seed", [6, 22, 44, 53])
+def test_a_compliant_drive_goes_on_from_the_place_it_prescribed(seed):
+    """An event sets a velocity: the spring pulls towards the integral of both."""
+    drawn = made("events", seed)
+    s = drawn.scene
+    s.drives[0].k, s.drives[0].c = 60.0, 2.0
+    r = ran(s.text())
+    t = true(drawn, TIMES * s.tolerance)
+    assert np.any(r.user["gear"] < 0.9 * s.end)
+    v = judged(s, t, r, Verdict("events", seed, RIGHT, s.method, s.tolerance))
+    assert v.verdict == RIGHT, told(v)
