@@ -152,7 +152,7 @@ class _Code:
 
     def drawn(self, code, a, b):
         """Whether an operation is a root or a broken power of what is never negative."""
-        broken = code == POW and b[0] == "constant" and not float(b[1]).is_integer()
+        broken = code == POW and not (b[0] == "constant" and float(b[1]).is_integer())
         return (broken or code == SQRT) and self.never_negative(a)
 
     def slot(self, node):

@@ -240,7 +240,7 @@ def chain(f, f_a, f_aa, a1, a2):
 def power_rates(a, a1, a2, b, b1, b2):
     """a**b and its derivatives."""
     f = a**b
-    if b1 == 0.0 and b2 == 0.0:  # a fixed exponent allows a <= 0
+    if a == 0.0 < b or (b1 == 0.0 and b2 == 0.0):  # a fixed exponent allows a <= 0
         f_a = b * a ** (b - 1.0) if b != 0.0 else 0.0
         f_aa = b * (b - 1.0) * a ** (b - 2.0) if b != 0.0 and b != 1.0 else 0.0
         return chain(f, f_a, f_aa, a1, a2)
