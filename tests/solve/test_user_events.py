@@ -315,7 +315,8 @@ def test_a_rigid_drive_lets_go_when_its_hinge_in_space_comes_apart(motion):
 
 def test_a_lock_goes_on_to_hold_what_is_apart_in_the_plane():
     flat = """
-bodies: {door: {mass: 2, inertia: 0.1, at: [0.3, 0], velocity: [0, 0.6], angular_velocity: [0, 0, 2]}}
+bodies:
+  door: {mass: 2, inertia: 0.1, at: [0.3, 0], velocity: [0, 0.6], angular_velocity: [0, 0, 2]}
 joints: {hinge: {type: revolute, bodies: [ground, door], at: [0, 0]}}
 sensors: {turn: {joint: hinge}}
 solver: {end: 1}
