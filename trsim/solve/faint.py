@@ -9,22 +9,28 @@ from collections.abc import Iterator
 from math import pi
 from typing import Any
 
+from trsim.assemble.mechanism import Mechanism
 from trsim.solve.accelerations import ALLOWED
 from trsim.solve.outcome import Outcome
 from trsim.solve.record import BLURRED, BLURRED_W, GAIN
 
 TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
 ADDS = 0.1  # of the tolerance that leaves ALLOWED in one step: errors add up
+NOTHING = 1e-9  # of what the speed expected takes on the mechanism's size: at rest
 FINEST = 1e-11  # tolerance: less leaves what rounding makes of such accelerations
 
 
-def of_vibrations(scenario: Any, outcome: Outcome) -> Iterator[str]:
-    """What a step leaves in accelerations, how fast that turns, and the tolerance it takes."""
-    if outcome.record is None:
+def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """What a step leaves in accelerations, how fast that turns, and the tolerance it takes.
+
+    Nothing where rounding makes them: it is told of (doubts.py), or all of them are nothing.
+    """
+    if outcome.record is None or outcome.statistics.get("rounding_of_tolerance", 0.0) > 1.0:
         return
     off, w, largest = (float(outcome.record.clock[k]) for k in (BLURRED, BLURRED_W, GAIN))
     tolerance = scenario.solver.tolerance
-    if not off > TOLD * tolerance * largest:
+    natural = outcome.start.speed**2 / mechanism.model.size
+    if not off > TOLD * tolerance * largest or largest < NOTHING * natural:
         return
     finer = ADDS * tolerance * ALLOWED * tolerance * largest / off
     at = f" at about {w / (2.0 * pi):.2g} Hz" if w > 0.0 else ""
