@@ -124,7 +124,11 @@ def test_a_small_vibration_beside_a_larger_motion(method, first):
 
 def doubted(r):
     """What the run says of its accelerations."""
-    said = [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "something vibrates" in x]
+    said = [
+        x
+        for x in doubts(r.scenario, r.mechanism, r.outcome)
+        if "accelerations, and forces with them" in x
+    ]
     return said[0] if said else ""
 
 

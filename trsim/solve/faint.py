@@ -23,14 +23,21 @@ FINEST = 1e-11  # tolerance: less leaves what rounding makes of such acceleratio
 def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """What a step leaves in accelerations, how fast that turns, and the tolerance it takes.
 
-    Nothing where rounding makes them: it is told of (doubts.py), or all of them are nothing.
+    Nothing where all of them are nothing; no more than their size where rounding is told of.
     """
-    if outcome.record is None or outcome.statistics.get("rounding_of_tolerance", 0.0) > 1.0:
+    if outcome.record is None:
         return
     off, w, largest = (float(outcome.record.clock[k]) for k in (BLURRED, BLURRED_W, GAIN))
     tolerance = scenario.solver.tolerance
     natural = outcome.start.speed**2 / mechanism.model.size
     if not off > TOLD * tolerance * largest or largest < NOTHING * natural:
+        return
+    known = (
+        "solver.tolerance: accelerations, and forces with them, may be off by "
+        f"{min(off / largest, 1.0):.1g} of the largest in a single step"
+    )
+    if outcome.statistics.get("rounding_of_tolerance", 0.0) > 1.0:
+        yield f"{known}, and no tolerance changes that: the digits of a number end there"
         return
     finer = ADDS * tolerance * ALLOWED * tolerance * largest / off
     at = f" at about {w / (2.0 * pi):.2g} Hz" if w > 0.0 else ""
@@ -41,8 +48,6 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
         "(`stiffness`, `compliance`, `damping`), or run it by itself"
     )
     yield (
-        f"solver.tolerance: accelerations, and forces with them, may be off by "
-        f"{min(off / largest, 1.0):.1g} of the largest in a single step, and more as steps add up: "
-        f"something vibrates{at}, by less of the motion than {tolerance:g} shows but with a plain "
-        f"part of the accelerations; {remedy}"
+        f"{known}, and more as steps add up: something vibrates{at}, by less of the motion than "
+        f"{tolerance:g} shows but with a plain part of the accelerations; {remedy}"
     )
