@@ -16,6 +16,7 @@ from trsim.elements import kept
 from trsim.elements.machine import Compiled
 from trsim.elements.signatures import f8, float64
 from trsim.errors import ModelError
+from trsim.solve import complete
 
 SOMEBODY = 12345  # no user of this machine
 AS_ROOT = pytest.mark.skipif(os.geteuid() != 0, reason="only root can give files away")
@@ -210,6 +211,31 @@ def test_a_command_says_so_once_and_goes_on(home, tmp_path, capsys, monkeypatch)
     said = capsys.readouterr().err
     assert said.count("belongs to another user (12345)") == 1
     assert "nothing is loaded from the cache" in said and "XDG_CACHE_HOME" in said
+
+
+@pytest.mark.parametrize("fault", ["damaged", "cannot be looked into"])
+def test_a_command_that_has_to_compile_says_so(fault, home, tmp_path, capsys, monkeypatch):
+    """Also where there is a file of that name, or where nobody can tell."""
+    looked_for = Compiled(complete.complete.python, complete.complete.signature)
+    monkeypatch.setattr(complete, "complete", looked_for)  # that of other tests is left alone
+    if fault == "damaged":
+        kept.store(looked_for.file, [b"not machine code"])
+    else:
+        monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / ("long" * 100)))
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "crank.yaml").write_text(small.SLIDER_CRANK)
+
+    def refused(scenario):
+        raise ModelError("compiling is left out")
+
+    monkeypatch.setattr("trsim.elements.ahead.begin", lambda *names: None)
+    monkeypatch.setattr("trsim.assemble.assemble.assemble", refused)
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "crank.yaml"])
+    said = capsys.readouterr().err
+    assert "compiling (once per installation" in said
+    assert ("machine code cannot be kept" in said) == (fault != "damaged")
+    assert ended.value.code == ModelError.exit_code
 
 
 NOBODY = 65534

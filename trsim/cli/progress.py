@@ -33,7 +33,7 @@ def compiling(answer: Answer, method: str = "") -> None:
         # the largest first; the first process comes to the rest before it needs an implicit method
         later = ["complete", *reversed(COMPILED[method]), "march"]
     see_own(answer)
-    if needed.file.exists():
+    if needed.known:
         return
     see_kept(answer)
     answer.say("compiling (once per installation, about half a minute)")
@@ -52,7 +52,7 @@ def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
         return
     from trsim.solve import radau_ggl
 
-    if radau_ggl.step.file.exists():
+    if radau_ggl.step.known:
         return
     answer.say("compiling Radau for many bodies (once per installation, about 15 s)")
     if len(used) > 1:  # meanwhile the explicit method makes steps

@@ -67,6 +67,11 @@ class Compiled(Lazy):
         name = f"{self.python.__module__.removeprefix('trsim.')}.{self.python.__name__}"
         return folder() / f"{name}-{self.key}.code"
 
+    @property
+    def known(self) -> bool:
+        """Whether its machine code is kept, and whole."""
+        return _read(self.file) is not None
+
     @cached_property
     def entry(self) -> int:
         """Where the machine code starts."""
