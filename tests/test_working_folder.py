@@ -171,6 +171,33 @@ def test_a_child_has_the_package_of_its_parent(tmp_path):
     assert not (tmp_path / "executed").exists()
 
 
+OTHER_SETTINGS = {
+    "of others": b"savefig.dpi: 20\naxes.facecolor: red\ntext.usetex: True\n",
+    "unknown": b"no.such.key: 1\n",
+    "no text": b"\xff\xfe",
+    "never read": None,
+}
+
+
+@pytest.mark.parametrize("settings", OTHER_SETTINGS)
+def test_figures_do_not_depend_on_settings_of_the_folder(settings, tmp_path):
+    """matplotlib reads a file matplotlibrc of it, were it not imported elsewhere."""
+    small.copy(tmp_path / "done.h5")
+    report = [sys.executable, "-P", "-m", "trsim", "report", "done.h5", "-o"]
+    assert ended(tmp_path, report, "alone")[0] == 0
+    if OTHER_SETTINGS[settings] is None:
+        os.mkfifo(tmp_path / "matplotlibrc")
+    else:
+        (tmp_path / "matplotlibrc").write_bytes(OTHER_SETTINGS[settings])
+    code, said = ended(tmp_path, report, "beside", TRSIM_DEBUG="1")
+    assert code == 0, said
+    assert "matplotlibrc" not in said
+    figures = sorted((tmp_path / "alone").glob("*.png"))
+    assert figures
+    for figure in figures:
+        assert (tmp_path / "beside" / figure.name).read_bytes() == figure.read_bytes()
+
+
 def test_every_process_of_python_is_begun_in_one_place():
     """child.py; nothing else says which Python to run, or with which modules."""
     package = Path(child.__file__).parent

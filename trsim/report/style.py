@@ -4,11 +4,9 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
-import matplotlib
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 
+from trsim.report.defaults import Figure, FigureCanvasAgg, matplotlib
 from trsim.report.display import Shown
 from trsim.store.grow import Array
 from trsim.store.target import FIGURE, fresh, told
