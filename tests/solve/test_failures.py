@@ -6,7 +6,9 @@ import pytest
 from trsim.errors import ModelError
 from trsim.solve.locked import locked
 
+from ..overconstrained import TILTED
 from ..runs import run
+from .test_branches import flat, turning
 
 PUSHED = """
 gravity: [0, -9.81]
@@ -162,3 +164,18 @@ def meet(P, r, Q, s):
     d = np.hypot(*way)
     x = (d * d + r * r - s * s) / (2 * d)
     return P + (x * way + np.sqrt(r * r - x * x) * np.array([-way[1], way[0]])) / d
+
+
+@pytest.mark.parametrize("method", ["auto", "generalized_alpha"])
+def test_one_that_locks_where_all_its_joints_lie_in_line(method):
+    """Three cranks, a lock of one while they are flat: nothing moves but to first order.
+
+    Whichever rows are chosen, they depend on each other a step later; it went on for ever.
+    """
+    lock = "do: {lock: [T1]}"
+    event = f"events: {{a: {{when: q, value: -2e-8, crosses: both, times: 1, {lock}}}}}"
+    made = flat(3, f"sensors: {{q: {{joint: F0}}}}\n{event}", TILTED, end=0.9)
+    ways = (f"solver.method={method}", "solver.tolerance=1e-5")
+    r = run(made, *turning(3, -4.0, np.asarray(TILTED)), *ways, fails=True)
+    assert "the mechanism locks here: " in r.outcome.reason
+    assert r.outcome.time < 1e-4

@@ -21,6 +21,7 @@ from trsim.solve.start import Start
 Array = NDArray[np.float64]
 
 NEWTON, CLOSED = 8, 1e-14  # steps; of the mechanism's size
+NO_TIME, MANY = 1e-7, 30  # of the run; rows chosen anew so soon after others, so many times
 AT_END = 2e-15  # of the time of a step's end: an output row there
 
 
@@ -85,6 +86,14 @@ def anew(
     if not acted and last >= 0 and b.rows[last, 0] >= r.clock[rec.T] * (1.0 - AT_END):
         b.rows[last, 1:] = work.out
     return work
+
+
+def stuck(r: Record, setting: Any) -> bool:
+    """Whether rows come to depend on each other wherever a run goes: it would not reach its end."""
+    t = float(r.clock[rec.T])
+    soon = t - r.clock[rec.CHOSEN_T] < NO_TIME * setting[rec.T_END]
+    r.count[rec.CHOSEN], r.clock[rec.CHOSEN_T] = r.count[rec.CHOSEN] + 1 if soon else 1, t
+    return bool(r.count[rec.CHOSEN] > MANY)
 
 
 def project(work: Scene, t: float, y: Array) -> None:

@@ -60,8 +60,9 @@ from trsim.elements.scene import Model
     EARLIER_PROJECTED,
     FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
     FREE_SINCE,  # s, when they last opened
+    CHOSEN_T,  # s, when rows were last chosen anew                                   anew.py
     N_CLOCK,
-) = range(54)
+) = range(55)
 
 # count: integer state of the march
 (
@@ -108,8 +109,9 @@ from trsim.elements.scene import Model
     UNSEEN,  # 1: between the two newest samples no extremes were looked for yet
     FREED,  # 1: the step ended where the last closed contact opened
     EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
+    CHOSEN,  # how often rows were chosen anew with next to no time between
     N_COUNT,
-) = range(44)
+) = range(45)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2

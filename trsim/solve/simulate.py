@@ -14,7 +14,7 @@ from trsim.errors import ScenarioError
 from trsim.solve import record as rec
 from trsim.solve.act import act
 from trsim.solve.adrift import lost_its_way
-from trsim.solve.anew import anew, begun_with, resumed
+from trsim.solve.anew import anew, begun_with, resumed, stuck
 from trsim.solve.blame import why
 from trsim.solve.calls import FIELDS
 from trsim.solve.checkpoint import State, begun_at, put_back, state
@@ -59,13 +59,15 @@ GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again af
 VISIT, LIGHT = 5000, 30  # steps between two looks at the outside world, of so many velocities
 BARS = 100  # steps, where flexible bars may collapse
 
-NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY = -1, -2, -3
+NO_STEPS_LEFT, STEP_TOO_LARGE, CONTRADICTORY, STUCK = -1, -2, -3, -4
 REASONS = {
     NO_STEPS_LEFT: "more than {} steps",
     STEP_TOO_LARGE: "a value is not finite, or grew beyond bounds: the fixed step is too large for "
     "the stiffest contact, or the mechanism jams",
     CONTRADICTORY: "no position or acceleration meets all constraints here: a mechanism that jams, "
     "or masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
+    STUCK: "wherever the mechanism goes from here rows of its joints depend on each other, and no "
+    "choice of rows lets it go on: it jams",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time: a force that grows "
     "without bound, or jumps",
     rec.CRAWL: CRAWLS,
@@ -185,6 +187,7 @@ def compiled(
                 r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
             if r.count[rec.WEAK] and ended is None:
                 work = anew(mechanism, work, r, b, setting, acted=work is not before)
+                reason = STUCK if stuck(r, setting) else reason
             if work is not before:
                 b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
         bends.look(float(r.clock[rec.T]), r.y)
