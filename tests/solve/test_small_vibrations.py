@@ -127,7 +127,7 @@ def doubted(r):
     said = [
         x
         for x in doubts(r.scenario, r.mechanism, r.outcome)
-        if "accelerations, and forces with them" in x
+        if "accelerations, and with them forces" in x
     ]
     return said[0] if said else ""
 

@@ -33,7 +33,7 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     if not off > TOLD * tolerance * largest or largest < NOTHING * natural:
         return
     known = (
-        "solver.tolerance: accelerations, and forces with them, may be off by "
+        "solver.tolerance: accelerations, and with them forces, may be off by "
         f"{min(off / largest, 1.0):.1g} of the largest in a single step"
     )
     if outcome.statistics.get("rounding_of_tolerance", 0.0) > 1.0:
@@ -48,6 +48,6 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
         "(`stiffness`, `compliance`, `damping`), or run it by itself"
     )
     yield (
-        f"{known}, and more as steps add up: something vibrates{at}, by less of the motion than "
-        f"{tolerance:g} shows but with a plain part of the accelerations; {remedy}"
+        f"{known}, and by more over many: something vibrates{at}, too little for a tolerance of "
+        f"{tolerance:g} to follow, but its accelerations are not small; {remedy}"
     )
