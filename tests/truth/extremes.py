@@ -100,7 +100,9 @@ def between(parts: Any, ends: float) -> tuple[float, float]:
             x = np.linspace(t[max(i - 1, 0)], t[min(i + 1, len(t) - 1)], PLACES)
             fine, rough = (through(t, v, i, n, x) for n in (7, 5))
             k = int(np.argmax(fine))
-            most = max(most, float(fine[k]))
+            # places are apart, and between them it is higher
+            x = np.linspace(x[max(k - 1, 0)], x[min(k + 1, PLACES - 1)], PLACES)
+            most = max(most, float(through(t, v, i, 7, x).max()))
             unsure = max(unsure, float(np.abs(fine - rough).max()))
     return most, unsure
 
