@@ -33,7 +33,7 @@ FINEST = 1e-8  # of a step: no part is shorter
 PART = 0.125  # of a step: a part is no longer where no bounds are known
 HALVINGS = 60  # in the search for a place away from zero
 LOOKS = 4000  # parts of one step that are looked at for one gap
-FIRST, MOST_OF = 4.0, 0.25  # of the time of a contact: at a tolerance of 1, and at most
+FIRST, MOST_OF = 8.0, 0.25  # of the time of a contact: at a tolerance of 1, and at most
 GUESS = 4.0  # of the bends seen at its ends: what is taken for a bound where there is none
 
 
