@@ -5,6 +5,7 @@ from math import cos, hypot, pi, sin, sqrt
 
 import numpy as np
 import pytest
+from scipy.interpolate import Akima1DInterpolator
 
 from trsim.analyse.trajectory import changed, marched
 from trsim.assemble.assemble import assemble
@@ -361,6 +362,44 @@ def assert_the_same_extremes(scenario, few=None):
             assert few.peaks[c, 0] >= high[c] - allowed * scale, c
             if c < mechanism.model.n_out:
                 assert few.peaks[c, 2] <= low[c] + allowed * scale, c
+
+
+TABLE = """
+bodies: {{rotor: {{mass: 1, inertia: 5, at: [0, 0], angular_velocity: [0, 0, 6]}}}}
+joints: {{hinge: {{type: revolute, bodies: [ground, rotor], at: [0, 0]}}}}
+sensors: {{angle: {{joint: hinge}}}}
+forces:
+  load: {{type: applied_load, body: rotor, direction: [0, 0, 1],
+    torque: {{table: {points}, of: angle, ends: hold}}}}
+solver: {{end: 4, tolerance: {tolerance}}}
+output: {{every: 4}}
+"""
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
+def test_extremes_just_behind_the_points_of_a_table(tolerance):
+    """Steps end there, and the first one behind a point may pass an extreme: the torque is a curve
+    of the angle, whose extremes are known whatever the motion."""
+    behind = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        angles = np.sort(rng.uniform(1, 20, 8))
+        torques = rng.normal(0, 0.3, 8)
+        akima = Akima1DInterpolator(angles, torques)
+        curve = akima(np.concatenate((angles, akima.derivative().roots(extrapolate=False))))
+        between = akima(np.linspace(angles[:-1], angles[1:], 33))
+        beyond = np.abs(between - 0.5 * (torques[1:] + torques[:-1])) - np.abs(np.diff(torques)) / 2
+        if beyond.max() > 0.4 * np.ptp(torques):
+            continue  # a curve so far from its data is refused
+        points = np.column_stack((angles, torques)).tolist()
+        r = run(TABLE.format(points=points, tolerance=tolerance))
+        assert np.ptp(r["angle"]) > angles[-1]
+        behind += curve.max() > torques.max()
+        found = extremes(r, "load.magnitude")
+        near = 3 * tolerance * np.ptp(curve)
+        assert found[0] == pytest.approx(curve.max(), abs=near), seed
+        assert found[2] == pytest.approx(curve.min(), abs=near), seed
+    assert behind > 20
 
 
 @pytest.mark.parametrize(("rocker", "tolerance"), [(0.4, 1e-6), (0.301, 1e-4)])

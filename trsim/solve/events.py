@@ -33,7 +33,8 @@ FINEST = 1e-8  # of a step: no part is shorter
 PART = 0.125  # of a step: a part is no longer where no bounds are known
 HALVINGS = 60  # in the search for a place away from zero
 LOOKS = 4000  # parts of one step that are looked at for one gap
-FIRST, MOST_OF = 8.0, 0.25  # of the time of a contact: at a tolerance of 1, and at most
+# of the time of a contact: the first step after a touch, at a tolerance of 1 and at most
+FIRST, FIRST_WHOLE, MOST_OF = 12.0, 8.0, 0.25
 GUESS = 4.0  # of the bends seen at its ends: what is taken for a bound where there is none
 
 
@@ -267,11 +268,19 @@ def any_change(s, r, b, h, stages):
 
 @internal
 def hertz_step(stiffness, exponent, mass, speed, tolerance):
-    """First step after a touch, a part of the time of contact: FIRST times tolerance^(1/3)."""
+    """First step after a touch, a part of the time of contact.
+
+    Unless n is whole, a force d^n has only so many derivatives at the touch: over a first step h
+    the velocity is off by h^(n+1) whatever the order of the method, and its estimate of the error
+    may not see it.  So h goes with the tolerance to the power 1 / (n + 1).
+    """
     # depth of a lossless impact: K d^(n+1) / (n+1) = m v^2 / 2
     depth = ((exponent + 1.0) * mass * speed * speed / (2.0 * stiffness)) ** (1 / (exponent + 1.0))
-    part = min(FIRST * tolerance ** (1.0 / 3.0), MOST_OF)
-    return part * 2.94 * depth / speed
+    if exponent == int(exponent):
+        part = FIRST_WHOLE * tolerance ** (1.0 / 3.0)
+    else:
+        part = FIRST * tolerance ** (1.0 / (exponent + 1.0))
+    return min(part, MOST_OF) * 2.94 * depth / speed
 
 
 @internal

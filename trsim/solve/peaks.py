@@ -59,7 +59,8 @@ from trsim.solve.samples import (
 )
 
 SMALL = 0.01  # of what may be missed of the largest channel of its kind: less is no extreme
-YOUNG = 2  # samples since an event: with no more the middle between them is looked at in any case
+YOUNG = 3  # samples since an event: with no more what lies between them is looked at in any case
+ENDS = 4  # of what is known between and around two samples that are looked at, at least
 TINY = 0.02  # of the mean step: in a shorter one nothing turns
 GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be
 TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
@@ -117,13 +118,13 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
     else:
         ready = built
     b.found[0], b.laid[0] = 0.0, NOT_LAID
-    middle = 0.5 * (r.sampled[older(r, ahead)] + r.sampled[older(r, ahead + 1)])
+    inner = max(ENDS - r.count[SAMPLES], 1)
     last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
     if (r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t) or (ahead == 0 and last_one):
         if ready == 0 and not last_one:
-            guess(s, r, b, method, h, projected, earlier)
+            guess(s, r, b, method, h, inner, projected, earlier)
         else:
-            ready = look(s, r, b, method, h, middle, projected, ready, earlier)
+            ready = look_within(s, r, b, method, h, ahead, inner, projected, ready, earlier)
     bounds(r, b, ahead)
     for c in range(now.size):
         high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
@@ -145,12 +146,12 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
                 continue
         if ready == 0:
             if b.found[0] == 0.0:
-                guess(s, r, b, method, h, projected, earlier)
+                guess(s, r, b, method, h, inner, projected, earlier)
             rises, falls = guessed(s, r, b, ahead, c, rises, falls)
             if not (rises or falls):
                 continue
             b.found[0], b.laid[0] = 0.0, NOT_LAID
-            ready = look(s, r, b, method, h, middle, projected, 0, earlier)
+            ready = look_within(s, r, b, method, h, ahead, inner, projected, 0, earlier)
         if rises:
             search(s, r, b, enough, method, h, ahead, c, 1.0, projected, earlier)
         if falls:
@@ -229,15 +230,27 @@ def look(s, r, b, method, h, place, projected, built, earlier):
 
 
 @internal
-def guess(s, r, b, method, h, projected, earlier):
-    """The channels in the middle of the step, of the cubic through both ends and their rates,
-    into b.inside: what tells whether the dense output is worth building."""
+def look_within(s, r, b, method, h, ahead, inner, projected, built, earlier):
+    """`look` at `inner` places that part the time between two neighbours into equal parts."""
+    start, end = r.sampled[older(r, ahead + 1)], r.sampled[older(r, ahead)]
+    for k in range(inner):
+        place = start + (k + 1.0) / (inner + 1.0) * (end - start)
+        built = look(s, r, b, method, h, place, projected, built, earlier)
+    return built
+
+
+@internal
+def guess(s, r, b, method, h, inner, projected, earlier):
+    """The channels at `inner` places that part the step into equal parts, of the cubic through both
+    ends and their rates, into b.inside: what tells whether the dense output is worth building."""
     y0, y1, yd0, yd1 = ends(r, b, method, earlier)
     _, _, t, work, done = either_step(r, b, projected, earlier)
-    for k in range(b.y2.size):
-        b.y2[k] = 0.5 * (y0[k] + y1[k]) + 0.125 * h * (yd0[k] - yd1[k])
-    middle = t + 0.5 * h
-    evaluate_inside(s, r, middle, b.y2, b.rough[0], b.rough[1])
-    measure(s, middle, b.y2, work + 0.5 * done, r.clock[ENERGY_0])
-    gather(s, b.full, s.out, b.inside[0])
-    b.found[0], b.found[1] = 1.0, middle
+    for i in range(inner):
+        u = (i + 1.0) / (inner + 1.0)
+        v, way = 1.0 - u, u * u * (3.0 - 2.0 * u)
+        for k in range(b.y2.size):
+            b.y2[k] = y0[k] + way * (y1[k] - y0[k]) + h * u * v * (v * yd0[k] - u * yd1[k])
+        evaluate_inside(s, r, t + u * h, b.y2, b.rough[0], b.rough[1])
+        measure(s, t + u * h, b.y2, work + u * done, r.clock[ENERGY_0])
+        gather(s, b.full, s.out, b.inside[i])
+        b.found[0], b.found[1 + i] = i + 1.0, t + u * h
