@@ -14,6 +14,9 @@ from trsim.report.studies import usual
 from trsim.store.read import read
 
 
+SAME = 1e-9  # numbers that are copied
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     path = tmp_path_factory.mktemp("outputs") / "run.h5"
@@ -117,19 +120,20 @@ def test_several(run):
 
 
 def test_extremes_of_a_component_in_a_window_are_of_accepted_steps(run):
-    """Between some rows of a contact its force is larger than in them."""
+    """Between some rows of a contact its force is larger than in them, by much more than is told
+    apart here; how much more depends on where steps end."""
     steps, time, x = run.steps("B"), run.time, run.channel("B.force.x")
     force = steps["force"][:, 0]
     after = np.clip(np.searchsorted(time, steps["time"]), 1, len(time) - 1)
     beyond = force - np.maximum(x[after - 1], x[after])
     k = int(np.argmax(beyond))
-    assert beyond[k] > 1.0  # N
+    assert beyond[k] > 1000 * SAME * abs(force[k])
     window = f"{time[after[k] - 1].item()!r}..{time[after[k]].item()!r}"
     inside = (steps["time"] >= time[after[k] - 1]) & (steps["time"] <= time[after[k]])
     known = [p.value for p in run.peaks if (p.channel, p.extreme) == ("B.force.x", "largest")
              and time[after[k] - 1] <= p.time <= time[after[k]]]  # fmt: skip
     largest = max([*known, force[inside].max()])
-    assert scalar(run, f"peak:B.force.x@{window}")[0] == pytest.approx(largest)
+    assert scalar(run, f"peak:B.force.x@{window}")[0] == pytest.approx(largest, rel=SAME)
     assert scalar(run, f"mean:B.force.x@{window}")[0] <= max(x[after[k] - 1], x[after[k]])
 
 
