@@ -13,7 +13,6 @@ from trsim.report.display import compared
 from trsim.report.studies import usual
 from trsim.store.read import read
 
-
 SAME = 1e-9  # numbers that are copied
 
 
