@@ -5,9 +5,13 @@ Cranks of length 1 that carry a plate and turn by theta as one, as in test_branc
     (I + sum of m p'^2) theta'' = weight(theta)
 """
 
+import re
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+
+from trsim.solve.adrift import of_drift
 
 from ..overconstrained import cranks, text
 from ..runs import run
@@ -76,3 +80,27 @@ def test_output_rows_next_to_the_place_are_as_right(rates):
 def test_pivots_that_unequal_masses_make_small_say_nothing():
     r = turned(2, 3.0, *drifting(5), "solver.end=0.3", mass=1e-9, tolerance=1e-3)
     assert r.outcome.status == "done"
+
+
+def of_plate(r):
+    """Largest acceleration of what does not turn, of the square of the cranks' rate."""
+    return np.abs(r["plate.angular_acceleration"][:, 2]).max() / RATE**2
+
+
+def test_what_accelerations_feel_of_open_joints_is_told():
+    """At delta from where branches meet what is open by e is felt by e / delta^3."""
+    r = turned(2, RATE, *drifting(24), "output.every=0.0005")
+    (said,) = of_drift(r.scenario, r.mechanism, r.outcome.record)
+    (stated,) = map(float, re.findall(r"feel by (\S+) of the square", said))
+    assert 100 * 1e-8 < of_plate(r) < 2 * stated < 1e-3
+    for sets in (drifting(500), ["solver.stabilisation=projection"]):
+        r = turned(2, RATE, *sets, "output.every=0.0005")
+        assert not list(of_drift(r.scenario, r.mechanism, r.outcome.record))
+        assert of_plate(r) < 10 * 1e-8
+
+
+@pytest.mark.parametrize("rates", [30, 33, 40])
+def test_rows_inside_steps_feel_drift_alone(rates):
+    """What interpolation opens is felt as well: 30 and 33 were off by 660 and 2,200 tolerances."""
+    r = turned(2, RATE, *drifting(rates), "output.every=0.0005")
+    assert of_plate(r) < 100 * 1e-8

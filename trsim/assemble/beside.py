@@ -63,7 +63,7 @@ from trsim.elements.vectors import clear
 
 # rad, or of the mechanism's size; from one pair of places to the next; pairs looked at
 FARTHEST, NEARER, PAIRS = 0.08, 0.7, 18
-TRIED = 4  # pairs further away that may be none: a mechanism that locks there
+TRIED = 4  # pairs that may be none: a mechanism locks there, or other rows depend on each other
 MOST = 5  # pairs that a polynomial goes through
 NEAR_TO = 0.25  # times the pivot of the place itself
 THERE, NOT_THERE, TOO_NEAR = range(3)
@@ -208,12 +208,15 @@ def look_beside(s, t, y, yd, fastest, own):
     yd: the evaluation at y, own: its pivot, 0 where rows depend on each other there.
     """
     found, limit, n = s.aside[FOUND], s.aside[LIMIT], s.n_v + s.m
-    best, scale, pairs = 1e300, 0.0, 0
+    best, scale, pairs, missed = 1e300, 0.0, 0, 0
     for k in range(PAIRS):
         d = FARTHEST * NEARER**k / fastest
         went = between(s, t, y, d, own)
-        if went == NOT_THERE and (pairs > 0 or k >= TRIED):
-            return 1e300, 0.0
+        if went == NOT_THERE:  # those further away may be of another branch
+            missed += 1
+            if missed > TRIED:
+                return 1e300, 0.0
+            best, scale, pairs = 1e300, 0.0, 0
         if went != THERE:
             continue
         for i in range(n):

@@ -30,6 +30,7 @@ from trsim.assemble.reduce import world_rates
 from trsim.elements.bushing import TURN
 from trsim.elements.contract import STORED
 from trsim.elements.scene import PROJECTION, scene
+from trsim.solve.adrift import of_drift
 from trsim.solve.bar_scales import largest
 from trsim.solve.bars import places
 from trsim.solve.chance import of_extremes
@@ -81,6 +82,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_hinges(mechanism, outcome.record),
         *of_events(outcome),
         *of_branches(mechanism, outcome.record),
+        *of_drift(scenario, mechanism, outcome.record),
         *of_extremes(mechanism, outcome),
     )
 

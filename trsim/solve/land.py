@@ -143,7 +143,7 @@ def off_the_rows(s, r, pivot):
     end of the step is brought back; what is interpolated is off along the other branch, and of that
     the rows see the less the nearer it is.
     """
-    if s.near == 0.0 or s.stabilisation != PROJECTION:
+    if s.near == 0.0 or s.stabilisation == NONE:
         return False
     allowed = s.tolerance * pivot / s.size
     length, speed = allowed * r.clock[LENGTH], allowed * r.clock[SPEED]

@@ -61,8 +61,10 @@ from trsim.elements.scene import Model
     FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
     FREE_SINCE,  # s, when they last opened
     CHOSEN_T,  # s, when rows were last chosen anew                                   anew.py
+    FELT,  # of rows open where branches nearly meet, in accelerations                adrift.py
+    FELT_T,  # s, when
     N_CLOCK,
-) = range(55)
+) = range(57)
 
 # count: integer state of the march
 (
