@@ -99,8 +99,8 @@ def of_drift(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[
     if r is not None and r.clock[FELT] > TOLD * scenario.solver.tolerance:
         yield (
             f"branches of the motion nearly meet at t = {r.clock[FELT_T]:.6g} s, where "
-            f"accelerations feel by {r.clock[FELT]:.2g} of the square of the rates what joints are open by, and "
-            "velocities and forces by part of it; "
+            f"accelerations feel by {r.clock[FELT]:.2g} of the square of the rates what joints are "
+            "open by, and velocities and forces by part of it; "
             f"{REMEDY[scenario.solver.stabilisation]}"
         )
 
