@@ -115,7 +115,7 @@ def complete(s, r, b, setting, method, h, built):
     step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch),
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
-    a corner may be passed over; the same).
+    a corner may be passed over, or that the step to an event is not right; the same).
     """
     last, t = method[LAST_AT], r.clock[T]
     b.moved[0] = 0.0
@@ -150,6 +150,9 @@ def complete(s, r, b, setting, method, h, built):
         theta = min(theta, other)
         if theta < 1.0:
             shorter, beyond, projected = exact(s, r, b, setting, method, t, h, theta)
+            if shorter < 0.0:
+                r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+                return STRAYED
             if shorter > 0.0:
                 # from here on h is the length that the dense output is made with
                 h, built = shorter, 0
@@ -276,7 +279,9 @@ def exact(s, r, b, setting, method, t, h, theta):
     output is that of the end before.
     Returns the length of the step, how much further its end is, and the work of the projection
     there; a length of 0 where the interpolant serves: also where Newton's method does not come
-    nearer, as where what is watched turns back close to its value.
+    nearer, as where what is watched turns back close to its value; less than 0 where its error is
+    more than is allowed, whatever that of the step was that went further: what lies behind the
+    event was none of its business, and estimates of one step and the other differ by much.
     """
     if method[STEP_AT] == 0:
         return 0.0, 0.0, 0.0
@@ -290,6 +295,8 @@ def exact(s, r, b, setting, method, t, h, theta):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0, 0.0, 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
+        if setting[FIXED_STEP] == 0.0 and not error <= 1.0:
+            return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
         projected = land(s, r, b, t + h1, b.y1, b.K[last])
