@@ -98,7 +98,9 @@ def test_a_step_made_again_to_end_where_a_contact_opens_is_held_to_the_tolerance
     def behind(tolerance):
         r = run(ONE_IMPACT.format(tolerance=float(tolerance)))
         assert len(r.events) == 2
-        return np.append(r["bob.velocity"][-1, :2] / 3.4e-4, r["bob.angular_velocity"][-1, 2] / 0.018)
+        return np.append(
+            r["bob.velocity"][-1, :2] / 3.4e-4, r["bob.angular_velocity"][-1, 2] / 0.018
+        )
 
     exact = behind(1e-12)
     for tolerance in np.geomspace(1e-5, 1e-7, 150):
