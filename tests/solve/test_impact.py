@@ -81,9 +81,15 @@ def test_the_first_step_after_a_touch():
 ONE_IMPACT = """
 gravity: [2.2e-4, 0]
 bodies:
-  bob: {{mass: 5.3, inertia: 2e-3, at: [0, 0], velocity: [-3e-5, 0], angular_velocity: [0, 0, -1.3e-3]}}
+  bob:
+    mass: 5.3
+    inertia: 2e-3
+    at: [0, 0]
+    velocity: [-3e-5, 0]
+    angular_velocity: [0, 0, -1.3e-3]
 joints:
-  pin: {{type: revolute, bodies: [ground, bob], at: [-7e-3, 25e-3], clearance: 0.29 mm, contact: soft}}
+  pin: {{type: revolute, bodies: [ground, bob], at: [-7e-3, 25e-3],
+    clearance: 0.29 mm, contact: soft}}
 contact_laws:
   soft: {{normal: lankarani_nikravesh, stiffness: 2e4, bearing_radius: 6 mm, restitution: 0.93,
     slowest_impact: 2e-6}}

@@ -769,12 +769,12 @@ def truth_at(scene: Scene, bound: float, tight: float, loose: float) -> Truth:
     t = Truth(kept, picked(kept), [], main.grazing, main.ended, steps=main.steps)
     t.about = [picked(np.clip(kept + x, 0, scene.end)) for x in shifts]
     t.size, t.mass, t.gravity, t.end = rough.size, rough.mass, g, scene.end
+    t.smooth, t.beside = main.smooth(), apart.smooth
     t.top = scales(replace(t, channels=all_of))
     t.sure, t.growth = spread(t, other, 1.0), spread(t, apart, APART)
     t.felt = felt(t, apart, APART)
     t.crossings = list(listed(scene, main))
     t.openings = main.openings
-    t.smooth, t.beside = main.smooth(), apart.smooth
     return t
 
 
@@ -843,10 +843,18 @@ def felt(t: Truth, other: Course, by: float) -> dict[str, np.ndarray]:
 
 
 def scales(t: Truth) -> dict[str, float]:
-    """The largest of each kind in the whole scene: what an error is relative to."""
+    """The largest of each kind in the whole scene: what an error is relative to.
+
+    Of speeds between the rows too (starts 2652043375 is at rest again by its second row); not of
+    forces, which in a touch between rows are far larger than what rows have.
+    """
     top: dict[str, float] = {}
-    for c in t.channels.values():
+    for name, c in t.channels.items():
         value = float(np.nanmax(np.abs(c.values), initial=0.0))
+        if c.kind in ("speed", "spin"):
+            for part in t.smooth or ():
+                if name in part.values:
+                    value = max(value, float(np.nanmax(np.abs(part.values[name]), initial=0.0)))
         if c.kind == "place" and c.vector:
             value = float(np.nanmax(np.abs(c.values - c.values[0]), initial=0.0))
         top[c.kind] = max(top.get(c.kind, 0.0), value)
