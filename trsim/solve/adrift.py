@@ -24,13 +24,12 @@ from trsim.elements.vectors import copy_to, internal
 from trsim.solve.calls import LOOK
 from trsim.solve.locked import dependent
 from trsim.solve.openings import closed, look, opening
-from trsim.solve.record import FELT, FELT_T, LOST, Record, T
+from trsim.solve.record import FELT, FELT_T, LOST, MET, Record, T
 
 AS_FAR = 0.03  # of the pivot: runs on the right branch had 0.005, on the wrong one 0.07
 NEARLY = 0.3  # pivots of rows that nearly depend on each other
 # times the tolerance: rows that are open by less are not felt; what accelerations feel and is told
 LITTLE, TOLD = 1e-3, 10.0
-LEAST = 1e-100  # rad/s: of what does not move
 
 
 @compiled(LOOK)
@@ -63,8 +62,8 @@ def plain(s):
 
 @internal
 def feel(s, r, b, t, y):
-    """Into the record by how much of the square of the rates accelerations, which are those of the
-    last evaluation, would be others with the rows closed."""
+    """Into the record by how much accelerations, which are those of the last evaluation, would be
+    others with the rows closed: of the largest, or of the square of the fastest rate so far."""
     kept, clock = b.rough[2], r.clock
     for f in range(1, s.n_r):
         for c in range(s.d):
@@ -73,15 +72,16 @@ def feel(s, r, b, t, y):
     closed(s, t, b.y2)
     poses_and_rows(s, t, b.y2)
     project_velocities(s, b.y2)
-    fastest = max(speed(s), LEAST)
+    fastest = max(speed(s), clock[MET] / s.size)
     evaluate(s, t, b.y2, b.rough[1])
-    most = 0.0
+    most, scale = 0.0, fastest * fastest
     for f in range(1, s.n_r):
         for c in range(s.d):
             i = s.d * (f - 1) + c
             most = max(most, abs(s.free[f, c] - kept[i]) / unit(s, i))
-    if most > clock[FELT] * fastest**2:
-        clock[FELT], clock[FELT_T] = most / fastest**2, t
+            scale = max(scale, abs(kept[i]) / unit(s, i))
+    if most > clock[FELT] * scale:
+        clock[FELT], clock[FELT_T] = most / scale, t
 
 
 def lost_its_way(scenario: Any, mechanism: Mechanism, r: Record) -> str:
@@ -99,8 +99,8 @@ def of_drift(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[
     if r is not None and r.clock[FELT] > TOLD * scenario.solver.tolerance:
         yield (
             f"branches of the motion nearly meet at t = {r.clock[FELT_T]:.6g} s, where "
-            f"accelerations feel by {r.clock[FELT]:.2g} of the square of the rates what joints are "
-            "open by, and velocities and forces by part of it; "
+            f"accelerations feel by {r.clock[FELT]:.2g} of the largest what joints are open by, "
+            "and velocities and forces by part of it; "
             f"{REMEDY[scenario.solver.stabilisation]}"
         )
 
