@@ -287,9 +287,10 @@ def test_closed_streams(words, closed, code, folder):
     assert "Traceback" not in out + err and "Exception" not in err
 
 
-def test_a_full_disk_behind_standard_output_is_named(tmp_path):
+@pytest.mark.parametrize("words", ["schema", "--version", "--help"])
+def test_a_full_disk_behind_standard_output_is_named(words, tmp_path):
     with open("/dev/full", "w") as full:
-        process = outside.trsim(tmp_path, "schema", stdout=full)
+        process = outside.trsim(tmp_path, words, stdout=full)
         assert process.communicate(timeout=60)[1].startswith("error: standard output: No space")
         assert process.returncode == 7
 

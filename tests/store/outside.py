@@ -44,11 +44,13 @@ def warm():
 
 
 def started(folder, *words, stdin=None, stdout=subprocess.PIPE, **environment):
-    """Python in a process of its own, with these words on its command line."""
+    """Python in a process of its own, with these words on its command line; what it says waits in
+    its buffers, whatever the environment of the tests asks for."""
     warm()
+    given = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
     return subprocess.Popen(  # noqa: S603
         [sys.executable, *words], cwd=folder, text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        env={**given, "PYTHONPATH": str(ROOT), **environment},
         stdin=stdin, stdout=stdout, stderr=subprocess.PIPE,
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 import click
 
-from trsim.cli.frame import EXIT_CODES, Answer, careful, opened
+from trsim.cli.frame import EXIT_CODES, Answer, careful, emptied, opened, refused
 from trsim.version import __version__
 
 # imports make tens of thousands of objects that stay: collecting among them finds nothing
@@ -65,4 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     except click.Abort:
         answer.interrupted(signal.SIGINT)
         code = answer.close()
+    except OSError as error:  # of --help and --version
+        code = refused(error)
+    emptied()
     sys.exit(code or 0)

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import click
 
@@ -78,7 +78,7 @@ class Answer:
         except BrokenPipeError:
             raise
         except OSError as error:
-            unheard()
+            unheard(sys.stdout)
             raise FileError(f"standard output: {error.strerror or error}") from None
 
     def fail(self, error: TrsimError, about: str | None = None) -> None:
@@ -132,10 +132,8 @@ class Answer:
                 click.echo(json.dumps(plain(self.data), indent=1).replace("\x7f", "\\u007f"))
             sys.stdout.flush()
         except OSError as error:
-            unheard()
-            if not isinstance(error, BrokenPipeError):
-                tell(f"error: standard output: {error.strerror or error}")
-                return self.exit_code or FileError.exit_code
+            code = refused(error)
+            return self.exit_code or code
         return self.exit_code
 
 
@@ -166,7 +164,7 @@ def framed(function: Callable[..., None]) -> Callable[..., int]:
         except KeyboardInterrupt as stop:
             answer.interrupted(Stop.number, str(stop))
         except BrokenPipeError:
-            unheard()
+            unheard(sys.stdout)
             return answer.exit_code
         except OSError as error:  # of a file that is none of ours: kernels being compiled, for one
             what = f"{error.filename or 'file system'}: {error.strerror or error}"
@@ -241,9 +239,27 @@ def careful() -> None:
         warnings.formatwarning = lambda *told, **named: shown(formatted(*told, **named))
 
 
-def unheard() -> None:
-    """Nobody reads standard output any more: what is still to be said goes to nowhere."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+def unheard(stream: IO[str]) -> None:
+    """Nobody reads a stream any more: what is still to be said there goes to nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def refused(error: OSError) -> int:
+    """The exit code where standard output cannot be written to; 0 where nobody reads it."""
+    unheard(sys.stdout)
+    if isinstance(error, BrokenPipeError):
+        return 0
+    tell(f"error: standard output: {error.strerror or error}")
+    return FileError.exit_code
+
+
+def emptied() -> None:
+    """Write what standard error still holds.  What it refuses Python would try again at its end,
+    and end with a code of its own."""
+    try:
+        sys.stderr.flush()
+    except OSError:
+        unheard(sys.stderr)
 
 
 def opened() -> None:
