@@ -54,7 +54,7 @@ def look_at_drift(s, r, b, setting, t, y, step):
 
 @internal
 def plain(s):
-    """Pivots that only unequal masses make small say nothing of branches."""
+    """The smallest pivot, whatever the masses: small ones of theirs say nothing of branches."""
     smallest = plain_pivot(s)
     factors_again(s)
     return max(smallest, TINY)

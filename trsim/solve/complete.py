@@ -125,22 +125,18 @@ def complete(s, r, b, setting, method, h, built):
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
     if s.steep > 0 and strayed(s, r, setting, h):
-        r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
-        return STRAYED
+        return undone(r, worst, worst_rate, STRAYED)
     if s.status[4] > 0 and leaked(s, r, b, setting, t1, projected):
-        r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
-        return STRAYED
+        return undone(r, worst, worst_rate, STRAYED)
     if s.wound.size > 0 and too_far(s, r, b, h):
-        r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
-        return WOUND
+        return undone(r, worst, worst_rate, WOUND)
     event = corner = False
     if method[SEARCH_AT] > 0 or method[CORNERS_AT] > 0:
         before, theta = r.count[DENSE_BUILT], NOTHING
         if method[CORNERS_AT] > 0:
             theta = call_search(method[CORNERS_AT], s, r, b, setting, method, t, h, built)
             if theta == UNCERTAIN:
-                r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
-                return STRAYED
+                return undone(r, worst, worst_rate, STRAYED)
             built = 1 if r.count[DENSE_BUILT] > before else built
         other = NOTHING
         if method[SEARCH_AT] > 0:
@@ -151,8 +147,7 @@ def complete(s, r, b, setting, method, h, built):
         if theta < 1.0:
             shorter, beyond, projected = exact(s, r, b, setting, method, t, h, theta)
             if shorter < 0.0:
-                r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
-                return STRAYED
+                return undone(r, worst, worst_rate, STRAYED)
             if shorter > 0.0:
                 # from here on h is the length that the dense output is made with
                 h, built = shorter, 0
@@ -242,6 +237,13 @@ def leaked(s, r, b, setting, t1, projected):
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
     return lost > LEAK * max(setting[TOLERANCE], OF_LIMITS) * max(before, after)
+
+
+@internal
+def undone(r, worst, worst_rate, why):
+    """`why` a trial step is not accepted; residuals met on it are none of the run."""
+    r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+    return why
 
 
 @internal
