@@ -91,7 +91,7 @@ def test_what_accelerations_feel_of_open_joints_is_told():
     """At delta from where branches meet what is open by e is felt by e / delta^3."""
     r = turned(2, RATE, *drifting(24), "output.every=0.0005")
     (said,) = of_drift(r.scenario, r.mechanism, r.outcome.record)
-    (stated,) = map(float, re.findall(r"feel by (\S+) of the largest", said))
+    (stated,) = map(float, re.findall(r"change accelerations by (\S+) of the largest", said))
     assert 100 * 1e-8 < of_plate(r) < 2 * stated < 1e-3
     for sets in (drifting(500), ["solver.stabilisation=projection"]):
         r = turned(2, RATE, *sets, "output.every=0.0005")

@@ -98,9 +98,9 @@ def of_drift(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[
     """Rows that were open enough for accelerations to feel it where branches nearly meet."""
     if r is not None and r.clock[FELT] > TOLD * scenario.solver.tolerance:
         yield (
-            f"branches of the motion nearly meet at t = {r.clock[FELT_T]:.6g} s, where "
-            f"accelerations feel by {r.clock[FELT]:.2g} of the largest what joints are open by, "
-            "and velocities and forces by part of it; "
+            f"branches of the motion nearly meet at t = {r.clock[FELT_T]:.6g} s, where open "
+            f"joints change accelerations by {r.clock[FELT]:.2g} of the largest, and velocities "
+            "and forces to a lesser degree; "
             f"{REMEDY[scenario.solver.stabilisation]}"
         )
 
