@@ -97,7 +97,7 @@ def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
     drawn, branches = scene
     wrong = 0
     for longer in (1e-9, 1e-8, 1e-7, 1e-6, 1e-5, -1e-8, -1e-6):
-        for tolerance in ("1e-2", "1e-3", "1e-4", "1e-6"):
+        for tolerance in ("1e-2", "1e-3", "1e-4", "1e-6", "5e-7"):
             made, sets = drawn(longer, R)
             ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
             r = run(made, *sets, *ways)

@@ -1120,6 +1120,33 @@ def bars(rng: Any) -> Drawn:
 
 
 @family
+def towed(rng: Any) -> Drawn:
+    """What is stiff, or strongly damped, and carries little: parts that move on together."""
+    flat = bool(rng.random() < 0.5)
+    s = chain(rng, int(rng.integers(2, 4)), flat, lambda k: "revolute")
+    w = decades(rng, 0.3, 3)
+    fast = w * decades(rng, 3, 60)
+    kind = pick(rng, "spring", "damper", "both")
+    for k, j in enumerate(s.joints[1:], 1):
+        one, other = s.bodies[k - 1], s.bodies[k]
+        I = other.mass * float((other.at - j.at) @ (other.at - j.at))
+        stiffness = I * fast**2 if kind != "damper" else I * w**2 * between(rng, 0, 2)
+        damping = I * fast * between(rng, 0.3, 1) if kind != "spring" else 0.0
+        if rng.random() < 0.7:
+            s.forces.append(Torsion(f"t{k}", j.name, stiffness, damping))
+        else:  # across the joint
+            p, q = one.at - j.at, other.at - j.at
+            lever = float(np.linalg.norm(np.cross(p, q - p)) / np.linalg.norm(q - p)) + 0.05
+            law = stiffness / lever**2, damping / lever**2
+            s.forces.append(Spring(f"s{k}", one.name, other.name, one.at, other.at, *law))
+    axis = s.joints[0].axis
+    given(s, [np.r_[np.cross(w * axis, b.at), w * axis] for b in s.bodies])
+    gravity(rng, s, w**2 * 2)
+    s.end = between(rng, 0.3, 2) * 6.28 / w
+    return Drawn(dressed(rng, s, 3 * fast))
+
+
+@family
 def drifting(rng: Any) -> Drawn:
     """Baumgarte's stabilisation instead of projection, from far too slow to nearly stiff rates."""
     kind = pick(rng, "chain_planar", "chain_spatial", "loop", "loop", "redundant", "singular")

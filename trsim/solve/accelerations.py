@@ -10,6 +10,9 @@ what is slow, w^2 = |D v'| / |D x|: any phase and, of motions of several frequen
 fastest that is seen.  In units of the tolerance and the largest acceleration met this is no more
 than the error of the motion, unless accelerations are small for the speeds there are.
 
+What lies inside a step may be off by more than its end: a method whose dense output is tells so by
+its `inside`, and complete.py asks where output rows lie there.
+
 Nothing is asked for that rounding makes: of the forces, or of what joints take of them.
 """
 
@@ -22,9 +25,12 @@ from trsim.solve.record import (
     BLURRED,
     BLURRED_H,
     BLURRED_W,
+    DECAY,
     LENGTH,
     NOISY,
     SPEED,
+    T_END,
+    VIBRATION,
     WRITTEN,
 )
 
@@ -32,7 +38,9 @@ ROUNDING = 2e-14  # of accelerations that cancel: what is left
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 EACH = 6.0  # entries of a body that errors are the mean of
 FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
-ALLOWED = 10.0  # times the tolerance as written: what accelerations of a step may be off by
+# times the tolerance as written: what accelerations of a step may be off by, and those of a run if
+# each estimate were right and of one sign; most are four to ten times too large
+ALLOWED, RUN, ONE = 10.0, 200.0, 1.0
 
 
 @internal
@@ -62,16 +70,30 @@ def frequency(turned, placed, h):
 
 
 @internal
-def in_units(s, r, setting, off, most, mean):
+def stiffness(r, h):
+    """w^2 of the fastest vibration or decay there could be, as far as a step h sees it."""
+    return min(max(r.clock[VIBRATION], r.clock[DECAY] ** 2), (WIDEST / h) ** 2)
+
+
+@internal
+def in_units(s, r, setting, off, most, mean, times):
     """An error of accelerations in units of what is allowed, none of it rounding.
 
-    most: the largest acceleration; mean: w^2 of what the error consists of.  Where accelerations
-    are less than a FURTHEST of what speeds give at that, it is rounding as well.
+    most: the largest acceleration; mean: w^2 of what the error consists of; times: the tolerance.
+    Where accelerations are less than a FURTHEST of what speeds give at that, it is rounding as
+    well.
     """
     most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
-    allowed = ALLOWED * setting[WRITTEN] * most
+    allowed = times * setting[WRITTEN] * most
     error = off / allowed if allowed > 0.0 else 0.0
     return error if error <= 1.0 else off / max(allowed, rounded(s, r))
+
+
+@internal
+def share(setting, h):
+    """What a step h may be off by, times the tolerance: of a vibration errors add up, step by step,
+    to RUN of a run of many; not less than ONE in a step."""
+    return max(ONE, min(ALLOWED, RUN * h / setting[T_END]))
 
 
 @internal

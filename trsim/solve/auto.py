@@ -39,13 +39,16 @@ from trsim.solve.record import (
     SWITCHES,
     TO_EXPLICIT,
     TO_IMPLICIT,
+    VIBRATION,
     H,
     T,
 )
+from trsim.solve.stiffness import stiff_load
 
 A = dop853_tableau.A
 EXPLICIT, IMPLICIT = 0, 1  # rows of `methods`
 STABLE = 6.1  # h rho of DOP853 on the negative real axis
+HELD = 0.9  # of the longest steps in which what is stiff dies out: as good as held by them
 STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
 DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
 NEAR, CALM = 3.0, 3.5  # h rho: where steps of DOP853 on contacts are watched, what they are held to
@@ -62,8 +65,8 @@ def choose(s, r, b, h, event):
             forget(r)
             return
         rate = explicit_rate(s, r, b, h)
-        load, held = h * rate, calmed(s, r, h, rate)
-        if load > STABLE or held:
+        load, light = h * max(rate, STABLE / HELD * stiff_load(r, 1.0)), calmed(s, r, h, rate)
+        if load > STABLE or light:
             r.count[STIFF] += 1
             r.count[NOT_STIFF] = 0
             if r.count[STIFF] >= max(STIFF_STEPS, s.n_v // DEAR):
@@ -123,7 +126,7 @@ def change(s, r, b, method, load):
     r.count[METHOD] = method
     r.count[STIFF], r.count[NOT_STIFF] = 0, 0
     r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
-    r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
+    r.clock[PAST_ERROR], r.clock[FACTORED_H], r.clock[VIBRATION] = 0.0, 0.0, 0.0
     forget(r)
     r.count[SWITCHES] += 1
     line = b.events[r.count[EVENT_ROWS]]

@@ -64,11 +64,13 @@ FIELDS = (
     "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
     "sample", "finish",  # what keeps extremes, and what does where samples end
     "passes",  # what notes steps past places where branches of the motion may meet
+    "inside",  # what tells the error of accelerations inside a step, as `step` does that of its end
+    "stiff",  # what looks at how stiff the mechanism is, for methods that ask     stiffness.py
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
-    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT,
+    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, STIFF_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 

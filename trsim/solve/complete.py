@@ -12,11 +12,13 @@ from trsim.elements.calls import caller
 from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.elements.packed import A1, I1, f8, i8
 from trsim.elements.vectors import all_finite, copy_table, copy_to, internal
+from trsim.solve.accelerations import held
 from trsim.solve.calls import (
     BEYOND_AT,
     CORNERS_AT,
     FINISH_AT,
     IMPLICIT_AT,
+    INSIDE_AT,
     INTERPOLATE_AT,
     LAST_AT,
     LOOK_AT,
@@ -84,7 +86,7 @@ from trsim.solve.watch import take_sides
 from trsim.solve.works import exchanged
 
 # what `complete` made of a trial step
-SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED, WOUND = range(7)
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED, WOUND, LOOSE = range(8)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
@@ -94,6 +96,7 @@ LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is look
 # that, and shorter steps would only meet more of what they do not know
 OF_LIMITS = 1e-10
 LEAK = 0.1  # times the tolerance, of the kinetic energy
+THROWN = 1e-3  # of the kinetic energy
 FROM_REST = 0.01  # of the kinetic energy at the end of a step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 NOTHING = 2.0  # no event in the step
@@ -115,7 +118,8 @@ def complete(s, r, b, setting, method, h, built):
     step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch),
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
-    a corner may be passed over, or that the step to an event is not right; the same).
+    a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
+    (accelerations inside it are not right; the same).
     """
     last, t = method[LAST_AT], r.clock[T]
     b.moved[0] = 0.0
@@ -126,7 +130,7 @@ def complete(s, r, b, setting, method, h, built):
         return WORTHLESS
     if s.steep > 0 and strayed(s, r, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
-    if s.status[4] > 0 and leaked(s, r, b, setting, t1, projected):
+    if s.status[4] > 0 and leaked(s, r, b, setting, h, t1, projected):
         return undone(r, worst, worst_rate, STRAYED)
     if s.wound.size > 0 and too_far(s, r, b, h):
         return undone(r, worst, worst_rate, WOUND)
@@ -167,6 +171,8 @@ def complete(s, r, b, setting, method, h, built):
     if built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
         build(s, r, b, method, t, h)
         built = 1
+    if inside and loose(s, r, b, setting, method, t, h):
+        return undone(r, worst, worst_rate, LOOSE)
     if due(r, setting, t1):
         first = r.count[ROWS]
         if not rows_until(s, r, b, setting, method, t, h, t1, projected):
@@ -227,13 +233,24 @@ def strayed(s, r, setting, h):
 
 
 @internal
-def leaked(s, r, b, setting, t1, projected):
-    """Whether energy went astray in a step past a place where branches of the motion meet."""
+def loose(s, r, b, setting, method, t, h):
+    """Whether accelerations inside the step are not right, though those at its end are."""
+    if method[INSIDE_AT] == 0 or setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
+        return False
+    return held(s) and call_step(method[INSIDE_AT], s, r, b, setting, t, h) > 1.0
+
+
+@internal
+def leaked(s, r, b, setting, h, t1, projected):
+    """Whether energy went astray in a step past a place where branches of the motion meet, or the
+    projection took or gave much of it, as from one branch to the other."""
     if setting[FIXED_STEP] > 0.0:
         return False
+    before, after = kinetic(s, r.y), kinetic(s, b.y1)
+    if h > BRIEF * setting[T_END] and abs(projected) > THROWN * max(before, after):
+        return True
     measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
     lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
-    before, after = kinetic(s, r.y), kinetic(s, b.y1)
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
     return lost > LEAK * max(setting[TOLERANCE], OF_LIMITS) * max(before, after)

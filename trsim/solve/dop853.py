@@ -12,9 +12,18 @@ from trsim.assemble.equations import equation, evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import internal
 from trsim.solve import dop853_tableau as tableau
-from trsim.solve.accelerations import EACH, doubted, frequency, held, in_units, largest
+from trsim.solve.accelerations import (
+    EACH,
+    doubted,
+    frequency,
+    held,
+    in_units,
+    largest,
+    share,
+    stiffness,
+)
 from trsim.solve.calls import CONTROL, DENSE, INTERPOLATE, STEP
-from trsim.solve.record import GAIN, LENGTH, MET, SPEED, TOLERANCE
+from trsim.solve.record import DECAY, GAIN, LENGTH, MET, SPEED, TOLERANCE, VIBRATION
 from trsim.solve.works import first_work, works
 
 ORDER = 8
@@ -46,7 +55,10 @@ for _s in range(19):
     IN_FOURS[_s, : _columns.size], WEIGHTS[_s, : _columns.size] = _columns, _sums[_s, _columns]
 IN_ERROR = np.flatnonzero((E3 != 0.0) | (E5 != 0.0))  # stages that an error estimate sees
 FAR = 2.5  # rad: the dense output errs by three times the estimate, of longer steps by more
-
+# of the last term of the dense output: what is missing.  1/1000 to 1/600 of vibrations w and forced
+# motions W, wherever it is no more than rounding: w h from 0.1 to 4, W h from 0.1 to 1
+LEFT = 1.0 / 700.0
+ROUNDED = 1e-15  # of the mechanism's size: of places, nothing is known of less
 IN_DENSE = np.flatnonzero(np.any(D != 0.0, axis=0))  # and those that the dense output does
 
 
@@ -113,6 +125,7 @@ def of_accelerations(s, r, b, setting, h):
     length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     error5 = error3 = moved = turned = 0.0
+    stiff = stiffness(r, h)
     for _ in range(1, s.n_r):
         x5 = x3 = v5 = v3 = placed = 0.0
         for c in range(q, q + of_q):
@@ -124,7 +137,7 @@ def of_accelerations(s, r, b, setting, h):
             v3 += (K[THIRD, c] * weight[c]) ** 2
         q, v = q + of_q, v + of_v
         if v5 > 0.0:
-            ww = frequency(speed * v5, h * h * length * placed, h)
+            ww = max(frequency(speed * v5, h * h * length * placed, h), stiff)
             far = max(1.0, ww * h * h / FAR**2)
             by = ww * length * x5 + speed * v5
             moved, turned = moved + by, turned + ww * by
@@ -138,7 +151,7 @@ def of_accelerations(s, r, b, setting, h):
     inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.clock[MET])
     most = max(most, inside)
     doubted(s, r, setting, off, most, sqrt(mean))
-    return in_units(s, r, setting, off, most, mean)
+    return in_units(s, r, setting, off, most, mean, share(setting, h))
 
 
 @internal
@@ -174,6 +187,30 @@ def dense(scene, K, t, y, h, y1, P):
             for i in range(IN_DENSE.size):
                 p += D[r, IN_DENSE[i]] * K[IN_DENSE[i], c]
             P[3 + r, c] = h * p
+
+
+@compiled(STEP)
+def inside(scene, r, b, setting, t, h):
+    """The error of accelerations on the dense output in b.P, in units of what is allowed.
+
+    Places and velocities are polynomials of degree 7 in theta, off by about LEFT of their last
+    terms: the end of the step, and the estimate of that, may be better by far.
+    """
+    places = rates = 0.0
+    for c in range(scene.n_q):
+        places += (LEFT * b.P[6, c] * b.weight[c]) ** 2
+    for c in range(scene.n_q, scene.n_q + scene.v_node):
+        rates += (LEFT * b.P[6, c] * b.weight[c]) ** 2
+    length, speed = setting[TOLERANCE] * r.clock[LENGTH], setting[TOLERANCE] * r.clock[SPEED]
+    if sqrt(places) * length < ROUNDED * scene.size:
+        return 0.0
+    ww = stiffness(r, h)
+    of_places = min(r.clock[VIBRATION], ww) * length
+    of_rates = min(r.clock[DECAY], sqrt(ww)) * speed
+    off = sqrt(of_places**2 * places + of_rates**2 * rates) / sqrt(EACH * (scene.n_r - 1))
+    most = largest(scene, r.yd, r.clock[GAIN])
+    doubted(scene, r, setting, off, most, sqrt(ww))
+    return in_units(scene, r, setting, off, most, ww, share(setting, h))
 
 
 @compiled(INTERPOLATE)

@@ -22,10 +22,12 @@ from trsim.solve.calls import (
     ROUNDING_AT,
     STAGES_AT,
     STEP_AT,
+    STIFF_AT,
     call_step,
     method_row,
 )
 from trsim.solve.complete import (
+    LOOSE,
     OF_LIMITS,
     SMALLEST,
     STRAYED,
@@ -88,12 +90,14 @@ from trsim.solve.record import (
     TOLERANCE,
     TOO_FAST,
     TORN,
+    VIBRATION,
     WINDS,
     H,
     T,
 )
 from trsim.solve.rounding import blunted, call_look_closer, look_closer, overdue, remember, to_look
 from trsim.solve.samples import restart
+from trsim.solve.stiffness import call_look_stiff, longest_calm, look_stiff, smooth, stiffness_due
 from trsim.solve.turns import longest_turn
 from trsim.solve.watch import take_sides
 
@@ -101,6 +105,7 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 LONGER = 6.0  # times the step before: the next one at most
 AIM = 0.9  # times the step that would just meet the error allowed
 STRETCH = 1.05  # times the step as controlled: what may be added to end where it is to end
+TIGHTER = 0.7  # of a step whose inside is not right, and whose end is
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
 
@@ -113,6 +118,9 @@ def method_table(method, **called):
     searched = called.get("search", 0) > 0 or called.get("corners", 0) > 0
     if searched and hasattr(method, "control"):
         called["control"] = method.control.address()
+    if hasattr(method, "inside"):
+        called["inside"] = method.inside.address()
+        called["stiff"] = look_stiff.address()
     return method_row(
         step=method.step.address(),
         dense=method.dense.address(),
@@ -150,7 +158,9 @@ def march(s, r, b, setting, methods, most):
         t, method = r.clock[T], methods[r.count[METHOD]]
         if method[STEP_AT] == 0:
             return LOAD
-        h = next_step(s, r, b, setting)
+        if method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
+            call_look_stiff(method[STIFF_AT], s, r, b)
+        h = next_step(s, r, b, setting, method)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
             return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
         if crawls(r, setting, h):
@@ -188,10 +198,10 @@ def march(s, r, b, setting, methods, most):
             continue
         if outcome == WOUND and setting[FIXED_STEP] > 0.0:
             return WINDS
-        if outcome in (STRAYED, WOUND):
+        if outcome in (STRAYED, WOUND, LOOSE):
             r.count[REJECTED] += 1
             r.count[AFTER_REJECTION] = 1
-            r.clock[H] = 0.3 * h
+            r.clock[H] = (TIGHTER if outcome == LOOSE else 0.3) * h
             continue
         accepted += 1
         remember(s, r, setting, h)
@@ -252,11 +262,11 @@ def full(s, r, b):
 
 
 @internal
-def next_step(s, r, b, setting):
+def next_step(s, r, b, setting, method):
     """The step to try: as controlled, not beyond the end, the last two evened out.
 
     It never spans more output times than the buffer has room for, and ends where the time meets a
-    corner of a function.
+    corner of a function.  Of an explicit method it stays where what is stiff dies out.
     """
     left = next_instant(s, r.clock[T], setting[T_END]) - r.clock[T]
     most = min(setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
@@ -264,6 +274,8 @@ def next_step(s, r, b, setting):
         return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
     if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
         most = min(most, longest_turn(s, r))
+    if method[STIFF_AT] > 0 and r.clock[VIBRATION] > 0.0 and smooth(s, r):
+        most = min(most, longest_calm(r))
     h = min(r.clock[H], most)
     if min(STRETCH * h, most) >= left * (1.0 - 1e-12):
         return left

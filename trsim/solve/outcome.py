@@ -257,6 +257,7 @@ def new_record(
         passed=np.zeros((passes, 2 + 2 * begun.y.size + len(model.branch))),
         meeting=np.zeros((rec.MEETINGS_KEPT if passes else 0, begun.y.size)),
         crossed=np.zeros_like(begun.y),
+        swing=np.zeros((2, model.n_v + model.n_z - N_BOOK)),
         worked=np.zeros((2, N_WORKED)),
     )
     record.clock[rec.WEAKEST] = 1.0

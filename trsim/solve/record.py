@@ -63,8 +63,10 @@ from trsim.elements.scene import Model
     CHOSEN_T,  # s, when rows were last chosen anew                                   anew.py
     FELT,  # of rows open where branches nearly meet, in accelerations                adrift.py
     FELT_T,  # s, when
+    VIBRATION,  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known    stiffness.py
+    DECAY,  # 1/s, of the fastest decay
     N_CLOCK,
-) = range(57)
+) = range(59)
 
 # count: integer state of the march
 (
@@ -209,6 +211,7 @@ class Record(Packed):
     passed: A2  # (PASSES_KEPT, 2 + 2 n_y + n_s) ways noted: times, states, branches of angles
     meeting: A2  # (MEETINGS_KEPT, n_y) where branches meet                      crossed.py
     crossed: A1  # (n_y) where the run first changed its branch
+    swing: A2  # (2, n_w) how it vibrates, and how it decays              stiffness.py
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
 
 

@@ -1,0 +1,149 @@
+"""What is stiff, or strongly damped, and carries little: two parts that move on together.
+
+    M x'' + C x' + K x = 0,    C = c (1 -1; -1 1),    K = diag(k1, 0) + k2 (1 -1; -1 1)
+
+from a state of its slowest motion alone: exact is that of the exponential of the matrix.  Nothing
+of what is fast is ever seen, and steps of an explicit method could be as long as only the slow
+motion allows; before they were held by what could vibrate or decay, velocities came out 1e5
+tolerances off and accelerations 1e7.
+"""
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+
+from trsim.solve import record as rec
+
+from ..runs import run
+from ..sizes import size
+
+SEEDS = size(40, 1500)
+TILTED = np.array([[0.48, -0.8, 0.36], [0.6, 0.0, -0.8], [0.64, 0.6, 0.48]]).T
+ALLOWED = 100.0  # tolerances of the largest of its kind
+
+SCENE = """
+planar: {planar}
+bodies:
+  a: {{mass: 1, inertia: {inertia}, at: {a}, velocity: {u[0]}}}
+  b: {{mass: {m!r}, inertia: {inertia}, at: {b}, velocity: {u[1]}}}
+joints:
+  i: {{type: prismatic, bodies: [ground, a], at: {a}, axis: {axis}}}
+  j: {{type: prismatic, bodies: [ground, b], at: {b}, axis: {axis}}}
+gravity: [0, 0, 0]
+forces:
+  soft: {{type: spring_damper, bodies: [ground, a], points: [{anchor}, {a}], stiffness: {k1!r},
+         free_length: 10}}
+  hard: {{type: spring_damper, bodies: [a, b], points: [{a}, {b}], stiffness: {k2!r},
+         damping: {c!r}, free_length: 3}}{more}
+solver: {{end: {end!r}, tolerance: {tolerance!r}}}
+output: {{every: {every!r}}}
+"""
+STOP = """
+  stop: {{type: limit_stop, point: {{body: a, at: {at}}}, wall: {{body: ground, at: {wall},
+         normal: {axis}}}, stiffness: 1e6, damping: 0}}"""
+
+
+def drawn(seed, damped, stop=False):
+    """Text of a scene, M, C and K, the state at t = 0 and the direction of its ways."""
+    rng = np.random.default_rng(seed)
+    ratio, m, W = 10 ** rng.uniform(0.3, 1.7), 10 ** rng.uniform(-2, 1), 10 ** rng.uniform(-1, 1)
+    k1, light = W**2, min(m, 1.0)
+    k2 = W**2 * rng.uniform(0, 2) * light if damped else (ratio * W) ** 2 * light
+    c = ratio * W * light if damped else 0.0
+    pair = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    M, C, K = np.diag([1.0, m]), c * pair, np.diag([k1, 0.0]) + k2 * pair
+    A = matrix(M, C, K)
+    values, vectors = np.linalg.eig(A)
+    slowest = np.argmin(np.abs(values) + 1e9 * (np.abs(values.imag) < 1e-12 * ratio * W))
+    mode = vectors[:, slowest]
+    start = (mode / mode[0] * -1j).real
+    start /= np.abs(start[:2]).max() if np.abs(start[:2]).max() > 0.1 else 1.0
+    R = TILTED if rng.random() < 0.5 else np.eye(3)
+    spatial, axis = R is TILTED, R[:, 0]
+    end = 2 * np.pi / abs(values[slowest]) * rng.uniform(0.5, 2)
+    where = [axis * start[0], axis * (3.0 + start[1])]
+    text = SCENE.format(
+        planar=str(not spatial).lower(), inertia="[1, 1, 1]" if spatial else 1, axis=axis.tolist(),
+        a=where[0].tolist(), b=where[1].tolist(), u=[(axis * v).tolist() for v in start[2:]],
+        m=float(m), anchor=(-10 * axis).tolist(), k1=float(k1), k2=float(k2), c=float(c),
+        end=float(end), tolerance=float(10 ** rng.uniform(-10, -4)),
+        every=float(end / rng.integers(11, 201)),
+        more=STOP.format(at=where[0].tolist(), wall=(-20 * axis).tolist(), axis=axis.tolist())
+        if stop else "",
+    )  # fmt: skip
+    return text, (M, C, K), start, axis
+
+
+def matrix(M, C, K):
+    """Of the first-order system (x, x')."""
+    inverse = np.diag(1.0 / np.diag(M))
+    return np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ K, -inverse @ C]])
+
+
+def off(r, MCK, start, axis):
+    """By how many tolerances places, velocities and accelerations are off, of the largest."""
+    A = matrix(*MCK)
+    exact = np.array([expm(A * t) @ start for t in r.t])
+    true = (exact[:, :2], exact[:, 2:], (exact @ A.T)[:, 2:])
+    found = []
+    for kind, rows in zip(("position", "velocity", "acceleration"), true, strict=True):
+        got = [r[f"{name}.{kind}"] for name in "ab"]
+        got = np.column_stack([x @ axis[: x.shape[1]] for x in got])
+        if kind == "position":
+            got -= [0.0, 3.0]
+        found.append(np.abs(got - rows).max() / np.abs(rows).max())
+    return np.array(found) / r.scenario.solver.tolerance
+
+
+@pytest.mark.parametrize("stop", [False, True], ids=["", "with a stop"])
+@pytest.mark.parametrize("damped", [False, True], ids=["spring", "damper"])
+@pytest.mark.parametrize("method", ["dop853", "auto"])
+def test_what_moves_on_together(method, damped, stop):
+    worst = {}
+    for seed in range(SEEDS // 2 if stop else SEEDS):
+        text, *true = drawn(seed, damped, stop)
+        worst[seed] = off(run(text, f"solver.method={method}"), *true)
+    wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
+    assert not wrong
+
+
+@pytest.mark.parametrize("damped", [False, True], ids=["spring", "damper"])
+@pytest.mark.parametrize("seed", range(6))
+def test_the_fastest_is_found(seed, damped):
+    """w^2 and c are about the largest eigenvalues of M^-1 K and M^-1 C: never less by much."""
+    text, (M, C, K), *_ = drawn(seed, damped)
+    clock = run(text, "solver.method=dop853").outcome.record.clock
+    inverse = np.diag(1.0 / np.diag(M))
+    ww, c = (np.linalg.eigvals(inverse @ X).max() for X in (K, C))
+    assert clock[rec.VIBRATION] == pytest.approx(ww, rel=0.1)
+    assert clock[rec.DECAY] == pytest.approx(c, rel=0.1, abs=1e-5 * np.sqrt(ww))  # by rounding
+
+
+PAIR = """
+gravity: [6.6, 3.3]
+bodies:
+  one: {mass: 0.74, inertia: 0.16, at: [0.15, -0.06], velocity: [0.06, 0.15],
+    angular_velocity: [0, 0, 1]}
+  two: {mass: 0.63, inertia: 0.043, at: [0.55, -0.23], velocity: [0.23, 0.55],
+    angular_velocity: [0, 0, 1]}
+joints:
+  A: {type: revolute, bodies: [ground, one], at: [0, 0]}
+  B: {type: revolute, bodies: [one, two], at: [0.42, -0.16]}
+forces: {spring: {type: torsion_spring, joint: B, stiffness: STIFFNESS, damping: 0.01}}
+solver: {end: 2, tolerance: 1e-6}
+output: {every: 0.01}
+"""
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "tolerance"), [(100, "1e-5"), (300, "1e-5"), (300, "1e-7"), (300, "1e-8")]
+)
+def test_accelerations_inside_a_step_are_held_too(stiffness, tolerance):
+    """Ten rows a step: its end is right, and what is interpolated was off by 161 tolerances; errors
+    of vibrations add up along the run, to 175."""
+    text = PAIR.replace("STIFFNESS", str(stiffness))
+    r = run(text, "solver.method=dop853", f"solver.tolerance={tolerance}")
+    exact = run(text, "solver.method=radau", "solver.tolerance=1e-11")
+    for name in ("one", "two"):
+        got, true = (x[f"{name}.angular_acceleration"] for x in (r, exact))
+        assert np.abs(got - true).max() < ALLOWED * float(tolerance) * np.abs(true).max()
