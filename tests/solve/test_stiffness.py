@@ -43,7 +43,18 @@ STOP = """
          normal: {axis}}}, stiffness: 1e6, damping: 0}}"""
 
 
-def drawn(seed, damped, stop=False):
+BAR = (
+    """
+  rod: {mass: 0.4, inertia: [1e-4, 0.03, 0.03], at: [0.5, 5, 0], velocity: SLOW,
+    flexible: {elements: 2, section: {diameter: 0.1}, youngs_modulus: SOFT}}
+  bob: {mass: 0.1, inertia: [0.01, 0.01, 0.01], at: [1, 5, 0], velocity: SLOW}""",
+    """
+  r: {type: spherical, bodies: [ground, rod], at: [0, 5, 0]}
+  s: {type: spherical, bodies: [rod, bob], at: [1, 5, 0]}""",
+)
+
+
+def drawn(seed, damped, beside=""):
     """Text of a scene, M, C and K, the state at t = 0 and the direction of its ways."""
     rng = np.random.default_rng(seed)
     ratio, m, W = 10 ** rng.uniform(0.3, 1.7), 10 ** rng.uniform(-2, 1), 10 ** rng.uniform(-1, 1)
@@ -69,8 +80,14 @@ def drawn(seed, damped, stop=False):
         end=float(end), tolerance=float(10 ** rng.uniform(-10, -4)),
         every=float(end / rng.integers(11, 201)),
         more=STOP.format(at=where[0].tolist(), wall=(-20 * axis).tolist(), axis=axis.tolist())
-        if stop else "",
+        if beside == "stop" else "",
     )  # fmt: skip
+    if beside == "bar":
+        bodies, joints = (x.replace("SOFT", repr(float(20 * W * W))) for x in BAR)
+        bodies = bodies.replace("SLOW", repr([0.0, 0.05 * float(W), 0.0]))
+        text = text.replace("\njoints:", bodies + "\njoints:").replace(
+            "\ngravity", joints + "\ngravity"
+        )
     return text, (M, C, K), start, axis
 
 
@@ -95,13 +112,13 @@ def off(r, MCK, start, axis):
     return np.array(found) / r.scenario.solver.tolerance
 
 
-@pytest.mark.parametrize("stop", [False, True], ids=["", "with a stop"])
+@pytest.mark.parametrize("beside", ["", "stop", "bar"])
 @pytest.mark.parametrize("damped", [False, True], ids=["spring", "damper"])
 @pytest.mark.parametrize("method", ["dop853", "auto"])
-def test_what_moves_on_together(method, damped, stop):
+def test_what_moves_on_together(method, damped, beside):
     worst = {}
-    for seed in range(SEEDS // 2 if stop else SEEDS):
-        text, *true = drawn(seed, damped, stop)
+    for seed in range(SEEDS // 2 if beside else SEEDS):
+        text, *true = drawn(seed, damped, beside)
         worst[seed] = off(run(text, f"solver.method={method}"), *true)
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}
     assert not wrong

@@ -103,6 +103,9 @@ from trsim.elements.scene import Model
     UNPROVED,  # searches for an event in a step that gave up
     DEGREE,  # of the polynomials in `net`
     LOOKED,  # steps when rounding was looked at last    rounding.py
+    NEXT_LOOK,  # steps when stiffness is to be looked at again, and how far apart   stiffness.py
+    APART_LOOKS,
+    OF_RATES,  # 1: it was rates that were looked at
     FAILED,  # and how many trials were rejected then
     NEWEST,  # which of the last samples of the channels is the newest, and how many there are
     SAMPLES,
@@ -115,7 +118,7 @@ from trsim.elements.scene import Model
     EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
     CHOSEN,  # how often rows were chosen anew with next to no time between
     N_COUNT,
-) = range(45)
+) = range(48)
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2

@@ -8,8 +8,8 @@ accelerations,
     c   = |a(q, v + u) - a(q, v)| / |u|        of the fastest decay
 
 times as much.  d and u are those of two vector iterations, d <- a(q + d, v) - a(q, v), which go on
-along the run: one evaluation in SELDOM steps, for one of them and the other in turn; FIRST for each
-before the first step.
+along the run: FIRST evaluations for each before the first step, then one for one or the other after
+OFTEN steps, twice as many, and so on up to SELDOM; after OFTEN again where it has risen.
 """
 
 from math import sqrt
@@ -22,10 +22,13 @@ from trsim.elements.vectors import copy_to, internal
 from trsim.solve.displacements import active, displace, w_index
 from trsim.solve.record import (
     AFTER_REJECTION,
+    APART_LOOKS,
     BUFFERS,
     DECAY,
     LENGTH,
     MOST,
+    NEXT_LOOK,
+    OF_RATES,
     RECORD,
     SPEED,
     STEPS,
@@ -33,7 +36,8 @@ from trsim.solve.record import (
     T,
 )
 
-SELDOM, FIRST = 8, 5
+FIRST, OFTEN, SELDOM = 3, 4, 32
+RISEN = 2.0  # times what it was: looked at OFTEN again
 FADING = 0.5  # of what was found before: at least that stays with a look
 NUDGE = 1e-7  # of the units of lengths and speeds: the size of d and u
 GOLDEN = 0.6180339887498949
@@ -49,8 +53,8 @@ call_look_stiff = caller(LOOK_STIFF)
 @internal
 def smooth(s, r):
     """Whether accelerations are smooth in places and rates here: nothing touches, no rows depend on
-    others; waves in bars are to be passed over."""
-    if s.n_r < s.n or s.n_r == 1 or (s.status[6] != 0 and s.near_rows > 0.0):
+    others."""
+    if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
         return False
     for c in range(s.contact.size):
         if r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT:
@@ -63,7 +67,7 @@ def stiffness_due(r):
     """Whether it is time for a look, before a step."""
     if r.clock[VIBRATION] == 0.0:
         return True
-    return r.count[STEPS] % SELDOM == 0 and r.count[AFTER_REJECTION] == 0
+    return r.count[STEPS] >= r.count[NEXT_LOOK] and r.count[AFTER_REJECTION] == 0
 
 
 @internal
@@ -82,15 +86,20 @@ def stiff_load(r, h):
 def look_stiff(s, r, b):
     """Take one iteration on, at the state of the record; what it says is in r.clock."""
     counted = (s.status[1], s.status[2], s.status[3])
+    apart = r.count[APART_LOOKS]
     if r.clock[VIBRATION] == 0.0:
         for k in range(r.swing.shape[1]):  # no two bodies move alike
             r.swing[0, k] = r.swing[1, k] = (GOLDEN * (k + 1)) % 1.0 - 0.5
         for _ in range(FIRST):
             r.clock[VIBRATION], r.clock[DECAY] = turned(s, r, b, 0), turned(s, r, b, 1)
-    elif (r.count[STEPS] // SELDOM) % 2 == 0:
-        r.clock[VIBRATION] = max(turned(s, r, b, 0), FADING * r.clock[VIBRATION])
+        apart = OFTEN
     else:
-        r.clock[DECAY] = max(turned(s, r, b, 1), FADING * r.clock[DECAY])
+        of_rates = r.count[OF_RATES] = 1 - r.count[OF_RATES]
+        known = DECAY if of_rates > 0 else VIBRATION
+        before, now = r.clock[known], turned(s, r, b, of_rates)
+        r.clock[known] = max(now, FADING * before)
+        apart = OFTEN if now > RISEN * before else min(2 * apart, SELDOM)
+    r.count[APART_LOOKS], r.count[NEXT_LOOK] = apart, r.count[STEPS] + apart
     r.clock[VIBRATION] = max(r.clock[VIBRATION], NOTHING)
     if s.near_rows > 0.0:  # what is seen of the rows goes on from there
         evaluate(s, r.clock[T], r.y, b.rough[1])
