@@ -111,14 +111,16 @@ def test_self_locking_gear_stops_who_leads():
 
 
 def test_synchronism_is_lost():
-    """Prescribed speeds: 2 mm/s apart, 0.3 mm after 0.15 s."""
-    text = three((0.1, 0.102, 0.1), "stiffness: 1e6", f"{SHAFT}, lost_at: 0.3 mm")
+    """Prescribed speeds: 2 mm/s apart, 0.3005 mm after 0.15025 s, a quarter behind a row."""
+    text = three((0.1, 0.102, 0.1), "stiffness: 1e6", f"{SHAFT}, lost_at: 0.3005 mm")
     there = run(text)
     assert there.outcome.status == "jammed"
-    assert there.outcome.time == pytest.approx(0.15, rel=1e-9)
-    assert "0.0003 m" in there.outcome.reason
+    assert there.outcome.time == pytest.approx(0.15025, rel=1e-9)
+    assert "0.0003005 m" in there.outcome.reason
     assert "b.force" in there.outcome.reason
     assert there["shaft.difference"][-1] == pytest.approx(0.3e-3, rel=1e-9)
+    # what springs of actuators make of the rounding of places is no reason for short steps
+    assert there.outcome.statistics["steps"] < 400
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,9 @@ than the error of the motion, unless accelerations are small for the speeds ther
 What lies inside a step may be off by more than its end: a method whose dense output is tells so by
 its `inside`, and complete.py asks where output rows lie there.
 
-Nothing is asked for that rounding makes: of the forces, or of what joints take of them.
+Nothing is asked for that rounding makes: of the forces, of what joints take of them, or of places
+and rates, which are rounded to so much of the mechanism's size and of the speeds there are, by what
+is stiff.
 """
 
 from math import sqrt
@@ -35,6 +37,7 @@ from trsim.solve.record import (
 )
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
+ROUNDED = 1e-15  # of the mechanism's size, of speeds: nothing is known of places, of rates, below
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 EACH = 6.0  # entries of a body that errors are the mean of
 FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
@@ -117,7 +120,13 @@ def rounded(s, r):
     if r.clock[NOISY] > 0.0:
         for c in range(s.n_q, s.n_q + s.v_node):
             noise = max(noise, s.scale[c] * r.noise[c])
-    return max(ROUNDING * free, WIDEST * noise)
+    return max(ROUNDING * free, WIDEST * max(noise, unknown(s, r)))
+
+
+@internal
+def unknown(s, r):
+    """What the rounding of places and rates makes of accelerations, by what is stiff, m/s^2."""
+    return ROUNDED * (r.clock[VIBRATION] * s.size + r.clock[DECAY] * r.clock[SPEED])
 
 
 @internal

@@ -14,6 +14,7 @@ from trsim.elements.vectors import internal
 from trsim.solve import dop853_tableau as tableau
 from trsim.solve.accelerations import (
     EACH,
+    ROUNDED,
     doubted,
     frequency,
     held,
@@ -21,6 +22,7 @@ from trsim.solve.accelerations import (
     largest,
     share,
     stiffness,
+    unknown,
 )
 from trsim.solve.calls import CONTROL, DENSE, INTERPOLATE, STEP
 from trsim.solve.record import DECAY, GAIN, LENGTH, MET, SPEED, TOLERANCE, VIBRATION
@@ -58,7 +60,6 @@ FAR = 2.5  # rad: the dense output errs by three times the estimate, of longer s
 # of the last term of the dense output: what is missing.  1/1000 to 1/600 of vibrations w and forced
 # motions W, wherever it is no more than rounding: w h from 0.1 to 4, W h from 0.1 to 1
 LEFT = 1.0 / 700.0
-ROUNDED = 1e-15  # of the mechanism's size: of places, nothing is known of less
 IN_DENSE = np.flatnonzero(np.any(D != 0.0, axis=0))  # and those that the dense output does
 
 
@@ -125,7 +126,7 @@ def of_accelerations(s, r, b, setting, h):
     length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     error5 = error3 = moved = turned = 0.0
-    stiff = stiffness(r, h)
+    stiff, rounding = stiffness(r, h), unknown(s, r) ** 2
     for _ in range(1, s.n_r):
         x5 = x3 = v5 = v3 = placed = 0.0
         for c in range(q, q + of_q):
@@ -136,7 +137,7 @@ def of_accelerations(s, r, b, setting, h):
             v5 += (K[FIFTH, c] * weight[c]) ** 2
             v3 += (K[THIRD, c] * weight[c]) ** 2
         q, v = q + of_q, v + of_v
-        if v5 > 0.0:
+        if speed * v5 > rounding:
             ww = max(frequency(speed * v5, h * h * length * placed, h), stiff)
             far = max(1.0, ww * h * h / FAR**2)
             by = ww * length * x5 + speed * v5
