@@ -115,7 +115,10 @@ def off_of(r, axis, ways, exact):
 
 
 @pytest.mark.parametrize("first", range(0, SEEDS, TOGETHER))
-@pytest.mark.parametrize("method", ["dop853", "auto", "radau", "generalized_alpha"])
+@pytest.mark.parametrize(
+    "method",
+    ["dop853", "auto", "radau", "generalized_alpha", "scipy:BDF", "scipy:RK45", "scipy:Radau"],
+)
 def test_a_small_vibration_beside_a_larger_motion(method, first):
     worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER)}
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}

@@ -37,7 +37,7 @@ from trsim.solve.record import (
 )
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
-ROUNDED = 1e-15  # of the mechanism's size, of speeds: nothing is known of places, of rates, below
+ROUNDED = 5e-16  # of the mechanism's size, of speeds: nothing is known of places, of rates, below
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 EACH = 6.0  # entries of a body that errors are the mean of
 FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
@@ -120,7 +120,7 @@ def rounded(s, r):
     if r.clock[NOISY] > 0.0:
         for c in range(s.n_q, s.n_q + s.v_node):
             noise = max(noise, s.scale[c] * r.noise[c])
-    return max(ROUNDING * free, WIDEST * max(noise, unknown(s, r)))
+    return max(ROUNDING * free, WIDEST * noise)
 
 
 @internal

@@ -108,8 +108,9 @@ def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Fo
         least, width = min((a, b), key=lambda p: p.sigma[of]), distance(w, a, b)
         waited = 0 if width < NARROWER * wide else waited + 1
         wide = width if not waited else wide
-        if near and (least.sigma[of] <= MEET or waited >= PATIENT):
-            yield Found(bool(least.sigma[of] <= MEET), least)
+        meet = bool(least.sigma[of] <= MEET)
+        if (near and meet) or waited >= PATIENT:  # places at one time may be far from each other
+            yield Found(meet, least)
             continue
         # the zero of a straight line is found at once; halving gets near to any
         at = a.sigma[of] / (a.sigma[of] + b.sigma[of]) if near and looks % 3 else 0.5

@@ -118,14 +118,15 @@ def step(scene, r, b, setting, t, h):
 def of_accelerations(s, r, b, setting, h):
     """The error of accelerations: both estimates of places and velocities in one size, by body.
 
-    Inside a step that holds more than FAR rad the dense output is off by more than its end.
+    Inside a step that holds more than FAR rad the dense output is off by more than its end.  What
+    rounding makes of stages is told, and not held.
     """
     K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
     combined(K, OF_PLACES, 0, s.n_q, K[PLACES])
     r.clock[GAIN] = most = largest(s, K[0], r.clock[GAIN])
     length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
-    error5 = error3 = moved = turned = 0.0
+    error5 = error3 = seen5 = seen3 = moved = turned = 0.0
     stiff, rounding = stiffness(r, h), unknown(s, r) ** 2
     for _ in range(1, s.n_r):
         x5 = x3 = v5 = v3 = placed = 0.0
@@ -137,21 +138,27 @@ def of_accelerations(s, r, b, setting, h):
             v5 += (K[FIFTH, c] * weight[c]) ** 2
             v3 += (K[THIRD, c] * weight[c]) ** 2
         q, v = q + of_q, v + of_v
-        if speed * v5 > rounding:
+        if v5 > 0.0:
             ww = max(frequency(speed * v5, h * h * length * placed, h), stiff)
             far = max(1.0, ww * h * h / FAR**2)
             by = ww * length * x5 + speed * v5
             moved, turned = moved + by, turned + ww * by
-            error5 += far * far * ww * by
-            error3 += far * far * ww * (ww * length * x3 + speed * v3)
+            by5, by3 = far * far * ww * by, far * far * ww * (ww * length * x3 + speed * v3)
+            error5, error3 = error5 + by5, error3 + by3
+            if speed * v5 > rounding:
+                seen5, seen3 = seen5 + by5, seen3 + by3
     if error5 == 0.0:
         return 0.0
-    off = h * error5 / sqrt((error5 + 0.01 * error3) * EACH * (s.n_r - 1))
+    bodies = EACH * (s.n_r - 1)
+    off = h * error5 / sqrt((error5 + 0.01 * error3) * bodies)
     # stages of a step too long may be anywhere: no more than the speeds so far may turn to
     mean = turned / moved
     inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.clock[MET])
     most = max(most, inside)
     doubted(s, r, setting, off, most, sqrt(mean))
+    if seen5 == 0.0:
+        return 0.0
+    off = h * seen5 / sqrt((seen5 + 0.01 * seen3) * bodies)
     return in_units(s, r, setting, off, most, mean, share(setting, h))
 
 

@@ -19,6 +19,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
 from trsim.solve import record as rec
+from trsim.solve.accelerations import ALLOWED, FURTHEST, WIDEST
 from trsim.solve.adrift import lost_its_way
 from trsim.solve.anew import anew, begun_with
 from trsim.solve.blame import why
@@ -52,11 +53,16 @@ Array = NDArray[np.float64]
 
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 8)  # Chebyshev-Lobatto on 0..1
 SIGNS = np.array([0.5, -1, 1, -1, 1, -1, 1, -1, 0.5])  # their barycentric weights
+# by values at the nodes: second and third derivative in the middle of a step as long as one
+SECOND, THIRD = np.linalg.inv(np.vander(NODES - 0.5, increasing=True))[2:4] * [[2.0], [6.0]]
 LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
 ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
+EASED = 1.2  # at most, from step to step
+BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
+TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
 
@@ -106,20 +112,28 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     status: Ended = "done"
     reason = ""
     limit, crawled = scenario.solver.max_steps or 2**62, 0
-    solver = restarted(scenario, s, r, b, setting)
+    finer = 1.0
+    solver = restarted(scenario, s, r, b, setting, finer)
     while r.clock[rec.T] < setting[rec.T_END]:
         reason = stopped(solver)
         if reason:
             status = "failed"
             break
+        h = solver.t - solver.t_old
         hand_over(solver, b)
-        outcome = complete(s, r, b, setting, method, solver.t - solver.t_old, 1)
+        before = finer
+        finer = min(of_accelerations(s, r, b, setting, h), EASED * before)
+        if finer < TOO_LONG * before:
+            r.clock[rec.H] = 0.3 * h
+            solver = restarted(scenario, s, r, b, setting, finer)
+            continue
+        outcome = complete(s, r, b, setting, method, h, 1)
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break
         if outcome in (STRAYED, WOUND):
-            r.clock[rec.H] = 0.3 * (solver.t - solver.t_old)
-            solver = restarted(scenario, s, r, b, setting, float(r.clock[rec.H]))
+            r.clock[rec.H] = 0.3 * h
+            solver = restarted(scenario, s, r, b, setting, finer, float(r.clock[rec.H]))
             continue
         if r.count[rec.OPENED]:
             status, reason = "failed", opened(scenario, mechanism, r)
@@ -140,12 +154,12 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             s = anew(mechanism, s, r, b, setting)
         if outcome == SMOOTH_STEP and s is changed:
             nudge(solver, r)
-            r.clock[rec.H] = solver.t - solver.t_old
+            r.clock[rec.H] = h
             if r.clock[rec.MOST] > 0.0:
-                solver.atol = allowed(scenario, s, r, b, setting)
+                solver.atol = allowed(scenario, s, r, b, setting, finer)
             solver.atol[books(s)] = unit_of_works(r, setting)
         elif r.clock[rec.T] < setting[rec.T_END]:
-            solver = restarted(scenario, s, r, b, setting)
+            solver = restarted(scenario, s, r, b, setting, finer)
         if r.count[rec.STEPS] >= limit and r.clock[rec.T] < setting[rec.T_END]:
             status, reason = "failed", f"more than {limit} steps"
             break
@@ -176,8 +190,9 @@ def stopped(solver: Any) -> str:
 
 
 def restarted(
-    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, most: float = np.inf
-) -> Any:
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float,
+    most: float = np.inf,
+) -> Any:  # fmt: skip
     """A scipy solver at the state of the record, with the error units in force there."""
     import scipy.integrate
 
@@ -186,7 +201,7 @@ def restarted(
         derivative(s, t, np.ascontiguousarray(y), yd)
         return yd
 
-    atol = allowed(scenario, s, r, b, setting)
+    atol = allowed(scenario, s, r, b, setting, finer)
     make = getattr(scipy.integrate, scenario.solver.method.split(":", 1)[1])
     t = float(r.clock[rec.T])
     until = next_time(s, t, setting[rec.T_END])
@@ -196,14 +211,36 @@ def restarted(
                 max_step=longest, rtol=RELATIVE, atol=atol)  # fmt: skip
 
 
-def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array) -> Array:
+def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
     """The error allowed to every entry of y in the next step."""
     weigh(s, r, b, setting)
     outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
-    absolute *= ADDING.get(scenario.solver.method, 1.0)
+    absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
     absolute[books(s)] = unit_of_works(r, setting)
     return absolute
+
+
+def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) -> float:
+    """How many times finer than for places and velocities steps must be for accelerations to be off
+    by ALLOWED tolerances at most: see accelerations.py; 1 at most.
+
+    w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
+    b.P; a solver outside keeps its estimates to itself.
+    """
+    if s.contact.size > 0 or s.n_r != s.n or (s.status[6] != 0 and s.near_rows > 0.0):
+        return 1.0
+    places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
+    length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
+    largest = float(np.max(s.scale[rates] * np.abs(r.yd[rates]), initial=0.0))
+    r.clock[rec.GAIN] = largest = max(largest, float(r.clock[rec.GAIN]))
+    weight = b.weight * setting[rec.TOLERANCE]
+    x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
+    v = h * speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
+    w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
+    largest = max(largest, w * speed / FURTHEST)
+    made = w * np.hypot(w * length, speed)
+    return min(1.0, float(ALLOWED * largest / made)) if made > 0.0 else 1.0
 
 
 def books(s: Scene) -> slice:
