@@ -256,7 +256,8 @@ def crossings(
             continue
         sense = {"up": 1, "down": -1, "both": 0}[what.crosses]
         want = [c for c in t.crossings if c.name == what.name and sense in (0, c.sense)]
-        want = [c for c in want if c.time >= getattr(what, "after", 0.0)]
+        earlier = [c for c in want if c.time < getattr(what, "after", 0.0)]
+        want = want[len(earlier) :]
         if isinstance(what, Event):
             if what.times is not None:
                 want = want[: what.times]
@@ -269,7 +270,7 @@ def crossings(
         )
         if isinstance(what, Section) and what.rate:
             scale = top["spin"] if scale == 1.0 else top["speed"]
-        matched(what.name, want, got, until, tolerance, bound, t, scale, worst)
+        matched(what.name, want, got, until, tolerance, bound, t, scale, worst, earlier)
     if names := touching(scene):
         want = [c for c in t.crossings if c.name in names and c.sense > 0]
         got = r.events[r.events[:, EVENT_KIND] == ONSET, EVENT_TIME] / T
@@ -298,8 +299,12 @@ def touching(scene: Scene) -> set[str]:
 def matched(
     name: str, want: list[Crossing], got: np.ndarray, until: float, tolerance: float,
     bound: np.ndarray, t: Truth, scale: float, worst: list[tuple[float, str]],
+    earlier: list[Crossing] | None = None,
 ) -> None:  # fmt: skip
-    """Each crossing with the nearest one found; what is left over on either side."""
+    """Each crossing with the nearest one found; what is left over on either side.
+
+    earlier: those before the time from which it is looked at; one may be found a little late.
+    """
     free = list(np.sort(got))
     slack = until - 1e-12
     for c in want:
@@ -330,8 +335,9 @@ def matched(
             continue
         b = float(np.interp(time, t.times, bound))
         # what comes that late or early belongs to one that could not be judged
-        within = [max(0.02 * t.end, b * scale / max(abs(x.rate), 1e-12)) for x in want]
-        near = any(abs(time - x.time) <= w for x, w in zip(want, within, strict=True))
+        around = [*want, *(earlier or ())]
+        within = [max(0.02 * t.end, b * scale / max(abs(x.rate), 1e-12)) for x in around]
+        near = any(abs(time - x.time) <= w for x, w in zip(around, within, strict=True))
         if not near and not t.grazing:
             worst.append((10.0, f"{name}: found at {time:.6g}, where there is none"))
 
