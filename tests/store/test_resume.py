@@ -221,7 +221,7 @@ def unbroken(tmp_path_factory):
     (signal.SIGKILL, -9), (signal.SIGTERM, 143), (signal.SIGINT, 130),
 ])  # fmt: skip
 def test_signal_and_resume(number, code, tmp_path, unbroken):
-    process = outside.begun(tmp_path, *END, "--checkpoint", "0.1")
+    process = outside.begun(tmp_path, *END, "--checkpoint", str(ALWAYS))
     while not (tmp_path / "runs/crank.h5.checkpoint").exists():
         outside.blocks_until(process, 0.0)
     process.send_signal(number)
@@ -242,7 +242,7 @@ def test_signal_and_resume(number, code, tmp_path, unbroken):
 
 
 def test_full_disk_and_resume(tmp_path, unbroken):
-    process = outside.begun(tmp_path, *END, "--checkpoint", "0.1", limit=8_000_000)
+    process = outside.begun(tmp_path, *END, "--checkpoint", str(ALWAYS), limit=8_000_000)
     _, err = process.communicate(timeout=60)
     assert process.returncode == 7 and "cannot be written beyond" in err
     code, document, err = trsim(tmp_path, *END, "--resume")

@@ -18,6 +18,7 @@ places may.  Missed crossings are wrong where they are deeper than 10 tolerances
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -299,7 +300,7 @@ def touching(scene: Scene) -> set[str]:
 def matched(
     name: str, want: list[Crossing], got: np.ndarray, until: float, tolerance: float,
     bound: np.ndarray, t: Truth, scale: float, worst: list[tuple[float, str]],
-    earlier: list[Crossing] | None = None,
+    earlier: Sequence[Crossing] = (),
 ) -> None:  # fmt: skip
     """Each crossing with the nearest one found; what is left over on either side.
 
@@ -335,7 +336,7 @@ def matched(
             continue
         b = float(np.interp(time, t.times, bound))
         # what comes that late or early belongs to one that could not be judged
-        around = [*want, *(earlier or ())]
+        around = [*want, *earlier]
         within = [max(0.02 * t.end, b * scale / max(abs(x.rate), 1e-12)) for x in around]
         near = any(abs(time - x.time) <= w for x, w in zip(around, within, strict=True))
         if not near and not t.grazing:

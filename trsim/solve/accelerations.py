@@ -13,9 +13,8 @@ than the error of the motion, unless accelerations are small for the speeds ther
 What lies inside a step may be off by more than its end: a method whose dense output is tells so by
 its `inside`, and complete.py asks where output rows lie there.
 
-Nothing is asked for that rounding makes: of the forces, of what joints take of them, or of places
-and rates, which are rounded to so much of the mechanism's size and of the speeds there are, by what
-is stiff.
+Nothing is asked for that rounding makes: of the forces, of what joints take of them, or, by what is
+stiff, of places and rates.
 """
 
 from math import sqrt
@@ -37,7 +36,7 @@ from trsim.solve.record import (
 )
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
-ROUNDED = 5e-16  # of the mechanism's size, of speeds: nothing is known of places, of rates, below
+ROUNDED = 5e-16  # of the mechanism's size, and of speeds: what places and rates are rounded to
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 EACH = 6.0  # entries of a body that errors are the mean of
 FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most

@@ -19,7 +19,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
 from trsim.solve import record as rec
-from trsim.solve.accelerations import ALLOWED, FURTHEST, WIDEST
+from trsim.solve.accelerations import ALLOWED, FURTHEST, WIDEST, held, largest
 from trsim.solve.adrift import lost_its_way
 from trsim.solve.anew import anew, begun_with
 from trsim.solve.blame import why
@@ -60,7 +60,7 @@ SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thous
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
 ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
-EASED = 1.2  # at most, from step to step
+EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
 TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
@@ -212,7 +212,7 @@ def restarted(
 
 
 def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
-    """The error allowed to every entry of y in the next step."""
+    """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
     weigh(s, r, b, setting)
     outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
@@ -222,25 +222,25 @@ def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, fine
 
 
 def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) -> float:
-    """How many times finer than for places and velocities steps must be for accelerations to be off
-    by ALLOWED tolerances at most: see accelerations.py; 1 at most.
+    """What part of the error allowed to places and velocities keeps accelerations to ALLOWED
+    tolerances, 1 at most: see accelerations.py.
 
     w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
     b.P; a solver outside keeps its estimates to itself.
     """
-    if s.contact.size > 0 or s.n_r != s.n or (s.status[6] != 0 and s.near_rows > 0.0):
+    if not held.python(s):
         return 1.0
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
     length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
-    largest = float(np.max(s.scale[rates] * np.abs(r.yd[rates]), initial=0.0))
-    r.clock[rec.GAIN] = largest = max(largest, float(r.clock[rec.GAIN]))
+    r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
     weight = b.weight * setting[rec.TOLERANCE]
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
     v = h * speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
     w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
-    largest = max(largest, w * speed / FURTHEST)
+    most = max(most, w * speed / FURTHEST)
     made = w * np.hypot(w * length, speed)
-    return min(1.0, float(ALLOWED * largest / made)) if made > 0.0 else 1.0
+    finest = min(1.0, RELATIVE / setting[rec.TOLERANCE])  # below it only rounding is left
+    return max(finest, min(1.0, float(ALLOWED * most / made))) if made > 0.0 else 1.0
 
 
 def books(s: Scene) -> slice:
