@@ -17,7 +17,7 @@ STEPS = {
 }
 # loose enough to accept every step of the given length (steps are held to half of it), tight
 # enough for Newton's method
-TOLERANCE = {"dop853": 0.1, "radau": 2e-3, "generalized_alpha": 2e-2}
+TOLERANCE = {"dop853": 0.1, "radau": 2e-3, "generalized_alpha": 0.1}
 SPREAD = {"rk4": 0.15, "dop853": 0.3, "radau": 0.15, "generalized_alpha": 0.15}
 
 

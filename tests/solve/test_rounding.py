@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 from trsim.solve.doubts import doubts
 from trsim.solve.outcome import whose
+from trsim.solve.record import ROUNDED_BY
 
 from ..linkages import four_bar
 from ..runs import built, run
@@ -59,8 +60,9 @@ def test_a_needle(method, small):
     assert r.outcome.statistics["rounding_of_tolerance"] > 1.0
     [told] = [d for d in doubts(r.scenario, r.mechanism, r.outcome) if "rounding" in d]
     assert "angular velocity of 'rod'" in told and "larger tolerance" in told
-    # the rod is where it must be; how it turned about itself is nobody's to say
-    assert 2.0 * r["rod.position"][-1] == pytest.approx(end_of_needle(r), abs=1e-7)
+    # the rod is where it must be, as nearly as is told; how it turned about itself nobody can say
+    off = np.abs(2.0 * r["rod.position"][-1] - end_of_needle(r)).max()
+    assert off < r.outcome.record.clock[ROUNDED_BY] < 1e-3
 
 
 @pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])

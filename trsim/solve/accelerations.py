@@ -40,9 +40,9 @@ ROUNDED = 5e-16  # of the mechanism's size, and of speeds: what places and rates
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 EACH = 6.0  # entries of a body that errors are the mean of
 FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
-# times the tolerance as written: what accelerations of a step may be off by, and those of a run if
-# each estimate were right and of one sign; most are four to ten times too large
-ALLOWED, RUN, ONE = 10.0, 200.0, 1.0
+# times the tolerance as written: what accelerations of a step may be off by at most, those of a run
+# if each estimate were right and of one sign, and what is left to a step of very many
+ALLOWED, RUN, ONE = 10.0, 100.0, 0.5
 
 
 @internal

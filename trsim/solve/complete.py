@@ -103,6 +103,7 @@ NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 ROUNDING = 1e-15  # of the mechanism's size: a gap is not known better
 NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
+SETTLED = 100.0  # times these: what rounding of a step and of the time may leave of a gap
 SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
 
 #                       scene   record  buffers  settings method h built
@@ -331,7 +332,7 @@ def exact(s, r, b, setting, method, t, h, theta):
         if abs(gap) <= close:
             return h1, 0.0, projected
         if rate == 0.0 or not abs(gap) < NEARER * before:
-            return 0.0, 0.0, 0.0
+            return (h1, 0.0, projected) if abs(gap) <= SETTLED * close else (0.0, 0.0, 0.0)
         late, before = gap / rate, abs(gap)
         near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[TOLERANCE]) * h1
         if near and gap_of < s.contact.size:

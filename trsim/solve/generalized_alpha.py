@@ -19,7 +19,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
 from trsim.solve import hermite
-from trsim.solve.accelerations import ALLOWED, FURTHEST, doubted, held, in_units, largest
+from trsim.solve.accelerations import FURTHEST, ONE, doubted, held, in_units, largest
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_real, solve_real
 from trsim.solve.displacements import active, turn, w_index
@@ -254,7 +254,7 @@ def accelerated(s, r, b, setting, ratio, further):
     if held(s):
         doubted(s, r, setting, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
-        strict = min(STRICT * in_units(s, r, setting, off, most, 0.0, ALLOWED), FURTHEST * further)
+        strict = min(STRICT * in_units(s, r, setting, off, most, 0.0, ONE), FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
     return max(strict, min(off / (setting[TOLERANCE] * turned), further)) if turned > 0.0 else 0.0
 

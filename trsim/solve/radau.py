@@ -20,7 +20,7 @@ from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.vectors import all_finite, internal
-from trsim.solve.accelerations import ALLOWED, EACH, doubted, frequency, held, in_units, largest
+from trsim.solve.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.dense_lu import factorise_complex, factorise_real, solve_complex, solve_real
 from trsim.solve.displacements import active, moved_by, twisted, w_index
@@ -342,7 +342,7 @@ def of_accelerations(s, r, b, setting, h):
             off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
     off, mean = sqrt(off / (EACH * (s.n_r - 1))), bent / moved
     doubted(s, r, setting, off, most, sqrt(mean))
-    return in_units(s, r, setting, off, most, mean, ALLOWED)
+    return in_units(s, r, setting, off, most, mean, share(setting, h))
 
 
 @internal

@@ -19,7 +19,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
 from trsim.solve import record as rec
-from trsim.solve.accelerations import ALLOWED, FURTHEST, WIDEST, held, largest
+from trsim.solve.accelerations import FURTHEST, WIDEST, held, largest, share
 from trsim.solve.adrift import lost_its_way
 from trsim.solve.anew import anew, begun_with
 from trsim.solve.blame import why
@@ -222,8 +222,8 @@ def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, fine
 
 
 def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) -> float:
-    """What part of the error allowed to places and velocities keeps accelerations to ALLOWED
-    tolerances, 1 at most: see accelerations.py.
+    """What part of the error allowed to places and velocities keeps accelerations to their share of
+    the tolerance, 1 at most: see accelerations.py.
 
     w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
     b.P; a solver outside keeps its estimates to itself.
@@ -240,7 +240,9 @@ def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) 
     most = max(most, w * speed / FURTHEST)
     made = w * np.hypot(w * length, speed)
     finest = min(1.0, RELATIVE / setting[rec.TOLERANCE])  # below it only rounding is left
-    return max(finest, min(1.0, float(ALLOWED * most / made))) if made > 0.0 else 1.0
+    return (
+        max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
+    )
 
 
 def books(s: Scene) -> slice:

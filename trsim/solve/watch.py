@@ -87,6 +87,19 @@ def may_cross(s, r, b, k, h, stages):
 
 
 @internal
+def departure(s, r, b, setting, t, h, c, side, band, end, interpolate):
+    """The side on which g first leaves the band it is in, and a place in the step beyond it.
+
+    What rested on the value has a rate that is rounding, so no side is to be taken from it.  The
+    place is less than 0 where g stays in the band.
+    """
+    g, rate = side * r.gap[c, 0], side * r.gap[c, 1]
+    one = leaves(s, r, b, setting, t, h, c, side, band, 0.0, g, rate, end, interpolate)
+    other = leaves(s, r, b, setting, t, h, c, -side, band, 0.0, -g, -rate, end, interpolate)
+    return (side, one) if other < 0.0 or 0.0 <= one <= other else (-side, other)
+
+
+@internal
 def crossing(s, r, b, setting, t, h, k, end, interpolate):
     """Where event k first happens in the step, as theta in (0, end]; NONE if it does not.
 
@@ -97,9 +110,14 @@ def crossing(s, r, b, setting, t, h, k, end, interpolate):
     c, want, band = s.contact.size + k, s.watch[k, DIRECTION], s.watch_at[k, BAND]
     side, low = starting_side(r, c, k), 0.0
     g, rate = r.gap[c, 0], r.gap[c, 1]
+    if r.watch[k, SIDE] == AT and abs(g) <= band:
+        side, low = departure(s, r, b, setting, t, h, c, side, band, end, interpolate)
+        if low < 0.0 or low >= end:
+            return NONE
+        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
     for passed in range(PASSED):
         if side * g <= 0.0:
-            at = r.watch[k, SIDE] == AT or passed > 0
+            at = passed > 0
             left = -1.0
             if at or side * rate >= 0.0:
                 left = leaves(s, r, b, setting, t, h, c, side, band if at else 0.0, low, side * g,
