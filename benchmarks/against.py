@@ -60,7 +60,7 @@ def cases() -> dict[str, tuple[str, list[str]]]:
 WORKER = r"""
 import json, sys
 from pathlib import Path
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
 from trsim.assemble.assemble import assemble
 from trsim.analyse.trajectory import marched
 source, sets, draws, spread, chance = json.loads(sys.stdin.readline())

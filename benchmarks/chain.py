@@ -13,7 +13,7 @@ from benchmarks.problems import LENGTH, bending_chain, chain
 from benchmarks.work_precision import Problem, at_bounds, of_text, table, varied
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.signatures import A1, i8, void
+from trsim.kernels.signatures import A1, i8, void
 
 DATA = ROOT / "tests" / "data"
 SIZES = (10, 40, 160)

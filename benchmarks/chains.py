@@ -14,7 +14,7 @@ from trsim.assemble.equations import constraints, evaluate, forces, poses
 from trsim.assemble.linear import factorise, solve
 from trsim.assemble.schur import rows
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.signatures import A1, i8, void
+from trsim.kernels.signatures import A1, i8, void
 
 SIZES = (1, 5, 20, 40)
 ROUNDS = 7
@@ -101,7 +101,7 @@ def compared(text: Callable[[int], str], sizes: tuple[int, ...], method: str) ->
     The sizes are run in turn, so that a busy minute of the machine meets all of them.
     """
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import loads
+    from trsim.scenario.load import loads
 
     read, models, built = {}, {}, {}
     found: dict[int, list[Costs]] = {n: [] for n in sizes}

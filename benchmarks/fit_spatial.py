@@ -44,7 +44,7 @@ class Loads(NamedTuple):
 def planar() -> Any:
     """The run of one chain, ideal joints and drive, from the touch of the lug on."""
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import load
+    from trsim.scenario.load import load
 
     sets = (f"parameters.speed={SPEED}", f"solver.end=0.5/{SPEED}", "output.every=1 ms")
     scenario = load(SCENARIOS / "thrust_reverser" / "ideal.yaml", sets)

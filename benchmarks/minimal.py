@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from trsim.solve.dop853_tableau import E3, E5, A, C, D
+from trsim.solve.methods.dop853_tableau import E3, E5, A, C, D
 
 CRANK, ROD, CLEARANCE, BEARING = 0.05, 0.12, 0.5e-3, 10e-3  # m
 ROD_MASS, ROD_INERTIA, SLIDER = 0.21, 2.5e-4, 0.14  # kg, kg m^2, kg

@@ -86,7 +86,7 @@ class Found(NamedTuple):
 def ensemble(name: str, tolerance: float, members: int) -> Found:
     """Runs of a scenario that differ in their first step."""
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import load
+    from trsim.scenario.load import load
 
     path = SCENARIOS / "thrust_reverser" / f"{name}.yaml"
     full = load(path, [LONGEST])

@@ -21,7 +21,7 @@ CASES = {
 def main() -> None:
     from trsim.analyse.fluctuation import fluctuation
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import load
+    from trsim.scenario.load import load
 
     print("  case      door rate hp   drive hp N   drive max N at s     "
           "peak A N   peak B N   max |d angle| deg   flight B %   std e_x B mm")  # fmt: skip

@@ -77,7 +77,7 @@ QUANTITIES = (
 def runs(rod: str, pin: str) -> tuple[list[Run], float]:
     """A run for each clearance, and the median of their CPU times, s."""
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import load
+    from trsim.scenario.load import load
 
     path, found = SCENARIOS / "thrust_reverser" / f"{rod}.yaml", []
     for c in CLEARANCES:

@@ -9,7 +9,7 @@ from statistics import median
 from benchmarks.measure import SCENARIOS
 from trsim.analyse.trajectory import marched
 from trsim.assemble.assemble import assemble
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 IDEAL = SCENARIOS / "thrust_reverser" / "ideal.yaml"
 ONE = SCENARIOS / "thrust_reverser" / "clearance_b_0.3mm.yaml"

@@ -56,7 +56,7 @@ class Measured(NamedTuple):
 def measured(sets: tuple[str, ...], tolerance: str) -> Measured:
     """Of a case at a tolerance."""
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import load
+    from trsim.scenario.load import load
 
     sets = (*sets, f"solver.tolerance={tolerance}")
     scenario = load(FOLDER / "spatial_synchronous.yaml", sets)

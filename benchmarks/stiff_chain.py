@@ -3,8 +3,8 @@
 from benchmarks.measure import run
 from benchmarks.problems import stiff_chain
 from trsim.assemble.assemble import assemble
-from trsim.spec import text
-from trsim.spec.load import loads
+from trsim.scenario import text
+from trsim.scenario.load import loads
 
 SIZES = (40, 160, 640)
 DENSE_UP_TO = 40  # rods: 160 take minutes

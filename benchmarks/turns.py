@@ -19,7 +19,7 @@ COARSE = 3e-5  # tolerance: generalized_alpha is of order 2 and not meant for a 
 def swung(method: str, tolerance: str, amplitude: float, turns: int) -> tuple[float, int]:
     """Largest error over tolerance and amplitude, and steps."""
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import loads
+    from trsim.scenario.load import loads
 
     scenario = loads(f"""
 bodies: {{disc: {{mass: 2, inertia: 5e-3}}}}

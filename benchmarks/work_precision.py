@@ -47,14 +47,14 @@ class Point(NamedTuple):
 
 def of_file(path: Path, *sets: str) -> Callable[[Sequence[str]], Any]:
     """The scenario of a file, as a source."""
-    from trsim.spec.load import load
+    from trsim.scenario.load import load
 
     return lambda more: load(path, [*sets, *more])
 
 
 def of_text(text: str) -> Callable[[Sequence[str]], Any]:
     """The scenario of a text, as a source."""
-    from trsim.spec.load import loads
+    from trsim.scenario.load import loads
 
     return partial(loads, text)
 

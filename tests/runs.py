@@ -8,9 +8,9 @@ import numpy as np
 
 from trsim.assemble.assemble import assemble
 from trsim.assemble.mechanism import Mechanism
+from trsim.scenario.load import loads
 from trsim.solve.outcome import Outcome
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
 
 
 @dataclass(frozen=True)

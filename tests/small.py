@@ -6,8 +6,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from trsim.assemble.assemble import assemble
+from trsim.scenario.load import loads
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
 from trsim.store.hdf5 import write
 
 SLIDER_CRANK = """\

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 from .linkages import REVERSER, spatial
 from .runs import energy_error, run

@@ -12,14 +12,14 @@ import pytest
 from trsim.assemble.assemble import assemble
 from trsim.assemble.release import release
 from trsim.errors import TrsimError
-from trsim.solve.land import NOTHING
-from trsim.solve.projected import projected
-from trsim.solve.scales import scales
+from trsim.scenario.load import load, loads
+from trsim.scenario.scenario import SHORTEST
+from trsim.solve.diagnose.scales import scales
+from trsim.solve.diagnose.skipped import skipped
+from trsim.solve.march.land import NOTHING
 from trsim.solve.simulate import simulate
-from trsim.solve.skipped import skipped
-from trsim.solve.start import start
-from trsim.spec.load import load, loads
-from trsim.spec.scenario import SHORTEST
+from trsim.solve.start.consistent import start
+from trsim.solve.start.projected import projected
 
 from . import small
 from .runs import run

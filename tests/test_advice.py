@@ -8,9 +8,9 @@ from tests.small import SLIDER_CRANK
 from trsim.assemble.assemble import assemble
 from trsim.cli.check import contact_line
 from trsim.errors import ModelError, TrsimError
-from trsim.solve.scales import scales
-from trsim.solve.start import start
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
+from trsim.solve.diagnose.scales import scales
+from trsim.solve.start.consistent import start
 
 REVERSER = Path(__file__).parent.parent / "scenarios" / "thrust_reverser"
 PUSHED = """

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from trsim import elements
-from trsim.elements import event
-from trsim.spec.load import loads
+from trsim.scenario import event
+from trsim.scenario.load import loads
 from trsim.units import BASE, DERIVED
 
 from .checking import Checks, written

@@ -8,7 +8,7 @@ import pytest
 
 from trsim.errors import ScenarioError, TrsimError
 from trsim.expressions import evaluate, names, parse
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 from .checking import written
 from .sizes import size
@@ -82,7 +82,8 @@ def test_expressions():
 def test_a_schema_error_imports_no_compiler():
     """What makes it quick: the elements are read without numba, numpy or h5py."""
     code = (
-        "import sys\nfrom trsim.errors import TrsimError\nfrom trsim.spec.load import load, loads\n"
+        "import sys\nfrom trsim.errors import TrsimError\n"
+        "from trsim.scenario.load import load, loads\n"
         "from trsim import elements\n"
         "load('scenarios/thrust_reverser/clearance_ab_0.3mm.yaml')\n"
         "for word in elements.ELEMENTS: elements.load(word)\n"

@@ -122,8 +122,8 @@ def test_what_may_be_a_short_event_without_a_corner(text, expected):
 
 def test_a_check_names_loads_that_may_be_short_events():
     from trsim.assemble.assemble import assemble
-    from trsim.solve.skipped import skipped
-    from trsim.spec.load import loads
+    from trsim.scenario.load import loads
+    from trsim.solve.diagnose.skipped import skipped
 
     for force, named in (("1/(1 + (t/1e-4)**2)", True), ("exp(-(t/1e-4)**2)", False)):
         scenario = loads(

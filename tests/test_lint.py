@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from trsim.spec.lint import lint
-from trsim.spec.load import load, loads
+from trsim.scenario.lint import lint
+from trsim.scenario.load import load, loads
 
 from .small import SLIDER_CRANK
 

@@ -7,8 +7,8 @@ import pytest
 from trsim import elements
 from trsim.errors import TrsimError
 from trsim.fields import Spec
-from trsim.spec.load import loads
-from trsim.spec.scenario import DEFAULT, Scenario
+from trsim.scenario.load import loads
+from trsim.scenario.scenario import DEFAULT, Scenario
 
 LETTERS = "abcdefghijklmnopqrstuvwxyz_"
 LEAST = 0.95  # of the misspellings get the right suggestion

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 from .checking import LARGEST, Checks, written
 from .sizes import size

@@ -14,8 +14,8 @@ import pytest
 from tests import small
 from tests.surgery import ended
 from trsim.errors import ScenarioError, TrsimError
-from trsim.spec.load import loads
-from trsim.spec.names import IN_FILES, RESERVED
+from trsim.scenario.load import loads
+from trsim.scenario.names import IN_FILES, RESERVED
 from trsim.sweep.folder import read_plan
 from trsim.sweep.ledger import Entry, entries, entry_of
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 from .runs import energy_error, run
 

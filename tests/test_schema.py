@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
-from trsim.spec.schema import schema
-from trsim.spec.text import read
+from trsim.scenario.schema import schema
+from trsim.scenario.text import read
 
 FOLDER = Path(__file__).parent.parent / "scenarios"
 FILES = sorted(FOLDER.rglob("*.yaml"))

@@ -25,8 +25,8 @@ from tests.store.test_resume import cut
 from tests.surgery import ended
 from tests.test_mutants import mutated
 from trsim.assemble.assemble import assemble
+from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
-from trsim.spec.load import loads
 from trsim.store import checkpoint, resume
 from trsim.sweep.ledger import Entry
 

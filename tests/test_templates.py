@@ -12,10 +12,10 @@ from trsim.elements import load as element
 from trsim.errors import TrsimError
 from trsim.fields import _PointUnit, _VectorUnit
 from trsim.frame import Frame
-from trsim.spec.lint import lint
-from trsim.spec.load import load, loads, locate, valid
-from trsim.spec.meanings import specs
-from trsim.spec.memory import Memory
+from trsim.scenario.lint import lint
+from trsim.scenario.load import load, loads, locate, valid
+from trsim.scenario.meanings import specs
+from trsim.scenario.memory import Memory
 from trsim.sweep.plan import faults, plan
 
 TURNED = "{at: [0, 0.3, 0.4], y_axis: [0, 0.6, 0.8]}"

@@ -12,9 +12,9 @@ from trsim.elements.contract import REACTIONS
 from trsim.errors import ScenarioError, TrsimError, UsageError
 from trsim.report import figures
 from trsim.report.display import compared
+from trsim.scenario.load import load, loads
+from trsim.scenario.table import rows
 from trsim.solve.simulate import simulate
-from trsim.spec.load import load, loads
-from trsim.spec.table import rows
 from trsim.store.csv import export
 from trsim.store.hdf5 import write
 from trsim.store.read import read

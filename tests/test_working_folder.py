@@ -15,7 +15,7 @@ from tests.store.outside import ROOT, warm
 from tests.store.test_resume import cut
 from trsim import child, cli
 from trsim.assemble.assemble import assemble
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 # whatever trsim, its children, numba, HDF5 and matplotlib may import
 NAMES = sorted({
@@ -151,7 +151,7 @@ def kept(cache):
 
 
 def test_the_second_process_of_a_first_run_executes_none(folder, tmp_path):
-    command = child.command("trsim.elements.ahead", "trsim.solve.rk4")
+    command = child.command("trsim.kernels.ahead", "trsim.solve.methods.rk4")
     environment = {**ENVIRONMENT, "XDG_CACHE_HOME": str(tmp_path)}
     with subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.PIPE) as process:  # noqa: S603
         process.wait(PATIENCE)

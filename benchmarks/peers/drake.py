@@ -26,7 +26,7 @@ from benchmarks.problems import (
     straight_rods,
     zigzag_rods,
 )
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 WITHOUT = "not run: its continuous plant closes no loops and has no journal in a bearing"
 END = [0.5 * LENGTH, 0.0, 0.0]  # m, of a rod

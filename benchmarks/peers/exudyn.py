@@ -24,7 +24,7 @@ from benchmarks.peers.mechanism import (
     tip_error,
 )
 from benchmarks.problems import ABOUT, ACROSS, LENGTH, MASS, VALIDATION, chain, windows
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
 
 COORDINATES, RATES = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
 WITHOUT = "not run"

@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.peers import Measured, cpu_of
 from benchmarks.peers.mechanism import andrews_error, slider_reference, tip_error, tree
 from benchmarks.problems import LENGTH, VALIDATION, chain, windows
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
 
 WITHOUT = "not run"
 KINDS = {"revolute": 'type="hinge" axis="0 0 1"', "spherical": 'type="ball"'}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from benchmarks.measure import SCENARIOS
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 REVERSER = SCENARIOS / "thrust_reverser" / "mechanism.yaml"
 CRANK = SCENARIOS / "validation" / "slider_crank_friction.yaml"

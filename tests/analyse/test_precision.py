@@ -11,7 +11,7 @@ from trsim.analyse import precision
 from trsim.analyse.precision import Point, Setting, errors, point, points, reference, slope, slopes
 from trsim.analyse.trajectory import problem, trajectory
 from trsim.errors import SolverError, UsageError
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 TEXT, ANGLE = mechanisms.torsion_pendulum()
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)

@@ -9,8 +9,8 @@ from tests import small
 from trsim.analyse.section import asked, crossings, passed_over, section
 from trsim.assemble.assemble import assemble
 from trsim.errors import UsageError
+from trsim.scenario.load import load
 from trsim.solve.simulate import simulate
-from trsim.spec.load import load
 from trsim.store.hdf5 import write
 from trsim.store.read import read
 

@@ -5,7 +5,7 @@ import pytest
 from tests import mechanisms, small
 from trsim.analyse.twin import overrides, twin_setting
 from trsim.assemble.assemble import assemble
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 UNEQUAL = """
 planar: false

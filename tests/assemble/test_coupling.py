@@ -8,8 +8,8 @@ from trsim.assemble.coupling import nodes
 from trsim.assemble.equations import constraints, forces, poses
 from trsim.elements.contract import BRANCH, N_BOOK, PHASE, UNLOCATED, WHOLE
 from trsim.elements.scene import scene
-from trsim.solve.ggl_tables import colours
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
+from trsim.solve.methods.ggl_tables import colours
 
 EVERYTHING = """
 planar: {planar}

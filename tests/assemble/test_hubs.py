@@ -11,8 +11,8 @@ from trsim.assemble.linear import POOR, SINGULAR, SOUND
 from trsim.assemble.pattern import Hubs, pattern
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.elements.scene import scene
-from trsim.solve.ggl_tables import tables
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
+from trsim.solve.methods.ggl_tables import tables
 
 from ..linkages import REVERSER, flat_parallelogram, four_bar
 from ..runs import assemble, energy_error, run

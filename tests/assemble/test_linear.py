@@ -6,8 +6,8 @@ import pytest
 from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative
 from trsim.elements.scene import scene
-from trsim.solve.start import start
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
+from trsim.solve.start.consistent import start
 
 from ..linkages import REVERSER, flat_parallelogram
 

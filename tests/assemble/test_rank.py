@@ -13,7 +13,7 @@ from trsim.assemble.rank import (
     sparse_proof,
     unique_reactions,
 )
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 from ..runs import assemble
 

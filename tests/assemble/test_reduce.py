@@ -6,7 +6,7 @@ import pytest
 from trsim.assemble.reduce import jacobian, moves
 from trsim.assemble.redundant import SAMPLES, nearby
 from trsim.errors import ModelError
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 from ..linkages import DOOR, REVERSER, flat_parallelogram, four_bar, slider_crank
 from ..runs import assemble, built, run

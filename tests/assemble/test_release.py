@@ -11,7 +11,7 @@ from trsim.assemble.redundant import dependences
 from trsim.assemble.release import release
 from trsim.assemble.rows import all_rows
 from trsim.assemble.tables import drawn
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 from ..linkages import DOOR, flat_parallelogram, four_bar, slider_crank
 from ..runs import built

@@ -10,8 +10,8 @@ from trsim.assemble.reduce import jacobian
 from trsim.assemble.schur import rows
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import scene
-from trsim.elements.signatures import void
-from trsim.spec.load import loads
+from trsim.kernels.signatures import void
+from trsim.scenario.load import loads
 
 from ..linkages import DOOR, slider_crank
 from ..runs import assemble

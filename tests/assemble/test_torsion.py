@@ -186,7 +186,7 @@ def test_a_rod_that_may_spin_is_a_rigid_one():
 
 
 def test_torsion_is_told_as_left_out():
-    from trsim.solve.skipped import skipped
+    from trsim.solve.diagnose.skipped import skipped
 
     from ..runs import scenario
 

@@ -19,8 +19,8 @@ from trsim.cli import COMMANDS
 from trsim.cli.frame import EXIT_CODES
 from trsim.cli.published import ENDS, WORDS
 from trsim.errors import TrsimError
+from trsim.scenario.load import loads
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
 from trsim.statuses import STATUSES, Status
 from trsim.store.hdf5 import write
 from trsim.sweep.folder import write_plan
@@ -52,7 +52,7 @@ SEAMS = {  # what a command calls to do its work
     "show": "trsim.store.read.read",
     "export": "trsim.store.csv.export",
     "recover": "trsim.store.recover.recover",
-    "explain": "trsim.spec.explain.explained",
+    "explain": "trsim.scenario.explain.explained",
     "schema": "trsim.cli.published.published",
     "bench": "trsim.cli.bench.one",
 }

@@ -4,11 +4,11 @@ import pytest
 
 from trsim import elements
 from trsim.assemble.assemble import assemble
+from trsim.scenario.explain import explained, worded
+from trsim.scenario.load import loads
+from trsim.scenario.meanings import meanings, specs
+from trsim.scenario.scenario import Scenario
 from trsim.solve.simulate import simulate
-from trsim.spec.explain import explained, worded
-from trsim.spec.load import loads
-from trsim.spec.meanings import meanings, specs
-from trsim.spec.scenario import Scenario
 
 EVERYTHING = explained()
 # each once, in an order of its own: processes that share the tests must collect the same ones

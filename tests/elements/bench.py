@@ -15,12 +15,11 @@ from trsim.elements.contract import (
     BRANCH,
     IMPACT_SPEED,
     N_BOOK,
-    N_MEM,
     PHASE,
     UNLOCATED,
     WHOLE,
 )
-from trsim.elements.scene import scene
+from trsim.elements.scene import N_MEM, scene
 
 from ..runs import built
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError, Problems, ScenarioError
-from trsim.solve.modes import modes
-from trsim.solve.start import start
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
+from trsim.solve.diagnose.modes import modes
+from trsim.solve.start.consistent import start
 
 from ..runs import built, run
 from .bench import bench, check_action_is_reaction, check_gradient, check_power

@@ -11,12 +11,12 @@ from click.testing import CliRunner
 from trsim.assemble.assemble import assemble
 from trsim.cli import program
 from trsim.errors import ModelError, TrsimError
-from trsim.solve.bar_scales import bar_scales
-from trsim.solve.doubts import doubts
-from trsim.solve.scales import scales
-from trsim.solve.start import start
-from trsim.spec.lint import lint
-from trsim.spec.load import load, loads, locate
+from trsim.scenario.lint import lint
+from trsim.scenario.load import load, loads, locate
+from trsim.solve.diagnose.bar_scales import bar_scales
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.diagnose.scales import scales
+from trsim.solve.start.consistent import start
 
 from ..runs import built, run
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 
 from ..runs import built, run
 

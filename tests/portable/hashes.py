@@ -9,8 +9,8 @@ from pathlib import Path
 import h5py
 
 from trsim.assemble.assemble import assemble
+from trsim.scenario.load import load
 from trsim.solve.simulate import simulate
-from trsim.spec.load import load
 from trsim.store.hdf5 import write
 
 from .arithmetics import ARITHMETICS

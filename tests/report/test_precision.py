@@ -12,7 +12,7 @@ from trsim.analyse.precision import Setting, Study
 from trsim.analyse.trajectory import problem
 from trsim.report.precision import draw, figure
 from trsim.report.style import look
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from trsim.solve.adrift import of_drift
+from trsim.solve.diagnose.adrift import of_drift
 
 from ..overconstrained import cranks, text
 from ..runs import run

@@ -9,8 +9,8 @@ from trsim.assemble.better import weakest
 from trsim.assemble.rank import of_length_one
 from trsim.assemble.reduce import all_rows, weights
 from trsim.elements.scene import scene
+from trsim.scenario.load import loads
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
 
 from ..overconstrained import TILTED, chain, rotation, text
 from ..runs import run, scenario

@@ -12,12 +12,12 @@ from scipy.special import ellipk
 from trsim.assemble.reduce import displaced, jacobian, moves
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError, ScenarioError
-from trsim.solve.bars import places
-from trsim.solve.modes import modes
-from trsim.solve.softening import Parts, tangent
-from trsim.solve.start import start
-from trsim.solve.statics import static_forces
-from trsim.spec.load import load
+from trsim.scenario.load import load
+from trsim.solve.diagnose.modes import modes
+from trsim.solve.start.bars import places
+from trsim.solve.start.consistent import start
+from trsim.solve.start.softening import Parts, tangent
+from trsim.solve.start.statics import static_forces
 
 from ..mechanisms import DATA
 from ..runs import assemble, scenario

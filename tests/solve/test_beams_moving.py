@@ -6,8 +6,8 @@ import pytest
 from trsim.assemble.assemble import assemble as assembled
 from trsim.assemble.equations import derivative
 from trsim.elements.scene import scene
-from trsim.solve.doubts import doubts
-from trsim.solve.start import start
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.start.consistent import start
 
 from ..runs import assemble, energy_error, run, scenario
 from ..test_scenarios import VALIDATION

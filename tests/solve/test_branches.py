@@ -8,7 +8,7 @@ Two or three cranks of length 1 that carry a plate and turn by theta as one:
 import numpy as np
 import pytest
 
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 
 from ..overconstrained import METHODS, ORDINARY, TILTED, cranks, text
 from ..runs import run

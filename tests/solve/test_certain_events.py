@@ -5,7 +5,7 @@ from math import acos, asin, pi, tau
 import numpy as np
 import pytest
 
-from trsim.solve.record import EVENT_KIND, EVENT_TIME, ONSET, SEPARATION, USER
+from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, ONSET, SEPARATION, USER
 
 from ..runs import run
 

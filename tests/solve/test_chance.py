@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 
 from ..runs import run
 from ..truth.trial import made

@@ -6,11 +6,11 @@ import pytest
 from tests import small
 from trsim.assemble.assemble import assemble
 from trsim.elements.scene import scene
+from trsim.scenario.load import loads
 from trsim.solve import simulate as module
-from trsim.solve.record import KEPT as LAST_ROWS
-from trsim.solve.record import T
+from trsim.solve.march.record import KEPT as LAST_ROWS
+from trsim.solve.march.record import T
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
 
 SPATIAL = (
     "planar=false",

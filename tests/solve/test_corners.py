@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from trsim.laws.contact import ramped_damping
 from trsim.laws.friction import beyond, branch_of, modified_coulomb, neighbour, on_branch
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 from ..linkages import REVERSER
 from ..mechanisms import p1_slider_crank

@@ -10,7 +10,7 @@ never changes its sign while they move; a run that goes straight on changes it.
 import numpy as np
 import pytest
 
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 
 from ..overconstrained import METHODS, ORDINARY, TILTED, Z, cranks, text
 from ..runs import run

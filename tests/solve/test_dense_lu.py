@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from trsim.solve import dense_lu
+from trsim.solve.methods import dense_lu
 
 
 @njit

@@ -5,11 +5,11 @@ from math import comb
 import numpy as np
 import pytest
 
-from trsim.elements import signatures as types
 from trsim.elements.contract import compiled
-from trsim.elements.packed import A1, A2, f8, i8
-from trsim.solve import dop853
-from trsim.solve.calls import FIELDS, INTERPOLATE_AT, SAMPLE_AT, method_row
+from trsim.kernels import signatures as types
+from trsim.kernels.packed import A1, A2, f8, i8
+from trsim.solve.march.calls import FIELDS, INTERPOLATE_AT, SAMPLE_AT, method_row
+from trsim.solve.methods import dop853
 
 
 @compiled(types.void(A2, A1, f8, i8, A1))

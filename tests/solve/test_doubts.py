@@ -6,10 +6,10 @@ import pytest
 
 from tests.small import SLIDER_CRANK
 from trsim.assemble.assemble import assemble
-from trsim.solve.doubts import doubts, of_start
-from trsim.solve.projected import projected
-from trsim.solve.start import start
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
+from trsim.solve.diagnose.doubts import doubts, of_start
+from trsim.solve.start.consistent import start
+from trsim.solve.start.projected import projected
 from trsim.sweep.plan import plan
 
 from ..runs import run

@@ -9,7 +9,7 @@ from math import cos, hypot, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 
 from ..runs import run
 from ..sizes import size

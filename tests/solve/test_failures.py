@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError
-from trsim.solve.locked import locked
+from trsim.solve.diagnose.locked import locked
 
 from ..overconstrained import TILTED
 from ..runs import run

@@ -112,8 +112,8 @@ def test_peaks_of_both_sides_of_a_jump():
 def test_a_model_is_not_changed_by_a_run():
     """What functions are held on belongs to a run: a second one begins like the first."""
     from trsim.assemble.assemble import assemble
+    from trsim.scenario.load import loads
     from trsim.solve.simulate import simulate
-    from trsim.spec.load import loads
 
     scenario = loads(PUSHED.format('"(t > 0.5)*(t < 0.75)"', 1, "method: dop853"), ())
     mechanism = assemble(scenario)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from trsim.assemble.band import scalar_mass
-from trsim.solve.bars import places
-from trsim.spec.load import load
+from trsim.scenario.load import load
+from trsim.solve.start.bars import places
 
 from ..runs import run
 

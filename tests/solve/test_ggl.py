@@ -13,11 +13,11 @@ from trsim.assemble.equations import derivative
 from trsim.assemble.reduce import jacobian
 from trsim.elements.scene import scene
 from trsim.errors import ScenarioError
-from trsim.solve import record as rec
+from trsim.scenario.load import loads
 from trsim.solve import simulate as module
-from trsim.solve.ggl_tables import tables
+from trsim.solve.march import record as rec
+from trsim.solve.methods.ggl_tables import tables
 from trsim.solve.simulate import files, simulate
-from trsim.spec.load import loads
 
 from ..linkages import four_bar, slider_crank
 from ..mechanisms import spherical_pendulum

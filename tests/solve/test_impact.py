@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trsim.laws.contact import hertz_contact_time, hertz_peak
-from trsim.solve.record import EVENT_KIND, EVENT_SPEED, EVENT_TIME, ONSET, SEPARATION
+from trsim.solve.march.record import EVENT_KIND, EVENT_SPEED, EVENT_TIME, ONSET, SEPARATION
 
 from ..linkages import slider_crank
 from ..mechanisms import DATA, SPEED, bouncing_ball, central_impact, p1_slider_crank, table

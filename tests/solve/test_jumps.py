@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
-from trsim.solve.doubts import doubts
-from trsim.solve.record import JOLT
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.march.record import JOLT
 
 from ..runs import energy_error, run
 

@@ -5,8 +5,8 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from trsim.solve.linearised import linearised
-from trsim.solve.start import start
+from trsim.solve.diagnose.linearised import linearised
+from trsim.solve.start.consistent import start
 
 from ..linkages import INERTIA, slider_crank
 from ..mechanisms import compound_pendulum, free_top, torsion_pendulum

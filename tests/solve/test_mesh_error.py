@@ -6,11 +6,11 @@ import pytest
 from trsim.laws.cable import EXACT, GERSTMAYR, PAPER, add_force
 from trsim.laws.cable_stretch import ASSUMED, ENGINEERING, GREEN
 from trsim.laws.cable_tangent import add_stiffness
-from trsim.solve.bars import places
-from trsim.solve.cable_systems import Law, assumed, system
-from trsim.solve.doubts import doubts
-from trsim.solve.mesh_error import AIM, TOLD, mesh_errors
-from trsim.solve.start import start
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.diagnose.mesh_error import AIM, TOLD, mesh_errors
+from trsim.solve.start.bars import places
+from trsim.solve.start.cable_systems import Law, assumed, system
+from trsim.solve.start.consistent import start
 
 from ..runs import assemble, loads, run
 

@@ -5,8 +5,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from trsim.solve.modes import modes
-from trsim.solve.start import start
+from trsim.solve.diagnose.modes import modes
+from trsim.solve.start.consistent import start
 
 from ..mechanisms import free_top
 from ..runs import assemble, scenario

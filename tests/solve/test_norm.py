@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trsim.solve.record import MET, MOST, SPEED
+from trsim.solve.march.record import MET, MOST, SPEED
 
 from ..mechanisms import torsion_pendulum
 from ..runs import run

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from trsim.elements.packed import WORDS, Packed
 from trsim.elements.scene import Scene
+from trsim.kernels.packed import WORDS, Packed
 
 from ..overconstrained import cranks, text
 from ..runs import run

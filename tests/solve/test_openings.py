@@ -5,7 +5,7 @@ import pytest
 
 from trsim.assemble.assemble import assemble
 from trsim.errors import ModelError
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 from trsim.solve.simulate import simulate
 
 from ..overconstrained import (

@@ -9,7 +9,7 @@ from scipy.interpolate import Akima1DInterpolator
 
 from trsim.analyse.trajectory import changed, marched
 from trsim.assemble.assemble import assemble
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 
 from ..runs import run
 from ..truth.trial import made

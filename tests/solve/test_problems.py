@@ -17,7 +17,7 @@ from benchmarks.problems import (
     windows,
     zigzag_rods,
 )
-from trsim.spec.load import load
+from trsim.scenario.load import load
 
 from ..directors import tip as tip_of_directors
 from ..mechanisms import DATA

@@ -8,14 +8,14 @@ import pytest
 
 from trsim.assemble.equations import derivative
 from trsim.elements.contract import BRANCH, CONTACT, PHASE, SCENE, WHOLE, compiled
-from trsim.elements.packed import A1
 from trsim.elements.scene import scene
-from trsim.elements.signatures import void
-from trsim.solve import radau
-from trsim.solve import record as rec
-from trsim.solve.norm import weights
+from trsim.kernels.packed import A1
+from trsim.kernels.signatures import void
+from trsim.scenario.load import load
+from trsim.solve.march import record as rec
+from trsim.solve.march.norm import weights
+from trsim.solve.methods import radau
 from trsim.solve.outcome import settings
-from trsim.spec.load import load
 
 from ..linkages import REVERSER
 from ..runs import run

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from trsim.solve.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
+from trsim.solve.march.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
 
 from ..linkages import REVERSER
 from ..mechanisms import table

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.march.record import ROUNDED_BY
 from trsim.solve.outcome import whose
-from trsim.solve.record import ROUNDED_BY
 
 from ..linkages import four_bar
 from ..runs import built, run

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
-from trsim.solve.projected import projected
-from trsim.solve.scales import scales
-from trsim.solve.skipped import skipped
-from trsim.solve.start import start
-from trsim.spec.load import load
+from trsim.scenario.load import load
+from trsim.solve.diagnose.scales import scales
+from trsim.solve.diagnose.skipped import skipped
+from trsim.solve.start.consistent import start
+from trsim.solve.start.projected import projected
 
 from ..linkages import REVERSER, slider_crank
 from ..mechanisms import SPEED, central_impact, p1_slider_crank

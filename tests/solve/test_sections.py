@@ -296,7 +296,7 @@ def test_touches_need_located_events():
 
 def test_a_bearing_without_play_has_no_section():
     """A sweep over the clearance may begin with an ideal joint."""
-    from trsim.solve.skipped import skipped
+    from trsim.solve.diagnose.skipped import skipped
 
     done = run(SLIDER_CRANK, "joints.B.clearance=0", "solver.end=0.1 ms")
     assert done.mechanism.sections == ()

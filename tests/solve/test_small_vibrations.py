@@ -12,7 +12,7 @@ import re
 import numpy as np
 import pytest
 
-from trsim.solve.doubts import doubts
+from trsim.solve.diagnose.doubts import doubts
 
 from ..runs import run
 from ..sizes import size

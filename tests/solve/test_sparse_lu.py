@@ -7,7 +7,7 @@ import pytest
 from numba import njit
 
 from trsim.assemble.elimination import elimination
-from trsim.solve import sparse_lu
+from trsim.solve.methods import sparse_lu
 
 from ..assemble.test_elimination import CASES, chain, dense_pattern
 

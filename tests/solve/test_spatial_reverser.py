@@ -10,7 +10,7 @@ import pytest
 
 from trsim.cli import main
 from trsim.errors import ModelError
-from trsim.spec.load import load, loads
+from trsim.scenario.load import load, loads
 from trsim.sweep.plan import plan
 
 from ..linkages import REVERSER, spatial

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from trsim.errors import ModelError
-from trsim.solve import statics
-from trsim.solve.start import start
-from trsim.solve.statics import static_forces
-from trsim.spec.load import load
+from trsim.scenario.load import load
+from trsim.solve.start.consistent import start, statics
+from trsim.solve.start.statics import static_forces
 
 from ..linkages import REVERSER, four_bar, slider_crank
 from ..overconstrained import ORDINARY, TILTED, numbers

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from trsim.solve import record as rec
+from trsim.solve.march import record as rec
 
 from ..runs import run
 from ..sizes import size

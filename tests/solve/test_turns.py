@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trsim.solve.record import EVENT_KIND, EVENT_TIME, ONSET, USER
+from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, ONSET, USER
 
 from ..runs import run
 

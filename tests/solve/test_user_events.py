@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import quad
 
 from trsim.errors import ScenarioError
-from trsim.solve.doubts import doubts
-from trsim.solve.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
 
 from ..runs import energy_error, run
 

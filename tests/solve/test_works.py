@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from trsim.laws.tables import akima, akima_table
-from trsim.solve.doubts import of_books
+from trsim.solve.diagnose.doubts import of_books
 
 from ..runs import run
 

@@ -3,7 +3,7 @@ import pytest
 from tests import small
 from tests.store import outside
 from trsim.assemble.assemble import assemble
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 from trsim.store.read import read
 
 

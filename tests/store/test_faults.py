@@ -86,7 +86,7 @@ import numpy as np
 from tests import small
 from trsim.assemble.assemble import assemble
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 from trsim.store.hdf5 import write
 
 scenario = loads(small.SLIDER_CRANK, [f"solver.end={10 * n}us" for n in [int(sys.argv[1])]])

@@ -10,7 +10,7 @@ import pytest
 from tests import small
 from tests.sizes import RELEASE
 from trsim.errors import FileError, SolverError
-from trsim.solve.record import EVENT_NAMES
+from trsim.solve.march.record import EVENT_NAMES
 from trsim.solve.simulate import simulate
 from trsim.store import grow, hdf5
 from trsim.store.hdf5 import read, write

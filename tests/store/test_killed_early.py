@@ -19,8 +19,8 @@ from tests.sweep.test_go import contents
 from trsim import store, sweep
 from trsim.assemble.assemble import assemble
 from trsim.errors import FileError, UsageError
+from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
-from trsim.spec.load import loads
 from trsim.store import checkpoint, hdf5, own
 from trsim.store.lock import refuse_if_written
 from trsim.store.plain import SIZE

@@ -21,8 +21,8 @@ from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.assemble.mechanism import Column
 from trsim.errors import FileError
+from trsim.scenario.load import loads
 from trsim.solve import simulate as solver
-from trsim.spec.load import loads
 from trsim.store import checkpoint, describe, hdf5, peaks, resume
 from trsim.store.hdf5 import write
 from trsim.store.read import read, verify

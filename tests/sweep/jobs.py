@@ -29,7 +29,8 @@ def run(task, begun):
 
 def compiling(task, begun):
     """Need two compiled functions; whoever compiles one leaves a mark."""
-    from trsim.elements import gravity, machine, revolute
+    from trsim.elements import gravity, revolute
+    from trsim.kernels import machine
 
     marks, original = Path(task["marks"]), machine.Compiled._compiled
 

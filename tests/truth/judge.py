@@ -26,10 +26,10 @@ import numpy as np
 
 from trsim.assemble.assemble import assemble
 from trsim.errors import TrsimError
-from trsim.solve.doubts import doubts
-from trsim.solve.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
+from trsim.scenario.load import loads
+from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.march.record import EVENT_KIND, EVENT_ROW, EVENT_TIME, ONSET
 from trsim.solve.simulate import simulate
-from trsim.spec.load import loads
 
 from .extremes import beyond
 from .reference import Channel, Crossing, Truth, size

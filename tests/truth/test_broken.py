@@ -18,7 +18,7 @@ BREAKS = {
         "stops",
         [
             (
-                "trsim/solve/events.py",
+                "trsim/solve/march/events.py",
                 "    if L >= 0.0 and f0 + f1 > L * length:\n",
                 "    if L < 9e99:\n",
             )
@@ -29,7 +29,7 @@ BREAKS = {
         "taut",
         [
             (
-                "trsim/solve/openings.py",
+                "trsim/solve/march/openings.py",
                 "bool(len(mechanism.model.redundant) or mechanism.stages.switches.names)",
                 "False",
             ),
@@ -45,7 +45,7 @@ BREAKS = {
         "loop",
         [
             (
-                "trsim/solve/peaks.py",
+                "trsim/solve/march/peaks.py",
                 "    if s.sought.size == 0:  #",
                 "    if s.sought.size >= 0:  #",
             )
@@ -54,7 +54,7 @@ BREAKS = {
     # steps may turn a joint by any angle
     "branch": (
         "turns",
-        [("trsim/solve/turns.py", "MOST, ASIDE = 2.0, 1.0", "MOST, ASIDE = 9e9, 9e9")],
+        [("trsim/solve/march/turns.py", "MOST, ASIDE = 2.0, 1.0", "MOST, ASIDE = 9e9, 9e9")],
     ),
 }
 TRY = """

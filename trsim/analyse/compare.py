@@ -22,7 +22,7 @@ from trsim.analyse.apart import APART, windows
 from trsim.analyse.growth import motions
 from trsim.analyse.window import scalar_channel
 from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
-from trsim.spec.table import Line, Table, lines, number
+from trsim.scenario.table import Line, Table, lines, number
 from trsim.store.read import Run
 from trsim.units import fits, quantity, titled, unit
 

@@ -1,9 +1,9 @@
 """Poincare sections of a stored run that its scenario did not declare: from the output rows.
 
 A crossing is the root of the cubic through the four rows around a change of sign; x and y are those
-of their cubics there.  Declared sections are located by the solver (solve/sections.py): these are
-not, and say by how much they may be wrong.  The error of a point is the largest difference between
-its cubic and
+of their cubics there.  Declared sections are located by the solver (solve/march/sections.py): these
+are not, and say by how much they may be wrong.  The error of a point is the largest difference
+between its cubic and
 
     the polynomials through the five and six nearest rows       what one order more or two would say
     the cubics through every other row                          what half as many rows would say
@@ -135,7 +135,7 @@ def crossings(
 
     A run that starts on zero, to rounding, does not cross it there, nor one that rests at zero.
     """
-    from trsim.solve.sections import AT_START, FAINT  # with it numba
+    from trsim.solve.march.sections import AT_START, FAINT  # with it numba
 
     if abs(when[0]) <= AT_START * abs(when[1]):
         when = np.append(0.0, when[1:])

@@ -70,8 +70,8 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
     Raises ScenarioError, ModelError, and UsageError where a pattern fits no channel.
     """
     from trsim.assemble.assemble import assemble
+    from trsim.solve.march.record import H_MAX
     from trsim.solve.outcome import settings
-    from trsim.solve.record import H_MAX
 
     full = changed(scenario, "output", channels=("*",))
     mechanism = assemble(full)

@@ -22,8 +22,8 @@ def twin_setting(
     """The other method, at a tolerance as much tighter as rounding allows.
 
     Below some tolerance a method sees nothing but the rounding of its steps: they become many times
-    more, or are held to the rounding instead (solve/rounding.py), and no better.  Short trials find
-    it.  Raises what `simulate` raises.
+    more, or are held to the rounding instead (solve/march/rounding.py), and no better.  Short
+    trials find it.  Raises what `simulate` raises.
     """
     method = OTHER.get(scenario.solver.method, "auto")
     tolerance = found = scenario.solver.tolerance

@@ -14,7 +14,7 @@ entries of M^-1 between their nodes (`across`).
 
 from math import sqrt
 
-from trsim.elements.vectors import internal as equation
+from trsim.kernels.vectors import internal as equation
 
 
 @equation

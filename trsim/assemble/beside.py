@@ -27,10 +27,10 @@ Reactions are those of the state itself: they do grow like 1/delta; forces of dr
 limits too.  Of the stages of a step a difference of a few tolerances is left to its error estimate:
 steps judged by their energy as well would be made again for it.  Rows that only unequal masses make
 hard to tell apart are left alone.  States off the rows feel another derivative here than further
-away, which the error estimate of a step need not see: solve/complete.py looks at the energy of such
-steps.  Where nobody does (scipy's integrators) stages take the limit only where rows do depend on
-each other, and what is measured inside steps takes it as elsewhere; in open chains, which have no
-such places, all do.
+away, which the error estimate of a step need not see: solve/march/complete.py looks at the energy
+of such steps.  Where nobody does (scipy's integrators) stages take the limit only where rows do
+depend on each other, and what is measured inside steps takes it as elsewhere; in open chains, which
+have no such places, all do.
 """
 
 from collections.abc import Iterable, Sequence
@@ -59,7 +59,7 @@ from trsim.assemble.mechanism import RowName
 from trsim.assemble.projection import move_all, project_positions, project_velocities
 from trsim.assemble.schur import plain_rows, pull, rows
 from trsim.elements.contract import DRIVES, compiled
-from trsim.elements.vectors import clear
+from trsim.kernels.vectors import clear
 
 # rad, or of the mechanism's size; from one pair of places to the next; pairs looked at
 FARTHEST, NEARER, PAIRS = 0.08, 0.7, 18

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
-from trsim.elements.signatures import A1, A2, I1, int64, void
+from trsim.kernels.signatures import A1, A2, I1, int64, void
 
 Array = NDArray[np.float64]
 

@@ -24,12 +24,12 @@ from trsim.assemble.linear import (
 )
 from trsim.assemble.on_beams import FREE, KINETIC, POSES, PULL, RATES, RIGHT, call_beams
 from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
-from trsim.elements.calls import call_kernel, caller
-from trsim.elements.contract import DRIVES, SCENE, compiled
+from trsim.elements.contract import DRIVES, SCENE, call_kernel, compiled
 from trsim.elements.scene import BAUMGARTE
-from trsim.elements.signatures import A1, f8, float64, void
-from trsim.elements.vectors import clear, clear_table
-from trsim.elements.vectors import internal as equation
+from trsim.kernels.calls import caller
+from trsim.kernels.signatures import A1, f8, float64, void
+from trsim.kernels.vectors import clear, clear_table
+from trsim.kernels.vectors import internal as equation
 from trsim.laws.sine import sine_cosine
 
 #                        scene  t   y   y'

@@ -11,7 +11,8 @@
     sensed    of the sensors that meet corners: entry of S, kind of quantity, instance (travel.py)
 
 A function that is held on the pieces it is on is smooth: a step never sees a corner, and ends
-where one is met (solve/features.py).  Unless a run holds them, functions are evaluated as written.
+where one is met (solve/march/features.py).  Unless a run holds them, functions are evaluated as
+written.
 """
 
 from typing import Any
@@ -20,11 +21,11 @@ import numpy as np
 
 from trsim.assemble.jumps import NOBODY, driven
 from trsim.assemble.travel import of_instance
-from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, SINCE, compiled
 from trsim.elements.prescribed import MOTION
-from trsim.elements.signatures import f8, i8, void
-from trsim.elements.vectors import internal
+from trsim.kernels.calls import caller
+from trsim.kernels.signatures import f8, i8, void
+from trsim.kernels.vectors import internal
 from trsim.laws.functions import (
     BY_SENSORS,
     FREE,

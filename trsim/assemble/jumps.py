@@ -1,7 +1,7 @@
 """Jumps of prescribed motions at the corners of their functions: seen before the run.
 
     position jumps      refused of a rigid drive, which would take the mechanism with it in no time
-    velocity jumps      an impulse: told, and its work is booked             solve/features.py
+    velocity jumps      an impulse: told, and its work is booked             solve/march/features.py
 
 A drive that gives way may jump in place: its force does, and the energy in its spring.
 """
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
 from trsim.elements.prescribed import OWN_MOTION, OWN_STATE
-from trsim.elements.signatures import A1, A2, f8, i8, void
 from trsim.errors import ScenarioError
+from trsim.kernels.signatures import A1, A2, f8, i8, void
 from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, WIDTH, hold, motion
 from trsim.laws.operations import ATAN2, COS, DIV, EXP, LOG, POW, SIN, SQRT, TAN
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from trsim.elements.joint import perpendicular
 from trsim.errors import ModelError, ScenarioError
-from trsim.spec.slender import ends
+from trsim.scenario.slender import ends
 
 Array = NDArray[np.float64]
 

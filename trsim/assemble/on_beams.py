@@ -17,9 +17,9 @@ from trsim.assemble.beams import (
     pull_nodes,
     slope_force,
 )
-from trsim.elements.calls import caller
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.signatures import A1, i8, void
+from trsim.kernels.calls import caller
+from trsim.kernels.signatures import A1, i8, void
 
 ON_BEAMS = void(SCENE, A1, A1, i8)
 call_beams = caller(ON_BEAMS)

@@ -10,8 +10,8 @@ from trsim.assemble.linear import factorise, smallest_pivot, solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, rows, velocity_residual
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.signatures import A1, f8, float64, i8, void
-from trsim.elements.vectors import clear_table
+from trsim.kernels.signatures import A1, f8, float64, i8, void
+from trsim.kernels.vectors import clear_table
 
 DOUBTFUL = 1e-2  # a pivot, of its diagonal
 

@@ -11,8 +11,8 @@ B and -M stand in the matrix themselves (pattern.py).
 """
 
 from trsim.assemble.on_beams import PLAIN, ROWS, call_beams
-from trsim.elements.vectors import clear
-from trsim.elements.vectors import internal as equation
+from trsim.kernels.vectors import clear
+from trsim.kernels.vectors import internal as equation
 
 
 @equation

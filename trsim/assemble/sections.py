@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.mechanism import Column, Instance, Section
-from trsim.elements.event import DIRECTIONS
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
+from trsim.scenario.event import DIRECTIONS
 
 # kinds of surface, and columns of model.section and of model.section_at
 CROSSING, STROBE, TOUCH = 0, 1, 2

@@ -17,16 +17,18 @@ from typing import Any
 from trsim import elements
 from trsim.assemble.addresses import UNITS, Addresses
 from trsim.assemble.mechanism import Instance
-from trsim.elements.event import DIRECTIONS, Event
 from trsim.elements.prescribed import ENTRY, OWN_STATE
 from trsim.errors import ScenarioError, known
+from trsim.scenario.event import DIRECTIONS, Event
 from trsim.statuses import Ended
 from trsim.units import fits
 
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
-MOST = 2  # column of a model's `watch`: how often an event happens (tables.py, solve/watch.py)
+MOST = (
+    2  # column of a model's `watch`: how often an event happens (tables.py, solve/march/watch.py)
+)
 # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
 TIME, LIMITS = -1, -2
 SECTION = "events"  # of the instances of locks

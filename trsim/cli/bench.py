@@ -120,7 +120,7 @@ def look() -> None:
 
 
 def known_method(name: str) -> str:
-    from trsim.spec.scenario import METHODS as words
+    from trsim.scenario.scenario import METHODS as words
 
     if name.strip() not in words:
         raise UsageError(f"no method '{name}'", known(name, words))

@@ -48,7 +48,7 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
     scenario = loaded(source, sets)
     compiling(answer)
     from trsim.assemble.assemble import assemble
-    from trsim.solve.skipped import skipped
+    from trsim.solve.diagnose.skipped import skipped
 
     found = {"file": source, "title": scenario.title}
     try:
@@ -80,7 +80,7 @@ def check_output(scenario: Any, mechanism: Any) -> None:
 
 def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
     """Bodies, joints and what the assembly found out about them."""
-    from trsim.spec.lint import lint
+    from trsim.scenario.lint import lint
 
     model = mechanism.model
     return {
@@ -124,14 +124,14 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
 
 def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
-    from trsim.solve import doubts
-    from trsim.solve.bar_scales import bar_scales
-    from trsim.solve.mesh_error import mesh_errors
-    from trsim.solve.modes import modes
-    from trsim.solve.projected import projected
-    from trsim.solve.scales import scales
+    from trsim.solve.diagnose import doubts
+    from trsim.solve.diagnose.bar_scales import bar_scales
+    from trsim.solve.diagnose.mesh_error import mesh_errors
+    from trsim.solve.diagnose.modes import modes
+    from trsim.solve.diagnose.scales import scales
     from trsim.solve.simulate import check_step
-    from trsim.solve.start import start
+    from trsim.solve.start.consistent import start
+    from trsim.solve.start.projected import projected
 
     end = scenario.solver.end
     if end is None:  # a scale of time is needed, not how long it would run

@@ -20,7 +20,7 @@ def command(answer: Answer, word: str | None) -> None:
 
     Without WORD, list all there are.  A key may be named by its place: limit_stop.wall.normal.
     """
-    from trsim.spec.explain import explained
+    from trsim.scenario.explain import explained
 
     found = explained(word)
     answer.data |= {"word": word, **found}

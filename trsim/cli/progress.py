@@ -27,18 +27,22 @@ def compiling(answer: Answer, method: str = "") -> None:
     if method.startswith("scipy:"):
         later = ["scipy_ivp"]
     elif method:
-        from trsim.solve.complete import complete as needed
+        from trsim.solve.march.complete import complete as needed
         from trsim.solve.simulate import COMPILED
 
         # the largest first; the first process comes to the rest before it needs an implicit method
-        later = ["complete", *reversed(COMPILED[method]), "march"]
+        later = [
+            "march.complete",
+            *(f"methods.{name}" for name in reversed(COMPILED[method])),
+            "march.loop",
+        ]
     see_own(answer)
     if needed.known:
         return
     see_kept(answer)
     answer.say("compiling (once per installation, about half a minute)")
     if later:
-        from trsim.elements import ahead
+        from trsim.kernels import ahead
 
         ahead.begin(*(f"trsim.solve.{name}" for name in later))
 
@@ -50,20 +54,20 @@ def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
     used = files(scenario, mechanism)
     if "radau_ggl" not in used:
         return
-    from trsim.solve import radau_ggl
+    from trsim.solve.methods import radau_ggl
 
     if radau_ggl.step.known:
         return
     answer.say("compiling Radau for many bodies (once per installation, about 15 s)")
     if len(used) > 1:  # meanwhile the explicit method makes steps
-        from trsim.elements import ahead
+        from trsim.kernels import ahead
 
-        ahead.begin("trsim.solve.radau_ggl")
+        ahead.begin("trsim.solve.methods.radau_ggl")
 
 
 def see_own(answer: Answer) -> None:
     """Say so where machine code would come from a folder that others may write in."""
-    from trsim.elements.kept import refused
+    from trsim.kernels.kept import refused
 
     why = refused()
     if why:
@@ -76,7 +80,7 @@ def see_own(answer: Answer) -> None:
 
 def see_kept(answer: Answer) -> None:
     """Say so where what is compiled cannot be kept for the next run."""
-    from trsim.elements.kept import folder, make
+    from trsim.kernels.kept import folder, make
     from trsim.store.target import see_writable, told
 
     try:

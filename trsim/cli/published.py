@@ -10,8 +10,8 @@ from pydantic import TypeAdapter
 
 from trsim.cli import COMMANDS, documents
 from trsim.cli.frame import EXIT_CODES
-from trsim.spec import schema as scenario
-from trsim.spec.meanings import description, meanings
+from trsim.scenario import schema as scenario
+from trsim.scenario.meanings import description, meanings
 
 ALWAYS = {0, 1, 2, 7, 130, 143}
 ENDS = {command: ALWAYS for command in COMMANDS} | {

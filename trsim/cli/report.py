@@ -80,7 +80,7 @@ def command(
 
 def judged(studies: tuple[str, ...], folder: Path, options: dict[str, Any]) -> list[Path]:
     """The files of a published study, made from the folder of its sweep."""
-    from trsim.report.paper import paper
+    from trsim.studies.thrust_reverser import paper
 
     if len(studies) > 1:
         raise UsageError("--paper takes the folder of one sweep")

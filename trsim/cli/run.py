@@ -119,8 +119,8 @@ def ran(
     kept = found(answer, source, target, scenario, resume)
     compiling(answer, scenario.solver.method)
     from trsim.assemble.assemble import assemble
+    from trsim.scenario.lint import lint
     from trsim.solve.simulate import simulate
-    from trsim.spec.lint import lint
     from trsim.store.hdf5 import write
 
     try:
@@ -166,7 +166,7 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
 
 def placed(error: TrsimError, scenario: Any) -> TrsimError:
     """The error with its place in the scenario's files, if it is about something in them."""
-    from trsim.spec.load import locate
+    from trsim.scenario.load import locate
 
     return locate(error, scenario) if any(one.path for one in error.problems) else error
 

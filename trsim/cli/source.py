@@ -21,7 +21,7 @@ def is_result(source: str) -> bool:
 
 def loaded(source: str, sets: tuple[str, ...]) -> Any:
     """The scenario; that of a result file is the one it was made from, as resolved then."""
-    from trsim.spec.load import load, loads
+    from trsim.scenario.load import load, loads
 
     if not is_result(source):
         return load(source, sets)

@@ -19,9 +19,9 @@ from pydantic import model_validator
 from trsim.elements.cable import Cable
 from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
 from trsim.elements.frames import cross, dot, helper
-from trsim.elements.vectors import clear_table
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
+from trsim.kernels.vectors import clear_table
 from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
 from trsim.laws.cable_stretch import STRAINS, STRETCHINGS

@@ -34,9 +34,10 @@ from dataclasses import dataclass, field
 from math import inf
 from typing import NamedTuple
 
-from trsim.elements.machine import Compiled
 from trsim.elements.scene import Scene
-from trsim.elements.signatures import Signature, f8, i8, void
+from trsim.kernels.calls import caller
+from trsim.kernels.machine import Compiled
+from trsim.kernels.signatures import Signature, f8, i8, void
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
@@ -49,7 +50,7 @@ PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
 FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
 WHOLE = 9.0  # BRANCH: the law with all its branches
 # and of every drive
-SINCE, N_MEM = 3, 4  # s: when its prescribed motion began, see elements/event.py
+SINCE = 3  # s: when its prescribed motion began, see scenario/event.py
 
 # z: the energy book, power flowing into the mechanism (W), in front of the elements' own states
 DRIVES, LOADS, DAMPERS, IMPACTS, FRICTION, N_BOOK = 0, 1, 2, 3, 4, 5
@@ -62,6 +63,7 @@ STORED = ("springs", "contacts", "gravity")
 
 SCENE = Scene.kind
 KERNEL = void(f8, SCENE, i8, i8)  # t, scene, first row, end row
+call_kernel = caller(KERNEL)
 
 
 def compiled(signature: Signature) -> Callable[[Callable], Compiled]:
@@ -128,7 +130,9 @@ class Row:
     states: tuple[int, ...] = ()  # entries of z it reads or changes
     limits: tuple[Limit, ...] = ()
     turns: bool = False  # it acts on an angle, or about an axis: so do units that depend on it
-    travel: str = ""  # what its gap or its coordinate is: angle, stroke, distance; solve/spread.py
+    travel: str = (
+        ""  # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
+    )
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
 
 

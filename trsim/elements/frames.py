@@ -20,7 +20,7 @@ The multiplier of a row is minus the generalised force it puts on body j along i
 
 from math import sqrt
 
-from trsim.elements.vectors import internal as helper
+from trsim.kernels.vectors import internal as helper
 
 
 @helper

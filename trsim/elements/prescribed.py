@@ -15,7 +15,7 @@ from typing import Any
 
 from trsim.elements.contract import compiled
 from trsim.elements.frames import helper
-from trsim.elements.signatures import A1, f8, i8, void
+from trsim.kernels.signatures import A1, f8, i8, void
 from trsim.laws.functions import motion
 
 ENTRY, OWN_STATE, OWN_MOTION = 2, 3, 5  # of Row.con

@@ -14,11 +14,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from trsim.elements.packed import A1, A2, I1, I2, T2, T3, T6, T9, T12, Packed, f8, i8
+from trsim.kernels.packed import A1, A2, I1, I2, T2, T3, T6, T9, T12, Packed, f8, i8
 
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
 N_STORED = 3
+N_MEM = 4  # columns of `mem`, see contract.py
 COMPONENTS = {".x": 0, ".y": 1, ".z": 2}  # of a channel of three, in its name
 
 
@@ -162,7 +163,7 @@ class Scene(Model):
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
     aside: A2  # (10, n_y or n_v+m+1) states and accelerations beside this one   beside.py
-    root: A2  # (3, n_x) sigma at the ends of the last step and of this one    solve/passes.py
+    root: A2  # (3, n_x) sigma at the ends of the last step and of this one    solve/march/passes.py
     part_root: A2  # (3, n_x) the same of parts of a step
     kept_rows: A2  # (4, 6 slots) B and the factors of two places, and of both ends of a step
     kept_factors: A2  # (4, places)
@@ -191,8 +192,6 @@ def workspace(model: Model) -> Scene:
 def scene(model: Model) -> Scene:
     """Fresh workspace for a model."""
     import numpy as np
-
-    from trsim.elements.contract import N_MEM
 
     n, m, n_x, slots = model.n, model.m, len(model.column_start) - 1, len(model.slot_row)
     rows = m + len(model.redundant)

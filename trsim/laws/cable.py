@@ -30,7 +30,7 @@ straight place no curvature has a direction, and every one that grows is resiste
 with k' = a^(-q/2) (r'' - b/a r')' across the tangent.  The blend makes the force differentiable.
 """
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.cable_stretch import pulled, squared, stretching_energy
 
 EXACT, GERSTMAYR, PAPER = 0, 1, 2

@@ -4,7 +4,7 @@ A strain is a function of products of r' and r''.  Its gradient in the coordinat
 coefficients of the nodes times a vector; the second derivatives of a product are unit matrices.
 """
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 
 
 @law

@@ -8,7 +8,7 @@ The mass matrix is constant: there are no terms of velocity.
 
 from math import sqrt
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.cable import bend, dot, mixed, parabola
 from trsim.laws.cable_stretch import stretch
 

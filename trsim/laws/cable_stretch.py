@@ -18,7 +18,7 @@ parabola, so these are the same in both; and a mean that is exact makes that of 
 
 from math import sqrt
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 
 GREEN, ENGINEERING = 0, 1
 ASSUMED, FULL = 0, 1

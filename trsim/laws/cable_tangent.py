@@ -10,7 +10,7 @@ the twelve coordinates, and W the energy at the point.  Both matrices are symmet
 semidefinite.  What the damping force gains when e changes at fixed rates is not in either.
 """
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.cable import (
     BENDING,
     BENDING_WEIGHT,

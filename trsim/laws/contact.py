@@ -17,7 +17,7 @@ so the delivered restitution e depends on chi alone, not on mass, speed, K or n.
 
 from math import asinh, exp, gamma, inf, pi, sqrt
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.tables import smoothstep
 
 HERTZ, CYLINDER = 0, 1  # form

@@ -15,7 +15,7 @@ normal force.  w, m, is the mean deflection of the bristles, positive in the dir
 
 from math import exp
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 
 # the word of a scenario -> the code of `friction_force`
 CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}

@@ -25,7 +25,7 @@ per call: `tab` must be writable, and two threads must not evaluate the same arr
 
 import math
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.operations import (
     ABOVE,
     ADD,

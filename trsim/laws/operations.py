@@ -23,7 +23,7 @@ passed over by one that begins before it and ends behind.
 from math import atan2, exp, inf, log, pi, sqrt, tan
 
 from trsim.expressions import NOTHING, SOME
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.sine import sine_cosine
 from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
 

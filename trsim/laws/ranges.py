@@ -8,7 +8,7 @@ change, its rate is without bounds.  Every result is widened by rounding.       
 
 from math import ceil, cos, exp, floor, inf, isfinite, log, pi, sqrt
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 from trsim.laws.operations import (
     ABOVE,
     ABS,

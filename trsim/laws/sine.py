@@ -10,7 +10,7 @@ exact, and l is what is lost of y.  S and C are the polynomials of least error o
 
 from math import cos, sin
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 
 FARTHEST = 1e6  # rad: up to there n has 20 bits; beyond, the C library
 TWO_OVER_PI = 6.36619772367581382433e-01

@@ -16,7 +16,7 @@ A table in a flat array is, from its offset,   ends, x (n), then a b c d of each
 
 import math
 
-from trsim.laws import law
+from trsim.kernels.lazy import law
 
 ENDS = {"hold": 0, "extrapolate": 1, "refuse": 2}  # outside: end value, straight line, nan
 TIED = 1e-9  # two weights this small against the largest of the table are roundoff

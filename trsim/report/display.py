@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from trsim.spec.shown import UNITS
+from trsim.scenario.shown import UNITS
 from trsim.store.grow import Array
 from trsim.store.read import Run
 from trsim.units import unit

@@ -12,11 +12,11 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
-from trsim.solve import record as rec
-from trsim.solve.openings import held_to, look, may_open
-from trsim.solve.record import Record
-from trsim.solve.start import Start
-from trsim.solve.works import LEAST, N_WORKED
+from trsim.solve.march import record as rec
+from trsim.solve.march.openings import held_to, look, may_open
+from trsim.solve.march.record import Record
+from trsim.solve.march.works import LEAST, N_WORKED
+from trsim.solve.start.consistent import Start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -148,25 +148,25 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
     """
     model, found = mechanism.model, {}
     if mechanism.sections:
-        from trsim.solve.sections import sections
+        from trsim.solve.march.sections import sections
 
         found["sections"] = sections.address()
     if len(model.feature):
-        from trsim.solve.features import meet
+        from trsim.solve.march.features import meet
 
         found["meet"] = meet.address()
     if model.stabilisation != PROJECTION and model.m > 0:
-        from trsim.solve.adrift import look_at_drift
+        from trsim.solve.diagnose.adrift import look_at_drift
 
         found["look"] = look_at_drift.address()
     elif may_open(mechanism):
         found["look"] = look.address()
     if setting[rec.LOCATE] > 0.0 or len(model.watch):
-        from trsim.solve.search import search
+        from trsim.solve.march.search import search
 
         found["search"] = search.address()
     if model.feature[:, READS].any():
-        from trsim.solve.sensed import beyond, corners_ahead, turn
+        from trsim.solve.march.sensed import beyond, corners_ahead, turn
 
         found["turn"] = turn.address()
         if len(model.sensed):

@@ -11,18 +11,20 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
-from trsim.solve import record as rec
-from trsim.solve.act import act
-from trsim.solve.adrift import lost_its_way
-from trsim.solve.anew import anew, begun_with, resumed, stuck
-from trsim.solve.blame import why
-from trsim.solve.calls import FIELDS
-from trsim.solve.checkpoint import State, begun_at, put_back, state
-from trsim.solve.crossed import examine
-from trsim.solve.features import put_back as put_back_held
-from trsim.solve.march import begin, march, method_table
-from trsim.solve.mesh_error import Bends
-from trsim.solve.openings import opened
+from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.solve.diagnose.blame import why
+from trsim.solve.diagnose.crossed import examine
+from trsim.solve.diagnose.mesh_error import Bends
+from trsim.solve.diagnose.strained import collapsed
+from trsim.solve.march import record as rec
+from trsim.solve.march.act import act
+from trsim.solve.march.anew import anew, begun_with, resumed, stuck
+from trsim.solve.march.calls import FIELDS
+from trsim.solve.march.checkpoint import State, begun_at, put_back, state
+from trsim.solve.march.features import put_back as put_back_held
+from trsim.solve.march.loop import begin, march, method_table
+from trsim.solve.march.openings import opened
+from trsim.solve.march.record import Record, fresh_buffers
 from trsim.solve.outcome import (
     CRAWLS,
     Block,
@@ -37,9 +39,7 @@ from trsim.solve.outcome import (
     settings,
     statistics,
 )
-from trsim.solve.record import Record, fresh_buffers
-from trsim.solve.start import start
-from trsim.solve.strained import collapsed
+from trsim.solve.start.consistent import start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -90,15 +90,15 @@ def simulate(
     """
     method = scenario.solver.method
     if method.startswith("scipy:"):
-        from trsim.solve.scipy_ivp import simulate as by_scipy
+        from trsim.solve.methods.scipy_ivp import simulate as by_scipy
 
         return by_scipy(scenario, mechanism)
-    used = [import_module(f"trsim.solve.{name}") for name in files(scenario, mechanism)]
+    used = [import_module(f"trsim.solve.methods.{name}") for name in files(scenario, mechanism)]
     return compiled(scenario, mechanism, used, checkpoint)
 
 
 def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
-    """The files of this folder that make the steps of a run; none for a method of scipy."""
+    """The methods (solve/methods) that make the steps of a run; none for a method of scipy."""
     solver = scenario.solver
     sparse = solver.formulation == "ggl"
     if solver.formulation is None:
@@ -139,7 +139,7 @@ def compiled(
     width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
     if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
-        from trsim.solve.scales import scales
+        from trsim.solve.diagnose.scales import scales
 
         check_step(scenario, scales(scenario, mechanism, begun))
     stages, dense_rows = (max(getattr(m, k) for m in used) for k in ("STAGES", "DENSE_ROWS"))
@@ -157,7 +157,7 @@ def compiled(
     methods = np.zeros((len(used), len(FIELDS)), np.int64)
     called = called_by(mechanism, setting)
     if len(r.passed):
-        from trsim.solve.passes import note_passes
+        from trsim.solve.march.passes import note_passes
 
         called["passes"] = note_passes.address()
     methods[0] = method_table(used[0], **called)

@@ -1,7 +1,7 @@
 """Checkpoints: X.h5.checkpoint beside X.h5.part, all that a dead run needs to go on.
 
     trsim checkpoint 1 SHA256\\n    of everything after this line
-    an archive of numpy             state/NAME     of the solver, see solve/checkpoint.py
+    an archive of numpy             state/NAME     of the solver, see solve/march/checkpoint.py
                                     extremes/NAME  of the writer, kept while blocks pass by
                                     tail/DATASET   rows of the last chunk, if it is not full
                                     about          the rest as JSON

@@ -124,8 +124,8 @@ def summary(
     run: Any, file: h5py.File, status: Status, reason: str, outcome: Any, found: list[Peak]
 ) -> dict[str, Any]:
     """The run in a few numbers."""
-    from trsim.solve.doubts import doubts  # who recovers a file needs no solver
-    from trsim.spec.lint import lint
+    from trsim.scenario.lint import lint
+    from trsim.solve.diagnose.doubts import doubts  # who recovers a file needs no solver
 
     mechanism = run.mechanism
     late = doubts(run.scenario, mechanism, outcome) if outcome else ()

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 LOCATED = "located on the dense output of the step"
 ROWS = 1 << 16  # rows looked at together
 EXPECTED = 256  # points
-TIME, SECTION, X, Y = range(4)  # columns of a block of points, see solve/record.py
+TIME, SECTION, X, Y = range(4)  # columns of a block of points, see solve/march/record.py
 JOURNAL = ("eccentricity_x", "eccentricity_y")
 
 

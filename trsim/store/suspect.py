@@ -28,7 +28,7 @@ def blamed(path: Path) -> FileError | None:
 
 def _faults(run: Run) -> str:
     from trsim.assemble.assemble import assemble
-    from trsim.spec.load import loads
+    from trsim.scenario.load import loads
     from trsim.store.points import plan
 
     if "content_sha256" not in run.attributes:

@@ -7,7 +7,7 @@ import numpy as np
 
 from trsim.store.grow import Field, Growing
 
-EVENT_COLUMNS = 7  # of a line of events, see solve/record.py
+EVENT_COLUMNS = 7  # of a line of events, see solve/march/record.py
 EXPECTED = 256  # rows of the tables whose length nobody knows
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
 # of events, by number

@@ -66,8 +66,8 @@ def brief(summary: dict[str, Any]) -> dict[str, Any]:
 
 def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     from trsim.assemble.assemble import assemble
+    from trsim.scenario.load import loads
     from trsim.solve.simulate import simulate
-    from trsim.spec.load import loads
     from trsim.store.hdf5 import write
 
     target = Path(task["target"])

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from trsim.errors import Place, ScenarioError, TrsimError, UsageError
-from trsim.spec import vary
-from trsim.spec.cases import cases as named_cases
-from trsim.spec.expand import SWEPT, expand
-from trsim.spec.load import of_tree, valid
-from trsim.spec.memory import Memory
-from trsim.spec.merge import put, setting
-from trsim.spec.scenario import Scenario
-from trsim.spec.text import Tree
+from trsim.scenario import vary
+from trsim.scenario.cases import cases as named_cases
+from trsim.scenario.expand import SWEPT, expand
+from trsim.scenario.load import of_tree, valid
+from trsim.scenario.memory import Memory
+from trsim.scenario.merge import put, setting
+from trsim.scenario.scenario import Scenario
+from trsim.scenario.text import Tree
 from trsim.sweep.digest import Digests
 from trsim.sweep.points import Point, points
 from trsim.sweep.values import units, written

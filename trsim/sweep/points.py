@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim.errors import ScenarioError
-from trsim.spec.vary import SAMPLED, Axis, Sweep, drawn
+from trsim.scenario.vary import SAMPLED, Axis, Sweep, drawn
 
 MOST = 1_000_000  # cases
 

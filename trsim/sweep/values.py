@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from trsim.errors import TrsimError
-from trsim.spec.load import unit_of
+from trsim.scenario.load import unit_of
 from trsim.units import quantity, si
 
 

@@ -10,7 +10,7 @@ from trsim.assemble.orientation import quaternion
 from trsim.elements.bushing import axes as bushing_axes
 from trsim.elements.joint import perpendicular
 from trsim.fields import direction
-from trsim.spec.load import loads
+from trsim.scenario.load import loads
 from trsim.store.read import Run
 
 Array = NDArray[np.float64]

@@ -1,0 +1,359 @@
+"""The published study: rules on made-up numbers, numbers of runs, figures, page and command."""
+
+import csv
+import re
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import yaml
+
+from tests import small
+from tests.report.test_figures import drawn
+from tests.sweep.test_go import here
+from trsim.analyse.fluctuation import fluctuation
+from trsim.analyse.outputs import scalar
+from trsim.cli import main
+from trsim.errors import FileError, UsageError
+from trsim.report.page import Cell, Line, Points, Section, Table, Text, page
+from trsim.store.read import read
+from trsim.studies.thrust_reverser import SECTIONS, paper
+from trsim.studies.thrust_reverser.claims import CLAIMS
+from trsim.studies.thrust_reverser.claims.claim import LAW, WORTH
+from trsim.studies.thrust_reverser.figures import FIGURES
+from trsim.studies.thrust_reverser.judge import OF_LAWS, shown
+from trsim.studies.thrust_reverser.numbers import number, word
+from trsim.studies.thrust_reverser.rules import (
+    CONFIRMED,
+    CONTRADICTED,
+    UNDETERMINED,
+    Alike,
+    Exact,
+    Falling,
+    Open,
+    Ratio,
+    Rising,
+    Steadier,
+    Within,
+    interval,
+)
+from trsim.studies.thrust_reverser.runs import Member, Runs
+from trsim.sweep.go import go
+from trsim.sweep.plan import plan
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+MEMBERS = np.array([1.0, 1.02, 0.99, 1.01])  # what an ensemble of four spreads by
+WILD = np.array([1.0, 3.0, 0.3, 2.0])
+
+
+def cases(*means, spread=MEMBERS):
+    """Numbers (cases, members), each case with its own order of the same spread."""
+    return np.array([m * np.roll(spread, k) for k, m in enumerate(means)])
+
+
+@pytest.mark.parametrize(
+    ("rule", "values", "verdict"),
+    [
+        (Rising(), cases(1.0, 2.0, 3.0), CONFIRMED),
+        (Rising(), cases(1.0, 3.0, 2.0), CONTRADICTED),
+        (Rising(), cases(1.0, 1.1, 1.2, spread=WILD), UNDETERMINED),
+        (Rising(0.5), cases(1.0, 2.0), CONFIRMED),
+        (Rising(0.5), cases(1.0, 1.2), CONTRADICTED),
+        (Rising(), cases(0.0, 1.0), UNDETERMINED),
+        (Falling(), cases(3.0, 2.0, 1.0), CONFIRMED),
+        (Falling(), cases(1.0, 2.0), CONTRADICTED),
+        (Falling(), cases(2.0, 1.0, spread=WILD), UNDETERMINED),
+        (Falling(0.1), cases(1.0, 0.8), CONFIRMED),
+        (Falling(0.1), cases(1.0, 0.96), CONTRADICTED),
+        (Ratio(2.5, 3.0), cases(1.0, 2.75), CONFIRMED),
+        (Ratio(2.5, 3.0), cases(1.0, 2.0), CONTRADICTED),
+        (Ratio(2.5, 3.0), cases(1.0, 2.5), UNDETERMINED),
+        (Alike(0.2), cases(1.0, 1.1), CONFIRMED),
+        (Alike(0.05), cases(1.0, 1.2), CONTRADICTED),
+        (Alike(0.02), cases(1.0, 1.0), UNDETERMINED),
+        (Within(0.5, 1.5, "x"), cases(1.0, 1.1), CONFIRMED),
+        (Within(1.5, 2.5, "x"), cases(1.0, 2.0), CONTRADICTED),
+        (Within(1.0, 2.5, "x"), cases(1.0, 2.0), UNDETERMINED),
+        (Steadier(), cases(1.0, 2.0, 1.0, 1.1), CONFIRMED),
+        (Steadier(), cases(1.0, 1.1, 1.0, 2.0), CONTRADICTED),
+        (Steadier(), cases(1.0, 1.1, 1.0, 1.1), UNDETERMINED),
+        (Exact(0.9, 1.1, "x"), np.array([[1.0]]), CONFIRMED),
+        (Exact(0.9, 1.1, "x"), np.array([[2.0]]), CONTRADICTED),
+        (Open("no"), cases(1.0), UNDETERMINED),
+    ],
+)
+def test_verdicts(rule, values, verdict):
+    found = rule.judge(values)
+    assert found.verdict == verdict
+    assert found.told and rule.words
+
+
+@pytest.mark.parametrize("rule", [Rising(), Falling(), Ratio(1.0, 3.0), Steadier(), Alike(0.1)])
+def test_one_run_proves_nothing(rule):
+    assert rule.judge(cases(1.0, 2.0, 1.5, 1.6)[:, :1]).verdict == UNDETERMINED
+
+
+def test_holding_is_counted():
+    values = np.array([[1.0, 1.0, 1.0, 1.0], [2.0, 2.0, 2.0, 0.9]])
+    assert Rising().judge(values)[2:] == (3, 4)
+    assert Falling().judge(values)[2:] == (1, 4)
+
+
+def test_interval_is_student_s():
+    assert interval(np.array([1.0, 2.0, 3.0])) == pytest.approx(
+        (2.0, -0.484138, 4.484138), abs=1e-6
+    )
+    assert shown(np.array([1.0, 2.0, 3.0]), 1.0, "N") == "2.0 \u00b1 2.5 N"
+    assert shown(np.array([12345.0, 12445.0]), 1.0, "-") == "12400 \u00b1 640"
+    assert shown(np.array([0.5]), 1e3, "mm") == "500 mm"
+
+
+# --- the study -------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return yaml.safe_load((SCENARIOS / "thrust_reverser/paper.yaml").read_text())
+
+
+def test_claims_are_of_the_study(scenario):
+    series = [s for claim in CLAIMS for reading in claim.readings for s in reading.series]
+    assert {s.case.partition(",")[0] for s in series} - {LAW} <= set(scenario["cases"])
+    for one in series:
+        if one.case != LAW:
+            word(one.word)
+    keys = [claim.key for claim in CLAIMS]
+    assert len(set(keys)) == len(keys)
+    for claim in CLAIMS:
+        assert claim.section in SECTIONS and claim.worth in WORTH
+        names = [reading.name for reading in claim.readings]
+        assert len(set(names)) == len(names)
+
+
+def test_every_figure_of_the_study_is_drawn(scenario):
+    panels = {"3": "ab", "7": "ab", "8": "", "9": "abcdef", "10": "abcd", "11": "abcd",
+              "12": "abcd", "13": "ab", "14": "abcdefgh", "15": "ab", "16": "abcd", "17": "ab",
+              "18": "abcde", "19": "ab", "20": "ab", "21": "", "22": "", "23": "abc",
+              "24": "abc", "25": "abc", "26": "abc"}  # fmt: skip
+    found = {one.number: one.panels for one in FIGURES}
+    assert {number: found.get(number) for number in panels} == panels
+    used = {case for one in FIGURES for case in one.cases}
+    used |= {s.case for claim in CLAIMS for r in claim.readings for s in r.series} - {LAW}
+    assert {name.partition(",")[0] for name in used} == set(scenario["cases"])
+    for claim in CLAIMS:
+        for digits in re.findall(r"\d+", claim.figure):
+            assert digits in found
+
+
+def test_the_members_of_the_study(scenario):
+    """The first is as stated; no two are the same."""
+    play = np.array(scenario["sweep"]["parameters.play"])
+    assert play[0] == 1.0 and np.abs(play - 1.0).max() == pytest.approx(0.02)
+    members = [*zip(*list(scenario["sweep"].values())[1:], strict=True)]
+    assert len(set(members)) == 8
+    assert members[0] == (1, "0 mm", "1e-6*loose")
+
+
+CHAINS = {"ideal": "ideal", "a_03": "clearance_a_0.3mm", "b_03": "clearance_b_0.3mm"}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A study of three cases of two members, a third of a stroke."""
+    place = tmp_path_factory.mktemp("study") / "scenarios"
+    place.mkdir()
+    for path in (SCENARIOS / "thrust_reverser").glob("*.yaml"):
+        shutil.copy(path, place)
+    text = {
+        "sweep": {"method": "zip", "initial.guide": ["0 mm", "1 mm"], "parameters.play": [1, 1.02]},
+        "parameters": {"play": 1},
+        "cases": {
+            name: {"extends": f"{file}.yaml", "solver": {"end": "0.32 s", "tolerance": 1e-4}}
+            for name, file in CHAINS.items()
+        },
+    }
+    (place / "short.yaml").write_text(yaml.safe_dump(text))
+    planned = plan(str(place / "short.yaml"), (), "one")
+    list(go(planned, place.parent / "study", "one", here))
+    return place.parent / "study"
+
+
+@pytest.fixture(scope="module")
+def page_folder(folder, tmp_path_factory):
+    made = tmp_path_factory.mktemp("page")
+    wanted = [one for one in FIGURES if one.number in ("8", "11", "12", "13", "15")]
+    written = paper(folder, made, figures=wanted)
+    assert {path.name for path in written} == {
+        *("index.html", "claims.csv", "numbers.csv"),
+        *(f"figure_{k}.png" for k in (8, 11, 12, 13)),
+    }
+    return made
+
+
+def test_apart_is_measured_at_equal_strokes(folder):
+    runs = Runs(folder)
+    ideal, later = runs.stated("ideal"), runs.of("ideal", 1)
+    assert later.stroke[0] - ideal.stroke[0] == pytest.approx(1e-3)
+    assert number(ideal, "apart:door_angle", ideal).value == 0.0
+    assert number(later, "apart:door_angle", ideal).value < 1e-4
+    assert 1e-4 < number(runs.stated("a_03"), "apart:door_angle", ideal).value < 1e-2
+    with pytest.raises(UsageError):
+        number(ideal, "apart:door_angle")
+
+
+def test_a_run_whose_energy_book_does_not_close_counts_in_nothing(folder, tmp_path, monkeypatch):
+    monkeypatch.setattr("trsim.studies.thrust_reverser.runs.Member.missed", 0.0)
+    assert not Runs(folder).aside
+    faulty = property(lambda member: 0.01 if (member.case, member.index) == ("a_03", 1) else 0.0)
+    monkeypatch.setattr("trsim.studies.thrust_reverser.runs.Member.missed", faulty)
+    paper(folder, tmp_path, figures=())
+    numbers = table(tmp_path / "numbers.csv")
+    assert {n["member"] for n in numbers if n["case"] in ("a_03", "b_03")} == {"0"}
+    assert "misses 10 mJ" in (tmp_path / "index.html").read_text(encoding="utf-8")
+
+
+def table(path):
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_number_has_a_run_file(page_folder, folder):
+    numbers, claims = table(page_folder / "numbers.csv"), table(page_folder / "claims.csv")
+    assert numbers and claims
+    for row in numbers:
+        assert row["file"] == OF_LAWS or (folder / row["file"]).is_file()
+        assert float(row["value"]) is not None and row["word"]
+    for row in claims:
+        files = [name for name in row["runs"].split(" ") if name]
+        of = {
+            n["file"]
+            for n in numbers
+            if (n["claim"], n["reading"]) == (row["claim"], row["reading"])
+        }
+        assert set(files) == of
+        assert bool(files) == bool(row["numbers"])
+        assert row["verdict"] in (CONFIRMED, CONTRADICTED, UNDETERMINED)
+
+
+def test_what_was_not_run_is_undetermined(page_folder):
+    rows = table(page_folder / "claims.csv")
+    of = {(row["claim"], row["reading"]): row for row in rows}
+    assert of["place_velocity", "0.5 mm"]["verdict"] == UNDETERMINED
+    assert of["place_velocity", "0.5 mm"]["decided_by"] == "not run: a_05, b_05"
+    assert of["coulomb", ""]["verdict"] == CONFIRMED
+    assert of["overturn", ""]["members"] == "2"
+    assert len(rows) == sum(len(claim.readings) for claim in CLAIMS)
+
+
+def test_the_page_stands_alone(page_folder):
+    text = (page_folder / "index.html").read_text(encoding="utf-8")
+    assert re.findall(r'(?:src|href)="(?!data:image/png;base64,|#)', text) == []
+    assert "<script" not in text and "@import" not in text and "url(" not in text
+    anchors = re.findall(r'id="([^"]+)"', text)
+    assert len(set(anchors)) == len(anchors)
+    assert set(re.findall(r'href="#([^"]+)"', text)) <= set(anchors)
+    assert text.count("data:image/png") == 4
+    for claim in CLAIMS:
+        assert f'id="claim-{claim.key}"' in text
+
+
+def test_figures_are_drawn(page_folder):
+    for path in page_folder.glob("*.png"):
+        assert 0.005 < drawn(path) < 0.5, path.name
+
+
+def test_the_same_every_time(page_folder, folder, tmp_path):
+    paper(folder, tmp_path, figures=FIGURES[:0])
+    for name in ("claims.csv", "numbers.csv"):
+        assert (tmp_path / name).read_bytes() == (page_folder / name).read_bytes()
+
+
+def test_the_command(folder, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("trsim.studies.thrust_reverser.FIGURES", ())
+    for arguments, code in ((["--paper", "thrust-reverser", str(folder)], 0),
+                            (["--paper", "thrust-reverser", str(folder), str(folder)], 2),
+                            (["--paper", "crew-door", str(folder)], 2),
+                            (["--paper", "thrust-reverser", "--compare", str(folder)], 2),
+                            (["--paper", "thrust-reverser", str(tmp_path)], 7)):  # fmt: skip
+        with pytest.raises(SystemExit) as ended:
+            main(["report", *arguments, "-o", str(tmp_path / "made")])
+        told = capsys.readouterr()
+        assert ended.value.code == code, told.err
+        assert "Traceback" not in told.err
+    assert (tmp_path / "made" / "index.html").is_file()
+
+
+def test_a_folder_that_is_no_study(tmp_path, monkeypatch):
+    with pytest.raises(FileError):
+        paper(tmp_path, tmp_path / "page")
+    plain = SimpleNamespace(keys=("joints.A.clearance",), cases=())
+    monkeypatch.setattr("trsim.sweep.study.study", lambda folder: plain)
+    with pytest.raises(UsageError, match="not of a study"):
+        paper(tmp_path, tmp_path / "page")
+
+
+# --- numbers ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def member(tmp_path_factory):
+    path = tmp_path_factory.mktemp("member") / "a.h5"
+    small.run(path)
+    return Member("a", 0, path, read(path))
+
+
+def test_numbers_of_a_run(member):
+    run, t = member.run, member.run.time
+    peak = max(abs(p.value) for p in run.peaks if p.channel == "B.contact_force")
+    assert number(member, "peak:B.contact_force") == (peak, "N")
+    x = run.channel("stroke")
+    low, high = float(x.min()) - 1.0, float(x.max()) + 1.0
+    whole = f"@stroke={low}..{high}"
+    assert 0.98 * peak < number(member, f"peak:B.contact_force{whole}").value <= peak
+    rate = run.channel("crank_angle.rate")
+    assert number(member, f"fluctuation:crank_angle.rate{whole}").value == pytest.approx(
+        fluctuation(t, rate, 0.0, 1.0), rel=1e-12
+    )
+    points = run.poincare["journal"]
+    spread = np.sqrt(np.var(points.x) + np.var(points.y))
+    assert number(member, "dispersion:journal").value == pytest.approx(spread)
+    assert number(member, "scaled:journal").value == pytest.approx(spread / 0.5e-3)
+    for text in ("impacts:B", "flight:B", "mean:B.contact_force"):
+        assert number(member, text) == scalar(run, text)
+    assert number(member, "range:stroke") == (pytest.approx(np.ptp(x)), "m")
+    assert number(member, f"place:stroke{whole}").value == pytest.approx(x.max())
+    assert number(member, "orbit:B").value > 0.0
+    assert 0.0 < number(member, "flight:B").value < 1.0
+
+
+def test_windows_are_of_stroke(member):
+    x, force = member.run.channel("stroke"), member.run.channel("motor.force")
+    middle = float(np.median(x))
+    found = number(member, f"mean:motor.force@stroke={middle}..{float(x.max())}")
+    assert found == (pytest.approx(force[x >= middle].mean()), "N*m")
+    assert np.isnan(number(member, "mean:motor.force@stroke=5..6").value)
+
+
+@pytest.mark.parametrize(
+    "text", ["peek:B.contact_force", "peak", "peak:B.contact_fors", "mean:stroke@0..1"]
+)
+def test_unknown_words(member, text):
+    with pytest.raises((UsageError, KeyError)):
+        number(member, text)
+
+
+# --- the page --------------------------------------------------------------------------------
+
+
+def test_a_page_escapes_what_it_is_told():
+    nasty = '<script>"&'
+    blocks = [
+        Text(nasty),
+        Points([nasty]),
+        Table([nasty], [Line([Cell(nasty, aside=nasty)], anchor="a")]),
+    ]
+    text = page(nasty, [nasty], [Section("s", nasty, blocks)])
+    assert "<script" not in text
+    assert text.count("&lt;script&gt;&quot;&amp;") == 10

@@ -1,0 +1,1 @@
+"""How Python functions become machine code: records, compiling, and what is kept of it."""

@@ -1,0 +1,171 @@
+"""numba, where something must be compiled: our types in its terms, and the machine code it makes.
+
+Records are known by their type, and by `s.name` in compiled code.  Functions are compiled without
+the wrappers that let Python call them: their machine code needs nothing but the C library, and can
+be kept in a file (machine.py).
+"""
+
+import trsim.kernels.numba_quick  # noqa: F401 - before numba
+
+# isort: split
+
+import hashlib
+from functools import cache
+from types import CodeType, FunctionType
+from typing import Any, NamedTuple
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.datamodel import models
+from numba.core.registry import cpu_target
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, register_model
+from numba.np.arrayobj import populate_array
+
+from trsim.kernels.lazy import inner
+from trsim.kernels.packed import WORDS
+from trsim.kernels.pipeline import made_of, quick, refresh, translated
+from trsim.kernels.signatures import Kind, Signature
+
+NUMBERS = {"float64": types.float64, "int64": types.int64}
+
+
+class Code(NamedTuple):
+    """Machine code of one function."""
+
+    symbol: str  # its name in the object file
+    objects: bytes  # a relocatable object file
+    needs: tuple[str, ...]  # functions of others it calls
+    made_of: frozenset[CodeType]  # functions of ours in it
+
+
+@cache
+def numba_type(kind: Kind | None) -> Any:
+    """What numba takes a kind for."""
+    if kind is None:
+        return types.void
+    if kind.fields:
+        return PackedType(kind)
+    number = NUMBERS[kind.dtype]
+    return types.Array(number, kind.dimensions, "C") if kind.dimensions else number
+
+
+def numba_signature(signature: Signature) -> Any:
+    return numba_type(signature.returns)(*map(numba_type, signature.arguments))
+
+
+def dispatcher(python: Any, key: str) -> Any:
+    """A function as numba's; the key makes its symbol the only one of its name."""
+    named = FunctionType(python.__code__, python.__globals__, python.__name__,
+                         python.__defaults__, python.__closure__)  # fmt: skip
+    named.__qualname__, named.__module__ = f"{python.__name__}_{key}", python.__module__
+    return inner(named)
+
+
+def machine_code(compiled: Any, signature: Signature) -> Code:
+    """Compile a dispatcher, and all it calls, for a signature."""
+    wanted = numba_signature(signature)
+    with quick():
+        compiled.compile(wanted)
+        result = compiled.overloads[wanted.args]
+        symbol = result.fndesc.llvm_func_name
+        module, objects = translated(result.library, symbol)
+    functions = module.functions
+    needs = [f.name for f in functions if f.is_declaration and not f.name.startswith("llvm.")]
+    return Code(symbol, objects, tuple(needs), made_of(result.library))
+
+
+def type_of(value: Any) -> Any:
+    """What numba takes a global of a function for."""
+    refresh()  # it may be new
+    return cpu_target.typing_context.resolve_value_type(value)
+
+
+def caller(signature: Signature) -> Any:
+    """What compiled code takes `machine.Caller` for: call(address, *arguments)."""
+    wanted = numba_signature(signature)
+
+    @intrinsic
+    def call(typingctx, address, *arguments):  # type: ignore[no-untyped-def]
+        def codegen(context, builder, _, values):  # type: ignore[no-untyped-def]
+            given = cgutils.unpack_tuple(builder, values[1])
+            cast = [
+                context.cast(builder, value, have, want)
+                for value, have, want in zip(given, arguments, wanted.args, strict=True)
+            ]
+            returns = wanted.return_type
+            function_type = context.call_conv.get_function_type(returns, wanted.args)
+            pointer = builder.inttoptr(values[0], ir.PointerType(function_type))
+            status, result = context.call_conv.call_function(
+                builder, pointer, returns, wanted.args, cast
+            )
+            with cgutils.if_unlikely(builder, status.is_error):
+                context.call_conv.return_status_propagate(builder, status)
+            return context.get_dummy_value() if returns is types.none else result
+
+        return wanted.return_type(types.int64, types.Tuple(arguments)), codegen
+
+    return call
+
+
+class PackedType(types.Type):
+    """The numba type of a Packed record; two records with the same fields have the same type."""
+
+    def __init__(self, kind: Kind) -> None:
+        self.fields = tuple((field, numba_type(inner)) for field, inner in kind.fields)
+        self.columns = tuple(inner.columns for _, inner in kind.fields)
+        self.index = {field: k for k, (field, _) in enumerate(self.fields)}
+        listed = ",".join(f"{field}:{inner.name}" for field, inner in kind.fields)
+        digest = hashlib.sha256(listed.encode()).hexdigest()[:8]  # it stands in every symbol
+        super().__init__(name=f"{kind.name}_{digest}")
+
+
+@register_model(PackedType)
+class PackedModel(models.PrimitiveModel):
+    """One word: the address of the record."""
+
+    def __init__(self, dmm: Any, fe_type: Any) -> None:
+        super().__init__(dmm, fe_type, ir.IntType(64))
+
+
+@infer_getattr
+class PackedAttribute(AttributeTemplate):
+    """`s.name` has the annotated type."""
+
+    key = PackedType
+
+    def generic_resolve(self, typ: PackedType, attr: str) -> types.Type | None:
+        return typ.fields[typ.index[attr]][1] if attr in typ.index else None
+
+
+@lower_getattr_generic(PackedType)
+def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
+    place = typ.index[attr]
+    kind, columns = typ.fields[place][1], typ.columns[place]
+    word_type = ir.IntType(64)
+    base = builder.inttoptr(value, ir.PointerType(word_type))
+
+    def word(k: int) -> Any:
+        pointer = builder.gep(base, [ir.Constant(word_type, WORDS * place + k)])
+        loaded = builder.load(pointer)
+        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+        return loaded
+
+    if not isinstance(kind, types.Array):
+        return builder.bitcast(word(0), ir.DoubleType()) if kind == types.float64 else word(0)
+    array = context.make_array(kind)(context, builder)
+    shape = [word(1 + k) for k in range(kind.ndim)]
+    if columns:
+        shape[1] = ir.Constant(word_type, columns)
+    size = ir.Constant(word_type, 8)
+    strides = [size] if kind.ndim == 1 else [builder.mul(shape[1], size), size]
+    populate_array(
+        array,
+        data=builder.inttoptr(word(0), array.data.type),
+        shape=cgutils.pack_array(builder, shape),
+        strides=cgutils.pack_array(builder, strides),
+        itemsize=size,
+        meminfo=None,
+    )
+    return array._getvalue()

@@ -1,0 +1,216 @@
+"""Compiled functions, called by address, their machine code kept between runs.
+
+A function is compiled when it is first needed and never again: its machine code is kept in the
+user's cache folder (kept.py) under a key made of its bytecode, of that of everything it reaches, of
+the types it works on, of the compiler and of the processor (fingerprint.py).  Loading it takes
+LLVM's loader and half a millisecond; numba, with half a second of imports, is not touched.
+Whatever is edited gets another key, so nothing old is ever run.
+
+Every call, from Python or from other machine code, is numba's own calling convention,
+
+    status = f(&result, &exception, arguments...)
+
+with an array as (0, 0, size, 8, data, shape, strides).
+"""
+
+import ctypes
+import hashlib
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+from trsim.errors import FileError
+from trsim.kernels import ahead, fingerprint, kept
+from trsim.kernels.kept import folder
+from trsim.kernels.lazy import Lazy
+from trsim.kernels.signatures import Kind, Signature
+
+# what an object file may ask of the process: the C library's mathematics and memory
+LIBRARY = frozenset(
+    """acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf exp exp2 expm1 fabs
+    floor fma fmod frexp hypot ldexp lgamma log log10 log1p log2 memcpy memmove memset nearbyint
+    pow rint round sin sincos sinh sqrt tan tanh tgamma trunc""".split()  # noqa: SIM905
+)
+LETTERS = {"float64": "d", "int64": "lq"}  # numpy's, of types eight bytes long
+ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
+
+
+def lock() -> Path:
+    """The file that tells who is compiling what (ahead.py)."""
+    return folder() / "lock"
+
+
+class Compiled(Lazy):
+    """A function with a fixed signature that compiles, or is loaded, on first use."""
+
+    def __init__(self, python: Callable, signature: Signature) -> None:
+        super().__init__(python)
+        self.signature = signature
+
+    @cached_property
+    def key(self) -> str:
+        """Everything its machine code depends on, in one word."""
+        return fingerprint.of(self.python, self.signature)
+
+    @cached_property
+    def inner(self) -> Any:
+        """For compiled functions that call this one directly, and to compile it."""
+        from trsim.kernels.compiler import dispatcher
+
+        return dispatcher(self.python, self.key)
+
+    @cached_property
+    def file(self) -> Path:
+        """Where its machine code is kept."""
+        name = f"{self.python.__module__.removeprefix('trsim.')}.{self.python.__name__}"
+        return folder() / f"{name}-{self.key}.code"
+
+    @property
+    def known(self) -> bool:
+        """Whether its machine code is kept, and whole."""
+        return _read(self.file) is not None
+
+    @cached_property
+    def entry(self) -> int:
+        """Where the machine code starts."""
+        code = _read(self.file)
+        if code is None:
+            with ahead.turn(lock(), self.key):  # another process may be compiling it
+                code = _read(self.file) or self._compiled()
+        return _loaded(*code)
+
+    def keep(self) -> None:
+        """Have the machine code in the cache, unless another process is at it."""
+        with ahead.turn(lock(), self.key, wait=False) as ours:
+            if ours and _read(self.file) is None:
+                self._compiled()
+
+    def _compiled(self) -> tuple[str, bytes]:
+        """Symbol and object file, just compiled; they are kept where that is possible."""
+        from trsim.kernels.compiler import machine_code
+
+        code = machine_code(self.inner, self.signature)
+        foreign = set(code.needs) - LIBRARY
+        if foreign:
+            raise RuntimeError(f"{self.file.stem} needs {sorted(foreign)} of others")
+        unseen = code.made_of - fingerprint.covered(self.python)
+        if unseen:  # an edit to one of them would not be noticed
+            names = sorted(one.co_qualname for one in unseen)
+            raise RuntimeError(f"the key of {self.file.stem} does not cover {names}")
+        with suppress(OSError):  # a folder that cannot be written to: compiled again next time
+            name = code.symbol.encode()
+            kept.store(self.file, [_digest(name, code.objects), b"\n", name, b"\n", code.objects])
+        return code.symbol, code.objects
+
+    def address(self) -> int:
+        """Where the machine code starts."""
+        return self.entry
+
+    @cached_property
+    def _call(self) -> Any:
+        flat = [part for kind in self.signature.arguments for part in _parts(kind)]
+        prototype = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_void_p, *flat)
+        return prototype(self.entry)
+
+    def __call__(self, *arguments: Any) -> Any:
+        wanted = self.signature.arguments
+        if len(arguments) != len(wanted):
+            raise TypeError(f"{self.__name__} takes {len(wanted)} arguments")
+        flat: list[Any] = []
+        for value, kind in zip(arguments, wanted, strict=True):
+            if kind.fields:
+                flat.append(value.address)
+            elif kind.dimensions:
+                flat += _array(value, kind)
+            else:
+                flat.append(value)
+        result = (ctypes.c_int64 if _is_int(self.signature.returns) else ctypes.c_double)()
+        exception = ctypes.c_void_p()
+        status = self._call(ctypes.byref(result), ctypes.byref(exception), *flat)
+        if status in ERRORS or status > 0:
+            raise RuntimeError(f"{self.__name__} failed with status {status}")
+        return None if self.signature.returns is None else result.value
+
+
+class Caller:
+    """call(address, *arguments) for compiled functions of one signature; known to compiled code."""
+
+    def __init__(self, signature: Signature) -> None:
+        self.signature = signature
+
+    @cached_property
+    def _numba_type_(self) -> Any:
+        from trsim.kernels.compiler import caller, type_of
+
+        self._intrinsic = caller(self.signature)
+        return type_of(self._intrinsic)
+
+
+# --- arguments -------------------------------------------------------------------------------
+
+
+def _is_int(kind: Kind | None) -> bool:
+    return kind is not None and kind.dtype == "int64"
+
+
+def _parts(kind: Kind) -> list[Any]:
+    """C types of an argument."""
+    if kind.dimensions:
+        return [ctypes.c_int64] * (5 + 2 * kind.dimensions)
+    return [ctypes.c_double if kind.dtype == "float64" else ctypes.c_int64]
+
+
+def _array(value: Any, kind: Kind) -> tuple[int, ...]:
+    """The parts of an array."""
+    if value.ndim != kind.dimensions or value.dtype.char not in LETTERS[kind.dtype]:
+        raise TypeError(f"wanted {kind.name}, got {value.ndim} dimensions of {value.dtype}")
+    if not value.flags.c_contiguous:
+        raise TypeError("an array must be contiguous")
+    return (0, 0, value.size, 8, value.ctypes.data, *value.shape, *value.strides)
+
+
+# --- files -----------------------------------------------------------------------------------
+
+
+def _read(path: Path) -> tuple[str, bytes] | None:
+    """Symbol and object file; None where there is none, a damaged one or not one of the user's."""
+    try:
+        digest, symbol, objects = kept.content(path).split(b"\n", 2)
+    except (OSError, ValueError):
+        return None
+    if _digest(symbol, objects) != digest:
+        return None
+    return symbol.decode(), objects
+
+
+def _digest(symbol: bytes, objects: bytes) -> bytes:
+    return hashlib.sha256(symbol + b"\n" + objects).hexdigest().encode()
+
+
+# --- LLVM's loader ---------------------------------------------------------------------------
+
+
+@cache
+def _engine() -> Any:
+    """The loader: an execution engine with nothing in it."""
+    import llvmlite.binding as llvm
+
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_default_triple().create_target_machine(jit=True)
+    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+
+
+def _loaded(symbol: str, objects: bytes) -> int:
+    """Put an object file into memory; the address of a function of it."""
+    import llvmlite.binding as llvm
+
+    engine = _engine()
+    engine.add_object_file(llvm.ObjectFileRef.from_data(objects))
+    engine.finalize_object()
+    address = engine.get_function_address(symbol)
+    if not address:
+        raise FileError(f"no '{symbol}' in the machine code that was kept")
+    return int(address)

@@ -1,0 +1,167 @@
+"""What the words of scenario files mean: elements, sections, keys, from the specs themselves."""
+
+import sys
+from collections.abc import Iterator
+from typing import Any, get_args
+
+from trsim import elements
+from trsim.errors import UsageError, known
+from trsim.fields import Spec
+from trsim.scenario.load import unit_of
+from trsim.scenario.meanings import description, meanings
+from trsim.scenario.scenario import Scenario
+from trsim.scenario.schema import schema
+
+SIGNS = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
+TYPES = {"integer": "whole number", "string": "text", "boolean": "true or false", "null": ""}
+
+Page = dict[str, Any]
+
+
+def explained(word: str | None = None) -> dict[str, list[Page]]:
+    """All elements, sections and keys that a word names; without a word, all there are.
+
+    A key is named by its place, `limit_stop.wall.normal`, or by the end of it, `normal`; the keys
+    of a mapping come with it.  Raises UsageError for a word nobody knows.
+    """
+    of = schema()["$defs"]
+    kinds = [_element(name, section, of) for name, section in elements.ELEMENTS.items()]
+    sections = [_section(name, rule, of) for name, rule in of["Scenario"]["properties"].items()]
+    keys = [key for page in (*kinds, *sections) for key in page["keys"]]
+    if word is not None:
+        words = [page["word"] for page in (*kinds, *sections)]
+        words += [key["place"].rpartition(".")[2] for key in keys]
+        words += [key["place"] for key in keys]
+        kinds = [page for page in kinds if page["word"] == word]
+        sections = [page for page in sections if page["word"] == word]
+        keys = [key for key in keys if f".{word}." in f".{key['place']}."]
+        whole = {f"{page['word']}." for page in (*kinds, *sections)}  # these show their keys
+        keys = [key for key in keys if not key["place"].startswith(tuple(whole))]
+        if not (kinds or sections or keys):
+            raise UsageError(f"nothing is called '{word}'", known(word, words))
+    return {"elements": kinds, "sections": sections, "keys": keys}
+
+
+def _element(word: str, section: str, of: dict[str, Any]) -> Page:
+    element = elements.load(word)
+    spec: Any = element.spec
+    # gravity has no entry: the scenario's key of its name makes it
+    keys = list(_keys(word, of[spec.__name__], of, spec)) if section else []
+    recorded = (*element.channels, *element.reactions)
+    return {
+        "word": word,
+        "section": section or word,
+        "law": (sys.modules[f"trsim.elements.{word}"].__doc__ or "").strip(),
+        "about": description(spec),
+        "keys": keys,
+        "coordinate": element.coordinate or None,
+        "channels": [_channel(channel) for channel in recorded],
+        "example": element.example.strip(),
+    }
+
+
+def _channel(channel: Any) -> Page:
+    units = dict.fromkeys(channel.unit_on(own) for own in ("rad", "m"))
+    return {
+        "name": f"NAME.{channel.name}" if channel.name else "NAME",
+        "unit": " or ".join(units),
+        "size": channel.size,
+        "meaning": channel.meaning,
+    }
+
+
+def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
+    [key] = _keys("", {"properties": {word: rule}}, {}, Scenario)
+    held = _held(Scenario, word)
+    keys = _keys(word, of[held.__name__], of, held) if held else _keys(word, rule, of)
+    module = sys.modules[held.__module__] if held and _is_element(held) else None
+    law = module.__doc__ if module else ""
+    return {
+        "word": word,
+        "about": key["meaning"],
+        "law": (law or "").strip(),
+        "type": key["type"],
+        "unit": key["unit"],
+        "elements": [kind for kind, of in elements.ELEMENTS.items() if of == word],
+        "keys": list(keys),
+        "example": getattr(module, "EXAMPLE", "").strip(),
+    }
+
+
+def _is_element(spec: type[Spec]) -> bool:
+    """Whether its module tells a law."""
+    return spec.__module__.startswith(f"{elements.__name__}.")
+
+
+def _keys(
+    place: str, entry: dict[str, Any], of: dict[str, Any], spec: type[Spec] | None = None
+) -> Iterator[Page]:
+    """The keys of a mapping, each followed by those of the mapping it holds."""
+    meaning = meanings(spec) if spec else {}
+    for name, rule in entry.get("properties", {}).items():
+        here = f"{place}.{name}"
+        unit, held = unit_of(spec, name), _held(spec, name)
+        default = rule.get("default")
+        yield {
+            "place": here,
+            "meaning": meaning.get(name) or rule["description"],
+            "type": worded(rule),
+            "unit": unit.text if unit else None,
+            "required": name in entry.get("required", ()),
+            "default": None if isinstance(default, dict) else default,
+        }
+        if held and of:
+            yield from _keys(here, of[held.__name__], of, held)
+    others = entry.get("additionalProperties")
+    if isinstance(others, dict) and "description" in others:  # keys the user names
+        yield from _keys(place, {"properties": {"NAME": others}}, of)
+
+
+def _held(spec: type[Spec] | None, key: str) -> type[Spec] | None:
+    """The spec of the mapping, or of the named mappings, that a key holds."""
+    field = spec.model_fields.get(key) if spec else None
+    parts = [field.annotation] if field else []
+    for part in parts:
+        if isinstance(part, type) and issubclass(part, Spec):
+            return part
+        parts += get_args(part)
+    return None
+
+
+# --- types in words --------------------------------------------------------------------------
+
+
+def worded(rule: dict[str, Any]) -> str:
+    """What a rule of the JSON Schema allows.  A number is also a quantity or an expression."""
+    if "enum" in rule:
+        return " | ".join(map(str, rule["enum"]))
+    if "anyOf" in rule:
+        return _any(rule["anyOf"])
+    if "$ref" in rule:
+        return "mapping"
+    if rule.get("const") is False:
+        return "false"
+    if rule.get("type") == "object":
+        return "mapping of names" if rule.get("additionalProperties") else "mapping"
+    if rule.get("type") == "array":
+        return _list(rule)
+    bounds = ", ".join(f"{sign} {rule[key]:g}" for key, sign in SIGNS.items() if key in rule)
+    return f"{TYPES.get(rule.get('type', ''), rule.get('type', 'anything'))} {bounds}".strip()
+
+
+def _any(rules: list[dict[str, Any]]) -> str:
+    if [rule.get("type") for rule in rules[:3]] == ["number", "string", "object"]:
+        return "number, expression or table"
+    words = list(filter(None, dict.fromkeys(map(worded, rules))))
+    if any(word.startswith("number") for word in words):
+        words = [word for word in words if word != "text"]
+    return " or ".join(words)
+
+
+def _list(rule: dict[str, Any]) -> str:
+    items = [worded(item) for item in rule.get("prefixItems", ())]
+    if not items:
+        return f"list of {worded(rule['items'])}"
+    if items == ["number"] * 3 and rule["minItems"] == 2:
+        return "[x, y] or [x, y, z]"
+    return f"[{', '.join(items)}]" if len(items) < 3 else f"{len(items)} numbers"

@@ -1,0 +1,41 @@
+"""What scenarios that are much alike have in common, read once."""
+
+import json
+import re
+from typing import Any
+
+from trsim.scenario.merge import merged
+from trsim.scenario.unfolded import Scope
+
+
+class Memory:
+    """Specs that were made already; see scenario/load.py.  data: of one of the scenarios."""
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self.made: dict[tuple, Any] = {}
+        self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
+        self.joined: dict[tuple[int, int], tuple[Any, Any, Any]] = {}
+        templates = data.get("templates")
+        of = [data, *(templates.values() if isinstance(templates, dict) else ())]
+        given = [one.get("parameters") for one in of if isinstance(one, dict)]
+        names = {name for one in given if isinstance(one, dict) for name in one}
+        self.word = re.compile("|".join(rf"\b{name}\b" for name in names) or r"(?!)")
+
+    def key(
+        self, section: str, data: Any, parameters: dict[str, float], scope: Scope | None
+    ) -> tuple:
+        """Of a piece of data: its text, the values of the parameters that the text names, and what
+        the text means where it stands."""
+        if id(data) not in self.pieces:
+            text = json.dumps(data)
+            self.pieces[id(data)] = data, text, sorted(set(self.word.findall(text)))
+        _, text, names = self.pieces[id(data)]
+        means = (scope.frame, *scope.names.items()) if scope else ()
+        return section, text, means, *(parameters.get(name) for name in names)
+
+    def merged(self, base: Any, over: Any) -> Any:
+        """One piece of data overridden by another; the same piece for the same two."""
+        key = id(base), id(over)
+        if key not in self.joined:
+            self.joined[key] = base, over, merged(base, over)
+        return self.joined[key][2]

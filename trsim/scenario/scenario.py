@@ -1,0 +1,288 @@
+"""What a scenario may contain, section by section.
+
+The elements bring their own specs: the word after `type:` says which, and only those that a
+scenario uses are imported.
+"""
+
+from collections.abc import Iterable
+from functools import partial
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
+
+from annotated_types import Ge, Gt, Interval
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
+
+from trsim import elements
+from trsim.elements.contact_law import ContactLaw
+from trsim.errors import Place, ScenarioError, closest, described, edits, known
+from trsim.fields import Flag, Spec, Unit, vector
+from trsim.scenario import shown
+from trsim.scenario.event import Event
+from trsim.scenario.initial import Initial, initial_of
+from trsim.scenario.limits import Limits
+from trsim.scenario.sections import PhasePortrait, PoincareSection
+from trsim.scenario.template import Instance, Template
+from trsim.scenario.text import Tree
+from trsim.scenario.unfolded import Entry, Unfolded
+from trsim.units import quantity
+
+METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
+           "scipy:BDF", "scipy:Radau", "scipy:RK45")  # fmt: skip
+DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
+
+Seconds = Annotated[float, Gt(0), Unit("s")]
+# s, of a run.  The solver takes what is below 1e-60 (m, m/s, J; NOTHING of solve/march/land.py) for
+# none: 1 m/s^2 moves a body from rest by as much in 1.4e-30 s, and the first step is shorter than a
+# run.  From 1e-26 s on nothing is lost of that motion; the rest is for accelerations down to
+# 1e-12 m/s^2
+SHORTEST = 1e-20
+Rate = Annotated[float, Ge(0), Unit("1/s")]
+EMPTY: Any = Field(default_factory=dict)
+
+
+# --- elements --------------------------------------------------------------------------------
+
+
+def _Element(section: str) -> BeforeValidator:
+    """Makes an entry of a section a spec, of the class that its `type` names."""
+    return BeforeValidator(partial(_element, section))
+
+
+def _element(section: str, data: Any, info: Any) -> Any:
+    context, scope = info.context or {}, None
+    if isinstance(data, Entry):
+        data, scope = data
+        context = {**context, **scope._asdict()}
+    if not isinstance(data, dict):
+        raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
+    memory, key = context.get("memory"), ()
+    if memory is not None:
+        key = memory.key(section, data, context["parameters"], scope)
+        if key in memory.made:
+            return memory.made[key]
+    spec: Any = elements.load(word(section, data)).spec
+    rest = {key: value for key, value in data.items() if key != "type"}
+    made = spec.model_validate(rest, context=context)
+    if memory is not None:
+        memory.made[key] = made
+    return made
+
+
+def word(section: str, data: dict) -> str:
+    """Which element an entry of a section is."""
+    words = [name for name, of in elements.ELEMENTS.items() if of == section]
+    named = data.get("type", DEFAULT.get(section))
+    if named is None:
+        near = [key for key in data if edits(key, "type") == 1]
+        if near:
+            raise ScenarioError(
+                f"unknown key {described(near[0])}", "Did you mean 'type'?", (near[0],)
+            )
+        raise ScenarioError("field required: type", known("", words))
+    if not isinstance(named, str) or named not in words:
+        what = f"unknown type {described(named)}"
+        raise ScenarioError(what, known(named, words), ("type",))
+    if named == "revolute" and any(edits(key, "clearance") <= 1 for key in data):
+        return "clearance_joint"
+    return named
+
+
+def _event(data: Any, info: Any) -> Any:
+    """The event of an instance, read as it is meant there; others as they are."""
+    if not isinstance(data, Entry):
+        return data
+    return Event.model_validate(data.data, context={**(info.context or {}), **data.scope._asdict()})
+
+
+# --- sections --------------------------------------------------------------------------------
+
+
+class Baumgarte(Spec):
+    """Constraint stabilisation: phi'' + 2 alpha phi' + beta^2 phi = 0.
+
+    alpha  rate of decay
+    beta   frequency
+    """
+
+    type: ClassVar[str] = "baumgarte"
+    alpha: Rate
+    beta: Rate
+
+
+class SolverSpec(Spec):
+    """How, how far and how exactly the motion is integrated.
+
+    method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
+                   two or three digits of stiff motion; rk4 has fixed steps; scipy's are
+                   independent checks
+    formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
+                   stabilised index 2 with sparse matrices; found out unless given
+    end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
+    step           of rk4
+    tolerance      error of a step, relative to the size of clearances or of bodies
+    stabilisation  how joints are kept closed
+    baumgarte      rates of that stabilisation
+    first_step     found out unless given
+    max_step       largest step; what is smooth and shorter than a 200th of the run needs it
+    max_steps      the run fails after as many
+    locate_events  end steps exactly where contacts open or close; rk4 does so only if told
+    force          go on where a fixed step is known to be too large
+    """
+
+    type: ClassVar[str] = "solver"
+    method: Literal[METHODS] = "auto"  # type: ignore[valid-type]
+    formulation: Literal["index1", "ggl"] | None = None
+    end: Seconds | None = None
+    step: Seconds | None = None
+    tolerance: Annotated[float, Interval(ge=1e-14, le=1e-1), Unit("-")] = 1e-8
+    stabilisation: Literal["projection", "baumgarte", "none"] = "projection"
+    baumgarte: Baumgarte | None = None
+    first_step: Seconds | None = None
+    max_step: Seconds | None = None
+    max_steps: Annotated[int, Gt(0)] | None = None
+    locate_events: Flag | None = None
+    force: Flag = False
+
+    @model_validator(mode="after")
+    def consistent(self) -> "SolverSpec":
+        if self.end is not None and self.end < SHORTEST:
+            what = f"a run of {self.end:.3g} s is shorter than any motion that can be told"
+            hint = (
+                "What is below 1e-60 m, m/s or J counts as nothing, and in so short a time a body "
+                f"may move by less: give at least {SHORTEST:g} s, and check the unit."
+            )
+            raise ScenarioError(what, hint, ("end",))
+        if self.method == "rk4" and self.step is None:
+            raise ScenarioError("method rk4 needs a step", "Write for example `step: 1e-5`.")
+        if self.baumgarte is not None and self.stabilisation != "baumgarte":
+            hint = "Write `stabilisation: baumgarte` as well."
+            raise ScenarioError("baumgarte is not the stabilisation", hint, ("baumgarte",))
+        if self.formulation is not None and self.method not in ("radau", "auto"):
+            hint = f"Method {self.method} has one formulation only: leave it out."
+            raise ScenarioError("formulation is a choice of radau and auto", hint, ("formulation",))
+        if self.formulation == "ggl" and self.stabilisation == "baumgarte":
+            hint = "Its positions and velocities are held by multipliers: leave one of the two out."
+            raise ScenarioError("ggl needs no baumgarte", hint, ("formulation",))
+        return self
+
+
+class OutputSpec(Spec):
+    """What is recorded, and how often.
+
+    every     simulated time between two rows; end/1000 unless given
+    channels  names, patterns such as 'B.*', or names of elements; all but *.rotation unless given
+    """
+
+    type: ClassVar[str] = "output"
+    every: Seconds | None = None
+    channels: tuple[str, ...] = ("*",)
+
+
+class Source(NamedTuple):
+    """What a scenario was read from."""
+
+    text: str  # as given
+    files: dict[str, str]  # name -> sha256: the scenario, what it extends, tables
+
+
+class Scenario(Spec):
+    """A mechanism and a load case, checked and in SI units; nothing changes it any more.
+
+    title            a line for figures and tables
+    planar           whether the motion stays in the x-y plane; found out unless given
+    gravity          acceleration of a free fall
+    parameters       named numbers that every number may use: `velocity: 2*speed`
+    bodies           what has mass
+    joints           what holds bodies together
+    drives           prescribed motion of joints
+    sensors          angles and strokes with a name, for loads, expressions and plots
+    forces           what acts on bodies
+    contact_laws     laws of clearance joints, by name
+    initial          how the mechanism starts, where that is not as drawn with the drives at speed
+    solver           how, how far and how exactly the motion is integrated
+    output           what is recorded, and how often
+    phase_portraits  one channel against another
+    poincare         two channels where the motion passes a surface: crossings, a period, touches
+    events           what happens where a sensor, or the time, crosses a value
+    templates        parts of the mechanism described once, put in place by instances
+    instances        templates put in place; entry `door` of instance `left` is left_door
+    limits           how many bodies, rows, nodes and entries there may be
+    phases           kept for load steps; not used yet
+    cases            named overrides, each a scenario of a sweep; not used by `run`
+    sweep            values of keys to vary, by dotted path; not used by `run`
+    report           units of figures and tables: `units: {angle: deg, length: mm}`
+    """
+
+    title: str = ""
+    planar: Flag | None = None
+    gravity: vector("m/s^2") = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
+    parameters: dict[str, float] = EMPTY
+    bodies: dict[str, Annotated[Any, _Element("bodies")]] = EMPTY
+    joints: dict[str, Annotated[Any, _Element("joints")]] = EMPTY
+    drives: dict[str, Annotated[Any, _Element("drives")]] = EMPTY
+    sensors: dict[str, Annotated[Any, _Element("sensors")]] = EMPTY
+    forces: dict[str, Annotated[Any, _Element("forces")]] = EMPTY
+    contact_laws: dict[str, ContactLaw] = EMPTY
+    initial: Annotated[Any, BeforeValidator(initial_of)] = Initial()
+    solver: SolverSpec = SolverSpec()
+    output: OutputSpec = OutputSpec()
+    phase_portraits: dict[str, PhasePortrait] = EMPTY
+    poincare: dict[str, PoincareSection] = EMPTY
+    events: dict[str, Annotated[Event, BeforeValidator(_event)]] = EMPTY
+    templates: dict[str, Template] = EMPTY
+    instances: dict[str, Instance] = EMPTY
+    limits: Limits = Limits()
+    phases: Any = None
+    cases: dict[str, Any] = EMPTY
+    sweep: dict[str, Any] = EMPTY
+    report: Annotated[dict[str, Any], AfterValidator(shown.report)] = EMPTY
+
+    _tree: Tree = PrivateAttr()
+    _unfolded: Unfolded = PrivateAttr()
+    _text: str = PrivateAttr()
+
+    @property
+    def source(self) -> Source:
+        return Source(self._text, self._tree.files)
+
+    @property
+    def resolved(self) -> dict[str, Any]:
+        """The plain data after extends, tables and --set: JSON and YAML can hold it."""
+        return self._tree.data
+
+    def place(self, path: tuple) -> Place | None:
+        """Where in the files a path of the scenario stands."""
+        return self._unfolded.place(path)
+
+    def quantity(self, *path: str) -> tuple[float, str] | None:
+        """The quantity written at the path of an entry, and its unit; None where none is."""
+        raw = self._unfolded.value(path)
+        scope = self._unfolded.scope(path)
+        names = {"t", *(scope.parameters if scope else self.parameters)}  # 1/t is none per tonne
+        return quantity(raw, names) if isinstance(raw, str) else None
+
+    @property
+    def bare(self) -> tuple[str, ...]:
+        """What is said of the columns of CSV files that have no unit."""
+        return tuple(
+            f"{'.'.join(map(str, path))}: {columns} without a unit: read as SI; a title such as "
+            f"`force [kN]` tells it"
+            for path, columns in self._tree.bare.items()
+        )
+
+    def written(self, path: tuple) -> tuple:
+        """Where in the files the path of an entry is written: of an instance, in its template."""
+        return self._unfolded.written(path)
+
+    def meant(self, path: Iterable[str]) -> tuple[str, ...]:
+        """The path of an entry, for one that leads to it through a template or an instance."""
+        return self._unfolded.meant(path)
+
+
+def suggestion(name: str, spec: type[Spec], present: dict) -> tuple[str | None, str]:
+    """The key that was probably meant in a mapping of this spec, and the whole hint."""
+    keys = [*spec.model_fields]
+    keys += ["extends"] if spec is Scenario else []
+    keys += ["type"] if spec.type in elements.ELEMENTS else []
+    keys += ["clearance"] if spec.type == "revolute" else []
+    close = closest(name, [key for key in keys if key not in present]) or closest(name, keys)
+    return close, known(name, keys, close)

@@ -1,0 +1,111 @@
+"""Whether a run without projection knows its way where branches of the motion meet.
+
+At delta from such a place the branches are apart by some delta^2, and so is the smallest pivot of S
+from nothing.  Rows that are open by as much join the branches to one curve that turns from one into
+the other: which way a run goes is then a matter of what the rows are off by, and a run with an open
+book and small residuals may be wrong in all of its numbers.
+
+Of rows open by much less the way is sure, but not all of its numbers: what is open by e moves the
+mechanism by e / delta, and since delta changes with the motion, accelerations by e / delta^3 of the
+square of the rates.  What they would be with the joints closed is looked at where delta is small,
+up to where all that is measured is closed anyway (DOUBTFUL, land.py).
+"""
+
+from collections.abc import Iterator
+from typing import Any
+
+from trsim.assemble.beside import factors_again, plain_pivot, speed, unit
+from trsim.assemble.equations import evaluate
+from trsim.assemble.linear import TINY, smallest_pivot
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.projection import DOUBTFUL, poses_and_rows, project_velocities
+from trsim.elements.contract import compiled
+from trsim.kernels.vectors import copy_to, internal
+from trsim.solve.diagnose.locked import dependent
+from trsim.solve.march.calls import LOOK
+from trsim.solve.march.openings import closed, look, opening
+from trsim.solve.march.record import FELT, FELT_T, LOST, MET, Record, T
+
+AS_FAR = 0.03  # of the pivot: runs on the right branch had 0.005, on the wrong one 0.07
+NEARLY = 0.3  # pivots of rows that nearly depend on each other
+# times the tolerance: rows that are open by less are not felt; what accelerations feel and is told
+LITTLE, TOLD = 1e-3, 10.0
+
+
+@compiled(LOOK)
+def look_at_drift(s, r, b, setting, t, y, step):
+    """`look` of openings.py, whether the run has lost its way at the end of a step, and what
+    accelerations feel of open rows."""
+    felt = 0
+    if step == 1:
+        pivot, worst = max(smallest_pivot(s), TINY), 0.0
+        for row in range(s.m):
+            worst = max(worst, opening(s, row))
+        if worst > AS_FAR * pivot and worst > AS_FAR * plain(s):
+            r.count[LOST] = 1
+        felt = int(DOUBTFUL < pivot <= NEARLY and worst > LITTLE * s.tolerance)
+    went = look(s, r, b, setting, t, y, step)
+    if felt > 0:
+        if went > 0:
+            evaluate(s, t, y, b.rough[1])
+        feel(s, r, b, t, y)
+    return max(felt, went)
+
+
+@internal
+def plain(s):
+    """The smallest pivot, whatever the masses: small ones of theirs say nothing of branches."""
+    smallest = plain_pivot(s)
+    factors_again(s)
+    return max(smallest, TINY)
+
+
+@internal
+def feel(s, r, b, t, y):
+    """Into the record by how much accelerations, which are those of the last evaluation, would be
+    others with the rows closed: of the largest, or of the square of the fastest rate so far."""
+    kept, clock = b.rough[2], r.clock
+    for f in range(1, s.n_r):
+        for c in range(s.d):
+            kept[s.d * (f - 1) + c] = s.free[f, c]
+    copy_to(b.y2, y)
+    closed(s, t, b.y2)
+    poses_and_rows(s, t, b.y2)
+    project_velocities(s, b.y2)
+    fastest = max(speed(s), clock[MET] / s.size)
+    evaluate(s, t, b.y2, b.rough[1])
+    most, scale = 0.0, fastest * fastest
+    for f in range(1, s.n_r):
+        for c in range(s.d):
+            i = s.d * (f - 1) + c
+            most = max(most, abs(s.free[f, c] - kept[i]) / unit(s, i))
+            scale = max(scale, abs(kept[i]) / unit(s, i))
+    if most > clock[FELT] * scale:
+        clock[FELT], clock[FELT_T] = most / scale, t
+
+
+def lost_its_way(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Whose rows depend on each other where a run lost its way, and what to do, in words."""
+    names, _ = dependent(mechanism, float(r.clock[T]), r.y)
+    return (
+        f"branches of the motion meet here (rows of {', '.join(names)} depend on each other), and "
+        "joints are open by as much as the branches are apart, so which one the motion takes is "
+        f"chance; {REMEDY[scenario.solver.stabilisation]}"
+    )
+
+
+def of_drift(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+    """Rows that were open enough for accelerations to feel it where branches nearly meet."""
+    if r is not None and r.clock[FELT] > TOLD * scenario.solver.tolerance:
+        yield (
+            f"branches of the motion nearly meet at t = {r.clock[FELT_T]:.6g} s, where open "
+            f"joints change accelerations by {r.clock[FELT]:.2g} of the largest, and velocities "
+            "and forces to a lesser degree; "
+            f"{REMEDY[scenario.solver.stabilisation]}"
+        )
+
+
+REMEDY = {
+    "none": "use `stabilisation: projection`",
+    "baumgarte": "use `stabilisation: projection`, or larger rates and shorter steps",
+}

@@ -1,0 +1,99 @@
+"""Which element gives a value that is no number: each is evaluated alone, at one state."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import poses
+from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.elements.actuator import LENGTH
+from trsim.elements.prescribed import ENTRY
+from trsim.elements.scene import workspace
+from trsim.errors import ModelError
+from trsim.solve.diagnose.locked import locked
+from trsim.solve.diagnose.strained import ALMOST, NEARLY, collapsed
+from trsim.solve.march import record as rec
+from trsim.solve.march.record import Record
+
+Array = NDArray[np.float64]
+
+SHORT = 0.01  # of its length as drawn: an actuator that ends at nothing
+AHEAD = (1e-12, 1e-9, 1e-6, 1e-3)  # of the run: how far beyond a failure to look
+PLACES = ("F", "zd", "phi", "phi_t", "gamma")
+RANGE = "log or sqrt of something negative, 1/0, a table that ends"
+
+
+def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | None:
+    """The first element whose force or prescribed motion is not finite at (t, y)."""
+    w = workspace(mechanism.model)
+    w.mem[:] = mem
+    poses(w, y)
+    for e, instance in enumerate(mechanism.instances):
+        for place in PLACES:
+            getattr(w, place)[:] = 0.0
+        for word in ("force", "constraint"):
+            if (kernel := instance.element.kernels.get(word)) is not None:
+                kernel(t, w, e, e + 1)
+        if not all(np.all(np.isfinite(getattr(w, place))) for place in PLACES):
+            return instance
+    return None
+
+
+def refuse_no_number(mechanism: Mechanism, y: Array, mem: Array) -> None:
+    """Raises ModelError for an element whose force or motion is not finite at t = 0."""
+    found = blamed(mechanism, 0.0, y, mem)
+    if found is None:
+        return
+    what = "its force is" if found.section == "forces" else "its motion or acceleration is"
+    raise ModelError(
+        f"{what} not a finite number at t = 0",
+        f"is an expression outside its range: {RANGE}?",
+        (found.section, found.name),
+    )
+
+
+def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Why a run cannot go on, where the law of an element ends just ahead; else empty."""
+    if not np.all(np.isfinite(r.y)):
+        return ""
+    t, step = float(r.clock[rec.T]), scenario.solver.step or 0.0
+    for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
+        found = blamed(mechanism, t + ahead, r.y, r.mem)
+        if found is not None and found.section:
+            place = scenario.place((found.section, found.name))
+            where = f" ({place.show()})" if place else ""
+            return (
+                f"{found.section}.{found.name}{where} is not a finite number beyond t = {t:.6g} s: "
+                f"{RANGE}?"
+            )
+    return ""
+
+
+def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
+    """Which actuator has next to no length left, in words; empty where none is so short."""
+    w = workspace(mechanism.model)
+    poses(w, y)
+    for instance in mechanism.instances:
+        if instance.element.key != "actuator":
+            continue
+        length, stroke = instance.row.par[LENGTH], float(w.S[instance.row.con[ENTRY], 0])
+        if length + stroke < SHORT * length:
+            place = scenario.place((instance.section, instance.name))
+            where = f" ({place.show()})" if place else ""
+            return (
+                f"{instance.section}.{instance.name}{where}: a stroke of {stroke:.4g} m leaves a "
+                f"line of {length:.4g} m no length; limit its motion"
+            )
+    return ""
+
+
+def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Why a run cannot go on from its record, in words; empty where nothing is found."""
+    t = float(r.clock[rec.T])
+    return (
+        collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
+        or told(scenario, mechanism, r)
+        or drawn_in(scenario, mechanism, r.y)
+        or locked(mechanism, t, r.y)
+    )

@@ -1,0 +1,306 @@
+"""What speaks against believing a run: of its start and of how it went, each with its numbers.
+
+start      a position or a velocity is not the one that was given
+contacts   pressed in by more than their law is made for: a half width of the contact of half the
+           radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
+bars       strained by more than a linear law holds                                    strained.py
+bushings   turned to half a turn, beyond which theirs is the one from the other side
+shafts     that moved too slowly for the friction of their gears to be whole
+meshes     of bars bent further than their elements follow                           mesh_error.py
+waves      of bars that steps were too long to follow: no fault, but to be known
+rounding   steps were judged by what rounding lets be seen                       march/rounding.py
+vibrations are too small for the tolerance, but not their accelerations                   faint.py
+energy     the book of the run does not close
+hinges     that came apart with a drive or a lock on them                              unhinged.py
+branches   the run changed from one to another where they nearly meet                   crossed.py
+extremes   of forces are chance, next to where rows depend on each other                 chance.py
+rows       that were left out as redundant are open, though not so far that the run ended
+"""
+
+from collections.abc import Iterator
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.onward import undecided
+from trsim.assemble.reduce import world_rates
+from trsim.elements.bushing import TURN
+from trsim.elements.contract import STORED
+from trsim.elements.scene import PROJECTION, scene
+from trsim.solve.diagnose.adrift import of_drift
+from trsim.solve.diagnose.bar_scales import largest
+from trsim.solve.diagnose.chance import of_extremes
+from trsim.solve.diagnose.crossed import of_branches
+from trsim.solve.diagnose.faint import of_vibrations
+from trsim.solve.diagnose.mesh_error import of_meshes
+from trsim.solve.diagnose.skipped import unread
+from trsim.solve.diagnose.strained import of_bars
+from trsim.solve.diagnose.unhinged import of_hinges
+from trsim.solve.march.openings import apart
+from trsim.solve.march.record import JOLTS, ROUNDED_AT, ROUNDED_BY, Record, T
+from trsim.solve.outcome import NOTHING, Outcome, natural, whose
+from trsim.solve.start.bars import places
+from trsim.solve.start.consistent import Start
+from trsim.solve.start.projected import given_velocities, projected
+from trsim.statuses import WELL
+
+Array = NDArray[np.float64]
+
+MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits of a drawing
+VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
+CHANGED = 1e-3  # of a speed that was given
+OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
+WHOLE = 10.0  # turning speeds: from here on friction of gears is whole to half a per cent
+NEXT_TO_HALF = 0.1  # rad: so near to half a turn a bushing is told
+LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
+WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
+GIVEN = 1e-2  # of it: more done by projection says so too
+AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
+PASSED = 2.0  # periods of the fastest wave in a mean step
+TOLD = 3  # jumps of velocities, one by one
+OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
+
+
+def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, ...]:
+    """Sentences "section.name: what; what to do"."""
+    return (
+        *unread(scenario),
+        *of_start(scenario, mechanism, outcome.start),
+        *of_contacts(scenario, mechanism, outcome.peaks),
+        *of_bushings(mechanism, outcome.peaks),
+        *of_shafts(scenario, mechanism, outcome.peaks),
+        *of_meshes(scenario, mechanism, outcome.bent),
+        *of_bars(scenario, mechanism, outcome.peaks),
+        *of_waves(mechanism, outcome),
+        *of_rounding(scenario, mechanism, outcome),
+        *of_vibrations(scenario, mechanism, outcome),
+        *of_books(scenario, mechanism, outcome),
+        *of_rows(mechanism, outcome),
+        *of_hinges(mechanism, outcome.record),
+        *of_events(outcome),
+        *of_branches(mechanism, outcome.record),
+        *of_drift(scenario, mechanism, outcome.record),
+        *of_extremes(mechanism, outcome),
+    )
+
+
+def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]:
+    """Positions and velocities that had to give way to joints and drives."""
+    initial, p = scenario.initial, projected(mechanism, begun)
+    asked = initial.settles or initial.values  # then it is moved on purpose
+    if not asked and p.shift > MOVED * mechanism.model.size:
+        yield (
+            f"bodies.{p.shift_body}: starts {p.shift:.2g} m from where it is drawn, to meet joints "
+            "and drives at t = 0; correct the points"
+        )
+    elif not asked and p.turn > TURNED:
+        yield (
+            f"bodies.{p.turn_body}: starts turned by {p.turn:.2g} rad against the drawing, to meet "
+            "joints and drives at t = 0; correct the points"
+        )
+    rows = undecided(scene(mechanism.model), begun.y)
+    if rows:
+        names = dict.fromkeys(mechanism.rows[k].rpartition(".")[0] for k in rows)
+        yield (
+            f"joints.{next(iter(names))}: the run begins at rest where branches of the motion meet "
+            f"({', '.join(names)} depend on each other as drawn), and the forces ask for none of "
+            "them: which way it goes is not determined, nor are the accelerations there; give it a "
+            "velocity, or draw it a little on its way"
+        )
+    given = twists(mechanism, begun, given_velocities(mechanism, begun))
+    real = twists(mechanism, begun, world_rates(mechanism.model, begun.y).reshape(-1, 6))
+    for name in given:
+        for key, unit, part in VELOCITIES:
+            was, now = (v[name][part] for v in (given, real))
+            size = float(np.linalg.norm(was))
+            if np.linalg.norm(now - was) > CHANGED * size > 0.0:
+                yield (
+                    f"bodies.{name}.{key}: given as {vector(was, size)}, starts with "
+                    f"{vector(now, size)} {unit}, the nearest that joints and drives allow; give "
+                    "velocities that fit together"
+                )
+
+
+def twists(mechanism: Mechanism, begun: Start, rates: Array) -> dict[str, Array]:
+    """Velocity and angular velocity (6) of each body; of a flexible bar those of its chord."""
+    model = mechanism.model
+    found = {n: rates[f - 1] for n, f in mechanism.frames.items() if 0 < f < model.n_r}
+    for name, beam in mechanism.beams.items():
+        r, _ = places(mechanism, beam, begun.y)
+        first, last = rates[beam.first - 1, :3], rates[beam.first + beam.nodes - 2, :3]
+        chord = r[-1] - r[0]
+        spin = np.cross(chord, last - first) / (chord @ chord)
+        found[name] = np.concatenate([0.5 * (first + last), spin])
+    return found
+
+
+def vector(v: Array, size: float) -> str:
+    """Three numbers; what is nothing to a size is rounding."""
+    return "[" + ", ".join(f"{x if abs(x) > 1e-9 * size else 0.0:.4g}" for x in v) + "]"
+
+
+def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """Journals that went deeper than their law holds."""
+    column = {c.name: c.start for c in mechanism.columns}
+    for name, joint in scenario.joints.items():
+        if f"{name}.penetration" not in column or joint.type != "clearance_joint":
+            continue
+        depth, when = peaks[column[f"{name}.penetration"], :2].tolist()
+        law = scenario.contact_laws.get(joint.contact) or next(iter(scenario.contact_laws.values()))
+        c, R = joint.clearance, law.bearing_radius or np.inf
+        # the cylinder's law knows how far a contact wraps around its pin
+        if depth > OF_RADIUS * R or (depth > OF_CLEARANCE * c and law.stiffness != "cylinder"):
+            radius = (
+                f" and {depth / R:.2g} of the radius ({1e3 * R:.3g} mm)" if np.isfinite(R) else ""
+            )
+            yield (
+                f"joints.{name}: the journal is pressed in by {1e3 * depth:.3g} mm at "
+                f"{when:.4g} s, {depth / c:.2g} of the clearance ({1e3 * c:.3g} mm){radius}; its "
+                f"law holds to about {OF_CLEARANCE:g} and {OF_RADIUS:g} of them: check stiffness, "
+                "moduli and loads"
+            )
+
+
+def of_bushings(mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """Bushings whose moment jumps, or is about to: turns in space cannot be counted."""
+    model, column = mechanism.model, {c.name: c.start for c in mechanism.columns}
+    for instance in mechanism.instances:
+        if instance.element.key != "bushing" or not instance.element.judged(instance.row):
+            continue
+        at = model.vector.tolist().index(column[f"{instance.name}.{TURN}"])
+        angle, when = peaks[model.n_out + at, :2].tolist()
+        if angle > pi - NEXT_TO_HALF:
+            yield (
+                f"forces.{instance.name}: turned by {degrees(angle):.4g} deg at {when:.4g} s; from "
+                "half a turn on its moment is that of the turn from the other side, since turns "
+                "about any axis cannot be counted: a torsion_spring on a hinge counts them"
+            )
+
+
+def of_shafts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """Shafts whose pistons are slow beside the speed over which their friction turns round."""
+    column = {c.name: c.start for c in mechanism.columns}
+    for name, shaft in scenario.forces.items():
+        if shaft.type != "sync_shaft" or shaft.efficiency == 1.0:
+            continue
+        speeds = peaks[[column[f"{one}.velocity"] for one in shaft.actuators]]
+        fastest = float(np.abs(speeds[:, [0, 2]]).max())
+        if 0.0 < fastest < WHOLE * shaft.turning_speed:
+            yield (
+                f"forces.{name}.turning_speed: its actuators move with at most {fastest:.3g} m/s, "
+                f"and friction of its gears turns round over {shaft.turning_speed:g} m/s: it is "
+                f"not whole below {WHOLE:g} times that; give a smaller one"
+            )
+
+
+def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """Motion of flexible bars that implicit steps went past: it is damped out, not followed."""
+    if outcome.record is None:
+        return
+    energy = outcome.peaks[mechanism.model.column_energy :, 0]
+    if energy[0] <= AT_REST * np.max(np.abs(energy[1 : 1 + len(STORED)])):
+        return
+    steps, end = outcome.statistics["steps"], float(outcome.record.clock[T])
+    for name, beam in mechanism.beams.items():
+        cells = (beam.length, beam.nodes - 1)
+        fastest = largest(beam.stiffness, beam.bending, beam.per_length, *cells)
+        if steps and end / steps > PASSED * 2.0 * pi / fastest:
+            yield (
+                f"bodies.{name}: steps of {end / steps:.2g} s on average passed over its fastest "
+                f"waves ({fastest / (2.0 * pi):.2g} Hz) where the tolerance let them; a smaller "
+                f"tolerance, or `max_step: {1.0 / fastest:.1g} s`, follows them"
+            )
+
+
+def of_jumps(mechanism: Mechanism, r: Record) -> Iterator[str]:
+    """Rates of drives that jumped, with the impulses they meant."""
+    many = int(r.count[JOLTS])
+    for t, e, rate, impulse, work in r.jolt[: min(many, TOLD)].tolist():
+        instance = mechanism.instances[int(e)]
+        turn, of = ("rad/s", "N*m*s") if instance.row.turns else ("m/s", "N*s")
+        yield (
+            f"drives.{instance.name}: its velocity jumps by {rate:.4g} {turn} at t = {t:.6g} s: an "
+            f"impulse of {impulse:.4g} {of}, which does {work:.4g} J (energy.work.events)"
+        )
+    if many > TOLD:
+        yield f"velocities of drives jump {many - TOLD} times more: see the table of events"
+
+
+def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """A tolerance below what the arithmetic can tell."""
+    rounded = outcome.statistics.get("rounding_of_tolerance", 0.0)
+    if rounded <= 1.0 or outcome.record is None:
+        return
+    what = whose(mechanism, int(outcome.record.clock[ROUNDED_AT]))
+    much, inside = outcome.record.clock[ROUNDED_BY], f" in {what}" if what else ""
+    yield (
+        f"solver.tolerance: rounding makes up to {much:.2g} (SI) of a step{inside}, {rounded:.2g} "
+        f"times what {scenario.solver.tolerance:g} allows; such steps were held to the rounding "
+        "instead, since shorter ones are no better.  A larger tolerance costs less and loses "
+        "nothing there; masses, inertias or stiffnesses far apart and places far from the origin "
+        "are what makes it large"
+    )
+
+
+def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """An open energy book, work of the projection, open joints; nothing of what is at rest."""
+    numbers = outcome.statistics
+    least = NOTHING * natural(mechanism.model, outcome.start)
+    work = abs(numbers.get("work_of_projection", 0.0))
+    lost = numbers.get("energy_residual_relative", 0.0)
+    if lost > LOST:
+        hidden = "rounding_of_tolerance" in numbers
+        smaller = "make `step` smaller" if scenario.solver.step else "tighten `tolerance`"
+        remedy = "rounding has its part in it" if hidden else smaller
+        yield (
+            f"the energy book does not close, by {100 * lost:.2g} % of the largest energy "
+            f"exchanged; {remedy}"
+        )
+    off = numbers.get("work_error_relative", 0.0)
+    if outcome.record is not None and np.any(outcome.record.worked) and off > WORKS:
+        yield (
+            "steps are so long that the works of the energy book are wrong by about "
+            f"{100 * off:.2g} % of the largest energy exchanged, however well it closes: make "
+            "`step` smaller"
+        )
+    if outcome.record is not None:
+        yield from of_jumps(mechanism, outcome.record)
+    given = numbers.get("work_of_projection_relative", 0.0)
+    if given > GIVEN and work > least and outcome.status in WELL:
+        bends = (
+            "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
+            "the way may be those of the other branch?  "
+            if mechanism.model.near_rows > 0.0
+            else ""
+        )
+        yield (
+            f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
+            f"largest energy exchanged; does a drive jump?  {bends}"
+            "Else `tolerance` or the step is too coarse"
+        )
+    apart = numbers.get("joints_open_relative", 0.0)
+    if apart > OPEN and mechanism.model.stabilisation != PROJECTION:
+        yield (
+            f"joints were open by up to {apart:.2g} of the mechanism's size; "
+            "`stabilisation: projection` closes them"
+        )
+
+
+def of_events(outcome: Outcome) -> Iterator[str]:
+    """Steps in which a touch or an event could not be excluded."""
+    if n := outcome.statistics.get("unproved_searches", 0):
+        yield (
+            f"solver.max_step: in {n:.0f} steps a touch or an event may have been passed over, "
+            "because a gap stays next to zero all along; take a shorter `max_step`"
+        )
+
+
+def of_rows(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """Redundant rows that were open by more than the accuracy asked for."""
+    if outcome.record is None or outcome.status not in WELL:
+        return
+    if text := apart(mechanism, outcome.record):
+        yield text

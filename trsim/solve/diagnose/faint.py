@@ -1,0 +1,53 @@
+"""Vibrations too small for the tolerance to be seen, with accelerations that are not small.
+
+An amplitude A beside a motion of the size L at w times its rate has w^2 A/L of the accelerations.
+With A below the tolerance and w in the thousands steps are not held to them (accelerations.py),
+since rounding would make them; the largest estimate of such a step is told here instead.
+"""
+
+from collections.abc import Iterator
+from math import pi
+from typing import Any
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.solve.march.accelerations import ALLOWED
+from trsim.solve.march.record import BLURRED, BLURRED_W, GAIN
+from trsim.solve.outcome import Outcome
+
+TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
+ADDS = 0.1  # of the tolerance that leaves ALLOWED in one step: errors add up
+NOTHING = 1e-9  # of what the speed expected takes on the mechanism's size: at rest
+FINEST = 1e-11  # tolerance: less leaves what rounding makes of such accelerations
+
+
+def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """What a step leaves in accelerations, how fast that turns, and the tolerance it takes.
+
+    Nothing where all of them are nothing; no more than their size where rounding is told of.
+    """
+    if outcome.record is None:
+        return
+    off, w, largest = (float(outcome.record.clock[k]) for k in (BLURRED, BLURRED_W, GAIN))
+    tolerance = scenario.solver.tolerance
+    natural = outcome.start.speed**2 / mechanism.model.size
+    if not off > TOLD * tolerance * largest or largest < NOTHING * natural:
+        return
+    known = (
+        "solver.tolerance: accelerations, and with them forces, may be off by "
+        f"{min(off / largest, 1.0):.1g} of the largest in a single step"
+    )
+    if outcome.statistics.get("rounding_of_tolerance", 0.0) > 1.0:
+        yield f"{known}, and no tolerance changes that: the digits of a number end there"
+        return
+    finer = ADDS * tolerance * ALLOWED * tolerance * largest / off
+    at = f" at about {w / (2.0 * pi):.2g} Hz" if w > 0.0 else ""
+    remedy = (
+        f"`tolerance: {finer:.0e}` holds them"
+        if finer >= FINEST
+        else "no tolerance holds them, since rounding is next; soften or damp what vibrates "
+        "(`stiffness`, `compliance`, `damping`), or run it by itself"
+    )
+    yield (
+        f"{known}, and by more over many: something vibrates{at}, too little for a tolerance of "
+        f"{tolerance:g} to follow, but its accelerations are not small; {remedy}"
+    )

@@ -1,0 +1,18 @@
+"""Drives and locks that hold nothing: their hinge in space came apart (assemble/stages.py)."""
+
+from collections.abc import Iterator
+
+from trsim.assemble.mechanism import Mechanism
+from trsim.solve.march.record import Record
+
+
+def of_hinges(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+    """Each of them as the run ended, and what to do."""
+    if r is None:
+        return
+    for (section, name), joint in mechanism.stages.without_hinge(r.stage):
+        what = f"drives.{name}:" if section == "drives" else f"joints.{joint}: its lock"
+        yield (
+            f"{what} holds nothing once an event has released the hinge '{joint}': apart, it has "
+            "no angle in space; a `bushing` between the bodies keeps them from turning further"
+        )

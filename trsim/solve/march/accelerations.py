@@ -1,0 +1,140 @@
+"""The error of accelerations, where it says more than that of places and velocities.
+
+A small vibration beside a larger, slower motion has places and speeds that are little of the
+largest, and may have all of the acceleration.  What an error (x, v) of a step makes of it is
+
+    a = w sqrt(w^2 |x|^2 + |v|^2)            turned by the phase, of the same size in any
+
+at the frequency w of what the error consists of.  With a sum D of stages that leaves nothing of
+what is slow, w^2 = |D v'| / |D x|: any phase and, of motions of several frequencies, that of the
+fastest that is seen.  In units of the tolerance and the largest acceleration met this is no more
+than the error of the motion, unless accelerations are small for the speeds there are.
+
+What lies inside a step may be off by more than its end: a method whose dense output is tells so by
+its `inside`, and complete.py asks where output rows lie there.
+
+Nothing is asked for that rounding makes: of the forces, of what joints take of them, or, by what is
+stiff, of places and rates.
+"""
+
+from math import sqrt
+
+from trsim.kernels.vectors import internal
+from trsim.solve.march.record import (
+    BLUR,
+    BLUR_W,
+    BLURRED,
+    BLURRED_H,
+    BLURRED_W,
+    DECAY,
+    LENGTH,
+    NOISY,
+    SPEED,
+    T_END,
+    VIBRATION,
+    WRITTEN,
+)
+
+ROUNDING = 2e-14  # of accelerations that cancel: what is left
+ROUNDED = 5e-16  # of the mechanism's size, and of speeds: what places and rates are rounded to
+WIDEST = 20.0  # rad: w h of a step that sees what it passes over
+EACH = 6.0  # entries of a body that errors are the mean of
+FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
+# times the tolerance as written: what accelerations of a step may be off by at most, those of a run
+# if each estimate were right and of one sign, and what is left to a step of very many
+ALLOWED, RUN, ONE = 10.0, 100.0, 0.5
+
+
+@internal
+def held(s):
+    """Whether accelerations of the step at hand are held to the tolerance.
+
+    Contacts have units of their own, and waves in bars are to be passed over.  Where the rows of a
+    loop nearly depend on each other accelerations tell of what a state is off them, not of motion.
+    """
+    sound = s.status[6] == 0 or s.near_rows == 0.0
+    return sound and s.contact.size == 0 and 1 < s.n_r == s.n
+
+
+@internal
+def largest(s, yd, most):
+    """The larger of `most` and the accelerations in yd, of turns at their arm."""
+    for c in range(s.n_q, s.n_q + s.v_node):
+        most = max(most, s.scale[c] * abs(yd[c]))
+    return most
+
+
+@internal
+def frequency(turned, placed, h):
+    """w^2 by the squares of |D v'| and |D x|, as far as a step h sees it."""
+    widest = (WIDEST / h) ** 2
+    return min(sqrt(turned / placed), widest) if turned < placed * widest**2 else widest
+
+
+@internal
+def stiffness(r, h):
+    """w^2 of the fastest vibration or decay there could be, as far as a step h sees it."""
+    return min(max(r.clock[VIBRATION], r.clock[DECAY] ** 2), (WIDEST / h) ** 2)
+
+
+@internal
+def in_units(s, r, setting, off, most, mean, times):
+    """An error of accelerations in units of what is allowed, none of it rounding.
+
+    most: the largest acceleration; mean: w^2 of what the error consists of; times: the tolerance.
+    Where accelerations are less than a FURTHEST of what speeds give at that, it is rounding as
+    well.
+    """
+    most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
+    allowed = times * setting[WRITTEN] * most
+    error = off / allowed if allowed > 0.0 else 0.0
+    return error if error <= 1.0 else off / max(allowed, rounded(s, r))
+
+
+@internal
+def share(setting, h):
+    """What a step h may be off by, times the tolerance: of a vibration errors add up, step by step,
+    to RUN of a run of many; not less than ONE in a step."""
+    return max(ONE, min(ALLOWED, RUN * h / setting[T_END]))
+
+
+@internal
+def doubted(s, r, setting, off, most, w):
+    """Note what accelerations may be off by where that is more than is allowed and no rounding.
+
+    w: rad/s, how fast what the error consists of turns, 0 where it is not known.
+    """
+    if off > ALLOWED * setting[WRITTEN] * most and off > rounded(s, r):
+        r.clock[BLUR], r.clock[BLUR_W] = off, w
+
+
+@internal
+def rounded(s, r):
+    """What rounding makes of accelerations, m/s^2."""
+    free, noise = r.clock[SPEED] ** 2 / r.clock[LENGTH], 0.0
+    for f in range(1, s.n_r):
+        for c in range(s.d):
+            turns = c == 2 if s.d == 3 else c > 2
+            free = max(free, abs(s.free[f, c]) * (s.reach if turns else 1.0))
+    if r.clock[NOISY] > 0.0:
+        for c in range(s.n_q, s.n_q + s.v_node):
+            noise = max(noise, s.scale[c] * r.noise[c])
+    return max(ROUNDING * free, WIDEST * noise)
+
+
+@internal
+def unknown(s, r):
+    """What the rounding of places and rates makes of accelerations, by what is stiff, m/s^2."""
+    return ROUNDED * (r.clock[VIBRATION] * s.size + r.clock[DECAY] * r.clock[SPEED])
+
+
+@internal
+def blurred(r, h):
+    """Keep the largest error of accelerations that an accepted step h was not held for.
+
+    How fast it turns is that of the longest such step: in short ones rounding is seen.
+    """
+    if r.clock[BLUR] > 0.0:
+        r.clock[BLURRED] = max(r.clock[BLURRED], r.clock[BLUR])
+        if h > r.clock[BLURRED_H]:
+            r.clock[BLURRED_H], r.clock[BLURRED_W] = h, r.clock[BLUR_W]

@@ -1,0 +1,198 @@
+"""What user events do, between two calls of the march: switches turn, and the motion goes on.
+
+The equations of the new stage are those of a model of its own (assemble/stages.py) with the memory,
+the branches and the counters of the run; positions stay, velocities are projected once.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import kinetic, poses, stored_energy
+from trsim.assemble.projection import project_positions, project_velocities
+from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
+from trsim.elements.actuator import PLACE, SLIP, piston_of
+from trsim.elements.contract import SINCE
+from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, STATE, rates_at
+from trsim.elements.scene import Scene, carried
+from trsim.errors import ModelError
+from trsim.solve.march import record as rec
+from trsim.solve.march.phases import settle
+from trsim.solve.march.record import Buffers, Record
+from trsim.statuses import Ended
+
+Array = NDArray[np.float64]
+
+TORN = 1e-6  # of the mechanism's size, rad: the most a drive may be away from its joint
+CLOSED = 1e-10  # the same, left by the projection
+
+
+class Acted(NamedTuple):
+    """What came of the events of one instant."""
+
+    work: Scene  # of the stage that follows
+    recorded: Array  # (n, 2 + n_out) time, event, channels
+    ended: tuple[Ended, str] | None  # status and reason, where the run ends here
+
+
+def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> Acted:
+    """Do what the events at the end of the last step say, in the order of the file.
+
+    Leaves a line for each among the events; the channels are those before anything changed.
+    """
+    recorded: list[Array] = []
+    ended: tuple[Ended, str] | None = None
+    t = float(r.clock[rec.T])
+    for k, event in enumerate(mechanism.stages.switches.events):
+        if not r.watch[k, rec.JUST_NOW]:
+            continue
+        r.watch[k, rec.JUST_NOW] = 0.0
+        line = b.events[r.count[rec.EVENT_ROWS]]
+        line[:] = (t, rec.USER, len(mechanism.instances) + 1 + k,
+                   r.gap[len(work.contact) + k, 1], np.nan, 0.0, 0.0)  # fmt: skip
+        r.count[rec.EVENT_ROWS] += 1
+        if event.record:
+            recorded.append(np.array([t, k, *b.out[: work.n_out]]))
+        try:
+            work, line[rec.EVENT_WORK] = turned(mechanism, work, r, b, setting, event)
+        except ModelError as error:
+            ended = "failed", told(event, error)
+            break
+        if event.end and ended is None:
+            ended = event.status, why_ended(mechanism, b, event, t)
+    r.count[rec.FIRED] = 0
+    return Acted(work, np.array(recorded).reshape(-1, 2 + work.n_out), ended)
+
+
+def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
+    """Of a limit what it was, when, and the forces of the actuators then, where they are told."""
+    if event.kind != "limit":
+        return f"event '{event.name}' ended the run"
+    told = {c.name: b.out[c.start] for c in mechanism.columns}
+    forces = []
+    for instance in mechanism.instances:
+        if instance.element.key == "actuator":  # of a supply where there is one: that stalls
+            of = (f"{instance.name}.{word}" for word in ("supply_force", "force"))
+            forces += [f"{name} {told[name]:.4g} N" for name in of if name in told][:1]
+    said = f"{event.when} {event.said} ({event.value:g} {event.unit}) at t = {t:.6g} s"
+    return f"{said}: {', '.join(forces)}" if forces else said
+
+
+def told(event: UserEvent, error: ModelError) -> str:
+    """Why an event could not be carried out."""
+    section, name = error.path if len(error.path) == 2 else ("", "")
+    if section == "drives":
+        fixed = "a coordinate that joints, locks or other drives fix"
+        return f"event '{event.name}' ({event.said}): the drive '{name}' would move {fixed}"
+    return f"event '{event.name}' ({event.said}): {error.what}"
+
+
+def turned(
+    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array, event: UserEvent
+) -> tuple[Scene, float]:
+    """The scene of the stage an event leads to, with the record brought to it; the work done, J.
+
+    Raises ModelError where its constraints contradict each other or the positions.
+    """
+    before, stages = r.stage.copy(), mechanism.stages
+    for switch, to in event.turned:
+        r.stage[switch] = to
+    driven = [n for n, to in event.turned if stages.switches.names[n][0] == "drives" and to > 0]
+    if not driven and np.array_equal(before, r.stage):
+        return work, 0.0
+    t, y = float(r.clock[rec.T]), r.y
+    energy = total_energy(work, t, y)
+    model = stages.model(r.stage)
+    for n in driven:
+        take_hold(mechanism, work, model, r, n, int(before[n]))
+    close_locks(mechanism, work, r, before)
+    r.left_out[:] = stages.left_out(r.stage)
+    r.count[rec.WEAK], r.clock[rec.WEAKEST] = 1, 1.0
+    work = carried(work, model)
+    project(mechanism, work, r)
+    done = total_energy(work, t, y) - energy
+    y[work.n_q + work.n_v + work.jumps] += done
+    settle(work, r, b, setting)
+    return work, done
+
+
+def total_energy(work: Scene, t: float, y: Array) -> float:
+    """Kinetic and stored, J."""
+    poses(work, y)
+    return float(kinetic(work, y) + stored_energy(work, t))
+
+
+def instance_of(mechanism: Any, section: str, name: str) -> tuple[int, Any]:
+    """Row and instance of an element."""
+    for e, instance in enumerate(mechanism.instances):
+        if (instance.section, instance.name) == (section, name):
+            return e, instance
+    raise KeyError(name)
+
+
+def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before: int) -> None:
+    """Begin the motion of drive switch n: its time is zero now, its place that of the joint.
+
+    A drive that held on goes on from the place it prescribed, and its piston, which has a mass, at
+    the speed it has; `work` is the scene before.
+    """
+    name = mechanism.stages.switches.names[n][1]
+    e, instance = instance_of(mechanism, "drives", name)
+    t, first = float(r.clock[rec.T]), work.n_q + work.n_v
+    old, new = int(work.con[e, STATE]), int(model.con[e, STATE])
+    if new >= 0:
+        if before == LOOSE:
+            r.y[first + new] = work.S[instance.row.con[ENTRY], 0]
+        elif old < 0:
+            since = t - float(r.mem[e, SINCE])
+            r.y[first + new] = rates_at(work.tab, int(work.con[e, MOTION]), since)[0]
+    if piston_of(instance) >= 0:
+        slip = int(model.con[e, SLIP])
+        if before == LOOSE:
+            take_along(work, model, r, e, instance)
+        else:
+            r.y[first + slip] += prescribed_rate(work, e, t - float(r.mem[e, SINCE]))
+        r.y[first + slip] -= prescribed_rate(model, e, 0.0)
+    r.mem[e, SINCE] = t
+
+
+def take_along(work: Scene, model: Any, r: Record, e: int, instance: Any) -> None:
+    """The piston of an actuator that takes hold again is where its end is, and as fast: its speed,
+    not yet less that of the motion."""
+    entry, first = instance.row.con[ENTRY], work.n_q + work.n_v
+    r.y[first + model.con[e, PLACE]] = work.S[entry, 0]
+    r.y[first + model.con[e, SLIP]] = work.S[entry, 1]
+
+
+def prescribed_rate(model: Any, e: int, since: float) -> float:
+    """Of the motion drive e follows, that long after its begin."""
+    f, f_dot, _ = rates_at(model.tab, int(model.con[e, MOTION]), since)
+    return f if model.con[e, STATE] >= 0 else f_dot
+
+
+def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64]) -> None:
+    """Locks that close hold the coordinate where it is."""
+    for n, (section, name) in enumerate(mechanism.stages.switches.names):
+        if section == "locks" and r.stage[n] == HELD and before[n] != HELD:
+            _, lock = instance_of(mechanism, SECTION, lock_name(name))
+            place = work.n_q + work.n_v + lock.row.con[OWN_STATE]
+            r.y[place] = work.S[lock.row.con[ENTRY], 0]
+
+
+def project(mechanism: Any, work: Scene, r: Record) -> None:
+    """Positions and velocities of the record to the constraints of a stage, nearest in M."""
+    if work.m == 0:
+        return
+    t = float(r.clock[rec.T])
+    for k in range(8):
+        worst = project_positions(work, t, r.y)
+        if k == 0 and worst > TORN * min(work.size, 1.0):
+            row = mechanism.stages.rows(r.stage)[int(np.argmax(np.abs(work.phi[: work.m])))]
+            raise ModelError(
+                f"{row} would jump by {worst:.3g}; a position that is set begins where the joint is"
+            )
+        if worst <= CLOSED * work.size:
+            break
+    poses(work, r.y)
+    project_velocities(work, r.y)

@@ -1,0 +1,91 @@
+"""What an integrator is to the march: three functions, called by address like the elements.
+
+STEP        b.y1 <- one step of size h from r.y, with b.K[0] = y'(t, y); returns the error, in
+            units of the tolerance (<= 1 is accepted; 0 where there is no estimate; NO_STEP and more
+            where no step was found, b.y1 is then nothing)
+            Row 1 of K is scratch of the march once the step is made: DENSE of an explicit method
+            does not read it, that of an implicit one is made before
+DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
+            is y'(t + h, y1) with y1 as finally accepted, projected
+INTERPOLATE y <- solution at t + theta h
+CONTROL     net <- control points of the solution less y, in Bernstein's basis; where a method has
+            none they are taken from values                                   spread.py
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trsim.elements.contract import SCENE
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
+from trsim.kernels.packed import A1, A2, I1, f8, i8
+from trsim.solve.march.record import BUFFERS, RECORD
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+NO_STEP = 10.0
+
+#                    scene  record  buffers  setting t h
+STEP = types.float64(SCENE, RECORD, BUFFERS, A1, f8, f8)
+#                  scene  K   t   y   h   y1  P
+DENSE = types.void(SCENE, A2, f8, A1, f8, A1, A2)
+#                        P   y   theta out
+INTERPOLATE = types.void(A2, A1, f8, A1)
+#                    P   net
+CONTROL = types.void(A2, A2)
+# what locates points of sections, for runs that have some               scene  record  buffers
+#                                 method t h t1 work of projection, built, event
+SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, f8, f8, f8, f8, i8, i8)
+
+# what looks at redundant rows, for runs that may have some
+#                   scene  record  buffers  setting t y end of a step
+LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1, i8)
+# what finds the first event of a step, for runs that can have some       scene  record  buffers
+#                                        setting method t h built
+SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
+
+# a row of `methods`, made by `method_row`: what the march must know of a method and of a run, in
+# whole numbers; an address is 0 where nothing of that kind is to be done
+FIELDS = (
+    "step", "dense", "interpolate",  # addresses of the three functions
+    "complete",  # and of what makes a trial step an accepted one
+    "last",  # the row of K with the derivative at the end of a step
+    "estimate",  # the power of h that the error estimate falls with
+    "implicit",  # whether it is
+    "stages",  # rows of K with derivatives at the stages of a step whose dense output is dear, or 0
+    "degree", "control",  # of the dense output, and the address of its control points
+    "sections",  # what locates points of sections
+    "meet",  # what goes on behind corners of functions
+    "look",  # what looks at redundant rows
+    "rounding",  # what looks at rounding
+    "search",  # what finds events
+    "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
+    "sample", "finish",  # what keeps extremes, and what does where samples end
+    "passes",  # what notes steps past places where branches of the motion may meet
+    "inside",  # what tells the error of accelerations inside a step, as `step` does that of its end
+    "stiff",  # what looks at how stiff the mechanism is, for methods that ask     stiffness.py
+)  # fmt: skip
+(
+    STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
+    DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
+    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, STIFF_AT,
+) = range(len(FIELDS))  # fmt: skip
+
+
+def method_row(**values: int) -> "NDArray[np.int64]":
+    """A row of `methods` from its fields by name; those not given are 0."""
+    unknown = set(values) - set(FIELDS)
+    if unknown:
+        raise TypeError(f"no field {sorted(unknown)} in a row of methods")
+    return np.array([values.get(name, 0) for name in FIELDS], np.int64)
+
+
+call_step = caller(STEP)
+call_dense = caller(DENSE)
+call_interpolate = caller(INTERPOLATE)
+call_control = caller(CONTROL)
+call_sections = caller(SECTIONS)
+call_look = caller(LOOK)
+call_search = caller(SEARCH)

@@ -1,0 +1,81 @@
+"""Corners of laws inside a step: where friction passes from one of its branches to the next.
+
+A law with corners is followed on one branch, drawn on beyond its ends, so that every step sees
+smooth functions; where the element leaves its branch is an event like a touch.  It is looked for
+where the branch is left at the end of a step or at any stage of it.
+"""
+
+from trsim.assemble.equations import call_one, poses
+from trsim.elements.contract import BRANCH, CONTACT, PHASE, WHOLE
+from trsim.kernels.vectors import internal
+from trsim.solve.march.calls import call_interpolate
+from trsim.solve.march.illinois import between, narrowed
+
+NONE = 2.0  # a root beyond the step
+EXACT = 1e-12  # of a step: how well a corner is located
+LOOKS = 16  # places of a step that are looked at before the root is bracketed
+
+
+@internal
+def any_left(s, r, b):
+    """Whether some element left its branch during the step, as far as its evaluations tell."""
+    for c in range(s.contact.size):
+        e = s.contact[c]
+        if s.mem[e, PHASE] == CONTACT and (b.corner1[c] > 0.0 or s.left[e] > 0.0):
+            return True
+    return False
+
+
+@internal
+def beyond_inside(s, P, y, t, h, theta, c, scratch, interpolate):
+    """How far contact c has left its branch at t + theta h."""
+    call_interpolate(interpolate, P, y, theta, scratch)
+    poses(s, scratch)
+    call_one(s, s.corners, t + theta * h, s.contact[c])
+    return s.corner[s.contact[c], 0]
+
+
+@internal
+def corner_root(s, r, b, t, h, c, interpolate):
+    """Where contact c first leaves its branch, as theta in [0, 1]; NONE if it does not."""
+    e = s.contact[c]
+    if s.mem[e, PHASE] != CONTACT or not (b.corner1[c] > 0.0 or s.left[e] > 0.0):
+        return NONE
+    P, y = b.P, r.y
+    low, f_low = 0.0, r.corner[c]
+    inside = f_low < 0.0
+    for k in range(1, LOOKS + 1):
+        theta = k / LOOKS
+        f = b.corner1[c] if k == LOOKS else beyond_inside(
+            s, P, y, t, h, theta, c, b.y2, interpolate
+        )  # fmt: skip
+        if inside and f > 0.0:
+            return bracketed(s, P, y, t, h, c, b.y2, interpolate, low, f_low, theta, f)
+        if f < 0.0:
+            inside, low, f_low = True, theta, f
+    # it starts on a corner: away from it at once, or the branch was left only by a trial
+    return 0.0 if not inside and b.corner1[c] > 0.0 else NONE
+
+
+@internal
+def bracketed(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_high):
+    """The root between two places, inside and beyond."""
+    # inside it may be zero: just inside
+    bracket = (low, min(f_low, -1e-3 * f_high), high, f_high, 0.0)
+    for k in range(100):
+        if bracket[2] - bracket[0] <= EXACT:
+            break
+        middle = between(bracket, k)
+        f = beyond_inside(s, P, y, t, h, middle, c, scratch, interpolate)
+        bracket = narrowed(bracket, middle, f, True)
+    return bracket[2]
+
+
+@internal
+def look(s, c):
+    """Put contact c, newly closed, on the branch of its law that it is on."""
+    e = s.contact[c]
+    s.mem[e, BRANCH] = WHOLE
+    s.corner[e, 1] = WHOLE  # stays where the element has no corners
+    call_one(s, s.corners, 0.0, e)
+    s.mem[e, BRANCH] = s.corner[e, 1]

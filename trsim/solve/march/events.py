@@ -1,0 +1,289 @@
+"""Contact events inside a step: which contact changes its phase first, and where.
+
+The phase (flight or contact) is a discrete state changed here and nowhere else; it is never read
+back from the sign of the gap.  That no change of sign inside a step is passed over is proved, not
+sampled: with f the distance from the change, of one sign at both ends of a part of the step, and
+
+    |f'| <= L,  f'' >= -M                      bounds on that part             spread.py
+
+there is no zero where (f_0 + f_1 - L l) / 2 > 0, or where the two parabolas that bound f from
+below, from either end with its value, its rate and -M, meet above zero.  Where f' cannot change its
+sign a change of sign of f is the only one.  A part that proves neither is halved, from the
+beginning of the step on, until it would hide no more than what the tolerance allows.
+"""
+
+from math import inf
+
+from trsim.assemble.equations import call_one, poses
+from trsim.assemble.switches import LIMITS
+from trsim.assemble.travel import ANGLE
+from trsim.elements.contract import CONTACT, FLIGHT, PHASE, UNLOCATED
+from trsim.kernels.vectors import internal
+from trsim.solve.march.calls import call_interpolate
+from trsim.solve.march.corners import any_left, corner_root
+from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.record import LENGTH, TOLERANCE, UNPROVED
+from trsim.solve.march.spread import spread, spread_at_stages
+
+NONE = 2.0  # a root beyond the step
+SAME = 1e-12  # roots closer than this part of a step are one event
+HIDDEN = 1e-3  # of the error allowed: how deep a crossing may be that is not looked for
+ROUNDING = 1e-15  # of the mechanism's size: what no place is known better than
+FINEST = 1e-8  # of a step: no part is shorter
+PART = 0.125  # of a step: a part is no longer where no bounds are known
+HALVINGS = 60  # in the search for a place away from zero
+LOOKS = 4000  # parts of one step that are looked at for one gap
+# of the time of a contact: the first step after a touch, at a tolerance of 1 and at most
+FIRST, FIRST_WHOLE, MOST_OF = 12.0, 8.0, 0.25
+GUESS = 4.0  # of the bends seen at its ends: what is taken for a bound where there is none
+
+
+@internal
+def stays(f0, r0, f1, r1, L, M, length, kink):
+    """Whether f cannot reach zero between two ends where it is positive, with the rates r.
+
+    L < 0: no bounds are known; what is seen of f'' is taken for one, enlarged.
+    """
+    if L >= 0.0 and f0 + f1 > L * length:
+        return True
+    # the least f'' with which these ends go together
+    bend = abs(r1 - r0) / length
+    bend = max(bend, 2.0 * abs(f1 - f0 - r0 * length) / length**2)
+    bend = max(bend, 2.0 * abs(f1 - f0 - r1 * length) / length**2)
+    if L < 0.0:
+        M = GUESS * bend
+    elif f0 + f1 + L * length > 2.0 * kink or through(f0, f1, L, length, kink):
+        return False  # it may be on its other branch in between
+    M = max(M, bend)
+    if not inf > M:
+        return False
+    both = M * length + r1 - r0
+    if both <= 0.0:
+        return min(f0, f1) > 0.0
+    meet = min(max((f0 - f1 + r1 * length + 0.5 * M * length**2) / both, 0.0), length)
+    return f0 + meet * (r0 - 0.5 * M * meet) > 0.0
+
+
+@internal
+def through(f0, f1, L, length, kink):
+    """Whether f, positive at both ends, may have been below -kink between them, where its other
+    branch begins: a stop that swings through between its limits from one to the other.
+
+    There and back is f0 + f1 + 2 kink; half of what is below zero is left to rounding.
+    """
+    return L * length - f0 - f1 > kink
+
+
+@internal
+def falls(r0, r1, M, length):
+    """Whether f falls all the way between two ends with the rates r, where f'' >= -M."""
+    return M >= 0.0 and r1 + max(M, (r0 - r1) / length) * length < 0.0
+
+
+@internal
+def inside(s, P, y, t, h, theta, c, scratch, interpolate):
+    """Penetration and rate of contact c at t + theta h; counted on, what is watched (watch.py)."""
+    call_interpolate(interpolate, P, y, theta, scratch)
+    poses(s, scratch)
+    if c >= s.contact.size:
+        entry, value = s.watch[c - s.contact.size, 0], s.watch_at[c - s.contact.size, 0]
+        if entry <= LIMITS:
+            call_one(s, s.gaps, t + theta * h, LIMITS - entry)
+            return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]
+        if entry < 0:
+            return t + theta * h - value, 1.0
+        return s.S[entry, 0] - value, s.S[entry, 1]
+    e = s.contact[c]
+    call_one(s, s.gaps, t + theta * h, e)
+    return s.gap[e, 0], s.gap[e, 1]
+
+
+@internal
+def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_high):
+    """Where the gap changes its sign between low and high, just behind it."""
+    if f_high == 0.0:
+        return high
+    rising = f_high > 0.0
+    bracket = (low, f_low, high, f_high, 0.0)
+    for k in range(200):
+        if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
+            break
+        middle = between(bracket, k)
+        f, _ = inside(s, P, y, t, h, middle, c, scratch, interpolate)
+        if f == 0.0:
+            return middle
+        bracket = narrowed(bracket, middle, f, rising)
+    return bracket[2]
+
+
+@internal
+def hides(s, r, setting, c, M, length):
+    """Whether a part of a step is so short that what it may hide does not count."""
+    depth = max(HIDDEN * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
+    if s.travel[c, 0] == ANGLE:
+        depth /= s.reach
+    return M >= 0.0 and 0.125 * M * length**2 < depth
+
+
+@internal
+def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate):
+    """Where f = sign * gap, positive at `low`, first falls through zero to below -beyond.
+
+    A theta in (low, end]; NONE where it does not.
+    """
+    at_low, f_at_low = low, f0  # the last place where it was seen to be positive
+    high = end
+    for _ in range(LOOKS):
+        g1, rate = inside(s, b.P, r.y, t, h, high, c, b.y2, interpolate)
+        if high == 1.0:
+            g1, rate = b.gap1[c, 0], b.gap1[c, 1]
+        f1, r1, length = sign * g1, sign * rate, (high - low) * h
+        L, M = spread(s, r, b, c, sign, low, high, h)
+        short = high - low < FINEST or (
+            hides(s, r, setting, c, M, length) and not through(f0, f1, L, length, s.kink[c])
+        )
+        least = 0.0 if high >= end else beyond  # at an end what comes after is not known
+        if f1 < -least or (f1 == 0.0 and least == 0.0 and r1 < 0.0):
+            if short or falls(r0, r1, M, length) or (M < 0.0 and high - low <= PART):
+                return bracketed_root(s, b.P, r.y, t, h, c, b.y2, interpolate, at_low,
+                                      sign * f_at_low, high, g1)  # fmt: skip
+        elif short or (
+            (M >= 0.0 or high - low <= PART)
+            and stays(f0 + beyond, r0, f1 + beyond, r1, L, M, length, s.kink[c])
+        ):
+            if high >= end:
+                return NONE
+            step = 2.0 * (high - low)
+            low, f0, r0 = high, f1, r1
+            if f1 > 0.0:
+                at_low, f_at_low = low, f1
+            high = min(end, low + step)
+            continue
+        high = 0.5 * (low + high)
+    r.count[UNPROVED] += 1
+    return NONE
+
+
+@internal
+def noise(s, f0):
+    """How far below zero a gap is that has just been brought to it and left at f0."""
+    return max(8.0 * abs(f0), ROUNDING * s.size)
+
+
+@internal
+def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate):
+    """A place behind `low`, where f is about zero, at which it is above `beyond`; -1 for none."""
+    at, rate = low, r0
+    for trial in range(2):
+        if rate > 0.0 or trial == 0:
+            reach, M = end, inf
+            for _ in range(HALVINGS):
+                L, M = spread(s, r, b, c, sign, at, reach, h)
+                # not as far as to its other branch: bounds hold on one
+                if inf > M and not f0 + L * (reach - at) * h > s.kink[c]:
+                    break
+                reach = at + 0.5 * (reach - at)
+            # f >= f_0 + r_0 tau - M tau^2 / 2 is largest there; what is not known is looked at soon
+            place = min(reach, at + rate / (M * h)) if M > 0.0 else reach
+            if M < 0.0:
+                place = at + PART**2 * (end - at)
+            place = max(place, at + FINEST * (end - at))
+            for _ in range(HALVINGS):
+                g, _ = inside(s, b.P, r.y, t, h, place, c, b.y2, interpolate)
+                if sign * g > beyond:
+                    return place
+                # no deeper than rounding has it, it is still on its way
+                if place >= end or sign * g < -noise(s, f0):
+                    break
+                place = min(end, at + 2.0 * (place - at))
+        if at > low or f0 >= 0.0:
+            break
+        # below zero: where it rises through zero, if it does
+        at = fall(s, r, b, setting, t, h, c, -sign, 0.0, low, -f0, -r0, end, interpolate)
+        if at >= end:
+            break
+        _, rate = inside(s, b.P, r.y, t, h, at, c, b.y2, interpolate)
+        rate *= sign
+    return -1.0
+
+
+@internal
+def change(s, r, b, setting, t, h, c, end, interpolate):
+    """Where contact c first changes its phase up to `end`, as theta; NONE if it does not."""
+    sign = -1.0 if r.mem[s.contact[c], PHASE] == FLIGHT else 1.0
+    low, f0, r0 = 0.0, sign * r.gap[c, 0], sign * r.gap[c, 1]
+    if f0 <= 0.0:
+        # it begins on the event just handled, and first moves away
+        low = leaves(s, r, b, setting, t, h, c, sign, 0.0, 0.0, f0, r0, end, interpolate)
+        if low < 0.0:
+            # a step that other events make short may end while it is still on its way
+            g, _ = inside(s, b.P, r.y, t, h, end, c, b.y2, interpolate)
+            return NONE if r0 > 0.0 and sign * g >= -noise(s, f0) else 0.0
+        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        f0, r0 = sign * g, sign * rate
+    if low >= end:
+        return NONE
+    return fall(s, r, b, setting, t, h, c, sign, 0.0, low, f0, r0, end, interpolate)
+
+
+@internal
+def may_change(s, r, b, h, c, stages):
+    """Whether contact c may change its phase in the step, as far as is known without looking."""
+    phase = r.mem[s.contact[c], PHASE]
+    if phase == UNLOCATED:
+        return False
+    sign = -1.0 if phase == FLIGHT else 1.0
+    f0, r0 = sign * r.gap[c, 0], sign * r.gap[c, 1]
+    f1, r1 = sign * b.gap1[c, 0], sign * b.gap1[c, 1]
+    if f1 <= 0.0 or stages == 0:
+        return True
+    L, M = spread_at_stages(s, r, b, c, sign, h)
+    return not stays(max(f0, 0.0), r0, f1, r1, L, M, h, s.kink[c])
+
+
+@internal
+def first_change(s, r, b, setting, t, h, interpolate):
+    """Fill b.root and b.corner_root for all contacts and return the earliest; needs b.P, b.net."""
+    first = NONE
+    for c in range(s.contact.size):
+        b.root[c], b.corner_root[c] = NONE, NONE
+        if r.mem[s.contact[c], PHASE] != UNLOCATED:
+            b.corner_root[c] = corner_root(s, r, b, t, h, c, interpolate)
+            first = min(first, b.corner_root[c])
+    for c in range(s.contact.size):
+        if r.mem[s.contact[c], PHASE] != UNLOCATED:
+            b.root[c] = change(s, r, b, setting, t, h, c, min(first + SAME, 1.0), interpolate)
+            first = min(first, b.root[c])
+    return first
+
+
+@internal
+def any_change(s, r, b, h, stages):
+    """Whether the step must be searched at all."""
+    for c in range(s.contact.size):
+        if may_change(s, r, b, h, c, stages):
+            return True
+    return any_left(s, r, b)
+
+
+@internal
+def hertz_step(stiffness, exponent, mass, speed, tolerance):
+    """First step after a touch, a part of the time of contact.
+
+    Unless n is whole, a force d^n has only so many derivatives at the touch: over a first step h
+    the velocity is off by h^(n+1) whatever the order of the method, and its estimate of the error
+    may not see it.  So h goes with the tolerance to the power 1 / (n + 1).
+    """
+    # depth of a lossless impact: K d^(n+1) / (n+1) = m v^2 / 2
+    depth = ((exponent + 1.0) * mass * speed * speed / (2.0 * stiffness)) ** (1 / (exponent + 1.0))
+    if exponent == int(exponent):
+        part = FIRST_WHOLE * tolerance ** (1.0 / 3.0)
+    else:
+        part = FIRST * tolerance ** (1.0 / (exponent + 1.0))
+    return min(part, MOST_OF) * 2.94 * depth / speed
+
+
+@internal
+def flip(phase):
+    """The other phase."""
+    return CONTACT if phase == FLIGHT else FLIGHT

@@ -1,0 +1,201 @@
+"""Corners of functions in a run: steps end where one is met, and what follows is another piece.
+
+Between its corners a function is held on the piece it is on (assemble/features.py), so every trial
+step sees smooth functions.  Corners that the time alone meets are known before the run: no step is
+longer than the time to the next.
+"""
+
+from math import nan
+
+from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
+from trsim.assemble.features import (
+    BEHIND,
+    DRIVE,
+    FIRST,
+    PISTON,
+    RATE_JUMP,
+    call_hold,
+    passed,
+)
+from trsim.assemble.outputs import measure
+from trsim.assemble.projection import project_positions, project_velocities
+from trsim.elements.contract import FIRST_ROW, SCENE, SINCE, compiled
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
+from trsim.kernels.packed import f8
+from trsim.kernels.vectors import copy_to, internal
+from trsim.laws.functions import BY_TIME
+from trsim.solve.march.land import land
+from trsim.solve.march.record import (
+    BUFFERS,
+    ENERGY_0,
+    EVENT_ANGLE,
+    EVENT_IMPULSE,
+    EVENT_KIND,
+    EVENT_ROW,
+    EVENT_ROWS,
+    EVENT_SPEED,
+    EVENT_TIME,
+    EVENT_WORK,
+    HISTORY,
+    JACOBIAN,
+    JOLT,
+    JOLTS,
+    JOLTS_KEPT,
+    LAST_EVENT,
+    NO_HISTORY,
+    NO_JACOBIAN,
+    PAST_ERROR,
+    RECORD,
+    TORN,
+    TORN_BY,
+    WORK_PROJECTION,
+    T,
+)
+from trsim.solve.march.samples import restart
+from trsim.solve.march.works import LONG
+
+ROW = FIRST_ROW  # of con of a drive: its constraint row, or -1
+MEET = types.int64(SCENE, RECORD, BUFFERS, f8, f8)
+call_meet = caller(MEET)
+
+
+@internal
+def next_instant(s, t, end):
+    """The first instant after t at which the time alone meets a corner; `end` without any."""
+    first = end
+    for n in range(s.feature.shape[0]):
+        k = passed(s, n, t)
+        at = s.feature[n, FIRST] + k
+        if k > 0 and at < s.feature[n, BEHIND]:
+            since = s.mem[s.feature[n, DRIVE], SINCE] if s.feature[n, DRIVE] >= 0 else 0.0
+            first = min(first, since + s.instant[at])
+    return first
+
+
+@compiled(types.float64(SCENE, f8, f8))
+def next_time(s, t, end):
+    """The same, for Python."""
+    return next_instant(s, t, end)
+
+
+@compiled(MEET)
+def meet(s, r, b, t, t1):
+    """Go on from t1 on the pieces that follow, if the time met corners after t; whether it did.
+
+    A drive whose rate jumps there takes the mechanism along: velocities are projected.  One whose
+    place jumps ends the run.
+    """
+    met = False
+    for n in range(s.feature.shape[0]):
+        met = met or passed(s, n, t1) > passed(s, n, t)
+    if not met:
+        return 0
+    jumped = looked_at(s, r, t, t1)
+    poses(s, r.y)
+    before = kinetic(s, r.y) + stored_energy(s, t1) if jumped else 0.0
+    call_hold(s.on_features[0], s, t1, BY_TIME)
+    keep(s, r)
+    if r.count[TORN] > 0:
+        return 1
+    copy_to(b.y1, r.y)
+    first = r.count[EVENT_ROWS]
+    if jumped:
+        jolt(s, r, b, t, t1)
+    done = land(s, r, b, t1, b.y1, r.yd)
+    copy_to(r.y, b.y1)
+    if jumped and s.jumps >= 0:
+        poses(s, r.y)
+        done = kinetic(s, r.y) + stored_energy(s, t1) - before
+        r.y[s.n_q + s.n_v + s.jumps] += done
+        evaluate(s, t1, r.y, r.yd)
+        tell(r, b, first, done)
+    else:
+        r.clock[WORK_PROJECTION] += done
+    for c in range(r.gap.shape[0]):
+        r.gap[c, 1] = b.gap1[c, 1]
+    other_side(s, r, b, t1)
+    return 1
+
+
+@internal
+def looked_at(s, r, t, t1):
+    """Whether a motion that a drive follows jumps between t and t1; the place of a rigid one must
+    not, see TORN."""
+    jumped = False
+    for n in range(s.feature.shape[0]):
+        e = s.feature[n, DRIVE]
+        if e < 0:
+            continue
+        for k in range(passed(s, n, t), passed(s, n, t1)):
+            place, rate = s.jump[s.feature[n, FIRST] + k]
+            jumped = jumped or place != 0.0 or rate != 0.0
+            if place != 0.0 and s.con[e, ROW] >= 0:
+                r.count[TORN], r.clock[TORN_BY] = 1 + e, place
+    return jumped
+
+
+@internal
+def jolt(s, r, b, t, t1):
+    """The impulses of drives whose rates jump: b.y1 gets the velocities after them.
+
+    J M^-1 J^T P = J v + Phi_t, and a drive gives -P.  A line of events for each.  The piston of an
+    actuator with a supply keeps its velocity.
+    """
+    for n in range(s.feature.shape[0]):
+        if s.feature[n, DRIVE] >= 0 and s.feature[n, PISTON] >= 0:
+            for k in range(passed(s, n, t), passed(s, n, t1)):
+                rate = s.jump[s.feature[n, FIRST] + k, RATE_JUMP]
+                b.y1[s.n_q + s.n_v + s.feature[n, PISTON]] -= rate
+    if s.m > 0:
+        project_positions(s, t1, b.y1)
+        poses(s, b.y1)
+        project_velocities(s, b.y1)
+    for n in range(s.feature.shape[0]):
+        e, rate = s.feature[n, DRIVE], 0.0
+        if e < 0 or s.con[e, ROW] < 0:
+            continue
+        for k in range(passed(s, n, t), passed(s, n, t1)):
+            rate += s.jump[s.feature[n, FIRST] + k, RATE_JUMP]
+        if rate != 0.0 and r.count[EVENT_ROWS] < b.events.shape[0]:
+            line = b.events[r.count[EVENT_ROWS]]
+            r.count[EVENT_ROWS] += 1
+            line[EVENT_TIME], line[EVENT_KIND], line[EVENT_ROW] = t1, JOLT, e
+            line[EVENT_SPEED], line[EVENT_ANGLE] = rate, nan
+            line[EVENT_IMPULSE] = -s.x[s.con[e, ROW]]
+
+
+@internal
+def tell(r, b, first, done):
+    """The work of the jumps of one instant into their lines, the first ones kept for the end."""
+    r.clock[LAST_EVENT] = b.events[first, EVENT_TIME] if first < r.count[EVENT_ROWS] else r.clock[T]
+    for k in range(first, r.count[EVENT_ROWS]):
+        line = b.events[k]
+        line[EVENT_WORK] = done
+        if r.count[JOLTS] < JOLTS_KEPT:
+            kept = r.jolt[r.count[JOLTS]]
+            kept[0], kept[1], kept[2] = line[EVENT_TIME], line[EVENT_ROW], line[EVENT_SPEED]
+            kept[3], kept[4] = line[EVENT_IMPULSE], done
+        r.count[JOLTS] += 1
+
+
+@internal
+def other_side(s, r, b, t1):
+    """What the end of a step leaves behind does not hold across a corner."""
+    measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+    restart(s, r, b, t1)
+    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
+    r.clock[PAST_ERROR] = 0.0
+    r.worked[0, LONG] = 0.0
+
+
+@internal
+def keep(s, r):
+    """What functions are held on, into the record."""
+    for k in range(s.held.size):
+        r.held[k] = s.tab[s.held[k]]
+
+
+def put_back(s, r):
+    """Hold the functions of a scene as its record says."""
+    s.tab[s.held] = r.held

@@ -1,0 +1,194 @@
+"""The end of a trial step: brought to the constraints, evaluated, its work booked."""
+
+from math import nan
+
+from trsim.assemble.equations import corners, evaluate, gaps, kinetic
+from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
+from trsim.assemble.on_beams import WORK, call_beams
+from trsim.assemble.projection import (
+    DOUBTFUL,
+    close_positions,
+    normalise,
+    poses_and_rows,
+    project_positions,
+    project_velocities,
+)
+from trsim.assemble.schur import velocity_residual
+from trsim.elements.scene import NONE, PROJECTION
+from trsim.kernels.vectors import copy_to, internal
+from trsim.solve.march.own_rows import ends_in, keep_roots, keep_rows, look_at
+from trsim.solve.march.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WORST_PHI_DOT
+from trsim.solve.march.watch import watch
+
+PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
+PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
+NEWTON = 8
+CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
+ASTRAY = 0.1  # of the fastest rate: by as much velocities of another branch are others
+NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
+
+
+@internal
+def land(s, r, b, t, y, yd):
+    """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
+
+    Returns the work done by the projection (J): the change of kinetic energy, and minus the work
+    of the applied forces on the small displacement.  Where no position is found y and y' are not
+    finite.
+    """
+    done = 0.0
+    normalise(s, y)
+    if s.stabilisation == PROJECTION and s.m > 0:
+        for k in range(s.n_q):
+            b.y2[k] = y[k]
+        first = 0.0
+        for k in range(NEWTON):
+            worst = project_positions(s, t, y)
+            if k == 0:
+                first = worst
+            if not worst > (PHI_SMALL if s.status[0] == SOUND else CLOSED) * s.size:
+                break
+        if not worst <= PHI_LOST * s.size:
+            s.status[3] += 1
+            y[0] = nan
+        else:
+            r.clock[WORST_PHI] = max(r.clock[WORST_PHI], first)
+        r.clock[OFF] = first
+        T0 = kinetic(s, y)
+        poses_and_rows(s, t, y)
+        worst = r.clock[OFF_RATE] = project_velocities(s, y)
+        r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
+        done += kinetic(s, y) - T0
+    flush(y)
+    evaluate(s, t, y, yd)
+    if s.near_rows > 0.0:
+        keep_roots(s, s.root[2])
+        if s.status[0] == SINGULAR:  # its factors are shifted
+            look_at(s, t, y)
+        keep_rows(s, ends_in(r))
+    if s.stabilisation == PROJECTION and s.m > 0:
+        done += position_work(s, b.y2, y)
+    else:
+        for k in range(s.m):
+            r.clock[WORST_PHI] = max(r.clock[WORST_PHI], abs(s.phi[k]))
+            off = abs(velocity_residual(s, k))
+            r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], off)
+    if s.contact.size > 0:
+        gaps(s, t)
+        corners(s, t)
+        for c in range(s.contact.size):
+            b.corner1[c] = s.corner[s.contact[c], 0]
+            b.gap1[c, 0] = s.gap[s.contact[c], 0]
+            b.gap1[c, 1] = s.gap[s.contact[c], 1]
+    watch(s, t, b.gap1)
+    for k in range(s.n_s):
+        b.branch1[k], b.turning1[k] = s.S[k, 0], s.S[k, 1]
+    return done
+
+
+@internal
+def evaluate_inside(s, r, t, y, yd, kept):
+    """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
+
+    With an eigenvalue of S of d^2 accelerations feel 1/d^2 times what interpolation opens rows by;
+    redundant rows are held by others times their levers only.  With Baumgarte's stabilisation too:
+    what interpolation opens is not drift.  Without any it would hide the drift.
+
+    Where branches meet, nearer than interpolation is off the rows by, the nearest place on them may
+    be on another branch, whose velocities are others: then y stays as it is.  kept: room for it.
+    """
+    evaluate(s, t, y, yd)
+    if s.m == 0 or s.stabilisation == NONE:
+        return
+    past = s.status[4] > 0  # a place where branches meet: the interpolation may feel it
+    if s.redundant.shape[0] == 0 and not past:
+        pivot = smallest_pivot(s)
+        if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
+            return
+    copy_to(kept, y)
+    close_positions(s, t, y, CLOSED * s.size, NEWTON)
+    poses_and_rows(s, t, y)
+    project_velocities(s, y)
+    if s.near_rows > 0.0 and elsewhere(s, y, kept):
+        copy_to(y, kept)
+    evaluate_to_measure(s, t, y, yd)
+
+
+@internal
+def elsewhere(s, y, kept):
+    """Whether velocities were changed by what no interpolation is off by."""
+    most, change = 0.0, 0.0
+    for k in range(s.n_q, s.n_q + s.n_v):
+        by = s.size if (k - s.n_q) % s.d < s.d // 2 + s.d % 2 and k - s.n_q < s.v_node else 1.0
+        most, change = max(most, abs(kept[k]) / by), max(change, abs(y[k] - kept[k]) / by)
+    return change > ASTRAY * most
+
+
+@internal
+def evaluate_to_measure(s, t, y, yd):
+    """`evaluate`; next to a place where branches meet the limit is taken by every method.
+
+    Not at the end of a step: scipy takes differences of that derivative and others, for a Jacobian.
+    """
+    s.status[5] = 1
+    evaluate(s, t, y, yd)
+    s.status[5] = 0
+
+
+@internal
+def off_the_rows(s, r, pivot):
+    """Whether what the last state is off the rows by is felt beyond the tolerance.
+
+    Stages of a long step past a place where branches meet feel what they are off the rows by.  The
+    end of the step is brought back; what is interpolated is off along the other branch, and of that
+    the rows see the less the nearer it is.
+    """
+    if s.near == 0.0 or s.stabilisation == NONE:
+        return False
+    allowed = s.tolerance * pivot / s.size
+    length, speed = allowed * r.clock[LENGTH], allowed * r.clock[SPEED]
+    for k in range(s.m):
+        if abs(s.phi[k]) > length * s.row_unit[k]:
+            return True
+        if abs(velocity_residual(s, k)) > speed * s.row_unit[k]:
+            return True
+    return False
+
+
+@internal
+def flush(y):
+    """Set to zero what no arithmetic on it can feel.
+
+    Motion that only rounding began dies out exponentially where joints hold it; on its way below
+    1e-308 every product with it costs the processor a hundred times more.
+    """
+    for k in range(y.size):
+        if abs(y[k]) < NOTHING:
+            y[k] = 0.0
+
+
+@internal
+def position_work(s, before, after):
+    """- F . dx of the displacement from one q to another, with the forces of the second, J."""
+    work, F, X = 0.0, s.F, s.X
+    if s.n_r < s.n:
+        call_beams(s.on_beams[WORK], s, before, after, 0)
+        work -= s.moved[0, 0]
+    for f in range(1, s.n_r):
+        if s.d == 3:
+            q = 3 * (f - 1)
+            work -= F[f, 0] * (after[q] - before[q]) + F[f, 1] * (after[q + 1] - before[q + 1])
+            work -= F[f, 5] * (after[q + 2] - before[q + 2])
+            continue
+        q = 7 * (f - 1)
+        e0, e1, e2, e3 = after[q + 3], after[q + 4], after[q + 5], after[q + 6]
+        d0, d1 = e0 - before[q + 3], e1 - before[q + 4]
+        d2, d3 = e2 - before[q + 5], e3 - before[q + 6]
+        # small rotation in body axes: 2 conj(p) o dp
+        o0 = 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
+        o1 = 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
+        o2 = 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
+        for c in range(3):
+            turn = X[f, 3 + 3 * c] * o0 + X[f, 4 + 3 * c] * o1 + X[f, 5 + 3 * c] * o2
+            work -= F[f, c] * (after[q + c] - before[q + c]) + F[f, 3 + c] * turn
+    return work

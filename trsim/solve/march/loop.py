@@ -1,0 +1,360 @@
+"""The only time loop: step, accept (complete.py), choose the next step and its method.
+
+Everything the loop changes is in the Record; it returns to its caller when a buffer is full, when
+it is done, or when it cannot go on, and can be called again with the same record.
+"""
+
+from math import isfinite
+
+from trsim.assemble.outputs import measure
+from trsim.elements.contract import SCENE, compiled
+from trsim.kernels import signatures as types
+from trsim.kernels.packed import A1, I2, i8
+from trsim.kernels.vectors import clear_table, copy_to, internal
+from trsim.solve.march.accelerations import blurred
+from trsim.solve.march.calls import (
+    COMPLETE_AT,
+    ESTIMATE_AT,
+    FINISH_AT,
+    IMPLICIT_AT,
+    NO_STEP,
+    ROUNDING_AT,
+    STAGES_AT,
+    STEP_AT,
+    STIFF_AT,
+    call_step,
+    method_row,
+)
+from trsim.solve.march.complete import (
+    LOOSE,
+    OF_LIMITS,
+    SMALLEST,
+    STRAYED,
+    WITH_CORNER,
+    WITH_EVENT,
+    WORTHLESS,
+    WOUND,
+    call_complete,
+    complete,
+)
+from trsim.solve.march.features import next_instant
+from trsim.solve.march.norm import units, weights
+from trsim.solve.march.peaks import call_finish, finish, sample
+from trsim.solve.march.phases import evaluate_all
+from trsim.solve.march.record import (
+    ACT,
+    ADRIFT,
+    AFTER_REJECTION,
+    BLUR,
+    BUFFERS,
+    CHATTER,
+    CRAWL,
+    CRAWLED,
+    CRAWLED_MOST,
+    CRAWLING,
+    DONE,
+    ENERGY_0,
+    EVENT_ROWS,
+    EVERY,
+    FASTEST,
+    FIRED,
+    FIXED_STEP,
+    FREED,
+    FULL,
+    H_MAX,
+    JACOBIAN,
+    LEAPT,
+    LOAD,
+    LOST,
+    METHOD,
+    NEXT_ROW,
+    NOT_FINITE,
+    OLD,
+    OLD_H,
+    OPEN,
+    OPENED,
+    PASSED,
+    PAST_ERROR,
+    PAUSE,
+    PEAK_MAX,
+    PEAK_MIN,
+    POINT_ROWS,
+    RECORD,
+    REJECTED,
+    ROWS,
+    SAME_TIME,
+    STEP_ROWS,
+    STEP_TOO_SMALL,
+    T_END,
+    TOLERANCE,
+    TOO_FAST,
+    TORN,
+    VIBRATION,
+    WINDS,
+    H,
+    T,
+)
+from trsim.solve.march.rounding import (
+    blunted,
+    call_look_closer,
+    look_closer,
+    overdue,
+    remember,
+    to_look,
+)
+from trsim.solve.march.samples import restart
+from trsim.solve.march.stiffness import (
+    call_look_stiff,
+    longest_calm,
+    look_stiff,
+    smooth,
+    stiffness_due,
+)
+from trsim.solve.march.turns import longest_turn
+from trsim.solve.march.watch import take_sides
+from trsim.solve.methods.auto import calm, choose
+
+MAX_SAME_TIME = 1000  # events without progress: chatter
+LONGER = 6.0  # times the step before: the next one at most
+AIM = 0.9  # times the step that would just meet the error allowed
+STRETCH = 1.05  # times the step as controlled: what may be added to end where it is to end
+TIGHTER = 0.7  # of a step whose inside is not right, and whose end is
+TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
+
+
+def method_table(method, **called):
+    """What the march must know of a method, a file of this folder.
+
+    `complete` stands there too: called by its address it is compiled once, not into the march;
+    so do `look_closer` and `sample`, and what only some runs need: `called`, see calls.py.
+    """
+    searched = called.get("search", 0) > 0 or called.get("corners", 0) > 0
+    if searched and hasattr(method, "control"):
+        called["control"] = method.control.address()
+    if hasattr(method, "inside"):
+        called["inside"] = method.inside.address()
+        called["stiff"] = look_stiff.address()
+    return method_row(
+        step=method.step.address(),
+        dense=method.dense.address(),
+        interpolate=method.interpolate.address(),
+        complete=complete.address(),
+        last=method.LAST,
+        estimate=method.ESTIMATE,
+        implicit=int(method.IMPLICIT),
+        stages=getattr(method, "DEAR", 0),
+        degree=method.DENSE_DEGREE,
+        rounding=look_closer.address(),
+        sample=sample.address(),
+        finish=finish.address(),
+        **called,
+    )
+
+
+@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
+def march(s, r, b, setting, methods, most):
+    """Advance the record until it is done, a buffer is full, or `most` steps were accepted, or
+    twice as many tried.
+
+    methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
+    march changes between them; the implicit one is asked for (LOAD) when it is first needed.
+    Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN,
+    ADRIFT, CRAWL, LEAPT or WINDS.
+    """
+    accepted = tried = 0
+    while r.clock[T] < setting[T_END]:
+        if full(s, r, b):
+            return FULL
+        if accepted >= most or tried >= 2 * most:
+            return PAUSE
+        tried += 1
+        t, method = r.clock[T], methods[r.count[METHOD]]
+        if method[STEP_AT] == 0:
+            return LOAD
+        if method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
+            call_look_stiff(method[STIFF_AT], s, r, b)
+        h = next_step(s, r, b, setting, method)
+        if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
+            return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
+        if crawls(r, setting, h):
+            return CRAWL
+        weights(s, r, b, setting, h)
+        blunted(s, r, b, h)
+        copy_to(b.K[0], r.yd)
+        for c in range(s.contact.size):
+            s.left[s.contact[c]] = -1.0
+        s.status[4] = s.status[6] = 0
+        r.clock[BLUR] = 0.0
+        error = call_step(method[STEP_AT], s, r, b, setting, t, h)
+        if s.status[4] > 0 and error < NO_STEP:
+            error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)
+        if not (error <= 1.0):
+            r.count[REJECTED] += 1
+            if error < NO_STEP and to_look(r, h):
+                call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
+            r.count[AFTER_REJECTION] = 1 if isfinite(error) else 2
+            if setting[FIXED_STEP] > 0.0:
+                return NOT_FINITE
+            shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
+            r.clock[H] = h * (shorter if isfinite(error) else 0.1)
+            continue
+        if setting[FIXED_STEP] == 0.0 and overdue(r, h):
+            call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
+            continue
+        outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
+        if outcome == WORTHLESS:
+            if setting[FIXED_STEP] > 0.0:
+                return NOT_FINITE
+            r.count[REJECTED] += 1
+            r.count[AFTER_REJECTION] = 2
+            r.clock[H] = 0.1 * h
+            continue
+        if outcome == WOUND and setting[FIXED_STEP] > 0.0:
+            return WINDS
+        if outcome in (STRAYED, WOUND, LOOSE):
+            r.count[REJECTED] += 1
+            r.count[AFTER_REJECTION] = 1
+            r.clock[H] = (TIGHTER if outcome == LOOSE else 0.3) * h
+            continue
+        accepted += 1
+        remember(s, r, setting, h)
+        blurred(r, h)
+        if r.count[TORN] > 0:
+            return LEAPT
+        if too_fast(s, r):
+            return TOO_FAST
+        if r.count[OPENED] > 0:
+            return OPEN
+        if r.count[LOST] > 0:
+            return ADRIFT
+        cut = outcome in (WITH_EVENT, WITH_CORNER)
+        control(r, setting, method, h, error, cut)
+        if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:
+            shorten(r, setting, h)
+        if methods.shape[0] > 1:
+            choose(s, r, b, h, outcome == WITH_EVENT)
+            if methods[r.count[METHOD], STEP_AT] != method[STEP_AT]:  # another reads its own steps
+                call_finish(method[FINISH_AT], s, r, b, setting, method, t, h, 0.0, 0)
+        elif method[STAGES_AT] > 0 and s.contact.size > 0:  # dop853
+            calm(s, r, b, h, outcome == WITH_EVENT)
+        if r.count[SAME_TIME] > MAX_SAME_TIME:
+            return CHATTER
+        if r.count[FIRED] > 0:
+            return ACT
+    return DONE
+
+
+@internal
+def crawls(r, setting, h):
+    """Whether step after step is so short that 10^11 of them would be needed."""
+    short = setting[FIXED_STEP] == 0.0 and h < CRAWLING * setting[T_END]
+    r.count[CRAWLED] = r.count[CRAWLED] + 1 if short else 0
+    return r.count[CRAWLED] > CRAWLED_MOST
+
+
+@internal
+def too_fast(s, r):
+    """Whether a body moves faster than anything does."""
+    fastest = 0.0
+    for k in range(s.n_q, s.n_q + s.n_v):
+        fastest = max(fastest, abs(r.y[k]))
+    return fastest > FASTEST
+
+
+@internal
+def full(s, r, b):
+    """Hardly room for what the next step may add."""
+    contacts, watched = s.contact.size, s.watch.shape[0]
+    return (
+        r.count[ROWS] > b.rows.shape[0] // 2
+        or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
+        or r.count[EVENT_ROWS] + contacts + watched + s.feature.shape[0] >= b.events.shape[0]
+        or r.count[POINT_ROWS] > b.points.shape[0] // 2
+        or (r.count[PASSED] > 0 and 2 * r.count[PASSED] > r.passed.shape[0])
+    )
+
+
+@internal
+def next_step(s, r, b, setting, method):
+    """The step to try: as controlled, not beyond the end, the last two evened out.
+
+    It never spans more output times than the buffer has room for, and ends where the time meets a
+    corner of a function.  Of an explicit method it stays where what is stiff dies out.
+    """
+    left = next_instant(s, r.clock[T], setting[T_END]) - r.clock[T]
+    most = min(setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
+    if setting[FIXED_STEP] > 0.0:
+        return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
+    if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
+        most = min(most, longest_turn(s, r))
+    if method[STIFF_AT] > 0 and r.clock[VIBRATION] > 0.0 and smooth(s, r):
+        most = min(most, longest_calm(r))
+    h = min(r.clock[H], most)
+    if min(STRETCH * h, most) >= left * (1.0 - 1e-12):
+        return left
+    return 0.5 * left if 2.0 * h > left else h
+
+
+@internal
+def control(r, setting, method, h, error, event):
+    """The next step from the error of this one."""
+    if setting[FIXED_STEP] > 0.0:
+        return
+    power, error = 1.0 / method[ESTIMATE_AT], max(error, 1e-8)
+    factor = min(LONGER, max(0.3, AIM * error**-power))
+    # predictive: the error as it changed from the step before                  [Gustafsson1994]
+    past = max(r.clock[PAST_ERROR], 1e-2)
+    if r.clock[PAST_ERROR] > 0.0 and not event:
+        factor = min(factor, AIM * h / r.clock[OLD_H] * (past / error**2) ** power)
+        factor = max(factor, 0.2)
+    r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
+    if method[IMPLICIT_AT] > 0 and 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:
+        factor = 1.0  # its factors stay good
+    if r.count[AFTER_REJECTION] > 0:
+        factor = min(factor, 1.0)
+    r.count[AFTER_REJECTION] = 0
+    if event:
+        # change_phases may have set a shorter first step after a touch, or that of free motion
+        if r.count[FREED] == 0:
+            r.clock[H] = min(r.clock[H], h * factor)
+        r.count[FREED] = 0
+    elif h >= r.clock[H] or factor < 1.0:
+        r.clock[H] = h * factor
+    else:
+        r.clock[H] = max(r.clock[H], h * factor)
+
+
+@internal
+def shorten(r, setting, h):
+    """A shorter step next, where a law came straight back to the corner it had just left.
+
+    The dense output of an implicit step far longer than what dies out after a corner is wrong at
+    the step's beginning.  Both branches could then send the motion back to the other for ever; in
+    a step that resolves it one of them does not.
+    """
+    shortest = 100.0 * SMALLEST * 2.2e-16 * setting[T_END]
+    if setting[FIXED_STEP] == 0.0:
+        r.clock[H] = min(r.clock[H], max(SHORTEN * h, shortest))
+
+
+@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+def begin(s, r, b, setting):
+    """First row, energy and gaps of a record whose y and mem were just set."""
+    evaluate_all(s, r, setting, 0.0)
+    take_sides(s, r)
+    units(s, r)
+    measure(s, 0.0, r.y, 0.0, 0.0)
+    copy_to(b.out, s.out)
+    r.clock[ENERGY_0] = b.out[s.n_out - 1]
+    b.out[s.n_out - 1] = 0.0
+    b.rows[0, 0] = 0.0
+    copy_to(b.rows[0, 1:], b.out)
+    r.count[ROWS] = 1
+    r.count[NEXT_ROW] = 1
+    for k in range(r.book.shape[0]):
+        r.book[k, 0] = r.book[k, 1] = b.out[s.column_energy + k]
+    clear_table(r.peak)
+    for c in range(r.peak.shape[1]):
+        r.peak[PEAK_MAX, c], r.peak[PEAK_MIN, c] = -1e300, 1e300
+    copy_to(s.out, b.out)
+    restart(s, r, b, 0.0)

@@ -1,0 +1,122 @@
+"""The error norm: what one unit of error is, entry by entry of the state.
+
+Lengths are weighed by the smallest gap or penetration that matters, not by the distance from the
+origin; rotations by that length over the body's arm; velocities by that length times the frequency
+of the contact.  Without contacts the length is the reach of its largest body, and the speed the
+largest met in the run, the end of the step as its start predicts it included:
+
+    speed = min(most, max(met, |v + h v'|))
+
+`most` is known at the start: its speeds, or what its accelerations give over that length,
+sqrt(a length), or that length per run.  A fall would get there; a stiff spring vibrates with less.
+"""
+
+import numpy as np
+
+from trsim.elements.contract import IMPACT_SPEED, SCENE, compiled
+from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
+from trsim.elements.scene import LENGTH as LENGTH_SCALE
+from trsim.elements.scene import SPEED as SPEED_SCALE
+from trsim.kernels import signatures as types
+from trsim.kernels.packed import A1
+from trsim.kernels.vectors import internal
+from trsim.solve.march.record import BUFFERS, LENGTH, MET, MOST, RECORD, SPEED, TOLERANCE, H
+
+
+@internal
+def weights(s, r, b, setting, h):
+    """1 / (tolerance times unit) of every entry of y in a step h; zero outside the norm.
+
+    Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
+    the origin; rotations by that length over the body's arm; velocities by the matching speed.
+    """
+    if r.clock[MET] < r.clock[MOST]:
+        follow(s, r, h)
+    length, tolerance = r.clock[LENGTH], setting[TOLERANCE]
+    speed = min(r.clock[SPEED], felt(s, r))
+    for c in range(b.weight.size):
+        b.weight[c] = weighed(s, length, speed, tolerance, c)
+
+
+@internal
+def felt(s, r):
+    """The unit of velocities that forces of loaded contacts ask for: F_e chi dv/d0' is then as much
+    of the largest force met as the unit of lengths makes.
+
+    A contact that began with a light touch, small d0', turns velocities into more force than one
+    that began with a hard one; where it comes to carry a load that counts.
+    """
+    speed = 1e300
+    for c in range(s.contact.size):
+        depth, first, chi = r.gap[c, 0], r.mem[s.contact[c], IMPACT_SPEED], s.contact_par[c, 6]
+        if depth > 0.0 and first > 0.0 and chi > 0.0:
+            share = (depth / max(r.impact[c], depth)) ** s.contact_par[c, 1]
+            speed = min(speed, s.contact_par[c, 5] * first / (chi * share))
+    return speed
+
+
+@internal
+def follow(s, r, h):
+    """Let the unit of velocities follow the speeds met, and those a step h leads to."""
+    met, ahead = r.clock[MET], 0.0
+    for c in range(s.n_q, s.n_q + s.n_v):
+        met = max(met, s.scale[c] * abs(r.y[c]))
+        ahead = max(ahead, s.scale[c] * abs(r.y[c] + h * r.yd[c]))
+    r.clock[MET] = met
+    r.clock[SPEED] = min(max(met, ahead), r.clock[MOST])
+
+
+@internal
+def weight_of(s, r, tolerance, c):
+    """The same of one entry."""
+    return weighed(s, r.clock[LENGTH], r.clock[SPEED], tolerance, c)
+
+
+@internal
+def weighed(s, length, speed, tolerance, c):
+    """The same, with these units."""
+    kind, scale = s.scale_kind[c], s.scale[c]
+    if kind == LENGTH_SCALE:
+        return 1.0 / (tolerance * length)
+    if kind == ANGLE:
+        return scale / (tolerance * length)
+    if kind == SPEED_SCALE:
+        return 1.0 / (tolerance * speed)
+    if kind == RATE:
+        return scale / (tolerance * speed)
+    if kind == MAGNITUDE:
+        return 1.0 / (tolerance * scale)
+    return 0.0
+
+
+@internal
+def grow(s, r, c):
+    """Let the unit of the error norm follow the deepest penetration met."""
+    depth = r.gap[c, 0]
+    if depth > r.impact[c]:
+        r.impact[c] = depth
+        units(s, r)
+
+
+@internal
+def units(s, r):
+    """Length and speed of the error norm from the penetrations met so far; a soft stop makes no
+    unit longer than bodies reach."""
+    length, speed = 1e300, 1e300
+    for c in range(s.contact.size):
+        K, n, mass = s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2]
+        arm = s.contact_par[c, 5]
+        depth = min(r.impact[c], s.contact_par[c, 3], s.reach / arm)
+        if depth <= 0.0:
+            continue
+        length = min(length, depth * arm)
+        # the frequency of the contact at that depth turns the length into a speed
+        speed = min(speed, depth * arm * np.sqrt(n * K * depth ** (n - 1.0) / mass))
+    if length < 1e300:
+        r.clock[LENGTH], r.clock[SPEED], r.clock[MOST] = length, speed, 0.0
+
+
+@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+def weigh(s, r, b, setting):
+    """`weights`, for solvers outside."""
+    weights(s, r, b, setting, r.clock[H])

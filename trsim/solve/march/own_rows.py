@@ -1,0 +1,159 @@
+"""What rows of J have of their own, and whether it turned round between two places.
+
+    d_k = e_k^T L^-1 J,        D_k = |d_k|^2 = d_k M^-1 d_k^T        with S = L D L^T
+
+is row k less what it shares with the rows eliminated before it; sigma_k is the root of D_k as a
+share of the diagonal of S.
+"""
+
+from math import sqrt
+
+from trsim.assemble.equations import constraints, poses
+from trsim.assemble.linear import diagonal, eliminate
+from trsim.assemble.schur import rows
+from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.solve.march.record import KEPT
+
+FINEST = 1e-15  # of the diagonal: rounding of a pivot
+# cosine: below that a row turned by more than it does in half of a way on its branch.  One that
+# changes it turns round by two right angles, less what it turns by anyhow, and half of that where
+# the way ends between the branches
+PLAINLY = 0.5
+
+
+@internal
+def look_at(s, t, y):
+    """The rows at a place, and their factors."""
+    poses(s, y)
+    constraints(s, t)
+    rows(s)
+    diagonal(s)
+    eliminate(s, FINEST)
+
+
+@internal
+def keep_roots(s, roots):
+    """sigma of the rows just factorised."""
+    for k in range(s.first.size):
+        D = s.value[s.column_start[k]]
+        roots[k] = sqrt(D / s.first[k]) if D * s.first[k] > 0.0 else 0.0
+
+
+@internal
+def begun_in(r):
+    """Which of the four places has the rows where the step begins; `ends_in`: where it ends."""
+    return 3 if r.count[KEPT] == 2 else 2
+
+
+@internal
+def ends_in(r):
+    """Which of them has those where it ends: the two change places with every step."""
+    return 5 - begun_in(r)
+
+
+@internal
+def keep_rows(s, place):
+    """B and L of the rows just factorised, in one of four places."""
+    B, n = s.kept_rows[place], 0
+    for p in range(s.slot_row.size):
+        for c in range(s.d):
+            B[n] = s.B[p, c]
+            n += 1
+    copy_to(s.kept_factors[place], s.value)
+
+
+@internal
+def turned_round(s, k, one, other):
+    """Whether what the row eliminated k-th has of its own points elsewhere at the other place."""
+    own(s, 0, k, one)
+    own(s, 1, k, other)
+    return cosine(s) <= PLAINLY
+
+
+@internal
+def cosine(s):
+    """Of the angle between what own() left of both ends, in the metric of M^-1."""
+    u, v = s.own[0], s.own[1]
+    along = first = second = 0.0
+    for f in range(1, s.n_r):
+        o = s.d * f
+        along += product(s, f, u, v, o)
+        first += product(s, f, u, u, o)
+        second += product(s, f, v, v, o)
+    return along / (sqrt(first * second) + 1e-300)
+
+
+@internal
+def own(s, end, k, place):
+    """d of the row eliminated k-th, kept in that place, into s.own[end]: of bodies, and of hubs
+    those eliminated before.
+
+    Rows whose elimination changed others before it, but not this one, have no part in it: those the
+    next of whose column has none.
+    """
+    w, has_part, L, B, d = s.r2, s.r, s.kept_factors[place], s.kept_rows[place], s.own[end]
+    row, column_start = s.row, s.column_start
+    clear(w)
+    clear(has_part)
+    w[row[column_start[k]]] = has_part[row[column_start[k]]] = 1.0
+    for j in range(k - 1, -1, -1):
+        start, beyond = column_start[j], column_start[j + 1]
+        if beyond == start + 1 or has_part[row[start + 1]] == 0.0:
+            continue
+        total = 0.0
+        for p in range(start + 1, beyond):
+            total -= L[p] * w[row[p]]
+        w[row[start]], has_part[row[start]] = total, 1.0
+    if s.d == 3:
+        planar_part(s, B, w, d)
+    else:
+        spatial_part(s, B, w, d)
+
+
+@internal
+def planar_part(s, B, w, d):
+    """d <- w^T B of x', y' and omega_z of bodies, and of hubs that give way."""
+    for f in range(1, s.n_r):
+        d0 = d1 = d2 = 0.0
+        if s.hub[f] < 0 or moves(s, w, f):
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                w_p, o = w[s.slot_row[p]], 3 * p
+                d0, d1, d2 = d0 + B[o] * w_p, d1 + B[o + 1] * w_p, d2 + B[o + 2] * w_p
+        d[3 * f], d[3 * f + 1], d[3 * f + 2] = d0, d1, d2
+
+
+@internal
+def spatial_part(s, B, w, d):
+    """The same of the velocity and the body-axes angular velocity."""
+    for f in range(1, s.n_r):
+        d0 = d1 = d2 = d3 = d4 = d5 = 0.0
+        if s.hub[f] < 0 or moves(s, w, f):
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                w_p, o = w[s.slot_row[p]], 6 * p
+                d0, d1, d2 = d0 + B[o] * w_p, d1 + B[o + 1] * w_p, d2 + B[o + 2] * w_p
+                d3, d4, d5 = d3 + B[o + 3] * w_p, d4 + B[o + 4] * w_p, d5 + B[o + 5] * w_p
+        o = 6 * f
+        d[o], d[o + 1], d[o + 2], d[o + 3], d[o + 4], d[o + 5] = d0, d1, d2, d3, d4, d5
+
+
+@internal
+def moves(s, w, f):
+    """Whether a hub gives way, as its own unknowns say."""
+    for c in range(s.d):  # noqa: SIM110 - a generator does not compile
+        if w[s.hub[f] + c] != 0.0:
+            return True
+    return False
+
+
+@internal
+def product(s, f, u, v, o):
+    """u M^-1 v^T of one body, whose part of both begins at o."""
+    K = s.inertia_inverse
+    if s.d == 3:
+        along = u[o] * v[o] + u[o + 1] * v[o + 1]
+        return s.mass_inverse[f] * along + K[f, 8] * u[o + 2] * v[o + 2]
+    total = s.mass_inverse[f] * (u[o] * v[o] + u[o + 1] * v[o + 1] + u[o + 2] * v[o + 2])
+    for i in range(3):
+        for j in range(3):
+            total += u[o + 3 + i] * K[f, 3 * i + j] * v[o + 3 + j]
+    return total

@@ -1,0 +1,256 @@
+"""Extremes of every channel: of the dense motion, right to the tolerance, never beyond it.
+
+Channels are known at samples: the ends of steps and the output rows inside them (samples.py).
+Between two samples a channel may pass an extreme.  The polynomial through the samples around says
+how far it may go there, and its last term how uncertain that is.  Only where that is beyond the
+extreme so far is the dense output evaluated, at the place where the polynomial is largest; the
+polynomial then goes through that place too, until it promises nothing more.  What is kept is always
+a value of the dense motion, so a run costs little once its extremes have been met.
+
+What lies between two samples is looked at when the next one is known: a polynomial through places
+on both sides misses nothing that one through those before it hardly sees, such as an extreme just
+before the end of a step.  So the step before is kept (earlier.py).  Where no sample follows, at an
+event and at the end of a run, what lies before it is looked at by those there are (`finish`).
+
+A dense output that is not there yet costs several evaluations.  Before it is built the middle of
+the step is guessed by the cubic through both its ends; a channel that with it plainly goes one way,
+or stays plainly within its extremes, has none there.
+"""
+
+from trsim.assemble.outputs import measure
+from trsim.elements.contract import SCENE, compiled
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
+from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.vectors import internal
+from trsim.solve.march.calls import INTERPOLATE_AT
+from trsim.solve.march.dense_output import build, measure_in
+from trsim.solve.march.earlier import build_earlier, either_step, ends
+from trsim.solve.march.land import evaluate_inside
+from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
+from trsim.solve.march.record import (
+    BUFFERS,
+    EARLIER_BUILT,
+    EARLIER_H,
+    ENERGY_0,
+    MISSED,
+    NEWEST,
+    PEAK_MAX,
+    PEAK_MIN,
+    POINTS,
+    RECORD,
+    SAMPLES,
+    STEPS,
+    T_END,
+    UNSEEN,
+    T,
+)
+from trsim.solve.march.samples import (
+    NOT_LAID,
+    aside,
+    bounds,
+    extreme,
+    gather,
+    known_extremes,
+    known_place,
+    older,
+    push,
+    through,
+)
+
+SMALL = 0.01  # of what may be missed of the largest channel of its kind: less is no extreme
+YOUNG = 3  # samples since an event: with no more what lies between them is looked at in any case
+ENDS = 4  # of what is known between and around two samples that are looked at, at least
+TINY = 0.02  # of the mean step: in a shorter one nothing turns
+GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be
+TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
+
+#                     scene  record  buffers setting method t  h   at values projected built
+SAMPLE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, A1, f8, i8)
+call_sample = caller(SAMPLE)
+#                     scene  record  buffers setting method t  h   projected built
+FINISH = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, i8)
+call_finish = caller(FINISH)
+
+
+@compiled(SAMPLE)
+def sample(s, r, b, setting, method, t, h, at, values, projected, built):
+    """Take the channels at one time of the step from t into their extremes, and what lies between
+    the two samples before it.
+
+    built: whether b.P holds the dense output.  Returns whether it does now.
+    """
+    if s.sought.size == 0:  # no channel is told
+        gather(s, b.full, values, b.inside[0])
+        known_extremes(s, r, b, at)
+        return built
+    if r.count[SAMPLES] > 0 and at <= r.sampled[r.count[NEWEST]]:
+        return built
+    own = push(s, r, b, at, values)
+    known_extremes(s, r, b, at)
+    if own:
+        if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 2:
+            built = between(s, r, b, setting, method, t, h, 1, projected, built)
+        r.count[UNSEEN] = 1
+    return built
+
+
+@compiled(FINISH)
+def finish(s, r, b, setting, method, t, h, projected, built):
+    """Take what lies between the two newest samples into the extremes: no sample follows that they
+    have to do with.  Arguments and what is returned as of `sample`."""
+    if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 1:
+        built = between(s, r, b, setting, method, t, h, 0, projected, built)
+    r.count[UNSEEN] = 0
+    return built
+
+
+@internal
+def between(s, r, b, setting, method, t, h, ahead, projected, built):
+    """Look for the extremes of all channels between two neighbours among the samples.
+
+    ahead: samples that are newer than the later of them.
+    """
+    share, now, last = setting[MISSED], r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
+    earlier = r.sampled[older(r, ahead + 1)] < r.clock[T]
+    if earlier:
+        h, ready = r.clock[EARLIER_H], r.count[EARLIER_BUILT]
+    else:
+        ready = built
+    b.found[0], b.laid[0] = 0.0, NOT_LAID
+    inner = max(ENDS - r.count[SAMPLES], 1)
+    last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
+    if (r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t) or (ahead == 0 and last_one):
+        if ready == 0 and not last_one:
+            guess(s, r, b, method, h, inner, projected, earlier)
+        else:
+            ready = look_within(s, r, b, method, h, ahead, inner, projected, ready, earlier)
+    bounds(r, b, ahead)
+    for c in range(now.size):
+        high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
+        beyond = b.bound[1, c]
+        above, below = max(now[c], last[c]), min(now[c], last[c])
+        for k in range(int(b.found[0])):
+            above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
+        beyond += above - below if b.found[0] > 0.0 else 0.0
+        if above + beyond <= high and below - beyond >= low:
+            continue
+        enough = share * max(high - low, SMALL * r.largest[s.kin[c]] / s.lever[c])
+        rises = above + beyond > high + enough
+        falls = low > s.least[c] and below - beyond < low - enough
+        if not (rises or falls):
+            continue
+        if b.found[0] == 0.0 or (ready > 0 and b.found[0] <= POINTS - 2):
+            rises, falls = reached(s, r, b, ahead, c, enough, rises, falls)
+            if not (rises or falls):
+                continue
+        if ready == 0:
+            if b.found[0] == 0.0:
+                guess(s, r, b, method, h, inner, projected, earlier)
+            rises, falls = guessed(s, r, b, ahead, c, rises, falls)
+            if not (rises or falls):
+                continue
+            b.found[0], b.laid[0] = 0.0, NOT_LAID
+            ready = look_within(s, r, b, method, h, ahead, inner, projected, 0, earlier)
+        if rises:
+            search(s, r, b, enough, method, h, ahead, c, 1.0, projected, earlier)
+        if falls:
+            search(s, r, b, enough, method, h, ahead, c, -1.0, projected, earlier)
+    if earlier:
+        return built
+    return ready
+
+
+@internal
+def reached(s, r, b, ahead, c, enough, rises, falls):
+    """Whether the polynomial of channel c may rise above its extremes, and fall below them."""
+    up, down = reach(b, through(r, b, ahead, c, 1.0))
+    o = s.sought[c]
+    rises = rises and up > r.peak[PEAK_MAX, o] + enough
+    return rises, falls and down < r.peak[PEAK_MIN, o] - enough
+
+
+@internal
+def guessed(s, r, b, ahead, c, rises, falls):
+    """The same with a guess of the middle: plainly not, or it is to be looked at."""
+    n = through(r, b, ahead, c, 1.0)
+    if one_way(b, n):
+        return False, False
+    up, down = reach(b, n)
+    o, doubtful = s.sought[c], GUESSED * apart(b.node)
+    rises = rises and up > r.peak[PEAK_MAX, o] - doubtful
+    return rises, falls and down < r.peak[PEAK_MIN, o] + doubtful
+
+
+@internal
+def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
+    """Look for an extreme of channel c between two neighbours, by its polynomial; the dense output
+    is there.
+
+    sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
+    surer than that is taken at its word.
+    """
+    o, aside_before = s.sought[c], False
+    for _ in range(TRIES):
+        best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]
+        n = through(r, b, ahead, c, sign)
+        low, high = b.node[0, 1], b.node[0, 0]
+        place, promised = top(b, n, low, high, best + enough)
+        if not promised > best + enough:
+            break
+        if known_place(b, low, high, place):  # its places lie so that it says little of this one
+            place = aside(b, low, high, place)
+            if aside_before or known_place(b, low, high, place):
+                break
+            aside_before = True
+        said = polynomial(b.node, n, place, 0.0)
+        if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
+            extreme(r, o, place, sign * said, b.firm[0])
+            break
+        if int(b.found[0]) + 1 >= b.found.size:
+            break
+        look(s, r, b, method, h, place, projected, 1, earlier)
+
+
+@internal
+def look(s, r, b, method, h, place, projected, built, earlier):
+    """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
+    step = either_step(r, b, projected, earlier)
+    if built == 0 and earlier:
+        build_earlier(s, r, b, method)
+    elif built == 0:
+        build(s, r, b, method, r.clock[T], h)
+    k, t = int(b.found[0]), step[2]
+    place = min(place, t + h)
+    measure_in(s, r, b, method[INTERPOLATE_AT], step, place, (place - t) / h)
+    gather(s, b.full, s.out, b.inside[k])
+    known_extremes(s, r, b, place)
+    b.found[0], b.found[1 + k] = k + 1.0, place
+    return 1
+
+
+@internal
+def look_within(s, r, b, method, h, ahead, inner, projected, built, earlier):
+    """`look` at `inner` places that part the time between two neighbours into equal parts."""
+    start, end = r.sampled[older(r, ahead + 1)], r.sampled[older(r, ahead)]
+    for k in range(inner):
+        place = start + (k + 1.0) / (inner + 1.0) * (end - start)
+        built = look(s, r, b, method, h, place, projected, built, earlier)
+    return built
+
+
+@internal
+def guess(s, r, b, method, h, inner, projected, earlier):
+    """The channels at `inner` places that part the step into equal parts, of the cubic through both
+    ends and their rates, into b.inside: what tells whether the dense output is worth building."""
+    y0, y1, yd0, yd1 = ends(r, b, method, earlier)
+    _, _, t, work, done = either_step(r, b, projected, earlier)
+    for i in range(inner):
+        u = (i + 1.0) / (inner + 1.0)
+        v, way = 1.0 - u, u * u * (3.0 - 2.0 * u)
+        for k in range(b.y2.size):
+            b.y2[k] = y0[k] + way * (y1[k] - y0[k]) + h * u * v * (v * yd0[k] - u * yd1[k])
+        evaluate_inside(s, r, t + u * h, b.y2, b.rough[0], b.rough[1])
+        measure(s, t + u * h, b.y2, work + u * done, r.clock[ENERGY_0])
+        gather(s, b.full, s.out, b.inside[i])
+        b.found[0], b.found[1 + i] = i + 1.0, t + u * h

@@ -1,0 +1,354 @@
+"""What changes during a run, in one record: a checkpoint is a copy of it."""
+
+import numpy as np
+
+from trsim.elements.scene import Model
+from trsim.kernels.packed import A1, A2, I1, I2, T14, Packed
+
+# clock: floating-point state of the march
+(
+    T,  # s
+    H,  # s, the step to try next
+    LENGTH,  # m, unit of the error norm: the smallest gap or penetration that matters
+    SPEED,  # m/s, its unit for velocities, of the next step
+    MET,  # m/s, the largest speed so far     norm.py
+    MOST,  # m/s, more is no unit for velocities
+    WORK_PROJECTION,  # J, given to the mechanism by projecting back to the constraints
+    ENERGY_0,  # J, total energy at the start
+    WORST_PHI,  # m or rad, largest constraint residual met at an accepted point
+    WORST_PHI_DOT,
+    LARGEST_ENERGY,  # J, largest entry of the energy book so far: the scale of its residual
+    LARGEST_RESIDUAL,  # J
+    LAST_EVENT,  # s
+    PAST_H,  # s, length of the step whose polynomial is in `past`
+    PAST_ERROR,  # error of the last step, for the controller; 0 after an event
+    OLD_H,  # s, its length
+    FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
+    CONTRACTION,  # of the matrix at hand, as far as it was measured
+    NEWTON_RATE,  # contraction of the last Newton iterations
+    JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
+    EXPLICIT_RATE,  # 1/s, how much the derivative changes with the state; 0: not known     auto.py
+    EXCHANGED,  # J, largest work, or range of an energy, so far: the scale of works     works.py
+    WORK_TRIAL,  # J, error of the works in the last trial step, as estimated
+    WORK_ERROR,  # J, the sum of those accepted
+    WORST_OPEN,  # of the mechanism's size or rad, largest opening of a redundant row  openings.py
+    WORST_OPEN_RATE,  # the same per second
+    APART,  # the same of rows that are open by more than the rest is
+    APART_T,  # s, when
+    WEAKEST,  # pivot of a row, of its diagonal: at the last look at which rows to solve
+    TORN_BY,  # m or rad
+    OFF,  # m or rad, largest constraint residual at the end of the last trial step
+    OFF_RATE,
+    NOISY,  # 1/s, rounding of steps in units of the tolerance              rounding.py
+    NOISY_AT,  # the entry of y that has it
+    PASSING,  # 1: it was seen where rows nearly depended on each other
+    ROUNDED,  # largest rounding of an accepted step in these units, and the entry that had it
+    ROUNDED_AT,
+    ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
+    LONGEST,  # s, the longest step since then, see LOOKED
+    LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
+    CROSSED_T,  # s, when the run first changed its branch                         crossed.py
+    GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
+    BLUR,  # m/s^2, error of accelerations the last trial was not held for    accelerations.py
+    BLUR_W,  # rad/s, how fast what it consists of turns, 0: not known
+    BLURRED,  # m/s^2, the largest of accepted steps
+    BLURRED_W,  # rad/s, of the longest of them, and its length
+    BLURRED_H,
+    EARLIER_T,  # s, where the step began that is kept in `earlier`                earlier.py
+    EARLIER_H,  # s, its length
+    EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
+    EARLIER_PROJECTED,
+    FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
+    FREE_SINCE,  # s, when they last opened
+    CHOSEN_T,  # s, when rows were last chosen anew                                   anew.py
+    FELT,  # of rows open where branches nearly meet, in accelerations                adrift.py
+    FELT_T,  # s, when
+    VIBRATION,  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known    stiffness.py
+    DECAY,  # 1/s, of the fastest decay
+    N_CLOCK,
+) = range(59)
+
+# count: integer state of the march
+(
+    STEPS,
+    REJECTED,
+    EVENTS,
+    CORNERS,  # of laws, met
+    NEXT_ROW,  # index of the next output time
+    ROWS,  # filled rows of the buffers
+    STEP_ROWS,
+    EVENT_ROWS,
+    DENSE_BUILT,
+    AFTER_REJECTION,  # 1 the last trial was rejected, 2 because it was not finite
+    SAME_TIME,  # events in a row without time passing
+    METHOD,  # which of the methods makes the steps
+    SWITCHES,  # changes of method
+    STIFF,  # steps in a row that looked stiff to an explicit method, or not to an implicit one
+    NOT_STIFF,  # steps in a row that speak against it
+    HISTORY,  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
+    JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
+    NEXT_JACOBIAN,  # its state once the last trial is accepted: OLD, or NO_JACOBIAN
+    JACOBIANS,  # made so far
+    ITERATIONS,  # of Newton, so far
+    CRAWLED,  # trial steps in a row that were vanishingly short
+    FIRED,  # user events at the end of the last step, not yet acted on
+    POINT_ROWS,
+    WEAK,  # 1: rows of the solve nearly depend on each other, others may not      openings.py
+    OPENED,  # 1: a redundant row is open beyond its bound
+    OPEN_ROW,  # element row e and row of it that APART is of
+    OPEN_INDEX,
+    JOLTS,  # jumps of the rate of a rigid drive
+    LOST,  # 1: without projection, rows are open by as much as branches are apart     adrift.py
+    TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
+    UNPROVED,  # searches for an event in a step that gave up
+    DEGREE,  # of the polynomials in `net`
+    LOOKED,  # steps when rounding was looked at last    rounding.py
+    NEXT_LOOK,  # steps when stiffness is to be looked at again, and how far apart   stiffness.py
+    APART_LOOKS,
+    OF_RATES,  # 1: it was rates that were looked at
+    FAILED,  # and how many trials were rejected then
+    NEWEST,  # which of the last samples of the channels is the newest, and how many there are
+    SAMPLES,
+    KEPT,  # 0: no rows are known where the step begins; 1, 2: they are kept in one of two places
+    PASSED,  # ways noted that are still to be examined
+    MEETINGS,  # places known where branches meet
+    CROSSED,  # how often the run changed its branch
+    UNSEEN,  # 1: between the two newest samples no extremes were looked for yet
+    FREED,  # 1: the step ended where the last closed contact opened
+    EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
+    CHOSEN,  # how often rows were chosen anew with next to no time between
+    N_COUNT,
+) = range(48)
+
+NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
+NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
+
+# settings: constants of the march
+(
+    T_END,
+    TOLERANCE,
+    H_MAX,
+    EVERY,  # s between output rows
+    FIXED_STEP,  # s, 0 where the method controls its step
+    LOCATE,  # 1: contact onset and separation are located
+    CHOOSES,  # 1: between two methods, by the fastest motion
+    MISSED,  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
+    HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
+    WRITTEN,  # the tolerance as it is written, which TOLERANCE is made of
+    N_SETTINGS,
+) = range(11)
+
+# why the march returned
+DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
+LOAD = 6  # a method is wanted whose row in `methods` is still empty
+CRAWL = 8  # so many steps so short that the end will not be reached
+TOO_FAST = 7  # a body is faster than FASTEST
+CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as short as that
+FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
+ADRIFT = 13  # without projection, where branches of the motion meet
+OPEN = 10  # a row that was dropped as redundant is not
+WINDS = (
+    12  # a fixed step turns a joint by more than is sure to be counted, see solve/march/turns.py
+)
+LEAPT = 11  # the place of a rigid drive jumps, see TORN
+ACT = 9  # a user event happened: the caller does what it says
+
+JOLTS_KEPT = 8
+PASSES_KEPT, MEETINGS_KEPT = 32, 8
+PARTS = 8  # in which the top of a polynomial is looked for
+FOUND = 200  # places between two samples where extremes are looked for
+
+# columns of the event buffer
+(
+    EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
+) = range(8)  # fmt: skip
+ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
+EVENT_NAMES = {
+    ONSET: "onset",
+    SEPARATION: "separation",
+    TO_IMPLICIT: "to implicit",
+    TO_EXPLICIT: "to explicit",
+    USER: "user",
+    JOLT: "jump",
+}
+
+
+class Record(Packed):
+    """The state of a run."""
+
+    y: A1  # (n_y)
+    yd: A1  # (n_y) derivative at y, the first stage of the next step
+    noise: A1  # (n_y) what rounding makes of y in steps, per second              rounding.py
+    mem: A2  # (N, n_mem) the scene's own
+    branch: A1  # (n_s) turn every angle is on; the scene's own
+    turning: A1  # (n_s) rates of S at y
+    gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
+    corner: A1  # (n_contacts) how far each has left the branch of its law at y
+    clock: A1
+    count: I1
+    peak: A2  # (N_PEAK, n_c) extremes of channels and magnitudes
+    firm: A2  # (2, n_c) the least pivot of rows where each was taken, 1 in open chains   samples.py
+    book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
+    sample: A2  # (POINTS, n_k) last values of those that are sought inside steps
+    sampled: A1  # (POINTS) when those were taken
+    slope: A2  # (POINTS, n_k) their divided differences, newest first
+    earlier: A2  # (4, n_y) of the step before: both its ends, and y' there        earlier.py
+    stages: A2  # (rows, n_y) its stages, or its dense output
+    largest: A1  # (n_k) size of the channels of one kind, see `kin` of the scene
+    impact: A1  # (n_contacts) largest penetration so far
+    # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
+    by_place: A2  # (n_w, n_v) w' against displacements
+    by_rate: A2  # (n_w, n_w) w' against w
+    stale: I1  # (n) frames whose columns of `by_rate` a corner made old
+    lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
+    pivot: I2  # (2, n_w)
+    past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
+    watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
+    held: A1  # (corners) what functions are held on                            features.py
+    sight: A1  # (n_sensed) what the sensors that meet corners show at y
+    chatter: A2  # (n_features, 3) last time a corner was met, how often in a row, how far it went
+    stage: I1  # (n_switches) what user events have switched   assemble/stages.py
+    left_out: (
+        I1  # 1: a row of all there may be is not solved; empty where none can depend on others
+    )
+    section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
+    jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
+    passed: A2  # (PASSES_KEPT, 2 + 2 n_y + n_s) ways noted: times, states, branches of angles
+    meeting: A2  # (MEETINGS_KEPT, n_y) where branches meet                      crossed.py
+    crossed: A1  # (n_y) where the run first changed its branch
+    swing: A2  # (2, n_w) how it vibrates, and how it decays              stiffness.py
+    worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
+
+
+POINTS = 6  # samples of every channel that are kept: see peaks.py
+PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
+
+
+SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
+# side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
+# end of the step; number of the next instant; the largest it has been
+ON, LAST, RATE, KNOWN, END_RATE, NEXT, AMPLITUDE, N_SECTION = range(8)
+# columns of the buffer of points
+POINT_TIME, POINT_SECTION, POINT_X, POINT_Y, N_POINT = range(5)
+
+
+class Buffers(Packed):
+    """Room for results between two visits of the caller, and scratch of the march."""
+
+    rows: A2  # (n, 1 + n_out) time, channels
+    steps: A2  # (n, 2 + n_contact_columns) time, row e, contact channels
+    events: A2  # (n, N_EVENT)
+    points: A2  # (n, N_POINT) of Poincare sections; empty without any
+    K: A2  # stages of the integrator
+    P: A2  # dense output
+    P_earlier: A2  # that of the step before, while it is made
+    y1: A1
+    y2: A1
+    weight: A1
+    rough: A2  # (3, n_y) a state and the end of a step from it, while it is made again
+    out: A1  # (n_out) channels at the end of the step
+    gap1: A2  # (n_contacts + n_w, 2)
+    corner1: A1  # (n_contacts)
+    full: A1  # (n_c) all channels and magnitudes
+    firm: A1  # (2) the least pivot of rows where channels were measured last, and at the step's end
+    row_firm: A1  # (n) the same of every output row
+    inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
+    found: A1  # (1 + FOUND) how often, and when
+    node: A2  # (5, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), factors
+    along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
+    lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
+    inverse: A2  # (POINTS, POINTS) of the distances of nodes
+    doubt: A1  # (1) what stands for the last divided difference in its error
+    laid: A1  # (1) how many places were found when those were made
+    bound: A2  # (2, n_k) of channels between two samples: see `bounds` of samples.py
+    part: A2  # (2, n_y) both ends of a part of a step                            passes.py
+    mean: A2  # (2, n_out) channels where rows of the solve depend on each other
+    moved: A1  # (1) 1: the end of the step was moved on along its tangent
+    unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
+    root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
+    corner_root: A1  # (n_contacts) and where it meets a corner
+    branch1: A1
+    turning1: A1
+    net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
+    curve: T14  # (9, 14) those of two frames on a part of it
+    seen: A2  # (n_s, 4) ranges of sensors and of their rates, where they meet corners
+    shown: A2  # (n_sensed, 2) what they show at both ends of a part of a step
+    box: A2  # (slots, 4) ranges of the parts of a function
+    before: A1  # (corners) what functions were held on in the last step
+    met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
+
+
+RECORD, BUFFERS = Record.kind, Buffers.kind
+
+
+def fresh_buffers(
+    model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0,
+    points: int = 0,
+) -> Buffers:  # fmt: skip
+    """Buffers for a model and a method.
+
+    step_rows: output rows a fixed step may span; points: of sections, the most in one step.
+    """
+    contacts, watched = len(model.contact), len(model.watch)
+    return Buffers(
+        rows=np.zeros((max(1024, 2 * step_rows + 16), 1 + model.n_out)),
+        steps=np.zeros((max(1024, 8 * contacts), n_steps)),
+        events=np.zeros((max(256, 8 * (contacts + watched)), N_EVENT)),
+        points=np.zeros((max(1024, 2 * points + 16) if points else 0, N_POINT)),
+        K=np.zeros((stages, n_y)),
+        P=np.zeros((dense_rows, n_y)),
+        P_earlier=np.zeros((dense_rows, n_y)),
+        y1=np.zeros(n_y),
+        y2=np.zeros(n_y),
+        weight=np.zeros(n_y),
+        rough=np.zeros((3, n_y)),
+        out=np.zeros(max(model.n_out, 1)),
+        gap1=np.zeros((contacts + watched, 2)),
+        corner1=np.zeros(contacts),
+        full=np.zeros(model.n_out + len(model.vector)),
+        firm=np.ones(2),
+        row_firm=np.ones(max(1024, 2 * step_rows + 16)),
+        inside=np.zeros((FOUND, len(model.kin))),
+        found=np.zeros(1 + FOUND),
+        node=np.zeros((5, POINTS)),
+        along=np.zeros(1 + PARTS),
+        lattice=np.zeros((POINTS, 1 + PARTS)),
+        inverse=np.zeros((POINTS, POINTS)),
+        doubt=np.zeros(1),
+        laid=np.zeros(1),
+        bound=np.zeros((2, len(model.kin))),
+        part=np.zeros((2, n_y)),
+        mean=np.zeros((2, model.n_out)),
+        moved=np.zeros(1),
+        unmoved=np.zeros((3, n_y)),
+        root=np.zeros(contacts + watched),
+        corner_root=np.zeros(contacts),
+        branch1=np.zeros(max(model.n_s, 1)),
+        turning1=np.zeros(max(model.n_s, 1)),
+        net=np.zeros((9, model.n_q if contacts + watched + len(model.sensed) else 0)),
+        seen=np.zeros((max(model.n_s, 1) if len(model.sensed) else 0, 4)),
+        shown=np.zeros((len(model.sensed), 2)),
+        box=np.zeros((model.slots, 4)),
+        before=np.zeros(len(model.held)),
+        met=np.zeros((len(model.feature), 3)),
+        curve=np.zeros((9, 14)),
+    )
+
+
+def crowded(r: Record, b: Buffers) -> bool:
+    """Whether a buffer is half full: time to empty them."""
+    filled = (
+        (ROWS, b.rows), (STEP_ROWS, b.steps), (EVENT_ROWS, b.events), (POINT_ROWS, b.points)
+    )  # fmt: skip
+    return any(2 * r.count[counter] > len(buffer) for counter, buffer in filled)
+
+
+def copy(record: Record) -> dict[str, np.ndarray]:
+    """A checkpoint."""
+    return {name: array.copy() for name, array in record.arrays().items()}
+
+
+def restore(record: Record, checkpoint: dict[str, np.ndarray]) -> None:
+    """Go back to a checkpoint."""
+    for name, array in checkpoint.items():
+        getattr(record, name)[:] = array

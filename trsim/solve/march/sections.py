@@ -1,0 +1,379 @@
+"""Points of Poincare sections: where inside a step the motion passes a surface.
+
+    crossing  when(t) = 0: the root of a channel on the dense output of the step
+    strobe    t = after + k every
+    touch     the end of a step that a contact ends by touching
+
+A crossing lies between two neighbours of different sign among the ends of the step and points
+inside it: PARTS - 1, and as many again for every TURN that the fastest body turns by, or every WAVE
+of the fastest sine in a function (turns.py) where the channel may swing with it: a force, an
+acceleration, what a drive prescribes.  These are looked at where the sign changed, where bodies or
+waves turn so far, or where the cubic through values and rates of the channel at both ends comes
+near zero.  Where three neighbours of one sign dip towards zero the bottom is looked for too: so two
+crossings in one step are two points, however close.  Channels are of every kind, forces among them,
+so this is sampled, not bounded as events are.
+The root is found to the resolution of the time.
+
+Like the phase of a contact the side `when` is on is a discrete state: zero is on the side it came
+from, so a start at zero is no crossing, and neither is a touch of zero that turns back.  Zero is
+what is no more than the rounding of the largest value so far: a channel may rest there.  What a
+channel jumps over at an event, or between two neighbouring doubles of the time, it does not cross.
+
+Nothing here has a part in the motion: a run makes the same steps with its sections and without.
+"""
+
+from math import isfinite
+
+from trsim.assemble.equations import evaluate
+from trsim.assemble.outputs import measure
+from trsim.assemble.sections import (
+    AFTER,
+    CROSSING,
+    DIRECTION,
+    EVERY,
+    KIND,
+    STROBE,
+    TOUCH,
+    WAVES,
+    WHEN,
+    X,
+    Y,
+)
+from trsim.elements.contract import FLIGHT, PHASE, compiled
+from trsim.kernels.vectors import internal
+from trsim.solve.march.calls import (
+    INTERPOLATE_AT,
+    LAST_AT,
+    SECTIONS,
+)
+from trsim.solve.march.dense_output import fill, measure_inside
+from trsim.solve.march.events import NONE, SAME
+from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.record import (
+    AMPLITUDE,
+    END_RATE,
+    ENERGY_0,
+    KNOWN,
+    LAST,
+    NEXT,
+    ON,
+    POINT_ROWS,
+    POINT_SECTION,
+    POINT_TIME,
+    POINT_X,
+    POINT_Y,
+    RATE,
+    WORK_PROJECTION,
+)
+from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
+
+PARTS = 8  # of a step that is looked at, for each TURN
+TURN, WAVE = 0.5, 2.0  # rad
+DIPS = 12  # looks at the bottom of a dip
+NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
+AHEAD = 1e-4  # of a step: how far the rate of a channel looks
+JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
+TRIALS = 100
+RESOLUTION = 2.3e-16
+FAINT = 1e-12  # of the largest value so far: what rounding leaves of a channel that rests at zero
+AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and rounding is left
+
+
+@compiled(SECTIONS)
+def sections(s, r, b, method, t, h, t1, projected, built, event):
+    """Write the points of (t, t1] into b.points; the step of length h is about to be accepted.
+
+    Its end, measured, is in b.out.  built: whether b.P holds its dense output.  event: whether an
+    event ends it.  Counters are left as they were.
+    """
+    went, evaluations = s.status[0], s.status[1]
+    factorisations, contradictory = s.status[2], s.status[3]
+    interpolate = method[INTERPOLATE_AT]
+    ends_known(s, r, b, t, t1, method[LAST_AT], built, event)
+    still = parts_of(s, r, b, t1 - t, method[LAST_AT])
+    swinging = waves_of(s, r, b, t, t1)
+    for k in range(s.section.shape[0]):
+        kind = s.section[k, KIND]
+        parts = max(still, swinging) if s.section[k, WAVES] > 0 else still
+        if kind == TOUCH:
+            if event > 0 and touches(s, r, b, s.section[k, WHEN]):
+                point(s, r, b, k, t1, b.out)
+        elif (kind == STROBE and instant(s, r, k) <= latest(t1)) or (
+            crosses_after(s, k, t1) and may_cross(s, r, b, k, t1 - t, event, parts)
+        ):
+            if built == 0:
+                fill(s, r, b, method, t, h)
+                built = 1
+            if kind == STROBE:
+                strobes(s, r, b, k, interpolate, t, h, t1, projected)
+            else:
+                crossings(s, r, b, k, interpolate, t, h, t1, projected, parts)
+        keep_end(s, r, b, k, t1, event)
+    s.status[0], s.status[1] = went, evaluations
+    s.status[2], s.status[3] = factorisations, contradictory
+
+
+@internal
+def point(s, r, b, k, t, values):
+    """A line of b.points, unless a value is not finite or it is too early."""
+    x, y = values[s.section[k, X]], values[s.section[k, Y]]
+    if t < s.section_at[k, AFTER] or not (isfinite(x) and isfinite(y)):
+        return
+    line = b.points[r.count[POINT_ROWS]]
+    line[POINT_TIME], line[POINT_SECTION], line[POINT_X], line[POINT_Y] = t, k, x, y
+    r.count[POINT_ROWS] += 1
+
+
+# --- touches and instants --------------------------------------------------------------------
+
+
+@internal
+def touches(s, r, b, e):
+    """Whether the event at the end of the step is the touch of contact e; see change_phases."""
+    first, root = NONE, NONE
+    for c in range(b.root.size):
+        first = min(first, b.root[c])
+    for c in range(s.contact.size):
+        first = min(first, b.corner_root[c])
+        if s.contact[c] == e:
+            root = b.root[c]
+    return r.mem[e, PHASE] == FLIGHT and root <= first + SAME
+
+
+@internal
+def instant(s, r, k):
+    """The next instant of a stroboscopic section."""
+    return s.section_at[k, AFTER] + s.section_at[k, EVERY] * r.section[k, NEXT]
+
+
+@internal
+def latest(t1):
+    """t1, and what rounding makes of it."""
+    return t1 * (1.0 + 1e-15)
+
+
+@internal
+def strobes(s, r, b, k, interpolate, t, h, t1, projected):
+    """The points of a stroboscopic section; a step longer than the buffer is none, see room."""
+    while r.count[POINT_ROWS] < b.points.shape[0]:
+        at = instant(s, r, k)
+        if at > latest(t1):
+            break
+        if at >= t1:
+            point(s, r, b, k, at, b.out)
+        else:
+            theta = max((at - t) / h, 0.0)
+            measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
+            point(s, r, b, k, at, s.out)
+        r.section[k, NEXT] += 1.0
+
+
+# --- crossings -------------------------------------------------------------------------------
+
+
+@internal
+def crosses_after(s, k, t1):
+    """Whether section k is of crossings, and there may be points at t1."""
+    return s.section[k, KIND] == CROSSING and t1 >= s.section_at[k, AFTER]
+
+
+@internal
+def ends_known(s, r, b, t, t1, last, built, event):
+    """Values of `when` at the start of the step, where an event changed them, and its end's rates.
+
+    b.P is free for scratch where it holds no dense output yet.
+    """
+    lost = asked = False
+    for k in range(s.section.shape[0]):
+        if crosses_after(s, k, t1):
+            asked = event == 0
+            lost = lost or r.section[k, KNOWN] == 0.0
+    scratch, done, energy_0 = b.P[0], r.clock[WORK_PROJECTION], r.clock[ENERGY_0]
+    if built > 0:
+        scratch = b.K[1]
+    if lost:
+        evaluate(s, t, r.y, scratch)
+        measure(s, t, r.y, done, energy_0)
+        for k in range(s.section.shape[0]):
+            if crosses_after(s, k, t1) and r.section[k, KNOWN] == 0.0:
+                r.section[k, LAST] = s.out[s.section[k, WHEN]]
+                take_side(r, k, r.section[k, LAST])
+    if asked:
+        ahead = AHEAD * (t1 - t)
+        for c in range(b.y2.size):
+            b.y2[c] = b.y1[c] + ahead * b.K[last, c]
+        evaluate(s, t1 + ahead, b.y2, scratch)
+        measure(s, t1 + ahead, b.y2, done, energy_0)
+        for k in range(s.section.shape[0]):
+            if s.section[k, KIND] == CROSSING:
+                o = s.section[k, WHEN]
+                r.section[k, END_RATE] = (s.out[o] - b.out[o]) / ahead
+
+
+@internal
+def side_of(value, before, most):
+    """The side of zero a value is on: 1, -1, or for zero the side it was on before."""
+    if abs(value) <= FAINT * most:
+        return before
+    return 1.0 if value > 0.0 else -1.0
+
+
+@internal
+def take_side(r, k, value):
+    """The state of section k where its channel has a value."""
+    r.section[k, AMPLITUDE] = max(r.section[k, AMPLITUDE], abs(value))
+    r.section[k, ON] = side_of(value, r.section[k, ON], r.section[k, AMPLITUDE])
+
+
+@internal
+def keep_end(s, r, b, k, t1, event):
+    """The end of the step is the start of the next."""
+    if s.section[k, KIND] != CROSSING:
+        return
+    r.section[k, LAST] = b.out[s.section[k, WHEN]]
+    take_side(r, k, r.section[k, LAST])
+    r.section[k, RATE] = r.section[k, END_RATE]
+    r.section[k, KNOWN] = 1.0 if event == 0 and t1 >= s.section_at[k, AFTER] else 0.0
+
+
+@internal
+def may_cross(s, r, b, k, length, event, parts):
+    """Whether the step must be looked into: the sign changes, or the cubic comes near zero."""
+    side = r.section[k, ON]
+    if event > 0 or r.section[k, KNOWN] == 0.0 or side == 0.0 or parts > PARTS:
+        return True
+    f0, f1 = side * r.section[k, LAST], side * b.out[s.section[k, WHEN]]
+    rise = f1 - f0
+    bend0 = side * r.section[k, RATE] * length - rise
+    bend1 = rise - side * r.section[k, END_RATE] * length
+    nearest, farthest = min(f0, f1), max(f0, f1)
+    for j in range(1, PARTS):
+        theta = j / PARTS
+        inner = (1.0 - theta) * bend0 + theta * bend1
+        f = f0 + theta * rise + theta * (1.0 - theta) * inner
+        nearest, farthest = min(nearest, f), max(farthest, f)
+    return not nearest > NEAR * (farthest - nearest)
+
+
+@internal
+def parts_of(s, r, b, length, last):
+    """In how many parts a step is looked at."""
+    fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
+    return PARTS * (1 + int(min(fast * length, 2.0 * WHOLE) / TURN))
+
+
+@internal
+def waves_of(s, r, b, t, t1):
+    """In how many parts it is looked at where a channel swings with a function."""
+    if s.wave.size == 0:
+        return PARTS
+    w = swings(s, t, t1 - t, r.branch, r.turning, b.branch1, b.turning1)
+    return PARTS * (1 + int(min(w * (t1 - t), 2.0 * MOST_WAVES) / WAVE))
+
+
+@internal
+def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
+    """The points of all crossings in the step."""
+    when, reach = s.section[k, WHEN], (t1 - t) / h
+    before, f_before = -1.0, 0.0  # the neighbour before the last, where both are on one side
+    low, f_low, side = 0.0, r.section[k, LAST], r.section[k, ON]
+    most = max(r.section[k, AMPLITUDE], abs(b.out[when]))
+    for j in range(1, parts + 1):
+        high = reach * j / parts
+        f_high = value(s, r, b, k, interpolate, t, h, high, projected) if j < parts else b.out[when]
+        if t == 0.0 and j == 1 and abs(f_low) <= AT_START * abs(f_high):
+            side = 0.0
+        most = max(most, abs(f_high))
+        new = side_of(f_high, side, most)
+        if side * new < 0.0:
+            crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, new, projected)
+            before = -1.0
+        else:
+            if before >= 0.0 and side * f_low < min(side * f_before, side * f_high):
+                bottom = dip(s, r, b, k, interpolate, t, h, before, f_before, low, f_low, high,
+                             f_high, side, most, projected)  # fmt: skip
+                if bottom >= 0.0:
+                    f = value(s, r, b, k, interpolate, t, h, bottom, projected)
+                    crossed(s, r, b, k, interpolate, t, h, t1, before, f_before, bottom, f, -side,
+                            projected)  # fmt: skip
+                    crossed(s, r, b, k, interpolate, t, h, t1, bottom, f, high, f_high, side,
+                            projected)  # fmt: skip
+            before, f_before = low, f_low
+        low, f_low, side = high, f_high, new
+
+
+@internal
+def value(s, r, b, k, interpolate, t, h, theta, projected):
+    """What section k looks at, inside the step."""
+    measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
+    return s.out[s.section[k, WHEN]]
+
+
+@internal
+def crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, to, projected):
+    """The point of a crossing to the side `to` between two places, if it is asked for."""
+    want = s.section[k, DIRECTION]
+    if want != 0 and want != to:
+        return
+    when = s.section[k, WHEN]
+    theta = root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected)
+    if theta >= 0.0:
+        measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
+        point(s, r, b, k, min(t + theta * h, t1), s.out)
+
+
+@internal
+def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, most, projected):
+    """A place beyond zero at the bottom of three values of one side; -1 where it stays on it.
+
+    By parabolas through the three lowest, as far as these may reach zero.
+    """
+    for _ in range(DIPS):
+        a, c = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
+        bend = (c - a) / (x2 - x0)
+        if side * bend <= 0.0:
+            return -1.0
+        x = 0.5 * (x0 + x1) - 0.5 * a / bend
+        bottom = side * (f0 + (x - x0) * (a + bend * (x - x1)))
+        if bottom > NEAR * (max(side * f0, side * f2) - side * f1):
+            return -1.0
+        if abs(x - x1) < 1e-3 * (x2 - x0):  # the middle is the bottom: look beside it
+            x = x1 + 0.1 * (x2 - x1 if x2 - x1 > x1 - x0 else x0 - x1)
+        f = value(s, r, b, k, interpolate, t, h, x, projected)
+        if side * f < -FAINT * most:
+            return x
+        if side * f < side * f1:
+            if x > x1:
+                x0, f0 = x1, f1
+            else:
+                x2, f2 = x1, f1
+            x1, f1 = x, f
+        elif x > x1:
+            x2, f2 = x, f
+        else:
+            x0, f0 = x, f
+    return -1.0
+
+
+@internal
+def root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected):
+    """Where column `when` is zero between low and high, as theta; -1 where it jumps over zero."""
+    if f_low == 0.0 or (f_low > 0.0) == (f_high > 0.0):
+        return low  # within rounding it was on the other side already
+    rising, change = f_high > 0.0, abs(f_high - f_low)
+    finest = RESOLUTION * max(1.0, abs(t) / h)
+    bracket, f0, f1 = (low, f_low, high, f_high, 0.0), f_low, f_high
+    for n in range(TRIALS):
+        if bracket[2] - bracket[0] <= finest:
+            break
+        middle = between(bracket, n)
+        measure_inside(s, r, b, interpolate, t + middle * h, middle, projected)
+        f = s.out[when]
+        if f == 0.0:
+            return middle
+        bracket = narrowed(bracket, middle, f, rising)
+        if (f > 0.0) == rising:
+            f1 = f
+        else:
+            f0 = f
+    return bracket[2] if abs(f1 - f0) <= JUMP * change else -1.0

@@ -1,0 +1,407 @@
+"""Corners of functions that sensors meet: looked for on the dense output, none is passed over.
+
+On a part of a step that begins and ends with S_0 and S_1 of a sensor, l seconds long,
+
+    |S''| <= M                                               spread.py
+    S  in [min(S_0, S_1) - M l^2/8, max(S_0, S_1) + M l^2/8]
+    S' in (S_1 - S_0)/l + [-M l/2, M l/2]
+
+and interval arithmetic (laws/ranges.py) makes of them the range of u and of u' of every corner.
+A part on which u stays on its piece, or on which u' has one sign and u ends on its piece, is
+clear; one on which u' has one sign and u ends elsewhere has one root; every other one is halved.
+
+What is on a corner and at rest, or swings about one within the error allowed, is left free: the
+function is then evaluated as it is written, until it has gone away.
+
+The dense output of a long step says when a short event begins, but its stages may lie before and
+behind it.  A step that leaves a piece of exp (laws/operations.py) long before its end is therefore
+taken again, shorter: the stages of what is accepted lie on the piece, and its error is known.
+"""
+
+from math import inf, isfinite
+
+from trsim.assemble.equations import evaluate, poses
+from trsim.assemble.features import (
+    ENTRY,
+    HELD_FROM,
+    HELD_TO,
+    INSTANCE,
+    KIND,
+    NEAR,
+    OFFSET,
+    READS,
+    SENSED,
+    hold_sensed,
+)
+from trsim.assemble.travel import ANGLE
+from trsim.elements.contract import SCENE, compiled
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
+from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.vectors import internal
+from trsim.laws.functions import (
+    CLEAR,
+    FREE,
+    UNSURE,
+    brief,
+    corner,
+    enclosed,
+    ends_of,
+    located,
+    neighbour,
+    piece_at,
+    sensed,
+)
+from trsim.solve.march.calls import (
+    IMPLICIT_AT,
+    INTERPOLATE_AT,
+    LAST_AT,
+    SEARCH,
+    STAGES_AT,
+    STEP_AT,
+    call_interpolate,
+)
+from trsim.solve.march.dense_output import build
+from trsim.solve.march.features import keep, other_side
+from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.record import (
+    BUFFERS,
+    FIXED_STEP,
+    LENGTH,
+    RECORD,
+    T_END,
+    TOLERANCE,
+    UNPROVED,
+    H,
+)
+from trsim.solve.march.spread import fill_net, spread_of, spread_of_stages
+
+NONE, UNCERTAIN = 2.0, 3.0  # no corner in the step; a step too long to be certain
+SAME = 1e-12  # of a step: corners nearer to each other are met at once
+FINEST = 1e-8  # of a step: no part is shorter
+LOOKS = 4000  # parts of one step that are looked at
+HIDDEN = 1e-3  # of the error allowed: how far beyond a corner is not looked for
+SEEN = 0.8  # of a step: a short event that fills less of it may lie between its stages
+BRIEF = 1e-9  # of a run: what is shorter is not looked for
+ROUNDING = 1e-15  # of the mechanism's size
+THETA, PLACE, NEXT = range(3)  # of b.met
+LAST, TIMES, FAR = range(3)  # of r.chatter
+HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
+OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
+
+TURN = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+BEYOND = types.float64(SCENE, BUFFERS, f8)
+call_turn, call_beyond = caller(TURN), caller(BEYOND)
+
+
+@compiled(SEARCH)
+def corners_ahead(s, r, b, setting, method, t, h, built):
+    """Where sensors first meet a corner in the step of length h, whose end was evaluated last.
+
+    As theta in [0, 1]; NONE, the scene is then again as evaluated there; UNCERTAIN where a shorter
+    step is needed.  Fills b.met.  built: not 0 where b.P already holds the dense output.
+    """
+    for n in range(s.feature.shape[0]):
+        b.met[n, THETA] = NONE
+    if s.sensed.shape[0] == 0:
+        return NONE
+    for k in range(s.sensed.shape[0]):
+        b.shown[k, 0], b.shown[k, 1] = r.sight[k], s.S[s.sensed[k, ENTRY], 0]
+    if built == 0 and method[STAGES_AT] > 0:
+        for k in range(s.sensed.shape[0]):
+            bounds = spread_of_stages(s, r, b, s.sensed[k, KIND], s.sensed[k, INSTANCE], 1.0, h)
+            see(s, b, k, bounds[0], bounds[1], h)
+        if verdict(s, b, t, t + h) == CLEAR:
+            return NONE
+    evaluations = s.status[1]
+    if built == 0:
+        build(s, r, b, method, t, h)
+    fill_net(s, r, b, method)
+    again = setting[FIXED_STEP] == 0.0  # a shorter step can be had
+    first = first_corner(s, r, b, setting, t, h, method[INTERPOLATE_AT], again)
+    if first >= 1.0:
+        if s.status[1] > evaluations:
+            evaluate(s, t + h, b.y1, b.K[method[LAST_AT]])
+        else:
+            poses(s, b.y1)
+    return first
+
+
+@internal
+def see(s, b, k, L, M, length):
+    """The ranges of sensor k and of its rate in `length` s, from what it shows at both ends."""
+    seen, first, last = b.seen[s.sensed[k, ENTRY]], b.shown[k, 0], b.shown[k, 1]
+    mean = (last - first) / length
+    if M >= 0.0 and isfinite(M):
+        away, bend = 0.125 * M * length * length, 0.5 * M * length
+        seen[0], seen[1] = min(first, last) - away, max(first, last) + away
+        seen[2], seen[3] = mean - bend, mean + bend
+    elif L >= 0.0 and isfinite(L):
+        seen[0], seen[1] = 0.5 * (first + last - L * length), 0.5 * (first + last + L * length)
+        seen[2], seen[3] = -L, L
+    else:
+        seen[0], seen[1], seen[2], seen[3] = -inf, inf, -inf, inf
+
+
+@internal
+def verdict(s, b, t0, t1):
+    """The worst of all functions, on the part of the step whose ranges are in b.seen."""
+    worst = CLEAR
+    for n in range(s.feature.shape[0]):
+        if s.feature[n, SENSED] > 0:
+            found = enclosed(s.tab, s.feature[n, OFFSET], t0, t1, s.S, b.seen, b.box)
+            worst = max(worst, found)
+    return worst
+
+
+@internal
+def show(s, r, b, interpolate, theta):
+    """The sensors at theta of the step."""
+    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+    poses(s, b.y2)
+
+
+@internal
+def first_corner(s, r, b, setting, t, h, interpolate, again):
+    """The first corner that is met, by halving; b.shown holds the sensors at both ends."""
+    low, high = 0.0, 1.0
+    for _ in range(LOOKS):
+        show(s, r, b, interpolate, high)
+        length, short = (high - low) * h, high - low < FINEST
+        hidden = True
+        for k in range(s.sensed.shape[0]):
+            kind = s.sensed[k, KIND]
+            b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
+            L, M = spread_of(s, r, b, kind, s.sensed[k, INSTANCE], 1.0, low, high, h)
+            see(s, b, k, L, M, length)
+            depth = max(HIDDEN * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
+            if kind == ANGLE:
+                depth /= s.reach
+            seen = b.seen[s.sensed[k, ENTRY]]
+            hidden = hidden and seen[1] - seen[0] < depth
+        found = verdict(s, b, t + low * h, t + high * h)
+        if found == UNSURE and not (short or hidden):
+            high = 0.5 * (low + high)
+            continue
+        if found == UNSURE and not hidden and short:
+            r.count[UNPROVED] += 1
+            if again:
+                return UNCERTAIN
+        if found != CLEAR:
+            first = roots(s, r, b, t, h, interpolate, low, high)
+            if first <= 1.0:
+                unseen = first < SEEN and first * h > BRIEF * setting[T_END]
+                return UNCERTAIN if again and unseen and leaves_brief(s, b) else first
+        if high >= 1.0:
+            return NONE
+        step = 2.0 * (high - low)
+        low, high = high, min(1.0, high + step)
+        for k in range(s.sensed.shape[0]):
+            b.shown[k, 0] = b.shown[k, 1]
+    r.count[UNPROVED] += 1
+    return UNCERTAIN if again else NONE
+
+
+@internal
+def roots(s, r, b, t, h, interpolate, low, high):
+    """The first of the corners that lie between two places, each met once; fills b.met."""
+    first = NONE
+    for n in range(s.feature.shape[0]):
+        if s.feature[n, SENSED] == 0:
+            continue
+        for k in range(s.feature[n, HELD_FROM], s.feature[n, HELD_TO]):
+            o, place = s.feature[n, OFFSET], s.held[k]
+            if not sensed(s.tab, o, place) or s.tab[place] == FREE:
+                continue
+            show(s, r, b, interpolate, high)
+            u = u_at(s, n, place, t + high * h)
+            least, most = ends_of(s.tab, o, place)
+            if least <= u <= most:
+                continue
+            at = root(s, r, b, t, h, interpolate, low, high, n, place, u > most)
+            if at < b.met[n, THETA]:
+                b.met[n, THETA], b.met[n, PLACE] = at, place
+                b.met[n, NEXT] = neighbour(s.tab, o, place, u > most)
+            first = min(first, at)
+    for n in range(s.feature.shape[0]):
+        if b.met[n, THETA] > first + SAME:
+            b.met[n, THETA] = NONE
+    return first
+
+
+@internal
+def leaves_brief(s, b):
+    """Whether a corner in b.met ends a piece that may be a short event."""
+    for n in range(s.feature.shape[0]):
+        if b.met[n, THETA] <= 1.0 and brief(s.tab, s.feature[n, OFFSET], int(b.met[n, PLACE])):
+            return True
+    return False
+
+
+@internal
+def u_at(s, n, place, t):
+    """u of a corner at the poses of the scene."""
+    located(s.tab, s.feature[n, OFFSET], t, s.S)
+    return corner(s.tab, s.feature[n, OFFSET], place, s.S)[0]
+
+
+@internal
+def root(s, r, b, t, h, interpolate, low, high, n, place, above):
+    """Where u leaves its piece between two places, just behind it."""
+    least, most = ends_of(s.tab, s.feature[n, OFFSET], place)
+    end = most if above else least
+    f_high = u_at(s, n, place, t + high * h) - end
+    show(s, r, b, interpolate, low)
+    f_low = u_at(s, n, place, t + low * h) - end
+    if (f_low > 0.0) == above and f_low != 0.0:
+        return low  # outside as it begins: to rounding on the corner, and on its way out
+    bracket = (low, f_low, high, f_high, 0.0)
+    for k in range(200):
+        if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
+            break
+        middle = between(bracket, k)
+        show(s, r, b, interpolate, middle)
+        f = u_at(s, n, place, t + middle * h) - end
+        if f == 0.0:
+            return middle
+        bracket = narrowed(bracket, middle, f, above)
+    return bracket[2]
+
+
+@compiled(BEYOND)
+def beyond(s, b, t):
+    """How much earlier than at t the corner in b.met is met, s, at the poses of the scene."""
+    first = -1
+    for n in range(s.feature.shape[0]):
+        if b.met[n, THETA] <= 1.0 and (first < 0 or b.met[n, THETA] < b.met[first, THETA]):
+            first = n
+    if first < 0:
+        return 0.0
+    o, place = s.feature[first, OFFSET], int(b.met[first, PLACE])
+    located(s.tab, o, t, s.S)
+    u, rate, _ = corner(s.tab, o, place, s.S)
+    least, most = ends_of(s.tab, o, place)
+    end = most if abs(u - most) < abs(u - least) else least
+    return (u - end) / rate if rate != 0.0 else 0.0
+
+
+@compiled(TURN)
+def turn(s, r, b, setting, method, t1, changed):
+    """Go on from t1 behind the corners that sensors met there; whether the next step is shorter.
+
+    changed: not 0 where what was held has changed already, by the time or by an event.
+    """
+    poses(s, r.y)
+    turned = 0
+    for n in range(s.feature.shape[0]):
+        if s.feature[n, SENSED] > 0:
+            turned += released(s, r, n, t1)
+            if b.met[n, THETA] <= 1.0:
+                s.tab[int(b.met[n, PLACE])] = b.met[n, NEXT]
+                chatters(s, r, b, setting, n, t1)
+                turned += 1
+    if turned > 0 or changed > 0:
+        for n in range(s.feature.shape[0]):
+            if s.feature[n, SENSED] > 0:
+                turned += hold_sensed(s, n, t1, 0)
+    for k in range(s.sensed.shape[0]):
+        r.sight[k] = s.S[s.sensed[k, ENTRY], 0]
+    if turned > 0:
+        evaluate(s, t1, r.y, r.yd)
+        keep(s, r)
+        other_side(s, r, b, t1)
+    explicit = method[IMPLICIT_AT] == 0 and method[STEP_AT] > 0
+    if not explicit and (turned > 0 or changed > 0) and other_pieces(s, b):
+        turned += ease(s, r, b, t1)
+    return turned
+
+
+@internal
+def other_pieces(s, b):
+    """Whether a function that reads sensors is on other pieces than in the last step."""
+    for n in range(s.feature.shape[0]):
+        if s.feature[n, READS] > 0:
+            for k in range(s.feature[n, HELD_FROM], s.feature[n, HELD_TO]):
+                if s.tab[s.held[k]] != b.before[k]:
+                    return True
+    return False
+
+
+@internal
+def ease(s, r, b, t1):
+    """Make the next step so short that what the new pieces do to the velocities is little.
+
+    An implicit method takes a step much too long for one that rests there, and damps out what
+    should swing.  Whether the new pieces matter is told from the accelerations with them and
+    with those of before, at places straight ahead.  Returns whether the step is shorter.
+    """
+    most = 1.0  # of the velocities, in units of the tolerance
+    for c in range(s.n_q, s.n_q + s.n_v):
+        most = max(most, abs(r.y[c]) * b.weight[c])
+    h = r.clock[H]
+    for _ in range(HALVINGS):
+        for c in range(r.y.size):
+            b.y2[c] = r.y[c] + (h * r.yd[c] if c < s.n_q else 0.0)
+        evaluate(s, t1, b.y2, b.K[1])
+        swap(s, b)
+        evaluate(s, t1, b.y2, b.K[2])
+        swap(s, b)
+        worst = 0.0
+        for c in range(s.n_q, s.n_q + s.n_v):
+            worst = max(worst, abs(b.K[1, c] - b.K[2, c]) * b.weight[c])
+        if worst * h <= LITTLE * most:
+            break
+        h *= 0.25
+    evaluate(s, t1, r.y, r.yd)
+    shorter = h < r.clock[H]
+    r.clock[H] = h
+    return int(shorter)
+
+
+@internal
+def swap(s, b):
+    """Exchange what functions are held on for what they were held on before."""
+    for k in range(s.held.size):
+        held = s.tab[s.held[k]]
+        s.tab[s.held[k]], b.before[k] = b.before[k], held
+
+
+@internal
+def chatters(s, r, b, setting, n, t1):
+    """Free a corner that is met again and again within the error allowed: a rest on a corner."""
+    place, chatter = int(b.met[n, PLACE]), r.chatter[n]
+    located(s.tab, s.feature[n, OFFSET], t1, s.S)
+    _, rate, _ = corner(s.tab, s.feature[n, OFFSET], place, s.S)
+    fastest = 1e-300  # sensor
+    for k in range(s.sensed.shape[0]):
+        own = abs(s.S[s.sensed[k, ENTRY], 1])
+        fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
+    allowed = setting[TOLERANCE] * r.clock[LENGTH]
+    within = fastest * (t1 - chatter[LAST]) < allowed
+    chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
+    if chatter[TIMES] > OFTEN:
+        s.tab[place] = FREE
+        chatter[FAR] = abs(rate) / fastest * allowed
+        chatter[TIMES] = 0.0
+    chatter[LAST] = t1
+
+
+@internal
+def released(s, r, n, t1):
+    """Hold again what was left free on a corner, once it has gone away from it; how many."""
+    held = 0
+    for k in range(s.feature[n, HELD_FROM], s.feature[n, HELD_TO]):
+        o, place = s.feature[n, OFFSET], s.held[k]
+        if s.tab[place] != FREE or not sensed(s.tab, o, place):
+            continue
+        located(s.tab, o, t1, s.S)
+        u, _, size = corner(s.tab, o, place, s.S)
+        now = piece_at(s.tab, o, place, u)
+        s.tab[place] = now
+        least, most = ends_of(s.tab, o, place)
+        if min(u - least, most - u) <= max(r.chatter[n, FAR], NEAR * size):
+            s.tab[place] = FREE
+        else:
+            held += 1
+            r.chatter[n, FAR] = 0.0
+    return held

@@ -1,0 +1,392 @@
+"""How far what is watched can go inside a step: bounds, not samples.
+
+Gaps of contacts and watched sensors are angles, strokes and distances between two frames i and j.
+With d the separation of their points p_i and p_j, and u = R_i^T d what frame i sees of it,
+
+    angle      |g'| <= omega_i + omega_j    |g''| <= alpha_i + alpha_j + omega_i (omega_i + omega_j)
+    stroke     |g'| <= |u'|                 |g''| <= |u''|
+    distance   |g'| <= |u'|                 -|u''| <= g'' <= |u''| + |u'|^2 / |u|
+
+    |u''| <= |d''| + 2 omega_i |d'| + (alpha_i + omega_i^2) |d|
+    |d''| <= |r_j'' - r_i''| + (alpha_i + omega_i^2) |p_i| + (alpha_j + omega_j^2) |p_j|
+
+Inside a step the generalised coordinates are polynomials, the dense output.  Their second
+derivatives are bounded by the control points of Bernstein's basis [Farin2002], on any part of the
+step by de Casteljau's subdivision; a direction x / |x| turns no faster than |x'| / |x|.
+
+Before the dense output is built, which costs an explicit method further evaluations, the same
+bounds are taken from the derivatives at the stages of the step, of which it is a combination, and
+enlarged: accelerations twice.
+"""
+
+from math import comb, cos, inf, pi, sqrt
+
+import numpy as np
+
+from trsim.assemble.dense import inverse
+from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, UNKNOWN
+from trsim.elements.contract import I, J
+from trsim.elements.frames import arm, centripetal, cross, dot, separation, spin, velocity
+from trsim.kernels.vectors import internal
+from trsim.solve.march.calls import (
+    CONTROL_AT,
+    DEGREE_AT,
+    INTERPOLATE_AT,
+    call_control,
+    call_interpolate,
+)
+from trsim.solve.march.record import DEGREE
+
+CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
+SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
+SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
+
+
+def _to_bernstein(degree):
+    """Nodes on [0, 1], and the control points from values there: the inverse of B_k(nodes[m])."""
+    x = 0.5 - 0.5 * np.array([cos(pi * k / degree) for k in range(degree + 1)])
+    k = np.arange(degree + 1)
+    binomial = np.array([comb(degree, int(j)) for j in k], float)
+    return x, inverse(binomial * x[:, None] ** k * (1.0 - x[:, None]) ** (degree - k))
+
+
+NODES_CUBIC, FROM_CUBIC = _to_bernstein(CUBIC)
+NODES, FROM_NODES = _to_bernstein(MOST)
+
+
+# --- the dense output as control points ------------------------------------------------------
+
+
+@internal
+def fill_net(s, r, b, method):
+    """b.net[k] = k-th control points of q over the step, less q at its beginning."""
+    degree, net = method[DEGREE_AT], b.net
+    n = degree + 1
+    r.count[DEGREE] = degree
+    if method[CONTROL_AT] > 0:
+        call_control(method[CONTROL_AT], b.P, net)
+        return
+    for k in range(n):
+        for c in range(s.n_q):
+            net[k, c] = 0.0
+    for m in range(n):
+        node = NODES_CUBIC[m] if degree == CUBIC else NODES[m]
+        call_interpolate(method[INTERPOLATE_AT], b.P, r.y, node, b.y2)
+        for k in range(n):
+            weight = FROM_CUBIC[k, m] if degree == CUBIC else FROM_NODES[k, m]
+            for c in range(s.n_q):
+                net[k, c] += weight * (b.y2[c] - r.y[c])
+
+
+@internal
+def cut(curve, n, columns, low, high):
+    """From control points over the step to those on [low, high], of both frames.  de Casteljau"""
+    if high < 1.0:
+        for m in range(1, n):
+            for k in range(n - 1, m - 1, -1):
+                for c in range(columns):
+                    curve[k, c] += (1.0 - high) * (curve[k - 1, c] - curve[k, c])
+    if low > 0.0:
+        at = low / high
+        for m in range(1, n):
+            for k in range(n - m):
+                for c in range(columns):
+                    curve[k, c] += at * (curve[k + 1, c] - curve[k, c])
+
+
+@internal
+def coordinates_of(s, f):
+    """Of frame f: its first coordinate, how many say where it is, and how many how it is turned."""
+    if s.d == 3:
+        if f < s.n_r:
+            return 3 * (f - 1), 2, 1
+        return s.q_node + 4 * (f - s.n_r), 2, 2
+    if f < s.n_r:
+        return 7 * (f - 1), 3, 4
+    return s.q_node + 6 * (f - s.n_r), 3, 3
+
+
+@internal
+def fill_curve(s, b, n, f, first):
+    """The control points of a frame in columns of b.curve from `first` on: places, then attitude.
+
+    Returns the column behind them; of the ground there are none.
+    """
+    if f == 0:
+        return first
+    net, curve = b.net, b.curve
+    q, places, attitude = coordinates_of(s, f)
+    for k in range(n):
+        for c in range(places + attitude):
+            curve[k, first + c] = net[k, q + c]
+    return first + places + attitude
+
+
+@internal
+def turning(s, r, b, n, f, first, length):
+    """Bounds of the angular velocity and acceleration of a frame on a part of `length` seconds."""
+    if f == 0:
+        return 0.0, 0.0
+    q, places, attitude = coordinates_of(s, f)
+    once, twice, off = 0.0, 0.0, 0.0
+    size, curve = 0.0, b.curve
+    for c in range(attitude):
+        centre = curve[n // 2, first + places + c] + r.y[q + places + c]
+        size += centre * centre
+    for k in range(n):
+        a1 = a2 = away = 0.0
+        for c in range(first + places, first + places + attitude):
+            away += (curve[k, c] - curve[n // 2, c]) ** 2
+            if k < n - 1:
+                a1 += (curve[k + 1, c] - curve[k, c]) ** 2
+            if k < n - 2:
+                a2 += (curve[k + 2, c] - 2.0 * curve[k + 1, c] + curve[k, c]) ** 2
+        once, twice, off = max(once, a1), max(twice, a2), max(off, away)
+    rate = (n - 1) * sqrt(once) / length
+    bend = (n - 1) * (n - 2) * sqrt(twice) / length**2
+    if attitude == 1:
+        return rate, bend
+    # of x / |x|: rate |x'| / |x|, second rate 2 |x''| / |x| + 5 (|x'| / |x|)^2; a quaternion
+    # turns half as fast as its frame
+    least = sqrt(size) - sqrt(off)
+    if least < 0.1 * sqrt(size):
+        return inf, inf
+    rate, bend = rate / least, 2.0 * bend / least + 5.0 * (rate / least) ** 2
+    return (2.0 * rate, 2.0 * bend + 2.0 * rate * rate) if attitude == 4 else (rate, bend)
+
+
+@internal
+def apart(s, b, n, i, j, first_j, length):
+    """A bound of |r_j'' - r_i''| from the control points in b.curve."""
+    worst, curve = 0.0, b.curve
+    for k in range(n - 2):
+        square = 0.0
+        for c in range(2 if s.d == 3 else 3):
+            bend = 0.0
+            if i > 0:
+                bend -= curve[k + 2, c] - 2.0 * curve[k + 1, c] + curve[k, c]
+            if j > 0:
+                o = first_j + c
+                bend += curve[k + 2, o] - 2.0 * curve[k + 1, o] + curve[k, o]
+            square += bend * bend
+        worst = max(worst, square)
+    return (n - 1) * (n - 2) * sqrt(worst) / length**2
+
+
+# --- bounds of what is watched ---------------------------------------------------------------
+
+
+@internal
+def spread(s, r, b, c, sign, low, high, h):
+    """Bounds L of |g'| and M of -sign g'' on a part of the step, of entry c.
+
+    The poses are those of one end of the part.  Both are negative where there are none.
+    """
+    return spread_of(s, r, b, s.travel[c, 0], s.travel[c, 1], sign, low, high, h)
+
+
+@internal
+def spread_of(s, r, b, kind, e, sign, low, high, h):
+    """The same of a quantity of a kind, between the frames and points of instance e."""
+    if kind == UNKNOWN:
+        return -1.0, -1.0
+    if kind == CLOCK:
+        return 1.0, 0.0
+    i, j, length = s.con[e, I], s.con[e, J], (high - low) * h
+    n = r.count[DEGREE] + 1
+    first_j = fill_curve(s, b, n, i, 0)
+    cut(b.curve, n, fill_curve(s, b, n, j, first_j), low, high)
+    spin_i, bend_i = turning(s, r, b, n, i, 0, length)
+    spin_j, bend_j = turning(s, r, b, n, j, first_j, length)
+    away = apart(s, b, n, i, j, first_j, length)
+    return from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j)
+
+
+@internal
+def from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j):
+    """Bounds of |g'| and -sign g'' from those of the motion of both frames, in `length` s."""
+    if kind == ANGLE:
+        turn = spin_i + spin_j
+        return turn, bend_i + bend_j + spin_i * turn
+    p_i, p_j = points(s, e)
+    round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
+    bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
+    return from_points(s, kind, e, sign, length, bend, spin_i, round_i)
+
+
+@internal
+def points(s, e):
+    """The arms of an instance's points on both of its frames."""
+    X, par, i, j = s.X, s.par, s.con[e, I], s.con[e, J]
+    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+    return p_i, arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+
+
+@internal
+def from_points(s, kind, e, sign, length, bend, spin_i, round_i):
+    """Bounds of |g'| and -sign g'' of a stroke or a distance, with |d''| <= bend."""
+    V, i, j = s.V, s.con[e, I], s.con[e, J]
+    p_i, p_j = points(s, e)
+    d = separation(s.X, i, p_i, j, p_j)
+    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
+    v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    size = sqrt(dot(d, d))
+    speed = sqrt(dot(v, v)) + bend * length
+    curved = bend + 2.0 * spin_i * speed + round_i * (size + speed * length)
+    turned = cross(spin(V, i), d)
+    seen = (v[0] - turned[0], v[1] - turned[1], v[2] - turned[2])
+    fastest = sqrt(dot(seen, seen)) + curved * length
+    if kind == DISTANCE and sign < 0.0:  # what goes past a point only ever gains distance
+        least = size - fastest * length
+        if least <= 0.1 * size:
+            return fastest, inf
+        curved += fastest * fastest / least
+    return fastest, curved
+
+
+# --- before the dense output is built --------------------------------------------------------
+
+
+@internal
+def place_rates(s, f):
+    """Where the velocity of a frame's place stands in y."""
+    if f < s.n_r:
+        return s.n_q + s.d * (f - 1)
+    return s.n_q + s.v_node + s.d_node * (f - s.n_r)
+
+
+@internal
+def flat(s, f):
+    """Whether a frame is that of a rigid body in a plane, or the ground's there."""
+    return s.d == 3 and f < s.n_r
+
+
+@internal
+def at_stages(s, r, b, f):
+    """Angular velocity and acceleration of a frame, their largest at the stages, enlarged."""
+    if f == 0:
+        return 0.0, 0.0
+    if flat(s, f):
+        K, turn, fastest, largest = b.K, 3 * (f - 1) + 2, 0.0, 0.0
+        for k in SEEN:
+            fastest = max(fastest, abs(K[k, turn]))
+            largest = max(largest, abs(K[k, s.n_q + turn]))
+        return SAFE_RATE * fastest, SAFETY * largest
+    q, places, attitude = coordinates_of(s, f)
+    v, rigid = place_rates(s, f) + places, f < s.n_r
+    rates = (1 if s.d == 3 else 3) if rigid else attitude
+    once = twice = 0.0
+    for k in SEEN:
+        a1 = a2 = 0.0
+        for c in range(attitude):
+            a1 += b.K[k, q + places + c] ** 2
+        for c in range(rates):
+            a2 += b.K[k, v + c] ** 2
+        once, twice = max(once, a1), max(twice, a2)
+    once, twice = SAFE_RATE * sqrt(once), SAFETY * sqrt(twice)
+    if not rigid:
+        size = 0.0
+        for c in range(attitude):
+            size += r.y[q + places + c] ** 2
+        once, twice = once / sqrt(size), 2.0 * twice / sqrt(size) + 5.0 * once * once / size
+    return (2.0 * once if attitude == 4 else once), twice
+
+
+@internal
+def point_at_stage(s, b, k, f, p):
+    """Acceleration at stage k of a point of a frame, with its arm and spin as they are now.
+
+    Of a node of a beam it is that of its place; the spin is bounded by the caller.
+    """
+    if f == 0:
+        return 0.0, 0.0, 0.0
+    K, v = b.K, place_rates(s, f)
+    if s.d == 3:
+        a0, a1, a2 = K[k, v], K[k, v + 1], 0.0
+    else:
+        a0, a1, a2 = K[k, v], K[k, v + 1], K[k, v + 2]
+    if f >= s.n_r:
+        return a0, a1, a2
+    X = s.X
+    if s.d == 3:
+        turn = (0.0, 0.0, K[k, v + 2])
+    else:
+        turn = arm(X, f, K[k, v + 3], K[k, v + 4], K[k, v + 5])
+    c, e = cross(turn, p), centripetal(s.V, f, p)
+    return a0 + c[0] + e[0], a1 + c[1] + e[1], a2 + c[2] + e[2]
+
+
+@internal
+def apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j):
+    """The largest |d''| of an instance's points at the stages, enlarged.
+
+    Arms and spins are those at the end of the step, and what they turn by in it is added.
+    """
+    i, j, worst = s.con[e, I], s.con[e, J], 0.0
+    p_i, p_j = points(s, e)
+    if flat(s, i) and flat(s, j):
+        return SAFETY * apart_in_plane(s, b, i, p_i, j, p_j) + slack_of(
+            s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j
+        )
+    for k in SEEN:
+        a_i, a_j = point_at_stage(s, b, k, i, p_i), point_at_stage(s, b, k, j, p_j)
+        d = (a_j[0] - a_i[0], a_j[1] - a_i[1], a_j[2] - a_i[2])
+        worst = max(worst, dot(d, d))
+    return SAFETY * sqrt(worst) + slack_of(s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j)
+
+
+@internal
+def apart_in_plane(s, b, i, p_i, j, p_j):
+    """The largest |d''| at the stages, of points of two bodies in a plane."""
+    K, V, worst = b.K, s.V, 0.0
+    round_i, round_j = V[i, 5] * V[i, 5], V[j, 5] * V[j, 5]
+    x, y = round_i * p_i[0] - round_j * p_j[0], round_i * p_i[1] - round_j * p_j[1]
+    v_i, v_j = s.n_q + 3 * (i - 1), s.n_q + 3 * (j - 1)
+    for k in SEEN:
+        a, c = x, y
+        if i > 0:
+            a -= K[k, v_i] - K[k, v_i + 2] * p_i[1]
+            c -= K[k, v_i + 1] + K[k, v_i + 2] * p_i[0]
+        if j > 0:
+            a += K[k, v_j] - K[k, v_j + 2] * p_j[1]
+            c += K[k, v_j + 1] + K[k, v_j + 2] * p_j[0]
+        worst = max(worst, a * a + c * c)
+    return sqrt(worst)
+
+
+@internal
+def slack_of(s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j):
+    """What |d''| may change by as both arms turn."""
+    of_i = sqrt(dot(p_i, p_i)) * slackness(s, i, h, spin_i, bend_i)
+    return of_i + sqrt(dot(p_j, p_j)) * slackness(s, j, h, spin_j, bend_j)
+
+
+@internal
+def slackness(s, f, h, spin, bend):
+    """What the acceleration of a point changes by, for each m of its arm, as its frame turns."""
+    all_of_it = bend + spin * spin
+    if f >= s.n_r:
+        return all_of_it
+    return min(all_of_it, h * (spin * all_of_it + 2.0 * spin * bend))
+
+
+@internal
+def spread_at_stages(s, r, b, c, sign, h):
+    """`spread` over the whole step, from its stages; the poses are those of its end."""
+    return spread_of_stages(s, r, b, s.travel[c, 0], s.travel[c, 1], sign, h)
+
+
+@internal
+def spread_of_stages(s, r, b, kind, e, sign, h):
+    """The same of a quantity of a kind, between the frames and points of instance e."""
+    if kind == UNKNOWN:
+        return -1.0, -1.0
+    if kind == CLOCK:
+        return 1.0, 0.0
+    i, j = s.con[e, I], s.con[e, J]
+    spin_i, bend_i = at_stages(s, r, b, i)
+    spin_j, bend_j = at_stages(s, r, b, j)
+    if kind == ANGLE:
+        return from_motion(s, kind, e, sign, h, 0.0, spin_i, bend_i, spin_j, bend_j)
+    bend = apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j)
+    return from_points(s, kind, e, sign, h, bend, spin_i, bend_i + spin_i * spin_i)

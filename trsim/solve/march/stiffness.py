@@ -1,0 +1,145 @@
+"""How stiff a mechanism is, whether that is seen of its motion or not.
+
+A stiff spring or a strong damper between parts that move slowly together carries little, and no
+stage of a step tells of it; yet of what places and velocities are off by across it, it makes
+accelerations,
+
+    w^2 = |a(q + d, v) - a(q, v)| / |d|        w of the fastest vibration there could be
+    c   = |a(q, v + u) - a(q, v)| / |u|        of the fastest decay
+
+times as much.  d and u are those of two vector iterations, d <- a(q + d, v) - a(q, v), which go on
+along the run: FIRST evaluations for each before the first step, then one for one or the other after
+OFTEN steps, twice as many, and so on up to SELDOM; after OFTEN again where it has risen.
+"""
+
+from math import sqrt
+
+from trsim.assemble.equations import evaluate
+from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
+from trsim.kernels.vectors import copy_to, internal
+from trsim.solve.march.record import (
+    AFTER_REJECTION,
+    APART_LOOKS,
+    BUFFERS,
+    DECAY,
+    LENGTH,
+    MOST,
+    NEXT_LOOK,
+    OF_RATES,
+    RECORD,
+    SPEED,
+    STEPS,
+    VIBRATION,
+    T,
+)
+from trsim.solve.methods.displacements import active, displace, w_index
+
+FIRST, OFTEN, SELDOM = 3, 4, 32
+RISEN = 2.0  # times what it was: looked at OFTEN again
+FADING = 0.5  # of what was found before: at least that stays with a look
+NUDGE = 1e-7  # of the units of lengths and speeds: the size of d and u
+GOLDEN = 0.6180339887498949
+NOTHING = 1e-300  # nothing holds anything
+# the longest steps of an explicit method in which what is stiff dies out, w h and c h.  DOP853 is
+# stable to 6.0 and 6.1; it leaves 0.7 of a vibration there, and of a decay its estimate sees all
+SWINGING, DYING = 5.5, 3.5
+
+LOOK_STIFF = types.void(SCENE, RECORD, BUFFERS)
+call_look_stiff = caller(LOOK_STIFF)
+
+
+@internal
+def smooth(s, r):
+    """Whether accelerations are smooth in places and rates here: nothing touches, no rows depend on
+    others."""
+    if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
+        return False
+    for c in range(s.contact.size):
+        if r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT:
+            return False
+    return True
+
+
+@internal
+def stiffness_due(r):
+    """Whether it is time for a look, before a step."""
+    if r.clock[VIBRATION] == 0.0:
+        return True
+    return r.count[STEPS] >= r.count[NEXT_LOOK] and r.count[AFTER_REJECTION] == 0
+
+
+@internal
+def longest_calm(r):
+    """The longest step in which what is stiff dies out, s."""
+    return min(SWINGING / sqrt(r.clock[VIBRATION]), DYING / max(r.clock[DECAY], NOTHING))
+
+
+@internal
+def stiff_load(r, h):
+    """h over that."""
+    return h / longest_calm(r) if r.clock[VIBRATION] > 0.0 else 0.0
+
+
+@compiled(LOOK_STIFF)
+def look_stiff(s, r, b):
+    """Take one iteration on, at the state of the record; what it says is in r.clock."""
+    counted = (s.status[1], s.status[2], s.status[3])
+    apart = r.count[APART_LOOKS]
+    if r.clock[VIBRATION] == 0.0:
+        for k in range(r.swing.shape[1]):  # no two bodies move alike
+            r.swing[0, k] = r.swing[1, k] = (GOLDEN * (k + 1)) % 1.0 - 0.5
+        for _ in range(FIRST):
+            r.clock[VIBRATION], r.clock[DECAY] = turned(s, r, b, 0), turned(s, r, b, 1)
+        apart = OFTEN
+    else:
+        of_rates = r.count[OF_RATES] = 1 - r.count[OF_RATES]
+        known = DECAY if of_rates > 0 else VIBRATION
+        before, now = r.clock[known], turned(s, r, b, of_rates)
+        r.clock[known] = max(now, FADING * before)
+        apart = OFTEN if now > RISEN * before else min(2 * apart, SELDOM)
+    r.count[APART_LOOKS], r.count[NEXT_LOOK] = apart, r.count[STEPS] + apart
+    r.clock[VIBRATION] = max(r.clock[VIBRATION], NOTHING)
+    if s.near_rows > 0.0:  # what is seen of the rows goes on from there
+        evaluate(s, r.clock[T], r.y, b.rough[1])
+    s.status[1], s.status[2], s.status[3] = counted
+
+
+@internal
+def turned(s, r, b, of_rates):
+    """One turn of an iteration; w^2 or c, or 0 where nothing changes.
+
+    Rates are velocities and states of elements, those counted by what makes one of the error norm.
+    """
+    place, rates, swing = b.rough[0], b.rough[1], r.swing[of_rates]
+    many = active(s) if of_rates > 0 else s.n_v
+    speed = max(r.clock[SPEED], r.clock[MOST])
+    nudge = NUDGE * (speed if of_rates > 0 else r.clock[LENGTH])
+    by = nudge / size_of(s, swing, speed, many)
+    copy_to(place, r.y)
+    for k in range(many):
+        if of_rates > 0:
+            place[w_index(s, k)] += by * swing[k]
+        else:
+            displace(s, place, k, by * swing[k])
+    evaluate(s, r.clock[T], place, rates)
+    for k in range(many):
+        rates[k] = rates[w_index(s, k)] - r.yd[w_index(s, k)]
+    felt = size_of(s, rates, speed, many)
+    if not felt > 0.0 or felt > 1e150:
+        return 0.0
+    for k in range(many):
+        swing[k] = rates[k]
+    return felt / nudge
+
+
+@internal
+def size_of(s, w, speed, many):
+    """Of so many velocities and states of elements, or their rates, m/s."""
+    total = 0.0
+    for k in range(many):
+        c = w_index(s, k)
+        scale = s.scale[c] if k < s.n_v else speed / s.scale[c] if s.scale[c] > 0.0 else 0.0
+        total += (scale * w[k]) ** 2
+    return sqrt(total)

@@ -1,0 +1,203 @@
+"""Explicit or implicit: which of two methods makes the next step.
+
+An explicit method whose steps are held at its limit of stability,
+
+    h rho > 6.1,    rho = |f(y_1) - f(Y_12)| / |y_1 - Y_12|                 [HairerWanner1996]
+
+with Y_12 the last stage of DOP853 (both at t + h), for 15 steps, of large models for n_v / 4, gives
+way to the implicit one: near a singular position some steps look stiff and are not, and Jacobians
+of large models are dear.  The implicit one gives back after an event, or when its own steps, with
+the largest eigenvalue of its matrices by a few vector iterations, would be stable for the explicit
+one as well.
+"""
+
+from math import sqrt
+
+from trsim.kernels.vectors import clear, internal
+from trsim.solve.march.record import (
+    EVENT_ANGLE,
+    EVENT_IMPULSE,
+    EVENT_KIND,
+    EVENT_ROW,
+    EVENT_ROWS,
+    EVENT_SPEED,
+    EVENT_TIME,
+    EVENT_WORK,
+    EXPLICIT_RATE,
+    FACTORED_H,
+    HISTORY,
+    JACOBIAN,
+    JACOBIAN_RATE,
+    METHOD,
+    NO_HISTORY,
+    NO_JACOBIAN,
+    NOT_STIFF,
+    PAST_ERROR,
+    STIFF,
+    SWITCHES,
+    TO_EXPLICIT,
+    TO_IMPLICIT,
+    VIBRATION,
+    H,
+    T,
+)
+from trsim.solve.march.stiffness import stiff_load
+from trsim.solve.methods import dop853_tableau
+from trsim.solve.methods.displacements import active
+
+A = dop853_tableau.A
+EXPLICIT, IMPLICIT = 0, 1  # rows of `methods`
+STABLE = 6.1  # h rho of DOP853 on the negative real axis
+HELD = 0.9  # of the longest steps in which what is stiff dies out: as good as held by them
+STIFF_STEPS, RELIEF, CHEAP_STEPS = 15, 6, 20
+DEAR = 4  # a Jacobian and its dense factors cost about as much as n_v / 4 explicit steps
+NEAR, CALM = 3.0, 3.5  # h rho: where steps of DOP853 on contacts are watched, what they are held to
+EASY = 3.0  # h rho at which the explicit method takes steps of the same length
+SEEN = 1e-4  # of the error allowed: steps at the limit of stability change by about all of it
+ITERATIONS = 12  # of the vector iteration
+
+
+@internal
+def choose(s, r, b, h, event):
+    """Change r.count[METHOD] where the steps so far say so; leaves a line among the events."""
+    if r.count[METHOD] == EXPLICIT:
+        if event:
+            forget(r)
+            return
+        rate = explicit_rate(s, r, b, h)
+        load, light = h * max(rate, STABLE / HELD * stiff_load(r, 1.0)), calmed(s, r, h, rate)
+        if load > STABLE or light:
+            r.count[STIFF] += 1
+            r.count[NOT_STIFF] = 0
+            if r.count[STIFF] >= max(STIFF_STEPS, s.n_v // DEAR):
+                change(s, r, b, IMPLICIT, load)
+        else:
+            r.count[NOT_STIFF] += 1
+            if r.count[NOT_STIFF] >= RELIEF:
+                r.count[STIFF] = 0
+        return
+    if event:
+        change(s, r, b, EXPLICIT, 0.0)
+        return
+    if r.clock[JACOBIAN_RATE] < 0.0:
+        r.clock[JACOBIAN_RATE] = implicit_rate(s, r, b)
+    load = h * r.clock[JACOBIAN_RATE]
+    r.count[STIFF] = r.count[STIFF] + 1 if load < EASY else 0
+    if r.count[STIFF] >= CHEAP_STEPS:
+        change(s, r, b, EXPLICIT, load)
+
+
+@internal
+def calm(s, r, b, h, event):
+    """The same of DOP853 alone: it keeps its steps stable."""
+    if event:
+        forget(r)
+    else:
+        calmed(s, r, h, explicit_rate(s, r, b, h))
+
+
+@internal
+def forget(r):
+    """Behind an event the derivative changes by other rates."""
+    r.clock[EXPLICIT_RATE] = 0.0
+
+
+@internal
+def calmed(s, r, h, rate):
+    """Shorten the next step to where it is stable, after a step h at this rate; whether it would
+    have been beyond the limit.
+
+    Only where something touches, and by the lesser of two rates in a row.  Between 5 and 6.1 on the
+    real axis the error estimate sees down to an eighth of the error: what is stiff trembles there
+    by many times the error allowed, and the damping of a light touch makes forces of it.
+    """
+    sure = min(rate, r.clock[EXPLICIT_RATE])
+    r.clock[EXPLICIT_RATE] = rate
+    if s.contact.size == 0 or h * sure <= NEAR or r.clock[H] * sure <= CALM:
+        return False
+    stiff = r.clock[H] * sure > STABLE
+    r.clock[H] = CALM / sure
+    return stiff
+
+
+@internal
+def change(s, r, b, method, load):
+    """Go on with the other method; the line says how stiff the last step was."""
+    r.count[METHOD] = method
+    r.count[STIFF], r.count[NOT_STIFF] = 0, 0
+    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
+    r.clock[PAST_ERROR], r.clock[FACTORED_H], r.clock[VIBRATION] = 0.0, 0.0, 0.0
+    forget(r)
+    r.count[SWITCHES] += 1
+    line = b.events[r.count[EVENT_ROWS]]
+    r.count[EVENT_ROWS] += 1
+    line[EVENT_TIME], line[EVENT_ROW] = r.clock[T], s.con.shape[0]
+    line[EVENT_KIND] = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
+    line[EVENT_SPEED] = load / r.clock[H] if r.clock[H] > 0.0 else 0.0
+    line[EVENT_ANGLE], line[EVENT_WORK], line[EVENT_IMPULSE] = load, 0.0, 0.0
+
+
+@internal
+def explicit_rate(s, r, b, h):
+    """rho, 1/s: how much the derivative changes with the state, in the units of the error.
+
+    0 where what changes is SEEN by no tolerance: of bodies at rest a quotient of two roundings.
+    """
+    K, weight = b.K, b.weight
+    top = bottom = 0.0
+    for c in range(r.y.size):
+        if weight[c] > 0.0:
+            # r.y is the end of the step by now: the difference to the last stage is in K alone
+            away = 0.0
+            for k in range(12):
+                away += (A[12, k] - A[11, k]) * K[k, c]
+            top += ((K[12, c] - K[11, c]) * weight[c]) ** 2
+            bottom += (h * away * weight[c]) ** 2
+    return sqrt(top / bottom) if bottom > 0.0 and h * sqrt(top) > SEEN else 0.0
+
+
+@internal
+def implicit_rate(s, r, b):
+    """Largest eigenvalue of the linearised motion, 1/s, by vector iteration on (dx, dw)."""
+    n, n_v = active(s), s.n_v
+    x, w, u = b.K[3], b.K[4], b.K[5]
+    sown(s, n, x, w)
+    product = 1.0
+    for turn in range(ITERATIONS):
+        clear(u)
+        for k in range(n_v):
+            for i in range(n):
+                u[i] += r.by_place[i, k] * x[k]
+        for k in range(n):
+            for i in range(n):
+                u[i] += r.by_rate[i, k] * w[k]
+        growth = grown(s, n, x, w, u)
+        if growth == 0.0:
+            return 0.0
+        if turn >= ITERATIONS - 4:  # an oscillation grows by rho^2 in two turns
+            product *= growth
+    return sqrt(sqrt(product))
+
+
+@internal
+def sown(s, n, x, w):
+    """Displacements x (n_v) and rates w (n) of a vector iteration at its start."""
+    for k in range(s.n_v):
+        x[k] = 1.0 if k % 2 == 0 else -0.7
+    for k in range(n):
+        w[k] = 1.0 if k % 3 == 0 else 0.6
+
+
+@internal
+def grown(s, n, x, w, u):
+    """(x, w) <- (w, u) over the size of u = w'; u over w in size, 0 where either is 0."""
+    before = size = 0.0
+    for k in range(n):
+        before, size = max(before, abs(w[k])), max(size, abs(u[k]))
+    if size == 0.0 or before == 0.0:
+        return 0.0
+    for k in range(s.n_v):
+        x[k] = w[k] / size
+    for k in range(n):
+        w[k] = u[k] / size
+    return size / before

@@ -1,0 +1,258 @@
+"""Newton systems of the equations of ggl_equations.py, sparse.
+
+With c an eigenvalue of the method over h, real or complex, a Newton step solves
+
+    c dx - dv + M^-1 B^T dmu = r_x                          B dx + Phi_z dz = r_p
+    c M dv - f_x dx - f_v dv - f_z dz + B^T dlam = r_v      B dv + C dx     = r_r
+    c dz - g_x dx - g_v dv - g_z dz = r_z
+
+C is the change of B v + Phi_t.  dv is eliminated; dmu follows from S = B M^-1 B^T, at first without
+C, which leaves a constrained system for (dx, dz) and dlam,
+
+    [ c^2 M - c f_v - f_x    -f_z     B^T   ]
+    [ -c g_v - g_x            c - g_z  0    ]
+    [ B                       Phi_z    0    ]
+
+as sparse as the mechanism, and then with C: what that changes in the row of v is M c M^-1 B^T dmu,
+taken into dlam, and damping of dmu, left to the next iteration.  f_x holds the change of B^T lam;
+all derivatives are differences, many columns at a time [CurtisPowellReid1974].
+"""
+
+from trsim.assemble.beams import node_products
+from trsim.assemble.linear import factorise, substitute
+from trsim.assemble.schur import hub_mass, hub_rows
+from trsim.elements.contract import N_BOOK
+from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.solve.march.record import CHOOSES, JACOBIAN_RATE, JACOBIANS
+from trsim.solve.methods.displacements import active, moved_by, twisted, w_index, width_of
+from trsim.solve.methods.ggl_equations import across, add_product, mass_times
+from trsim.solve.methods.ggl_jacobian import fastest
+from trsim.solve.methods.sparse_lu import (
+    factorise_sparse,
+    factorise_sparse_complex,
+    solve_sparse,
+    solve_sparse_complex,
+)
+
+# b.made: number of the Jacobian, step size of the factors, whether loads depend on rates, and rows
+# of constraints on places
+MADE_OF, MADE_FOR, RESISTED, TURNS = 0, 1, 2, 3
+
+
+@internal
+def sparse_factors(s, r, b, setting, h, g, a, c):
+    """Factors of the systems for g and for a + i c, of the Jacobian in r.  False: not finite."""
+    if b.made[MADE_OF] != r.count[JACOBIANS]:
+        schur(s, r, b)
+        b.made[MADE_OF], b.made[MADE_FOR] = r.count[JACOBIANS], 0.0
+        b.made[RESISTED] = 1.0 if some(r.at_rate) else 0.0
+        b.made[TURNS] = 1.0 if some_of(r.at_turn) else 0.0
+        if setting[CHOOSES] > 0.0:
+            r.clock[JACOBIAN_RATE] = fastest(s, r, b)
+    if b.made[MADE_FOR] == h:
+        return True
+    assembled(s, r, b, g, 0.0)
+    real = factorise_sparse(b, b.value[0], b.real_l, b.real_u, b.real_d, b.work[0])
+    assembled(s, r, b, a, c)
+    pair = factorise_sparse_complex(b, b.value, b.complex_l, b.complex_u, b.complex_d, b.work)
+    b.made[MADE_FOR] = h if real >= 0 and pair >= 0 else 0.0
+    return real >= 0 and pair >= 0
+
+
+@internal
+def some(x):
+    """Whether an entry is not zero."""
+    for k in range(x.size):  # noqa: SIM110 - a generator does not compile
+        if x[k] != 0.0:
+            return True
+    return False
+
+
+@internal
+def some_of(table):
+    """The same of a table."""
+    for k in range(table.shape[0]):  # noqa: SIM110 - a generator does not compile
+        if some(table[k]):
+            return True
+    return False
+
+
+@internal
+def schur(s, r, b):
+    """M^-1 B^T and the factors of S of the Jacobian, into b."""
+    clear(s.value)
+    clear(s.through)
+    pair = 0
+    for f in range(1, s.n_r):
+        I = s.inertia_inverse[f]
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            B, W = r.at_rows[p], b.across[p]
+            if s.d == 3:
+                W[0], W[1], W[2] = B[0] * s.mass_inverse[f], B[1] * s.mass_inverse[f], B[2] * I[8]
+            else:
+                for i in range(3):
+                    W[i] = B[i] * s.mass_inverse[f]
+                    W[3 + i] = I[3 * i] * B[3] + I[3 * i + 1] * B[4] + I[3 * i + 2] * B[5]
+            if s.hub[f] < 0:
+                for o in range(s.frame_start[f], p + 1):
+                    for k in range(s.d):
+                        s.value[s.entry[pair]] += r.at_rows[o, k] * W[k]
+                    pair += 1
+        if s.hub[f] >= 0:
+            pair = hub_mass(s, f, hub_rows(s, f, r.at_rows, b.across, pair))
+    if s.n_r < s.n:
+        node_products(s, r.at_rows, pair)
+    factorise(s)
+    s.status[2] -= 1  # a run that goes on makes them again: not counted
+    copy_to(b.schur, s.value)
+
+
+@internal
+def assembled(s, r, b, a, c):
+    """The entries of the constrained system for a + i c into b.value, row by row."""
+    re, im = b.value[0], b.value[1]
+    for k in range(active(s)):
+        for e in range(b.column_start[k], b.column_start[k + 1]):
+            if k < s.n_v:
+                re[b.entry[e]] = (a * a - c * c) * b.mass[e] - a * r.at_rate[e] - r.at_place[e]
+                im[b.entry[e]] = 2.0 * a * c * b.mass[e] - c * r.at_rate[e]
+            else:
+                re[b.entry[e]] = a * b.mass[e] - r.at_rate[e]
+                im[b.entry[e]] = c * b.mass[e]
+    for f in range(1, s.n):
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for k in range(width_of(s, f)):
+                re[b.entry_row[p, k]] = r.at_rows[p, k]
+                re[b.entry_across[p, k]] = r.at_rows[p, k]
+                im[b.entry_row[p, k]] = 0.0
+                im[b.entry_across[p, k]] = 0.0
+    for k in range(b.entry_state.size):
+        re[b.entry_state[k]] = r.at_state[k]
+        im[b.entry_state[k]] = 0.0
+
+
+@internal
+def multipliers(s, r, b, part, rates, x, places, y, a, c):
+    """b.mu[part] <- S^-1 (rates + B x - (a places - c y)), its real or its imaginary part."""
+    mu = b.mu[part]
+    for j in range(s.m):
+        mu[j] = rates[j] - (a * places[j] - c * y[j])
+    add_product(s, r.at_rows, 1.0, x, mu)
+    substitute(s, b.schur, mu)
+
+
+@internal
+def with_states(s, r, b, rates, f, sign):
+    """rates += sign Phi_z r_z: how fast a drive's state moves what it prescribes."""
+    for k in range(b.state_row.shape[0]):
+        rates[b.state_row[k, 0]] += sign * r.at_state[k] * f[w_index(s, b.state_row[k, 1])]
+
+
+@internal
+def loaded(s, r, b, f, x, y, a, c, side):
+    """side <- rows of w of f + Re((a + i c) M u) - (f_v, g_v) x, u = x + i y, in rank order."""
+    n_w = active(s)
+    for i in range(n_w):
+        side[b.rank[i]] = f[w_index(s, i)]
+    u, weighed = b.pull, b.pull0
+    for k in range(s.n_v):
+        u[k] = a * x[k] - c * y[k]
+    mass_times(s, u, weighed)
+    for k in range(s.n_v):
+        side[b.rank[k]] += weighed[k]
+    if b.made[RESISTED] == 0.0:
+        return
+    for k in range(s.n_v):
+        for e in range(b.column_start[k], b.column_start[k + 1]):
+            side[b.rank[b.row[e]]] -= r.at_rate[e] * x[k]
+
+
+@internal
+def solved(s, r, b, f, g, p, q, u, w, a, c, held):
+    """(f + i g, p + i q, u + i w) <- the Newton step for a + i c of the right-hand sides there.
+
+    f, g: of y (n_y), with rows of v as forces; p, q: of Phi, then dlam; u, w: of Phi', then dmu.
+    c = 0 takes the real factors; g, q, w are zero then, and stay so.  held: 1.0; 0.0 leaves C out,
+    for right-hand sides of ggl_stages.unconstrained.
+    """
+    n_w, x, y = active(s), b.slope[0], b.slope[1]
+    for k in range(s.n_v):
+        x[k], y[k] = twisted(s, r, k, f), twisted(s, r, k, g)
+    with_states(s, r, b, u, f, 1.0)
+    with_states(s, r, b, w, g, 1.0)
+    multipliers(s, r, b, 0, u, x, p, q, a, c)
+    if c != 0.0:
+        multipliers(s, r, b, 1, w, y, q, p, a, -c)
+    else:
+        clear(b.mu[1])
+    with_states(s, r, b, u, f, -1.0)
+    with_states(s, r, b, w, g, -1.0)
+    dx, dy = b.move[0], b.move[1]  # u = r_x - M^-1 B^T dmu for now
+    for k in range(s.n_v):
+        dx[k], dy[k] = x[k], y[k]
+    across(s, r.at_rows, b.across, b.mu[0], dx)
+    if c != 0.0:
+        across(s, r.at_rows, b.across, b.mu[1], dy)
+        loaded(s, r, b, g, dy, dx, a, -c, b.side[1])
+    loaded(s, r, b, f, dx, dy, a, c, b.side[0])
+    for j in range(s.m):
+        b.side[0, b.rank[n_w + j]], b.side[1, b.rank[n_w + j]] = p[j], q[j]
+    if c == 0.0:
+        solve_sparse(b, b.real_l, b.real_u, b.real_d, b.side[0])
+        for k in range(b.side.shape[1]):
+            b.side[1, k] = 0.0
+    else:
+        solve_sparse_complex(b, b.complex_l, b.complex_u, b.complex_d, b.side[0], b.side[1])
+    for k in range(s.n_v):
+        dx[k], dy[k] = b.side[0, b.rank[k]], b.side[1, b.rank[k]]
+        x[k] -= a * dx[k] - c * dy[k]  # r_x - (a + i c) dx
+        y[k] -= a * dy[k] + c * dx[k]
+    corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held)
+    across(s, r.at_rows, b.across, u, x)
+    if c != 0.0:
+        across(s, r.at_rows, b.across, w, y)
+    advanced(s, r, b, f, g, a, c)
+
+
+@internal
+def corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held):
+    """u + i w <- dmu of the velocities as found; p + i q <- dlam with what that changes."""
+    n_w = active(s)
+    for j in range(s.m):
+        k = b.rank[n_w + j]
+        p[j] = b.side[0, k] + a * b.mu[0, j] - c * b.mu[1, j]
+        q[j] = b.side[1, k] + a * b.mu[1, j] + c * b.mu[0, j]
+    add_product(s, r.at_turn, -held, b.move[0], u)
+    multipliers(s, r, b, 0, u, x, u, w, 0.0, 0.0)
+    if c != 0.0:
+        add_product(s, r.at_turn, -held, b.move[1], w)
+        multipliers(s, r, b, 1, w, y, u, w, 0.0, 0.0)
+    for j in range(s.m):
+        u[j], w[j] = b.mu[0, j], b.mu[1, j]
+        p[j] -= a * u[j] - c * w[j]
+        q[j] -= a * w[j] + c * u[j]
+
+
+@internal
+def advanced(s, r, b, f, g, a, c):
+    """Increments of y into f + i g; b.slope holds r_x - (a + i c) dx - M^-1 B^T dmu = -dv."""
+    size = a * a + c * c
+    x, y, dx, dy = b.slope[0], b.slope[1], b.move[0], b.move[1]
+    for k in range(s.n_v):
+        f[s.n_q + k], g[s.n_q + k] = -x[k], -y[k]
+    for k in range(s.n_v, active(s)):
+        i = w_index(s, k)
+        f[i], g[i] = b.side[0, b.rank[k]], b.side[1, b.rank[k]]
+    for k in range(N_BOOK):
+        i = s.n_q + s.n_v + k
+        re, im = f[i], g[i]
+        f[i], g[i] = (re * a + im * c) / size, (im * a - re * c) / size
+    # a quaternion has a fourth number: what no displacement means, r_q without r_x
+    for k in range(s.n_v):
+        re, im = twisted(s, r, k, f), twisted(s, r, k, g)
+        x[k] = dx[k] - (re * a + im * c) / size
+        y[k] = dy[k] - (im * a - re * c) / size
+    for k in range(s.n_q):
+        re, im = f[k], g[k]
+        f[k] = (re * a + im * c) / size + moved_by(s, r.y, k, x)
+        g[k] = (im * a - re * c) / size + moved_by(s, r.y, k, y)

@@ -1,0 +1,157 @@
+"""What the stages of Radau leave of the equations, and their way on.
+
+Two forms for one and the same matrix: the stabilised equations of ggl_equations.py, and those of
+equations.py, whose constraints hold by their accelerations.
+"""
+
+from trsim.assemble.equations import evaluate
+from trsim.assemble.schur import velocity_residual
+from trsim.kernels.vectors import all_finite, internal
+from trsim.solve.methods.displacements import twisted, w_index
+from trsim.solve.methods.ggl_equations import across, add_product, mass_times, moving, pull
+from trsim.solve.methods.radau import F, W, Z
+from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, C, T
+
+# rows of K after those of radau.py, three each: lam of the stages, mu, right-hand sides and
+# increments of Phi and Phi'; three rows that stay zero
+LAM, MU, RP, RR, NIL = 14, 17, 20, 23, 26
+STAGES = 29
+
+
+@internal
+def residuals(s, r, b, t, h):
+    """F, RP, RR <- what the stages leave of the equations, in the basis T.  False: not finite."""
+    K, n = b.K, r.y.size
+    end = s.n_q + s.n_v
+    for i in range(3):
+        f = K[F + i]
+        for k in range(n):
+            b.y1[k] = r.y[k] + K[Z + i, k]
+        pull(s, t + C[i] * h, b.y1, K[LAM + i], b.pull)
+        x = b.slope[0]
+        for k in range(s.n_v):
+            x[k] = b.y1[s.n_q + k]
+            f[s.n_q + k] = b.pull[k]
+        across(s, s.B, s.W, K[MU + i], x)
+        for k in range(s.m):
+            K[RP + i, k], K[RR + i, k] = -s.phi[k], -velocity_residual(s, k)
+        moving(s, b.y1, x, f)
+        for k in range(s.n_z):
+            f[end + k] = s.zd[k]
+        if not all_finite(f):
+            return False
+    left_over(s, r, b, h, True)
+    transformed(K[RP], K[RP + 1], K[RP + 2], s.m)
+    transformed(K[RR], K[RR + 1], K[RR + 2], s.m)
+    return True
+
+
+@internal
+def left_over(s, r, b, h, forces):
+    """F <- T^-1 F less the rates of the stages; rows of v are forces, or accelerations."""
+    K, n = b.K, r.y.size
+    g, a, c = GAMMA / h, ALPHA / h, BETA / h
+    transformed(K[F], K[F + 1], K[F + 2], n)
+    for i in range(3):
+        for k in range(n):
+            w0, w1, w2 = K[W, k], K[W + 1, k], K[W + 2, k]
+            rate = g * w0 if i == 0 else (a * w1 - c * w2 if i == 1 else c * w1 + a * w2)
+            if forces and s.n_q <= k < s.n_q + s.n_v:
+                b.move[0, k - s.n_q] = rate
+            else:
+                K[F + i, k] -= rate
+        if forces:
+            mass_times(s, b.move[0], b.slope[0])
+            for k in range(s.n_v):
+                K[F + i, s.n_q + k] -= b.slope[0, k]
+
+
+@internal
+def residuals_index1(s, r, b, t, h):
+    """The same of the equations of motion with their own multipliers.  False: not finite."""
+    K, n = b.K, r.y.size
+    for i in range(3):
+        for k in range(n):
+            b.y1[k] = r.y[k] + K[Z + i, k]
+        evaluate(s, t + C[i] * h, b.y1, K[F + i])
+        for k in range(s.m):
+            K[LAM + i, k] = s.lam[k]
+        if not all_finite(K[F + i]):
+            return False
+    left_over(s, r, b, h, False)
+    nothing(s, K)
+    unconstrained(s, r, b, K[F], K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], GAMMA / h, 0.0)
+    unconstrained(s, r, b, K[F + 1], K[F + 2], K[RP + 1], K[RP + 2], K[RR + 1], K[RR + 2],
+                  ALPHA / h, BETA / h)  # fmt: skip
+    return True
+
+
+@internal
+def unconstrained(s, r, b, f, g, p, q, u, w, a, c):
+    """Right-hand sides of `solved` that constrain nothing: what is across the rows stays.
+
+    (p + i q, u + i w) <- B dx and B dv of c dv = f_v, c dx = f_x + dv with c = a + i c; rows of v
+    in f + i g change from accelerations to forces.
+    """
+    size = a * a + c * c
+    x, y, dx, dy = b.slope[0], b.slope[1], b.move[0], b.move[1]
+    for k in range(s.n_v):
+        x[k], y[k] = twisted(s, r, k, f), twisted(s, r, k, g)
+        dx[k], dy[k] = f[s.n_q + k], g[s.n_q + k]
+    for j in range(s.m):
+        u[j], w[j] = 0.0, 0.0
+    add_product(s, r.at_rows, 1.0, dx, u)
+    add_product(s, r.at_rows, 1.0, dy, w)
+    for j in range(s.m):
+        re, im = u[j], w[j]
+        u[j], w[j] = (re * a + im * c) / size, (im * a - re * c) / size
+        p[j], q[j] = u[j], w[j]
+    add_product(s, r.at_rows, 1.0, x, p)
+    add_product(s, r.at_rows, 1.0, y, q)
+    for j in range(s.m):
+        re, im = p[j], q[j]
+        p[j], q[j] = (re * a + im * c) / size, (im * a - re * c) / size
+    for k in range(b.state_row.shape[0]):  # these rows hold the difference of place and state
+        j, i = b.state_row[k, 0], w_index(s, b.state_row[k, 1])
+        p[j] += r.at_state[k] * (f[i] * a + g[i] * c) / size
+        q[j] += r.at_state[k] * (g[i] * a - f[i] * c) / size
+    mass_times(s, dx, x)
+    mass_times(s, dy, y)
+    for k in range(s.n_v):
+        f[s.n_q + k], g[s.n_q + k] = x[k], y[k]
+
+
+@internal
+def transformed(x, y, z, n):
+    """(x, y, z) <- T^-1 (x, y, z)."""
+    for k in range(n):
+        p, q, u = x[k], y[k], z[k]
+        x[k] = T_INVERSE[0, 0] * p + T_INVERSE[0, 1] * q + T_INVERSE[0, 2] * u
+        y[k] = T_INVERSE[1, 0] * p + T_INVERSE[1, 1] * q + T_INVERSE[1, 2] * u
+        z[k] = T_INVERSE[2, 0] * p + T_INVERSE[2, 1] * q + T_INVERSE[2, 2] * u
+
+
+@internal
+def nothing(s, K):
+    """The imaginary parts of a real system."""
+    for i in range(3):
+        for k in range(K.shape[1]):
+            K[NIL + i, k] = 0.0
+
+
+@internal
+def moved_on(s, K, weight, n, multipliers):
+    """Add the increments in F, RP and RR to the stages; the sum of their weighed squares."""
+    total = 0.0
+    for i in range(3):
+        for k in range(n):
+            total += (K[F + i, k] * weight[k]) ** 2
+            K[W + i, k] += K[F + i, k]
+    for i in range(3):
+        for k in range(n):
+            K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
+        for k in range(s.m if multipliers else 0):
+            for j in range(3):
+                K[LAM + i, k] += T[i, j] * K[RP + j, k]
+                K[MU + i, k] += T[i, j] * K[RR + j, k]
+    return total

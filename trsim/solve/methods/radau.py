@@ -1,0 +1,401 @@
+"""Radau IIA, three stages, order 5, implicit, L-stable, on the index-1 equations of motion.
+
+    Z_i = h sum_j a_ij f(t + c_j h, y + Z_j)        y_1 = y + Z_3        [HairerWanner1996]
+
+A^-1 is brought to one real and one complex eigenvalue; a Newton step then solves, with mu one of
+them over h, (mu - J) dW = r.  The equations are of second order: with x' = v the displacements are
+eliminated,
+
+    (mu - by_rate - by_place / mu) dw = r_w + by_place r_x / mu,     dx = (r_x + dv) / mu
+
+so the systems have n_w unknowns instead of two for each.  The energy book feeds nothing back and
+needs no matrix.  Dense output: the collocation polynomial, order 3; it starts the next Newton.
+"""
+
+from math import isfinite, sqrt
+
+import numpy as np
+
+from trsim.assemble.dense import inverse
+from trsim.assemble.equations import evaluate
+from trsim.elements.contract import N_BOOK, compiled
+from trsim.kernels.vectors import all_finite, internal
+from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
+from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
+from trsim.solve.march.record import (
+    AFTER_REJECTION,
+    AHEAD,
+    BEHIND,
+    CONTRACTION,
+    FACTORED_H,
+    FRESH,
+    GAIN,
+    HISTORY,
+    ITERATIONS,
+    JACOBIAN,
+    LENGTH,
+    NEWTON_RATE,
+    NEXT_JACOBIAN,
+    NO_HISTORY,
+    NO_JACOBIAN,
+    NO_RATES,
+    OLD,
+    OLD_H,
+    PAST_H,
+    SPEED,
+    TOLERANCE,
+)
+from trsim.solve.march.rounding import jitter, noted, to_look
+from trsim.solve.march.works import first_work, works
+from trsim.solve.methods.dense_lu import (
+    factorise_complex,
+    factorise_real,
+    solve_complex,
+    solve_real,
+)
+from trsim.solve.methods.displacements import active, moved_by, twisted, w_index
+from trsim.solve.methods.jacobian import jacobian, missing
+from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
+
+ORDER = 5
+ESTIMATE = 4  # the error estimate falls with h^4
+STAGES = 14
+LAST = 2
+DENSE_ROWS = 4
+DENSE_DEGREE = 3
+ADAPTIVE, IMPLICIT = True, True
+
+Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
+# second differences over the stages: of what Z is, and of its rate times h; that rate at the end
+BENT = np.array([1.0 / ((C[0] - C[1]) * (C[0] - 1.0)), 1.0 / ((C[1] - C[0]) * (C[1] - 1.0)),
+    1.0 / ((1.0 - C[0]) * (1.0 - C[1]))])  # fmt: skip
+TURNED, LEAVING = BENT @ inverse(A), inverse(A)[2]
+MOST_ITERATIONS = 8
+KAPPA = 0.01  # of the error allowed: what Newton may leave
+SHARPEST = 0.01  # contraction that is believed without a second iteration
+QUICK = 0.1  # contraction with which a matrix is kept for the next step
+HALVE = NO_STEP  # Newton failed: take about half the step
+
+
+@compiled(STEP)
+def step(s, r, b, setting, t, h):
+    corner = r.count[JACOBIAN] == NO_RATES
+    for attempt in range(3):
+        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+            jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
+            r.clock[CONTRACTION] = 1.0
+            r.clock[FACTORED_H] = 0.0
+        elif attempt > 0:
+            return HALVE
+        if r.clock[FACTORED_H] != h and not factorised(s, r, h):
+            r.clock[FACTORED_H] = 0.0
+            return HALVE
+        guess(s, r, b, h)
+        converged = newton(s, r, b, t, h)
+        if converged > 0:
+            break
+        if converged < 0 and r.count[JACOBIAN] == FRESH:
+            return np.inf
+        if corner:  # the step is too long for the new branch, more often than its matrix too old
+            return hidden(s, r, b, setting, t, h)
+    else:
+        return hidden(s, r, b, setting, t, h)
+    n = r.y.size
+    for c in range(n):
+        b.y1[c] = r.y[c] + b.K[Z + 2, c]
+    error = estimate(s, r, b, setting, t, h)
+    # a shorter step from the same state, to an event or after a rejection, begins on this one
+    collocation(b.K, r.y, b.y1, r.past)
+    r.clock[PAST_H], r.count[HISTORY] = h, AHEAD
+    # where the state moves on its matrix is good for as long as Newton is quick
+    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    return error
+
+
+@internal
+def hidden(s, r, b, setting, t, h):
+    """HALVE: Newton failed.  If it is rounding that it could not go below, it is not asked to."""
+    if to_look(r, h) and r.clock[FACTORED_H] == h:
+        jitter(s, r, b, setting, t, b.K[F], b.K[F + 1])
+        corrected(s, r, b.K[F], b.K[DW], GAMMA / h)
+        noted(s, r, setting, b.K[F], h)
+    return HALVE
+
+
+@internal
+def factorised(s, r, h):
+    """Factors of mu - by_rate - by_place / mu for the real and the complex mu."""
+    n = active(s)
+    if n == 0:
+        r.clock[FACTORED_H] = h
+        return True
+    real, re, im = r.lu[:n], r.lu[n : 2 * n], r.lu[2 * n :]
+    g, a, c = GAMMA / h, ALPHA / h, BETA / h
+    size = a * a + c * c
+    by_g, by_a, by_c = 1.0 / g, a / size, c / size
+    for i in range(n):
+        for k in range(n):
+            B = r.by_place[i, k] if k < s.n_v else 0.0
+            real[i, k] = -r.by_rate[i, k] - B * by_g
+            re[i, k] = -r.by_rate[i, k] - B * by_a
+            im[i, k] = B * by_c
+        real[i, i] += g
+        re[i, i] += a
+        im[i, i] += c
+    if not factorise_real(real, r.pivot[0], n):
+        return False
+    if not factorise_complex(re, im, r.pivot[1], n):
+        return False
+    r.clock[FACTORED_H] = h
+    return True
+
+
+@internal
+def guess(s, r, b, h):
+    """Start Newton from the polynomial of the step before, drawn on, or from that of a longer
+    trial of this one; W = T^-1 Z."""
+    K, n = b.K, r.y.size
+    if r.count[HISTORY] != NO_HISTORY:
+        ahead = 1.0 if r.count[HISTORY] == AHEAD else 0.0
+        for i in range(3):
+            theta = C[i] * h / r.clock[PAST_H] - ahead
+            for c in range(n):
+                K[Z + i, c] = ahead * r.past[3, c] + polynomial(r.past, c, theta)
+    else:
+        for i in range(3):
+            for c in range(n):
+                K[Z + i, c] = 0.0
+    for i in range(3):
+        for c in range(n):
+            K[W + i, c] = (
+                T_INVERSE[i, 0] * K[Z, c]
+                + T_INVERSE[i, 1] * K[Z + 1, c]
+                + T_INVERSE[i, 2] * K[Z + 2, c]
+            )
+
+
+@internal
+def newton(s, r, b, t, h):
+    """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite."""
+    K, n, weight = b.K, r.y.size, b.weight
+    g, a, c = GAMMA / h, ALPHA / h, BETA / h
+    counted, floor = 0, 0.0
+    for k in range(n):
+        if weight[k] > 0.0:
+            counted += 1
+            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
+    kappa = max(KAPPA, floor)
+    # once measured, a contraction is trusted less with every use              [HairerWanner1996]
+    expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8
+    r.clock[CONTRACTION] = expected
+    before, rate = 0.0, 1.0
+    for iteration in range(MOST_ITERATIONS):
+        r.count[ITERATIONS] += 1
+        for i in range(3):
+            for k in range(n):
+                b.y1[k] = r.y[k] + K[Z + i, k]
+            evaluate(s, t + C[i] * h, b.y1, K[F + i])
+            if not all_finite(K[F + i]):
+                return -1
+        for k in range(n):  # F <- right-hand sides
+            f0, f1, f2 = K[F, k], K[F + 1, k], K[F + 2, k]
+            w1, w2 = K[W + 1, k], K[W + 2, k]
+            p = T_INVERSE[0, 0] * f0 + T_INVERSE[0, 1] * f1 + T_INVERSE[0, 2] * f2
+            u = T_INVERSE[1, 0] * f0 + T_INVERSE[1, 1] * f1 + T_INVERSE[1, 2] * f2
+            v = T_INVERSE[2, 0] * f0 + T_INVERSE[2, 1] * f1 + T_INVERSE[2, 2] * f2
+            K[F, k] = p - g * K[W, k]
+            K[F + 1, k] = u - (a * w1 - c * w2)
+            K[F + 2, k] = v - (c * w1 + a * w2)
+        corrected(s, r, K[F], K[DW], g)
+        corrected_pair(s, r, K[F + 1], K[F + 2], K[DX], K[DW], a, c)
+        moved = 0.0
+        for i in range(3):
+            for k in range(n):
+                moved += (K[F + i, k] * weight[k]) ** 2
+                K[W + i, k] += K[F + i, k]
+        moved = sqrt(moved / max(3 * counted, 1))
+        for i in range(3):
+            for k in range(n):
+                K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
+        if not isfinite(moved):
+            return -1
+        if iteration > 0:
+            rate = moved / before if before > 0.0 else 0.0
+            r.clock[CONTRACTION] = rate
+            if rate >= 2.0 and moved > kappa:
+                return 0
+            left = MOST_ITERATIONS - 1 - iteration
+            if rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa:
+                return 0
+        elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
+            return 1
+        r.clock[NEWTON_RATE] = rate
+        if moved == 0.0 or (iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa):
+            return 1
+        if moved < 0.1 * kappa:
+            r.clock[NEWTON_RATE] = min(rate, 1e-4)
+            return 1
+        before = moved
+    return 0
+
+
+@internal
+def corrected(s, r, f, w, mu):
+    """f <- (mu - J)^-1 f with the real factors; w: scratch."""
+    n = active(s)
+    for i in range(n):
+        w[i] = f[w_index(s, i)]
+    for k in range(s.n_v):
+        x = twisted(s, r, k, f) / mu
+        for i in range(n):
+            w[i] += r.by_place[i, k] * x
+    solve_real(r.lu[:n], r.pivot[0], w, n)
+    for q in range(s.n_q):
+        f[q] = (f[q] + moved_by(s, r.y, q, w)) / mu
+    for i in range(n):
+        f[w_index(s, i)] = w[i]
+    for k in range(N_BOOK):
+        f[s.n_q + s.n_v + k] /= mu
+
+
+@internal
+def corrected_pair(s, r, f, g, x, w, a, c):
+    """f + i g <- (a + i c - J)^-1 (f + i g) with the complex factors; x, w: scratch."""
+    n, size = active(s), a * a + c * c
+    for i in range(n):
+        x[i], w[i] = f[w_index(s, i)], g[w_index(s, i)]
+    for k in range(s.n_v):
+        p, q = twisted(s, r, k, f), twisted(s, r, k, g)
+        u, v = (p * a + q * c) / size, (q * a - p * c) / size  # (p + i q) / (a + i c)
+        for i in range(n):
+            x[i] += r.by_place[i, k] * u
+            w[i] += r.by_place[i, k] * v
+    solve_complex(r.lu[n : 2 * n], r.lu[2 * n :], r.pivot[1], x, w, n)
+    for q in range(s.n_q):
+        u, v = f[q] + moved_by(s, r.y, q, x), g[q] + moved_by(s, r.y, q, w)
+        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+    for i in range(n):
+        f[w_index(s, i)], g[w_index(s, i)] = x[i], w[i]
+    for k in range(N_BOOK):
+        q = s.n_q + s.n_v + k
+        u, v = f[q], g[q]
+        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+
+
+@internal
+def estimate(s, r, b, setting, t, h):
+    """Error of order 3: (GAMMA/h - J)^-1 (f(y) + sum E_i Z_i / h), filtered once more if large."""
+    K, n, weight = b.K, r.y.size, b.weight
+    e = K[F]
+    for c in range(n):
+        e[c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
+        K[F + 1, c] = e[c]
+        e[c] += r.yd[c]
+    corrected(s, r, e, K[DW], GAMMA / h)
+    booked = of_works(s, r, b, setting, h)
+    error = norm(e, weight)
+    if error >= 1.0 and (r.count[HISTORY] != BEHIND or r.count[AFTER_REJECTION] > 0):
+        for c in range(n):
+            K[F + 2, c] = r.y[c] + e[c]
+        evaluate(s, t, K[F + 2], e)
+        for c in range(n):
+            e[c] += K[F + 1, c]
+        corrected(s, r, e, K[DW], GAMMA / h)
+        error = norm(e, weight)
+    if held(s):
+        error = max(error, of_accelerations(s, r, b, setting, h))
+    return max(error, booked, 1e-10)
+
+
+@internal
+def of_accelerations(s, r, b, setting, h):
+    """The error of accelerations that the estimate in K[F] makes, by body.
+
+    What it consists of turns by w^2 = |D v'| / |D x|, D the second difference over the stages.  In
+    a first step, which may be of any length, the filter of the estimate may have left nothing of
+    it: there what was filtered counts as well.
+    """
+    K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
+    r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
+    for c in range(s.n_q + s.n_v):
+        K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]
+        K[F + 2, c] = TURNED[0] * K[Z, c] + TURNED[1] * K[Z + 1, c] + TURNED[2] * K[Z + 2, c]
+        if c >= s.n_q:  # at the end of the step
+            rate = LEAVING[0] * K[Z, c] + LEAVING[1] * K[Z + 1, c] + LEAVING[2] * K[Z + 2, c]
+            most = max(most, s.scale[c] * abs(rate) / h)
+    length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
+    q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
+    off = bent = 0.0
+    moved, begins = 1e-300, r.count[HISTORY] != BEHIND and r.clock[OLD_H] == 0.0
+    for _ in range(1, s.n_r):
+        x = w = placed = turned = bare = 0.0
+        for c in range(q, q + of_q):
+            x += (K[F, c] * weight[c]) ** 2
+            placed += (K[F + 1, c] * weight[c]) ** 2
+        for c in range(v, v + of_v):
+            w += (K[F, c] * weight[c]) ** 2
+            turned += (K[F + 2, c] * weight[c]) ** 2
+            if begins:
+                rate = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
+                bare += ((r.yd[c] + rate) * weight[c]) ** 2
+        q, v = q + of_q, v + of_v
+        if turned > 0.0:
+            ww = frequency(speed * turned / h**2, length * placed, h)
+            by = ww * length * x + speed * w
+            moved, bent = moved + by, bent + ww * by
+            off += ww * by
+            off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
+    off, mean = sqrt(off / (EACH * (s.n_r - 1))), bent / moved
+    doubted(s, r, setting, off, most, sqrt(mean))
+    return in_units(s, r, setting, off, most, mean, share(setting, h))
+
+
+@internal
+def of_works(s, r, b, setting, h):
+    """The error of the works, by the estimate in K[F]: no matrix has a part in it."""
+    worst = size = 0.0
+    for c in range(first_work(s), first_work(s) + N_BOOK):
+        worst = max(worst, abs(b.K[F, c]))
+        for i in range(3):
+            size = max(size, abs(b.K[Z + i, c]))
+    return works(r, setting, h, worst, size)
+
+
+@internal
+def norm(e, weight):
+    """Root mean square of the weighed entries."""
+    total, counted = 0.0, 0
+    for c in range(e.size):
+        if weight[c] > 0.0:
+            counted += 1
+            total += (e[c] * weight[c]) ** 2
+    return sqrt(total / max(counted, 1))
+
+
+@compiled(DENSE)
+def dense(scene, K, t, y, h, y1, P):
+    collocation(K, y, y1, P)
+
+
+@internal
+def collocation(K, y, y1, P):
+    """Divided differences of the collocation polynomial, through the end as accepted."""
+    for c in range(y.size):
+        z0, z1, z2 = K[Z, c], K[Z + 1, c], y1[c] - y[c]
+        P[0, c] = (z1 - z2) / (C[1] - 1.0)
+        slope = (z0 - z1) / (C[0] - C[1])
+        P[1, c] = (slope - P[0, c]) / (C[0] - 1.0)
+        P[2, c] = P[1, c] - (slope - z0 / C[0]) / C[1]
+        P[3, c] = z2
+
+
+@internal
+def polynomial(P, c, s):
+    """Entry c of the solution at t + h + s h, from that at t + h."""
+    return s * (P[0, c] + (s - C[1] + 1.0) * (P[1, c] + (s - C[0] + 1.0) * P[2, c]))
+
+
+@compiled(INTERPOLATE)
+def interpolate(P, y, theta, out):
+    for c in range(y.size):
+        out[c] = y[c] + P[3, c] + polynomial(P, c, theta - 1.0)

@@ -1,0 +1,260 @@
+"""Radau IIA, three stages, order 5, on sparse stabilised index-2 equations.
+
+    Z_i = h sum_j a_ij y'(t + c_j h, y + Z_j, lam_j, mu_j)      Phi = 0 and Phi' = 0 at every stage
+
+The equations are those of ggl_equations.py.  As in radau.py, with the multipliers of each stage as
+further unknowns and one real and one complex sparse system in place of dense ones: the cost of a
+step grows like the number of bodies of a chain.  Meant for stiff mechanisms of many bodies.  The
+multipliers are left out of Newton's test and of the error estimate, where they would stand
+multiplied by h [HairerWanner1996]; they are what Newton starts from in the next step.  The
+derivative at the ends of a step is that of equations.py, as is everything that is recorded.
+"""
+
+from math import isfinite, sqrt
+
+import numpy as np
+
+from trsim.assemble.equations import evaluate
+from trsim.elements.contract import DRIVES, SCENE, compiled
+from trsim.kernels.packed import A1, f8
+from trsim.kernels.signatures import float64
+from trsim.kernels.vectors import copy_to, internal
+from trsim.solve.march.calls import DENSE
+from trsim.solve.march.record import (
+    AFTER_REJECTION,
+    HISTORY,
+    ITERATIONS,
+    JACOBIAN,
+    NEWTON_RATE,
+    NEXT_JACOBIAN,
+    NO_JACOBIAN,
+    OLD,
+    PAST_ERROR,
+    PAST_H,
+    TOLERANCE,
+)
+from trsim.solve.methods import ggl_stages, ggl_tables, radau
+from trsim.solve.methods.ggl_jacobian import sparse_jacobian
+from trsim.solve.methods.ggl_newton import TURNS, solved, sparse_factors
+from trsim.solve.methods.ggl_stages import (
+    LAM,
+    MU,
+    NIL,
+    RP,
+    RR,
+    moved_on,
+    nothing,
+    residuals,
+    residuals_index1,
+    unconstrained,
+)
+from trsim.solve.methods.ggl_tables import SparseBuffers, SparseRecord
+from trsim.solve.methods.jacobian import missing
+from trsim.solve.methods.radau import (
+    HALVE,
+    KAPPA,
+    MOST_ITERATIONS,
+    F,
+    W,
+    Z,
+    collocation,
+    guess,
+    norm,
+    of_works,
+)
+from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, A, C, E
+
+ORDER, ESTIMATE, LAST = radau.ORDER, radau.ESTIMATE, radau.LAST
+ADAPTIVE, IMPLICIT = True, True
+STAGES = ggl_stages.STAGES
+SPARSE = ggl_tables  # its records have tables of their own
+interpolate = radau.interpolate
+
+QUICK = 0.02  # contraction with which a matrix is kept: a new one is cheap
+# where no row of a constraint turns with its bodies: the same, and what Newton may leave, as a part
+# of the error allowed [HairerWanner1996]
+QUICK_FIXED, KAPPA_FIXED = 0.06, 0.03
+UNKNOWN = 1e-2  # error of a first step, as a part of that allowed
+KEPT = radau.DENSE_ROWS  # rows of the dense output from which on lam of the stages is kept
+DENSE_ROWS = KEPT + 3
+DENSE_DEGREE = 3
+
+#                   scene  record  buffers  setting t h
+STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, A1, f8, f8)
+
+
+@compiled(STEP)
+def step(s, r, b, setting, t, h):
+    stabilised = True
+    for attempt in range(3):
+        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+            sparse_jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
+        elif not stabilised:
+            return HALVE
+        elif attempt > 0:
+            # past a singular position: rows that change their sense cannot be brought to zero with
+            # those of the start, but accelerations are there on both sides
+            stabilised = False
+        if not sparse_factors(s, r, b, setting, h, GAMMA / h, ALPHA / h, BETA / h):
+            return HALVE
+        guess(s, r, b, h)
+        guess_multipliers(s, r, b, t, h)
+        converged = newton(s, r, b, setting, t, h, stabilised)
+        if converged > 0:
+            break
+        if converged < 0 and not stabilised:
+            return np.inf
+    else:
+        return HALVE
+    if stabilised and driven(s):
+        work_of_drives(s, r, b, t, h)
+    for c in range(r.y.size):
+        b.y1[c] = r.y[c] + b.K[Z + 2, c]
+    error = estimate(s, r, b, setting, t, h)
+    quick = QUICK if b.made[TURNS] > 0.0 else QUICK_FIXED
+    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < quick else NO_JACOBIAN
+    return error
+
+
+@internal
+def driven(s):
+    """Whether a constraint moves, at the last evaluation."""
+    for k in range(s.m):  # noqa: SIM110 - a generator does not compile
+        if s.phi_t[k] != 0.0:
+            return True
+    return False
+
+
+@internal
+def work_of_drives(s, r, b, t, h):
+    """The work of rigid drives again, with the multipliers that go with each stage's state.
+
+    Those of the stages are of order 3, which would be all that the energy book shows.
+    """
+    K, entry = b.K, s.n_q + s.n_v + DRIVES
+    for i in range(3):
+        for c in range(r.y.size):
+            b.y1[c] = r.y[c] + K[Z + i, c]
+        evaluate(s, t + C[i] * h, b.y1, K[F + i])
+    for i in range(3):
+        total = 0.0
+        for j in range(3):
+            total += A[i, j] * K[F + j, entry]
+        K[Z + i, entry] = h * total
+
+
+@internal
+def guess_multipliers(s, r, b, t, h):
+    """lam of the stages from the parabola of the step before, or as it is now; mu = 0."""
+    K = b.K
+    if r.count[HISTORY] > 0:
+        ratio = h / r.clock[PAST_H]
+        for i in range(3):
+            theta = 1.0 + C[i] * ratio
+            for k in range(s.m):
+                K[LAM + i, k] = 0.0
+            for j in range(3):
+                p, q = C[(j + 1) % 3], C[(j + 2) % 3]
+                part = (theta - p) * (theta - q) / ((C[j] - p) * (C[j] - q))
+                for k in range(s.m):
+                    K[LAM + i, k] += part * r.past[KEPT + j, k]
+    else:
+        evaluate(s, t, r.y, K[F])
+        for i in range(3):
+            for k in range(s.m):
+                K[LAM + i, k] = s.lam[k]
+    for i in range(3):
+        for k in range(s.m):
+            K[MU + i, k] = 0.0
+
+
+@internal
+def newton(s, r, b, setting, t, h, stabilised):
+    """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite.
+
+    stabilised: on the equations of ggl_equations.py; on those of equations.py otherwise.
+    """
+    K, n, weight = b.K, r.y.size, b.weight
+    counted, floor = 0, 0.0
+    for k in range(n):
+        if weight[k] > 0.0:
+            counted += 1
+            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
+    strict = stabilised and b.made[TURNS] > 0.0
+    enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
+    # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
+    # errors as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is
+    # small
+    made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
+    made = min(made * sqrt(made), 1.0)
+    wanted = max(min(KAPPA, sqrt(setting[TOLERANCE])) * made, floor) if strict else enough
+    before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
+    for iteration in range(MOST_ITERATIONS):
+        r.count[ITERATIONS] += 1
+        if stabilised:
+            sound = residuals(s, r, b, t, h)
+        else:
+            sound = residuals_index1(s, r, b, t, h)
+        if not sound:
+            return -1
+        nothing(s, K)
+        for part in range(2):
+            # the real system fills the rows of a pair as well, with nothing
+            i, j = (F, NIL) if part == 0 else (F + 1, F + 2)
+            p, q = (RP, NIL + 1) if part == 0 else (RP + 1, RP + 2)
+            u, w = (RR, NIL + 2) if part == 0 else (RR + 1, RR + 2)
+            re, im = (GAMMA / h, 0.0) if part == 0 else (ALPHA / h, BETA / h)
+            solved(s, r, b, K[i], K[j], K[p], K[q], K[u], K[w], re, im, held)
+        moved = sqrt(moved_on(s, K, weight, n, stabilised) / max(3 * counted, 1))
+        if not isfinite(moved):
+            return -1
+        if moved == 0.0:
+            return 1
+        if iteration > 0:
+            rate = moved / before if before > 0.0 else 0.0
+            r.clock[NEWTON_RATE] = rate
+            left = MOST_ITERATIONS - 1 - iteration
+            less = moved / (1.0 - rate) if rate < 1.0 else moved  # times rate: what is left
+            if rate < 1.0 and less * rate < wanted:
+                return 1
+            if less * min(rate, 1.0) < enough:
+                if left == 0 or rate >= 1.0:  # as far as it goes
+                    return 1
+            elif rate >= 2.0 or (rate < 1.0 and less * rate**left > enough):
+                return 0
+        before = moved
+    return 0
+
+
+@internal
+def estimate(s, r, b, setting, t, h):
+    """Error of order 3 as in radau.py: (GAMMA/h - J)^-1 of (f(y) + sum E_i Z_i / h), the real
+    system; filtered once more if large."""
+    K, n, weight, g = b.K, r.y.size, b.weight, GAMMA / h
+    e, error, booked = K[F], 0.0, 0.0
+    copy_to(e, r.yd)
+    for c in range(n):
+        K[F + 1, c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
+    for turn in range(2):
+        for c in range(n):
+            e[c] += K[F + 1, c]
+        nothing(s, K)
+        unconstrained(s, r, b, e, K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], g, 0.0)
+        solved(s, r, b, e, K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], g, 0.0, 0.0)
+        error = norm(e, weight)
+        if turn == 0:
+            booked = of_works(s, r, b, setting, h)
+        if turn > 0 or error < 1.0 or (r.count[HISTORY] > 0 and r.count[AFTER_REJECTION] == 0):
+            break
+        for c in range(n):
+            K[F + 2, c] = r.y[c] + e[c]
+        evaluate(s, t, K[F + 2], e)
+    return max(error, booked, 1e-10)
+
+
+@compiled(DENSE)
+def dense(scene, K, t, y, h, y1, P):
+    """The collocation polynomial, and behind it lam of the stages for the next step."""
+    collocation(K, y, y1, P)
+    for i in range(3):
+        copy_to(P[KEPT + i], K[LAM + i])

@@ -1,0 +1,272 @@
+"""scipy's integrators as independent checks: the same equations, other steps.
+
+`OdeSolver.step()` is driven directly, because `solve_ivp` has no hook after an accepted step: that
+is where positions and velocities are projected, contacts change their phase and rows are written,
+by the code of the march.  scipy's dense output is handed over as values at Chebyshev nodes.
+Slow, 50 to 100 us of overhead per step, and worth it: step, error estimate and interpolation share
+nothing with the compiled methods.
+"""
+
+import time
+from collections.abc import Generator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.equations import derivative
+from trsim.assemble.mechanism import Mechanism
+from trsim.elements.contract import N_BOOK, compiled
+from trsim.elements.scene import Scene
+from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.solve.diagnose.blame import why
+from trsim.solve.diagnose.mesh_error import Bends
+from trsim.solve.march import record as rec
+from trsim.solve.march.accelerations import FURTHEST, WIDEST, held, largest, share
+from trsim.solve.march.anew import anew, begun_with
+from trsim.solve.march.calls import INTERPOLATE, method_row
+from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
+from trsim.solve.march.features import next_time
+from trsim.solve.march.loop import begin
+from trsim.solve.march.norm import weigh
+from trsim.solve.march.openings import opened
+from trsim.solve.march.peaks import finish, sample
+from trsim.solve.march.record import Buffers, Record, crowded, fresh_buffers
+from trsim.solve.march.works import ROUNDING
+from trsim.solve.outcome import (
+    CRAWLS,
+    Outcome,
+    called_by,
+    emptied,
+    first_step,
+    leapt,
+    most_points,
+    new_record,
+    runaway,
+    settings,
+    statistics,
+)
+from trsim.solve.start.consistent import start
+from trsim.statuses import Ended
+
+Array = NDArray[np.float64]
+
+NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 8)  # Chebyshev-Lobatto on 0..1
+SIGNS = np.array([0.5, -1, 1, -1, 1, -1, 1, -1, 0.5])  # their barycentric weights
+# by values at the nodes: second and third derivative in the middle of a step as long as one
+SECOND, THIRD = np.linalg.inv(np.vander(NODES - 0.5, increasing=True))[2:4] * [[2.0], [6.0]]
+LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
+SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
+# of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
+# middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
+ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
+EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
+BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
+TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
+RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
+
+
+@compiled(INTERPOLATE)
+def interpolate(P, y, theta, out):
+    """The polynomial through the values P at the nodes, barycentric form."""
+    for k in range(NODES.size):
+        if theta == NODES[k]:
+            for c in range(out.size):
+                out[c] = P[k, c]
+            return
+    bottom = 0.0
+    for c in range(out.size):
+        out[c] = 0.0
+    for k in range(NODES.size):
+        part = SIGNS[k] / (theta - NODES[k])
+        bottom += part
+        for c in range(out.size):
+            out[c] += part * P[k, c]
+    for c in range(out.size):
+        out[c] /= bottom
+
+
+def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
+    """As solve/simulate.py's, with scipy's solver making the steps."""
+    setting = settings(scenario, mechanism, True)
+    begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
+    s, left_out = begun_with(mechanism, begun)
+    r = new_record(s, begun, left_out, NODES.size)
+    b = fresh_buffers(
+        s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0)),
+        points=most_points(mechanism, setting),
+    )  # fmt: skip
+    method = method_row(
+        interpolate=interpolate.address(),
+        complete=complete.address(),
+        last=LAST,
+        estimate=1,
+        degree=NODES.size - 1,
+        sample=sample.address(),
+        finish=finish.address(),
+        **called_by(mechanism, setting),
+    )
+    clock0 = time.process_time()
+    begin(s, r, b, setting)
+    r.clock[rec.H] = first_step(scenario, r)
+    status: Ended = "done"
+    reason = ""
+    limit, crawled = scenario.solver.max_steps or 2**62, 0
+    finer = 1.0
+    solver = restarted(scenario, s, r, b, setting, finer)
+    while r.clock[rec.T] < setting[rec.T_END]:
+        reason = stopped(solver)
+        if reason:
+            status = "failed"
+            break
+        h = solver.t - solver.t_old
+        hand_over(solver, b)
+        before = finer
+        finer = min(of_accelerations(s, r, b, setting, h), EASED * before)
+        if finer < TOO_LONG * before:
+            r.clock[rec.H] = 0.3 * h
+            solver = restarted(scenario, s, r, b, setting, finer)
+            continue
+        outcome = complete(s, r, b, setting, method, h, 1)
+        if outcome == WORTHLESS:
+            status, reason = "failed", "a value is not finite"
+            break
+        if outcome in (STRAYED, WOUND):
+            r.clock[rec.H] = 0.3 * h
+            solver = restarted(scenario, s, r, b, setting, finer, float(r.clock[rec.H]))
+            continue
+        if r.count[rec.OPENED]:
+            status, reason = "failed", opened(scenario, mechanism, r)
+            break
+        if r.count[rec.LOST]:
+            status, reason = "failed", lost_its_way(scenario, mechanism, r)
+            break
+        if r.count[rec.TORN]:
+            status, reason = "failed", leapt(mechanism, r)
+            break
+        crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
+        reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
+        if reason:
+            status = "failed"
+            break
+        changed = s
+        if r.count[rec.WEAK]:
+            s = anew(mechanism, s, r, b, setting)
+        if outcome == SMOOTH_STEP and s is changed:
+            nudge(solver, r)
+            r.clock[rec.H] = h
+            if r.clock[rec.MOST] > 0.0:
+                solver.atol = allowed(scenario, s, r, b, setting, finer)
+            solver.atol[books(s)] = unit_of_works(r, setting)
+        elif r.clock[rec.T] < setting[rec.T_END]:
+            solver = restarted(scenario, s, r, b, setting, finer)
+        if r.count[rec.STEPS] >= limit and r.clock[rec.T] < setting[rec.T_END]:
+            status, reason = "failed", f"more than {limit} steps"
+            break
+        if crowded(r, b) or r.count[rec.STEPS] % 2000 == 0:
+            yield emptied(r, b)
+    yield emptied(r, b)
+    cpu = time.process_time() - clock0
+    numbers = statistics(r, s, begun, cpu)
+    if status == "failed":
+        at = mechanism.stages.mechanism(mechanism, r.stage, r.left_out)
+        known = r.count[rec.OPENED] or r.count[rec.LOST] or r.count[rec.TORN]
+        reason = reason if known else why(scenario, at, r) or reason
+    bends = Bends(mechanism)
+    bends.look(float(r.clock[rec.T]), r.y)
+    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak.T.copy(), r, begun,
+                   bent=bends.states)  # fmt: skip
+
+
+def stopped(solver: Any) -> str:
+    """Make a step; why it could not be made."""
+    try:
+        message = solver.step()
+    except ValueError as error:
+        if "infs or NaNs" not in str(error):
+            raise
+        return "a force or an acceleration is not finite"  # met when factorising a Jacobian
+    return f"scipy stopped: {message}" if solver.status == "failed" else ""
+
+
+def restarted(
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float,
+    most: float = np.inf,
+) -> Any:  # fmt: skip
+    """A scipy solver at the state of the record, with the error units in force there."""
+    import scipy.integrate
+
+    def right_hand_side(t: float, y: Array) -> Array:
+        yd = np.empty_like(y)
+        derivative(s, t, np.ascontiguousarray(y), yd)
+        return yd
+
+    atol = allowed(scenario, s, r, b, setting, finer)
+    make = getattr(scipy.integrate, scenario.solver.method.split(":", 1)[1])
+    t = float(r.clock[rec.T])
+    until = next_time(s, t, setting[rec.T_END])
+    first = min(float(r.clock[rec.H]), until - t)
+    longest = min(most, setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
+    return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
+                max_step=longest, rtol=RELATIVE, atol=atol)  # fmt: skip
+
+
+def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
+    """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
+    weigh(s, r, b, setting)
+    outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
+    absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
+    absolute[books(s)] = unit_of_works(r, setting)
+    return absolute
+
+
+def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) -> float:
+    """What part of the error allowed to places and velocities keeps accelerations to their share of
+    the tolerance, 1 at most: see accelerations.py.
+
+    w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
+    b.P; a solver outside keeps its estimates to itself.
+    """
+    if not held.python(s):
+        return 1.0
+    places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
+    length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
+    r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
+    weight = b.weight * setting[rec.TOLERANCE]
+    x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
+    v = h * speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
+    w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
+    most = max(most, w * speed / FURTHEST)
+    made = w * np.hypot(w * length, speed)
+    finest = min(1.0, RELATIVE / setting[rec.TOLERANCE])  # below it only rounding is left
+    return (
+        max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
+    )
+
+
+def books(s: Scene) -> slice:
+    """The works in y."""
+    return slice(s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK)
+
+
+def unit_of_works(r: Record, setting: Array) -> float:
+    """The error allowed to a work, J; see works.py."""
+    allowed = setting[rec.TOLERANCE] * r.clock[rec.EXCHANGED]
+    return max(float(allowed), ROUNDING * float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
+
+
+def hand_over(solver: Any, b: Buffers) -> None:
+    """End of the step into b.y1, values at the nodes into b.P."""
+    h = solver.t - solver.t_old
+    b.y1[:] = solver.y
+    b.P[:] = solver.dense_output()(solver.t_old + NODES * h).T
+
+
+def nudge(solver: Any, r: Record) -> None:
+    """Let scipy go on from the projected state; the change is below its tolerance."""
+    solver.y = r.y.copy()
+    if hasattr(solver, "f"):
+        solver.f = r.yd.copy()
+    if hasattr(solver, "D"):
+        solver.D[0] = r.y

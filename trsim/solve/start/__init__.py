@@ -1,0 +1,1 @@
+"""Where a run starts: consistent positions and velocities, equilibrium."""

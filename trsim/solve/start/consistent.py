@@ -1,0 +1,357 @@
+"""Where a run starts: consistent positions and velocities, contacts at rest where asked for.
+
+Positions: as drawn, moved to the joint values of `initial` in small steps, and to the static
+equilibrium of the joints named there.  Velocities: those of the mechanism with all clearances ideal
+and the drives at speed - with bodies' velocities given, the nearest that the joints allow; closed
+stops stay closed, and what is then still free of the named joints has zero rate.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim import elements
+from trsim.assemble.assemble import assemble
+from trsim.assemble.equations import derivative, gaps, poses
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.reduce import closest, jacobian
+from trsim.assemble.switches import LIMITS
+from trsim.elements.contract import (
+    BRANCH,
+    CONTACT,
+    FLIGHT,
+    IMPACT_SPEED,
+    N_BOOK,
+    PHASE,
+    UNLOCATED,
+    WHOLE,
+)
+from trsim.elements.scene import N_MEM, Model, workspace
+from trsim.errors import ModelError
+from trsim.solve.diagnose.blame import refuse_no_number
+from trsim.solve.march.openings import check_closed
+from trsim.solve.start.angles import follow, on_turns_of_drives, remember, strained, with_scene
+from trsim.solve.start.bars import as_flexible, as_rigid
+from trsim.solve.start.softening import softened
+from trsim.solve.start.statics import equilibrium
+from trsim.solve.start.velocities import velocities
+
+Array = NDArray[np.float64]
+
+CREEP = 1e-2  # of a body's reach: motion over less in a whole run counts as none
+FARTHEST = 1.0  # rad: what a joint is turned by in a step of the way to its initial position
+SETBACKS = 25  # steps of the way to an initial position that may fail, one after the other or not
+
+
+@dataclass(frozen=True)
+class Start:
+    """A consistent start of a run."""
+
+    y: Array
+    mem: Array
+    branch: Array  # (n_s) the turn every angle is on
+    moved: float  # m or rad: largest constraint residual the projection removed
+    residual: float  # N: static force left by the equilibrium, 0 where none was asked for
+    length: float  # m, first unit of the error norm
+    speed: float  # m/s, the most its unit for velocities may be
+    moving: float  # m/s, the first
+    depth: Array  # (n_contacts) penetration expected at the forces of the start, m
+
+
+def start(scenario: Any, mechanism: Any, located: bool) -> Start:
+    """The start of a run; raises ModelError where there is none."""
+    initial = scenario.initial
+    check_names(scenario, initial)
+    mechanism = with_scene(mechanism)
+    y, residual, angles, ahead = positions(scenario, mechanism, initial)
+    mechanism = replace(mechanism, ahead=ahead)
+    model = mechanism.model
+    for name, x in mechanism.coordinates.items():
+        model.branch[x.entry] = angles.get(name, x.drawn)
+    y = on_turns_of_drives(mechanism, y)
+    refuse_no_number(mechanism, follow(mechanism, y), np.zeros((len(model.con), N_MEM)))
+    phi = jacobian(model, 0.0, follow(mechanism, y))[0]
+    moved = float(np.max(np.abs(phi), initial=0.0))
+    y, left = closest(model, 0.0, follow(mechanism, y))
+    if left > 1e-9 * model.size:
+        raise not_closed(scenario, mechanism, np.abs(jacobian(model, 0.0, y)[0]))
+    check_values(mechanism, initial, y)
+    check_closed(mechanism, y, scenario.solver.tolerance)
+    y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
+    mem = phases(model, y, located)
+    check_finite(mechanism, y, mem)
+    check_limits(mechanism, y)
+    length, moving, speed, depth = units(model, y, mem, scenario)
+    remember(mechanism.model, y)
+    return Start(y, mem, mechanism.model.branch, moved, residual, length, speed, moving, depth)
+
+
+def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
+    """What stays open: the joint that is out of reach, and the drive that asks for it."""
+    largest = float(phi.max())
+    rows = [mechanism.rows[k] for k in np.argsort(-phi) if phi[k] > 0.1 * largest]
+    joints = [row.split(".")[0] for row in rows if row.split(".")[0] in scenario.joints]
+    what = f"{', '.join(rows)} {'stays' if len(rows) == 1 else 'stay'} open"
+    return ModelError(
+        f"the joints cannot be closed: {what} by up to {largest:.3g} m or rad",
+        "check the points of the joints and the drives' positions at t = 0",
+        ("joints", joints[0]) if joints else (),
+    )
+
+
+def check_names(scenario: Any, initial: Any) -> None:
+    """Joints given a value under `initial` have a coordinate to set."""
+    for name in initial.values:
+        if not elements.load(scenario.joints[name].type).coordinate:
+            raise ModelError(
+                f"joint '{name}' has no coordinate to set",
+                "name a revolute or a prismatic joint",
+                ("initial", name),
+            )
+
+
+def check_values(mechanism: Mechanism, initial: Any, y: Array) -> None:
+    """No drive moved a joint away from where `initial` put it."""
+    w = workspace(mechanism.model)
+    poses(w, y)
+    for name, value in initial.values.items():
+        if name not in mechanism.coordinates:
+            continue
+        x = mechanism.coordinates[name]
+        off = float(w.S[x.entry, 0]) - value
+        if x.kind == "angle":
+            off = (off + np.pi) % (2.0 * np.pi) - np.pi
+        if abs(off) > 1e-6 * (mechanism.model.size if x.kind == "stroke" else 1.0):
+            raise ModelError(
+                f"a drive puts the joint {abs(off):.3g} {'rad' if x.kind == 'angle' else 'm'} "
+                "away from this value",
+                "drop the value, or prescribe the velocity of the drive",
+                ("initial", name),
+            )
+
+
+def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
+    """Every force at the start is a number; the element that gives none is named."""
+    model = mechanism.model
+    w = workspace(model)
+    w.mem[:] = mem
+    yd = np.zeros_like(y)
+    derivative(w, 0.0, y, yd)
+    if np.all(np.isfinite(yd)):
+        return
+    refuse_no_number(mechanism, y, mem)
+    if w.status[3]:
+        raise ModelError(
+            "masses and inertias are so unequal that the arithmetic cannot tell the constraints of "
+            "the joints apart",
+            "give every body the mass and inertia it has, or join light bodies to heavy ones",
+        )
+    raise ModelError("an acceleration is not a finite number at t = 0", "check masses and inertias")
+
+
+def check_limits(mechanism: Mechanism, y: Array) -> None:
+    """No element starts beyond what it can do: such a run would have ended before it began."""
+    limits = [e for e in mechanism.stages.switches.events if e.kind == "limit"]
+    if not limits:
+        return
+    w = workspace(mechanism.model)
+    poses(w, y)
+    gaps(w, 0.0)
+    for event in limits:
+        if w.gap[LIMITS - event.entry, 0] >= 0.0:
+            raise ModelError(
+                f"{event.said} before the run begins ({event.value:g} {event.unit})",
+                "is the limit meant, and does the start balance? see `initial: {equilibrium: ...}`",
+                (mechanism.instances[LIMITS - event.entry].section, event.when),
+            )
+
+
+def positions(
+    scenario: Any, mechanism: Mechanism, initial: Any
+) -> tuple[Array, float, dict[str, float], dict[int, float]]:
+    """q as drawn, at the given joint values, in equilibrium; the static force left, N; angles; how
+    far states are ahead of the coordinates they follow."""
+    if not initial.settles and not initial.values:
+        return mechanism.y0, 0.0, {}, {}
+    playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
+    ideal = frozenset(playing - set(initial.equilibrium))
+    drives = holding_drives(scenario, initial)
+    try:
+        held = with_scene(assemble(scenario, ideal, drives, stiff=True, planar=mechanism.planar))
+    except ModelError as error:
+        name = str(error.path[-1]).removeprefix("hold ") if error.path[:1] == ("drives",) else ""
+        if name not in initial.values:
+            raise
+        raise ModelError(
+            "a drive, or another value of `initial`, fixes this joint already",
+            "give one value for each degree of freedom",
+            ("initial", name),
+        ) from None
+    y = follow(held, carried(mechanism, held))
+    residual = 0.0
+    targets = {held.coordinates[name].entry: value for name, value in initial.values.items()}
+    settle, rigid = initial.settles, not mechanism.beams
+    there = None
+    if settle and targets and playing:
+        there = by_ideal_joints(scenario, initial, frozenset(playing), held, rigid)
+    if settle:
+        y, residual = equilibrium(held, y if there is None else there, rigid)
+    if targets and there is None:
+        y, residual = approach(held, y, targets, settle, rigid)
+    remember(held.model, y)
+    if mechanism.beams:
+        stiff, held = held, with_scene(assemble(scenario, ideal, drives, planar=mechanism.planar))
+        y, residual = bent(stiff, held, y, settle)
+        remember(held.model, y)
+    angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
+    ahead = strained(mechanism, held, y) if settle else {}
+    return back(mechanism, held, y), residual, angles, ahead
+
+
+def bent(stiff: Any, held: Any, y: Array, settle: bool) -> tuple[Array, float]:
+    """The start found with stiff bars as that of flexible ones; their equilibrium where asked."""
+    for name, x in held.coordinates.items():
+        held.model.branch[x.entry] = stiff.model.S[stiff.coordinates[name].entry, 0]
+    straight = follow(held, as_flexible(held, stiff, y))
+    return softened(held, straight) if settle else (straight, 0.0)
+
+
+def by_ideal_joints(
+    scenario: Any, initial: Any, playing: frozenset[str], held: Any, rigid: bool
+) -> Array | None:
+    """y of `held` where all joints are ideal and `initial` is reached; None where it is not.
+
+    A journal would leave its bearing with every step of the way, and be pressed back through it.
+    """
+    try:
+        drives = holding_drives(scenario, initial)
+        bare = with_scene(assemble(scenario, playing, drives, stiff=True, planar=held.planar))
+        y, _ = equilibrium(bare, follow(bare, carried(bare, bare)), rigid)
+        targets = {bare.coordinates[name].entry: value for name, value in initial.values.items()}
+        y, _ = approach(bare, y, targets, True, rigid)
+    except ModelError:
+        return None
+    remember(bare.model, y)
+    for name in held.coordinates.keys() & bare.coordinates.keys():
+        angle = bare.model.S[bare.coordinates[name].entry, 0]
+        held.model.branch[held.coordinates[name].entry] = angle
+    there = carried(bare, held)
+    there[: held.model.n_q] = y[: held.model.n_q]
+    return follow(held, there)
+
+
+def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
+    """The scenario's drives at rest, those of the joints of `initial` replaced by rigid holds."""
+    from trsim.elements.drive import Drive
+
+    moved = {n for n, d in scenario.drives.items() if getattr(d, "joint", "") in initial.values}
+    drives = {n: d.at_rest() for n, d in scenario.drives.items() if n not in moved}
+    context: dict[str, Any] = {"parameters": {}}
+    for name in initial.values:
+        hold = {"joint": name, "velocity": 0.0}
+        drives[f"hold {name}"] = Drive.model_validate(hold, context=context)
+    return drives
+
+
+def approach(
+    held: Any, y: Array, targets: dict[int, float], settle: bool, rigid: bool
+) -> tuple[Array, float]:
+    """Move joint coordinates to their targets by quasi-static steps that keep the branch."""
+    model = held.model
+    place = {s: model.n_q + model.n_v + N_BOOK + k for k, s in enumerate(held.follows) if s >= 0}
+    begin = {s: y[place[s]] for s in targets}
+    angles = {x.entry for x in held.coordinates.values() if x.kind == "angle"}
+    turn = max((abs(targets[s] - begin[s]) for s in angles & targets.keys()), default=0.0)
+    most = min(1.0 / 16.0, FARTHEST / max(turn, 1e-300))
+    done, step, residual, failed = 0.0, min(1.0 / 64.0, most), 0.0, 0
+    while done < 1.0:
+        ahead = min(1.0, done + step)
+        trial = y.copy()
+        for s, target in targets.items():
+            trial[place[s]] = begin[s] + ahead * (target - begin[s])
+        try:
+            trial, left = closest(model, 0.0, trial)
+            if left > 1e-9 * model.size:
+                raise ModelError("the joints cannot be closed")
+            if settle:
+                trial, residual = equilibrium(held, trial, rigid)
+        except ModelError as error:
+            step *= 0.5
+            failed += 1
+            if step < 1e-4 * most or failed > SETBACKS:
+                raise ModelError(
+                    f"the mechanism cannot be moved to its initial position: {error.what} after "
+                    f"{100 * done:.1f} % of the way",
+                    "is the position within reach?",
+                    ("initial",),
+                ) from None
+            continue
+        remember(model, trial)
+        y, done, step = trial, ahead, min(2.0 * step, most)
+    return y, residual
+
+
+def carried(mechanism: Mechanism, other: Mechanism) -> Array:
+    """y of one assembly as y of another with the same bodies, or with stiff bars."""
+    if mechanism.beams and not other.beams:
+        return as_rigid(mechanism, other, mechanism.y0)
+    n = mechanism.model.n_q + mechanism.model.n_v
+    y = np.zeros(n + other.model.n_z)
+    y[:n] = mechanism.y0[:n]
+    return on_turns_of_drives(other, y)
+
+
+def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
+    n = mechanism.model.n_q
+    out = mechanism.y0.copy()
+    out[:n] = y[:n]
+    return follow(mechanism, out)
+
+
+def phases(model: Model, y: Array, located: bool) -> Array:
+    """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
+    mem = np.zeros((len(model.con), N_MEM))
+    mem[:, BRANCH] = WHOLE  # until the march has looked
+    w = workspace(model)
+    poses(w, y)
+    gaps(w, 0.0)
+    for c, e in enumerate(model.contact):
+        closed = w.gap[e, 0] > 0.0
+        mem[e, PHASE] = (CONTACT if closed else FLIGHT) if located else UNLOCATED
+        mem[e, IMPACT_SPEED] = max(model.contact_par[c, 4], 0.0) if closed else 0.0
+    return mem
+
+
+def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, float, float, Array]:
+    """First units of the error norm, and the penetration each contact may expect.
+
+    With contacts: what the largest force at the start (or an impact at the slowest speed) would
+    press in.  Without: the reach of a body (not of the mechanism: a chain of many links would be
+    held to less); the largest speed, or a part of that length per run; and the most it may be: the
+    largest of its speeds, of the speed its accelerations give over that length, and of that length
+    per run.
+    """
+    w, reach = workspace(model), model.reach
+    yd = np.zeros_like(y)
+    w.mem[:] = mem
+    derivative(w, 0.0, y, yd)
+    force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
+    reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
+    force = max(force, float(max(reaction, default=0.0)))
+    end = max(scenario.solver.end, 1e-300)
+    moving = max(of_frames(w.V, reach), CREEP * reach / end)
+    speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)
+    depth = []
+    for K, n, mass, c, slowest, arm, _ in model.contact_par:
+        approach = min(max(slowest, 1e-3), speed) / arm
+        touch = ((n + 1.0) * mass * approach**2 / (2.0 * K)) ** (1.0 / (n + 1.0))
+        depth.append(min(max((force * arm / K) ** (1.0 / n), touch), c))
+    return reach, min(moving, speed), speed, np.array(depth)
+
+
+def of_frames(rates: Array, reach: float) -> float:
+    """The largest of velocities (or accelerations), of turns at this arm."""
+    along = float(np.linalg.norm(rates[:, :3], axis=1).max(initial=0.0))
+    return max(along, float(np.abs(rates[:, 3:]).max(initial=0.0)) * reach)

@@ -1,0 +1,239 @@
+"""Velocities a run starts with: what joints and drives demand, nearest to what was given."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim import elements
+from trsim.assemble.assemble import assemble
+from trsim.assemble.dense import length, product, spaces
+from trsim.assemble.equations import derivative, gaps, poses
+from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.onward import Branches
+from trsim.assemble.projection import project_velocities
+from trsim.assemble.reduce import (
+    all_rows,
+    in_solve_axes,
+    jacobian,
+    moves,
+    roots,
+    shortest,
+    weights,
+    world_rates,
+)
+from trsim.elements.bushing import ROTATIONAL, STIFFNESS
+from trsim.elements.prescribed import rates_at
+from trsim.elements.scene import Model, scene, workspace
+from trsim.errors import ModelError
+from trsim.solve.start.angles import follow
+from trsim.solve.start.bars import as_rigid, moving_as_rigid
+
+Array = NDArray[np.float64]
+
+INDEPENDENT = 1e-8  # of its own size: what must be left of a wish that is not fixed already
+
+
+def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, ...]) -> Array:
+    """v nearest to the given one (in the metric of M) that the mechanism allows.
+
+    Clearance joints count as ideal, unless a body's velocity is given: then journals may fly.
+    A compliant drive starts at its speed too, where nothing stiffer says otherwise, and then what
+    bushings hold is at rest, unless a body's velocity is given: they would spring back as soon as
+    the motion begins.
+    After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
+    their rates are zero.
+    """
+    if not mechanism.beams:
+        ideal = at_the_start(scenario, mechanism, named)
+        y_ideal = np.zeros(ideal.model.n_q + ideal.model.n_v + ideal.model.n_z)
+        n = ideal.model.n_q + ideal.model.n_v
+        y_ideal[:n] = y[:n]
+        return with_velocities(
+            mechanism.model, y, nearest(ideal, y_ideal, named, not given(scenario))
+        )
+    try:
+        stiff = at_the_start(scenario, mechanism, named)
+        v = nearest(stiff, as_rigid(mechanism, stiff, y), named, not given(scenario))
+        moving = with_velocities(mechanism.model, y, moving_as_rigid(mechanism, stiff, y, v))
+    except ModelError:  # it moves only because its bars give way
+        moving = y
+    return allowed(mechanism.model, moving)
+
+
+def given(scenario: Any) -> bool:
+    """Whether somebody wrote down how a body moves at the start."""
+    return any(any(s.velocity) or any(s.angular_velocity) for s in scenario.bodies.values())
+
+
+def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) -> Mechanism:
+    """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
+    joints = scenario.joints.items() if not given(scenario) else ()
+    playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
+    with_coordinate = [n for n in named if elements.load(scenario.joints[n].type).coordinate]
+    if not playing and not mechanism.beams and {*with_coordinate} <= {*mechanism.coordinates}:
+        return mechanism
+    return assemble(scenario, playing, coordinates=named, stiff=True, planar=mechanism.planar)
+
+
+def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> Array:
+    """World-axes rates nearest to those of y that joints, drives and closed stops allow.
+
+    held: whether what bushings hold is to be at rest.
+    """
+    model = workspace(ideal.model)
+    ideal = replace(ideal, model=model)  # one workspace for all that follows
+    y_ideal = follow(ideal, y)
+    _, phi_t, J = jacobian(model, 0.0, y_ideal)
+    rate = -phi_t
+    wishes = compliant_drives(ideal, y_ideal)
+    wishes += [(gradient, 0.0) for gradient in (bushings(ideal, y_ideal) if held else ())]
+    if named:
+        wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
+        moving = [ideal.coordinates[n] for n in named if n in ideal.coordinates]
+        wishes += [(rate_of_entry(model, y_ideal, x.entry, (x.i, x.j)), 0.0) for x in moving]
+    scale = weights(model)
+    kept = independent(J * scale, [gradient * scale for gradient, _ in wishes])
+    J = np.vstack([J, *(wishes[k][0] for k in kept)])
+    rate = np.append(rate, [wishes[k][1] for k in kept])
+    v = world_rates(model, y_ideal)
+    planar = model.d == 3
+    C = roots(model, y_ideal, planar)
+    if len(J):
+        v = v + shortest(J, C, rate - product(J, v))
+    left = np.max(np.abs(J @ v - rate), initial=0.0)
+    if left > 1e-6 * max(1.0, np.max(np.abs(rate), initial=0.0)):
+        raise ModelError(
+            f"no velocities at t = 0 satisfy the joints and drives (off by {left:.3g})",
+            "two drives on one degree of freedom, or a start in a dead centre?",
+        )
+    if ideal.beams or not len(J):
+        return np.asarray(v)
+    rows = list(range(model.m + len(model.redundant)))
+    branches = Branches(
+        model, y_ideal, all_rows(model, y_ideal), rows, J[model.m :], moves(model, planar), C
+    )
+    return branches.onward(np.asarray(v))
+
+
+def independent(J: Array, wishes: list[Array]) -> list[int]:
+    """Which wishes, one after the other, are not fixed by the rows of J and the wishes before."""
+    basis = np.zeros((0, J.shape[1]))
+    if len(J):
+        basis, _ = spaces(J, INDEPENDENT)
+    kept = []
+    for k, wish in enumerate(wishes):
+        left = wish - product(basis.T, product(basis, wish))
+        left -= product(basis.T, product(basis, left))
+        size = length(left)
+        if size > INDEPENDENT * length(wish):
+            basis = np.vstack([basis, left / size])
+            kept.append(k)
+    return kept
+
+
+def allowed(model: Model, y: Array) -> Array:
+    """y with the nearest velocities that the constraints allow: a bent bar is no rigid one."""
+    w, y = scene(model), y.copy()
+    derivative(w, 0.0, y, np.zeros_like(y))
+    project_velocities(w, y)
+    return y
+
+
+def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]]:
+    """Gradient and prescribed rate of the joint coordinates that compliant drives move."""
+    found = []
+    for instance in mechanism.instances:
+        if instance.section != "drives" or not instance.row.is_force:
+            continue
+        i, j, entry, state, _, offset = instance.row.con[:6]
+        f, f_dot, _ = rates_at(mechanism.model.tab, offset, 0.0)
+        gradient = rate_of_entry(mechanism.model, y, entry, (i, j))
+        found.append((gradient, f if state >= 0 else f_dot))
+    return found
+
+
+def bushings(mechanism: Mechanism, y: Array) -> list[Array]:
+    """Gradients of the rates of what bushings hold: along and about their stiff directions."""
+    w = workspace(mechanism.model)
+    poses(w, y)
+    found = []
+    for instance in mechanism.instances:
+        if instance.element.key != "bushing":
+            continue
+        i, j = instance.row.con[:2]
+        par = np.array(instance.row.par)
+        R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
+        place = w.X[j, :3] + product(R_j, par[3:6])
+        for k, a in enumerate(product(par[6:15].reshape(3, 3), R_i.T)):
+            if par[STIFFNESS + k] > 0.0:
+                found.append(twist_row(w.n, (i, j), a, [place - w.X[f, :3] for f in (i, j)]))
+            if par[ROTATIONAL + k] > 0.0:
+                found.append(twist_row(w.n, (i, j), a))
+    return found
+
+
+def twist_row(
+    n: int, frames: tuple[int, int], axis: Array, arms: list[Array] | None = None
+) -> Array:
+    """Rate of frame j against frame i along an axis at a place, or about it without arms."""
+    row = np.zeros((n, 6))
+    for k, (f, sign) in enumerate(zip(frames, (-1.0, 1.0), strict=True)):
+        if arms is None:
+            row[f, 3:] += sign * axis
+        else:
+            row[f] += sign * np.concatenate([axis, np.cross(arms[k], axis)])
+    return row[1:].ravel()
+
+
+def closed_stops(mechanism: Mechanism, y: Array) -> list[Array]:
+    """Gradients of the gap rates of contacts that are closed at y."""
+    model = mechanism.model
+    w = workspace(model)
+    poses(w, y)
+    gaps(w, 0.0)
+    closed = [e for e in model.contact.tolist() if w.gap[e, 0] > 0.0]
+
+    def rate(moving: Array, e: int) -> float:
+        poses(w, moving)
+        gaps(w, 0.0)
+        return float(w.gap[e, 1])
+
+    acts_on = [instance.element.acts_on(instance.row) for instance in mechanism.instances]
+    return [
+        twist_gradient(model, y, lambda moving, e=e: rate(moving, e), acts_on[e]) for e in closed
+    ]
+
+
+def with_velocities(model: Model, y: Array, v: Array) -> Array:
+    """y with the given world-axes rates (6 (n-1)) of the moving frames."""
+    w = workspace(model)
+    poses(w, y)
+    y = y.copy()
+    y[model.n_q : model.n_q + model.n_v] = in_solve_axes(w, v)
+    return y
+
+
+def rate_of_entry(model: Model, y: Array, s: int, frames: Iterable[int]) -> Array:
+    """Rate of an entry of S, a coordinate between some frames, per unit of world-axes rates."""
+    w = workspace(model)
+
+    def rate(moving: Array) -> float:
+        poses(w, moving)
+        return float(w.S[s, 1])
+
+    return twist_gradient(model, y, rate, frames)
+
+
+def twist_gradient(
+    model: Model, y: Array, rate: Callable[[Array], float], frames: Iterable[int]
+) -> Array:
+    """A rate, linear in the velocities of some frames, per unit of every world-axes rate."""
+    gradient = np.zeros(6 * (model.n - 1))
+    for k in (6 * (f - 1) + c for f in frames if f > 0 for c in range(6)):
+        unit = np.zeros_like(gradient)
+        unit[k] = 1.0
+        gradient[k] = rate(with_velocities(model, y, unit))
+    return gradient

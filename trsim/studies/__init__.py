@@ -1,0 +1,1 @@
+"""Published studies, run and judged with trsim as anybody could."""

@@ -1,0 +1,90 @@
+"""Figures 23 to 26: five doors and three actuators, at one speed and each at another in turn."""
+
+from typing import Any
+
+from trsim.report.display import Shown
+from trsim.report.style import COLOURS, colour, panels, thinned
+from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, those, timed, told
+from trsim.studies.thrust_reverser.runs import Runs
+
+ACTUATORS = (1, 2, 3)
+SPEEDS = (418, 419, 420, 421, 422)  # mm/s
+SHADES = (0, 5, 6, 4, 1)  # colours of the speeds: from slow, blue, over black to fast, red
+VARIANTS = (("ideal joints", "spatial_420"), ("play of 0.3 mm at every B", "spatial_play"),
+            ("flexible rods", "spatial_flexible"))  # fmt: skip
+SHAFTS = (("without", "spatial_shaft_without"), ("0.176 N\u00b7m/rad", "spatial_shaft_softer"),
+          ("0.53 N\u00b7m/rad", "spatial_shaft"),
+          ("1.76 N\u00b7m/rad", "spatial_shaft_stiffer"))  # fmt: skip
+FORCE = "hold-back force"
+
+
+def case(odd: int, speed: int) -> str:
+    """The run with one actuator at a speed of its own, mm/s, the others at 420."""
+    return "spatial_420" if speed == 420 else f"spatial_{odd}_{speed}"
+
+
+def names(odd: int) -> tuple[str, ...]:
+    return tuple(case(odd, speed) for speed in SPEEDS)
+
+
+def figure_23(runs: Runs) -> Any:
+    """All three actuators at one speed: along X, across in Y and Z."""
+    (one,) = those(runs, ("", "spatial_420"))
+    figure, axes = panels(3, height=1.8, width=6.3, sharex=True)
+    for a, letter, axis in zip(axes[:, 0], "abc", "XYZ", strict=True):
+        for k in ACTUATORS:
+            channel = f"actuator_{k}.force" if axis == "X" else f"actuator_{k}.reaction"
+            values = one.values(channel)
+            values = values if axis == "X" else values[:, "XYZ".index(axis)]
+            a.plot(*thinned(one.time, values), color=colour(k - 1), ls=("-", "-", "--")[k - 1],
+                   lw=1.1, label=f"actuator {k}")  # fmt: skip
+        a.set_ylabel(f"{FORCE if axis == 'X' else 'force on the fairing'}\n({one.unit(channel)})")
+        a.margins(x=0.01)
+        lettered(a, letter, f"{axis} direction")
+    timed(axes[-1])
+    figure.align_ylabels()
+    handles, labels = axes[0, 0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return figure
+
+
+def asynchronous(runs: Runs, odd: int) -> Any:
+    """The three actuators, a curve for each speed of one of them."""
+    shown = those(runs, *((f"{speed} mm/s", case(odd, speed)) for speed in SPEEDS))
+    return of_each(shown, [COLOURS[k] for k in SHADES], "-" * len(shown))
+
+
+def compared(runs: Runs, cases: tuple[tuple[str, str], ...], dashes: str = "----") -> Any:
+    """The three actuators, a curve for each case."""
+    shown = those(runs, *cases)
+    return of_each(shown, [colour(k) for k in range(len(shown))], dashes)
+
+
+def of_each(shown: list[Shown], shades: list[str], dashes: str) -> Any:
+    """A panel for each actuator with its hold-back forces, all on one scale."""
+    figure, axes = panels(3, height=1.9, width=6.3, sharex=True, sharey=True)
+    for a, letter, k in zip(axes[:, 0], "abc", ACTUATORS, strict=True):
+        for one, shade, dash in zip(shown, shades, dashes, strict=False):
+            force = one.values(f"actuator_{k}.force")
+            a.plot(*thinned(one.time, force), dash, color=shade, lw=1.0, label=one.label)
+        a.axhline(0.0, color="0.6", lw=0.6)
+        a.set_ylabel(f"{FORCE}\n(N)")
+        a.margins(x=0.01)
+        lettered(a, letter, f"actuator {k}")
+    timed(axes[-1])
+    return told(figure, axes[0, 0], shown, 5)
+
+
+FIGURES = (
+    Drawn("23", "abc", "Forces of the actuators at one speed of 420 mm/s; X: positive holds the "
+          "fairing back.", ("spatial_420",), figure_23),
+    *(Drawn(str(23 + odd), "abc", f"Forces of the actuators along X where actuator {odd} has a "
+            "speed of its own, the others 420 mm/s; positive holds the fairing back.", names(odd),
+            lambda runs, odd=odd: asynchronous(runs, odd)) for odd in ACTUATORS),
+    Drawn("23 with play and with flexible rods", "abc", "As figure 23, with play at the hinges of "
+          "all doors and with flexible rods (ours).", tuple(name for _, name in VARIANTS),
+          lambda runs: compared(runs, VARIANTS, "--:")),
+    Drawn("25 with a shaft", "abc", "Actuator 2 at 418 mm/s, pistons that give way behind their "
+          "supply, and a synchronising shaft, by its stiffness (ours).",
+          tuple(name for _, name in SHAFTS), lambda runs: compared(runs, SHAFTS)),
+)  # fmt: skip

@@ -1,0 +1,50 @@
+"""When the spatial mechanism sticks: actuator 2 slower, over the stiffness of the shaft (ours)."""
+
+from typing import Any
+
+import numpy as np
+
+from trsim.report.maps import cells
+from trsim.report.style import panels
+from trsim.studies.thrust_reverser.figures.drawing import Drawn
+from trsim.studies.thrust_reverser.runs import Runs
+
+SPEEDS = (418, 416, 414, 412, 410, 408)  # mm/s, of actuator 2
+STIFFNESSES = ("0", "0.176", "0.53", "1.76", "5.3")  # N m/rad, of the shaft
+
+
+def case(speed: int, stiffness: str) -> str:
+    """The name of a run of the grid."""
+    return f"spatial_jam,speed_2={speed}mm_s,shaft={stiffness}N_m_rad"
+
+
+CASES = tuple(case(speed, stiffness) for speed in SPEEDS for stiffness in STIFFNESSES)
+
+
+def late(speed: int) -> str:
+    return f"{420 - speed} mm/s"
+
+
+def jammed(runs: Runs, speed: int, stiffness: str) -> bool:
+    return str(runs.stated(case(speed, stiffness)).run.attributes["status"]) == "jammed"
+
+
+def sticking(runs: Runs) -> Any:
+    """The time at which a run of the grid ends, and whether it is stuck."""
+    values = np.array([[float(runs.stated(case(speed, k)).run.summary["time"])
+                        for k in STIFFNESSES] for speed in SPEEDS])  # fmt: skip
+    ends = [["sticks" if jammed(runs, speed, k) else "full stroke" for k in STIFFNESSES]
+            for speed in SPEEDS]  # fmt: skip
+    figure, axes = panels(1, height=3.4)
+    shade = cells(axes[0, 0], STIFFNESSES, [str(420 - speed) for speed in SPEEDS], values, ends)
+    axes[0, 0].set_xlabel("stiffness of the shaft (N\u00b7m/rad)")
+    axes[0, 0].set_ylabel("actuator 2 slower by (mm/s)")
+    figure.colorbar(shade, label="end of the run (s)")
+    return figure
+
+
+FIGURES = (
+    Drawn("25 until it sticks", "", "When an actuator stalls, its supply at 3 kN (ours): actuator "
+          "2 slower than the others, over the stiffness of the synchronising shaft. A full stroke "
+          "takes 1.19 s.", CASES, sticking),
+)  # fmt: skip

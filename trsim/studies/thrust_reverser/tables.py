@@ -1,0 +1,113 @@
+"""The claims as tables: claims.csv, and numbers.csv with every number and the file it is from."""
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from trsim.report.page import Cell, Ensembles, Line, Table
+from trsim.store.target import fresh, headed, told
+from trsim.studies.thrust_reverser.claims.claim import INDEPENDENT, WORTH
+from trsim.studies.thrust_reverser.figures.drawing import Drawn
+from trsim.studies.thrust_reverser.judge import Row, Source
+from trsim.studies.thrust_reverser.rules import CONFIRMED
+
+CLAIMS = ("claim", "section", "figure", "statement", "reading", "verdict", "worth", "rule",
+          "numbers", "decided_by", "holds_in", "members", "assumptions", "runs")  # fmt: skip
+HEAD = ("claim", "reading", "verdict", "numbers", "decided by", "holds in", "runs")
+
+
+def write(rows: Sequence[Row], folder: Path) -> list[Path]:
+    """Both tables as CSV; run files are named as seen from the folder of the study."""
+    claims = [
+        (
+            *(row.claim.key, row.claim.section, row.claim.figure, row.claim.statement),
+            *(row.reading.name, row.judged.verdict, row.claim.worth, row.claim.rule.words),
+            *("; ".join(row.numbers), row.judged.told, row.judged.holds, row.judged.of),
+            *(assumptions(row), " ".join(row.files)),
+        )
+        for row in rows
+    ]
+    numbers = [source for row in rows for source in row.sources]
+    return [
+        table(folder / "claims.csv", CLAIMS, claims),
+        table(folder / "numbers.csv", Source._fields, numbers),
+    ]
+
+
+def table(path: Path, head: Sequence[str], lines: Iterable[Sequence[object]]) -> Path:
+    with (
+        told(path),
+        fresh(path, headed(*head)) as unfinished,
+        unfinished.open("w", newline="", encoding="utf-8") as file,
+    ):
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows([repr(v) if isinstance(v, float) else v for v in line] for line in lines)
+    return path
+
+
+def assumptions(row: Row) -> str:
+    return "; ".join(text for text in (row.claim.note, row.reading.note) if text)
+
+
+# --- on the page -----------------------------------------------------------------------------
+
+
+def shown(rows: Sequence[Row], figures: Sequence[Drawn]) -> Table:
+    """The claims of one section; a line for each reading."""
+    lines, last = [], ""
+    for row in rows:
+        claim, first = row.claim, row.claim.key != last
+        last = claim.key
+        worth = WORTH[claim.worth] if row.judged.verdict == CONFIRMED else ""
+        head = Cell(claim.statement, aside=claim.note) if first else Cell("")
+        if first and (anchor := figure(claim.figure, figures)):
+            note = f"{claim.note}. " if claim.note else ""
+            head = Cell(claim.statement, anchor, aside=f"{note}Figure {claim.figure}")
+        judged = row.judged
+        cells: list[Cell | Ensembles] = [
+            head,
+            Cell(row.reading.name, aside=row.reading.note),
+            Cell(judged.verdict, kind=judged.verdict, aside=worth),
+            Ensembles(row.numbers, members(row)),
+            Cell(judged.told, aside=claim.rule.words if claim.rule.words != judged.told else ""),
+            Cell(f"{judged.holds} of {judged.of}" if judged.of else ""),
+            Cell(cases(row)),
+        ]
+        lines.append(Line(cells, anchor=f"claim-{claim.key}" if first else "", first=first))
+    return Table(HEAD, lines)
+
+
+def members(row: Row) -> list[list[float]]:
+    """The numbers of each case of a row."""
+    found: dict[tuple[str, str, str], list[float]] = {}
+    for source in row.sources:
+        found.setdefault((source.label, source.case, source.word), []).append(source.value)
+    return list(found.values())
+
+
+def cases(row: Row) -> str:
+    """The cases a row rests on, and how many runs of each; of those of a grid the grid."""
+    count: dict[str, set[int]] = {}
+    for source in row.sources:
+        count.setdefault(source.case, set()).add(source.member)
+    sizes = {len(members) for members in count.values()}
+    each = f" ({max(sizes)} each)" if sizes and max(sizes) > 1 else ""
+    return ", ".join(dict.fromkeys(case.partition(",")[0] for case in count)) + each
+
+
+def figure(text: str, figures: Sequence[Drawn]) -> str:
+    """The anchor of the figure that a claim names first: 9a is in figure 9."""
+    digits = "".join(c for c in text.split(",")[0] if c.isdigit())
+    return next((one.anchor for one in figures if one.number == digits), "")
+
+
+def tally(rows: Sequence[Row]) -> Table:
+    """How many readings have which verdict, those apart whose agreement proves nothing."""
+    lines = []
+    for worth, text in ((INDEPENDENT, "independent of our choices"), *WORTH.items()):
+        if worth != INDEPENDENT or text:
+            mine = [row.judged.verdict for row in rows if row.claim.worth == worth]
+            found = [str(mine.count(v)) for v in ("confirmed", "contradicted", "undetermined")]
+            lines.append(Line([Cell(text or worth), *map(Cell, found)]))
+    return Table(("agreement", "confirmed", "contradicted", "undetermined"), lines)
