@@ -6,8 +6,8 @@ import pytest
 
 from trsim.assemble.beside import closes_a_loop
 from trsim.assemble.equations import derivative
+from trsim.assemble.instances import RowName
 from trsim.assemble.linear import SMALL
-from trsim.assemble.mechanism import RowName
 from trsim.assemble.projection import close_positions, poses_and_rows, project_velocities
 from trsim.elements.scene import scene
 

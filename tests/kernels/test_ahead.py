@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from trsim.kernels.ahead import turn
+from trsim.kernels.lock import turn
 
 ROOT = Path(__file__).parents[2]
 KEY, OTHER = "a" * 20, "b" * 20
@@ -18,7 +18,7 @@ PATIENCE = 60.0  # s
 HOLDS = """
 import sys, time
 from pathlib import Path
-from trsim.kernels.ahead import turn
+from trsim.kernels.lock import turn
 with turn(Path(sys.argv[1]), sys.argv[2]) as ours:
     print(ours, flush=True)
     time.sleep(600)

@@ -19,7 +19,7 @@ import pytest
 from tests import small
 from tests.store import outside
 from trsim.assemble.assemble import assemble
-from trsim.assemble.mechanism import Column
+from trsim.assemble.instances import Column
 from trsim.errors import FileError
 from trsim.scenario.load import loads
 from trsim.solve import simulate as solver

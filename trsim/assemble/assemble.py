@@ -14,10 +14,11 @@ from trsim.assemble.beside import beside, near, near_rows
 from trsim.assemble.equations import derivative, without_feedback
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
+from trsim.assemble.instances import Column, Instance, RowName, Section
 from trsim.assemble.jumps import find_jumps, steep
 from trsim.assemble.layout import layout
 from trsim.assemble.loops import looped
-from trsim.assemble.mechanism import Column, Instance, Mechanism, RowName, Section
+from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
 from trsim.assemble.pattern import Hubs, no_pattern, pattern

@@ -45,6 +45,7 @@ from trsim.assemble.equations import (
     poses,
     right_hand_side,
 )
+from trsim.assemble.instances import RowName
 from trsim.assemble.linear import (
     SINGULAR,
     SMALL,
@@ -55,7 +56,6 @@ from trsim.assemble.linear import (
     smallest_pivot,
     solve,
 )
-from trsim.assemble.mechanism import RowName
 from trsim.assemble.projection import move_all, project_positions, project_velocities
 from trsim.assemble.schur import plain_rows, pull, rows
 from trsim.elements.contract import DRIVES, compiled

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.rank import of_length_one
 from trsim.assemble.reduce import all_rows, moves, weights
 from trsim.elements.scene import Scene

@@ -7,7 +7,8 @@ let go by user events are counted as they are in any stage, so the coupling is t
 
 from typing import Any, NamedTuple
 
-from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.assemble.instances import Instance
+from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import Beam
 from trsim.elements.contract import N_BOOK
 

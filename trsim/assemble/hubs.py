@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.mechanism import RowName
+from trsim.assemble.instances import RowName
 from trsim.assemble.pattern import Hubs, structure
 from trsim.assemble.rank import dependent_rows, of_length_one, plainly_independent
 from trsim.assemble.reduce import jacobian, moves, weights

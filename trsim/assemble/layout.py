@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.assemble.mechanism import Column, Instance
+from trsim.assemble.instances import Column, Instance
 from trsim.assemble.outputs import energy_columns
 from trsim.elements.bushing import TURN
 from trsim.elements.contract import FIRST_ROW, Channel

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.instances import Instance, RowName
 
 
 def looped(

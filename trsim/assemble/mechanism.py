@@ -1,78 +1,18 @@
 """A model with the names that go with its numbers."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from math import inf
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.instances import Column, Instance, Section
 from trsim.assemble.members import Beam
-from trsim.elements.contract import Channel, Element, Row
+from trsim.assemble.stages import Stages
 from trsim.elements.scene import Model
 
-if TYPE_CHECKING:
-    from trsim.assemble.stages import Stages
-
 Array = NDArray[np.float64]
-
-
-class Column(NamedTuple):
-    """One channel of the output rows."""
-
-    name: str
-    unit: str
-    meaning: str
-    start: int
-    size: int
-    wanted: bool
-    for_points: bool = False  # measured only because a section or a portrait shows it
-    least: float = -inf  # what its definition alone keeps it above, or at
-
-
-class Section(NamedTuple):
-    """A Poincare section; of `when`, `every` and `at_onset` one is given."""
-
-    name: str
-    when: str
-    crosses: str
-    every: float  # s, or 0
-    at_onset: str
-    after: float  # s
-    x: str
-    y: str
-    x_unit: str
-    y_unit: str
-
-
-@dataclass(frozen=True)
-class Instance:
-    """One element of the scenario, packed."""
-
-    section: str
-    name: str
-    element: Element
-    row: Row
-
-    @property
-    def channels(self) -> tuple[Channel, ...]:
-        """Its channels, each in its own unit."""
-        found = self.element.channels if self.row.channels is None else self.row.channels
-        own = "rad" if self.row.turns else "m"
-        return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
-
-
-@dataclass(frozen=True)
-class RowName:
-    """A constraint row, for messages and reports."""
-
-    element: str  # joint or drive
-    axis: str
-    instance: int
-    index: int  # which of the element's rows
-    frames: tuple[int, int]
-    rotation: bool
 
 
 @dataclass(frozen=True)
@@ -99,6 +39,13 @@ class Mechanism:
     frames: Mapping[str, int]
     beams: Mapping[str, Beam]
     notes: tuple[str, ...]
-    stages: "Stages"  # what user events make of it
+    stages: Stages  # what user events make of it
     sections: tuple[Section, ...] = ()  # in the order of model.section
     ahead: Mapping[int, float] = field(default_factory=dict)  # state -> how far from its coordinate
+
+    def in_stage(self, stage: NDArray[np.int64], left_out: NDArray[np.int64]) -> "Mechanism":
+        """The mechanism as it is in a stage, with these rows left out."""
+        choice = self.stages.choice(stage, left_out)
+        if choice.model is self.model:
+            return self
+        return replace(self, model=choice.model, rows=choice.names)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.equations import forces, poses
-from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.reduce import displaced, jacobian, moves
 from trsim.elements.contract import PHASE, UNLOCATED
 from trsim.elements.rigid_body import tensor

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.assemble import build, pack
-from trsim.assemble.mechanism import Instance, Mechanism, RowName
+from trsim.assemble.instances import Instance, RowName
+from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
 from trsim.assemble.reduce import jacobian, moves, weights
 from trsim.assemble.redundant import nearby

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.rank import unique_reactions
 from trsim.assemble.reduce import (
     jacobian,

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.assemble.mechanism import Column, Instance, Section
+from trsim.assemble.instances import Column, Instance, Section
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
-from trsim.assemble.mechanism import RowName
+from trsim.assemble.instances import RowName
 from trsim.assemble.rank import DEPENDENT
 from trsim.assemble.reduce import in_solve_axes, jacobian, moves, weights
 from trsim.elements.scene import Model, Scene, scene

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.better import better
-from trsim.assemble.mechanism import Instance, Mechanism, RowName
+from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, MOST, Switches, lock_name
 from trsim.elements.prescribed import OWN_MOTION, OWN_STATE, C, K
@@ -82,15 +82,6 @@ class Stages:
     def rows(self, stage: NDArray[np.int64]) -> tuple[str, ...]:
         """Names of the rows in the solve."""
         return self._found(stage).names
-
-    def mechanism(
-        self, mechanism: Mechanism, stage: NDArray[np.int64], left_out: NDArray[np.int64]
-    ) -> Mechanism:
-        """The mechanism as it is in a stage, with these rows left out."""
-        choice = self.choice(stage, left_out)
-        if choice.model is mechanism.model:
-            return mechanism
-        return replace(mechanism, model=choice.model, rows=choice.names)
 
     def left_out(self, stage: NDArray[np.int64]) -> NDArray[np.int64]:
         """1 for every row, of all there may be, that is left out as a stage is made."""

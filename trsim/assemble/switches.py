@@ -16,7 +16,7 @@ from typing import Any
 
 from trsim import elements
 from trsim.assemble.addresses import UNITS, Addresses
-from trsim.assemble.mechanism import Instance
+from trsim.assemble.instances import Instance
 from trsim.elements.prescribed import ENTRY, OWN_STATE
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.dense import inverse, length, product
-from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales

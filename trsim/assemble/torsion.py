@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.mechanism import Instance, RowName
+from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.planar import lasting, reaching_out
 from trsim.assemble.reduce import jacobian, weights
 from trsim.elements.rigid_body import tensor

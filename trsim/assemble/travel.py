@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.assemble.mechanism import Instance
+from trsim.assemble.instances import Instance
 from trsim.assemble.switches import LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time

@@ -6,8 +6,10 @@ from typing import Any
 import click
 
 from trsim.cli.frame import NAMED, Answer, Stop, framed
+from trsim.cli.given import chosen, known_method, seconds, tolerance
+from trsim.cli.running import look, placed
 from trsim.cli.source import loaded, stem
-from trsim.errors import ScenarioError, TrsimError, UsageError, known
+from trsim.errors import ScenarioError, TrsimError
 
 METHODS = "auto,dop853,radau"
 MARK = "<"  # beside an error that the reference does not resolve
@@ -61,7 +63,6 @@ def one(
 ) -> Any:  # fmt: skip
     """The study of a scenario; what was measured until a signal, if one came."""
     from trsim.cli.progress import compiling
-    from trsim.cli.run import placed
 
     scenario = loaded(source, sets)
     if scenario.solver.end is None:
@@ -108,60 +109,6 @@ def measured(
         Stop.patient = False
     slopes = precision.slopes(found, reference)
     return precision.Study(scenario.title, reference, tuple(found), slopes)
-
-
-def look() -> None:
-    """End a measurement when a signal asked for it."""
-    if Stop.number:
-        raise KeyboardInterrupt
-
-
-# --- what the options say --------------------------------------------------------------------
-
-
-def known_method(name: str) -> str:
-    from trsim.scenario.scenario import METHODS as words
-
-    if name.strip() not in words:
-        raise UsageError(f"no method '{name}'", known(name, words))
-    return name.strip()
-
-
-def tolerance(text: str) -> float:
-    from trsim.analyse.precision import LOOSEST, TIGHTEST
-
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not TIGHTEST <= value <= LOOSEST:
-        told = f"a tolerance is a number from {TIGHTEST:g} to {LOOSEST:g}"
-        raise UsageError(f"'{text}' is no tolerance", f"{told}, for example 1e-6.")
-    return value
-
-
-def seconds(text: str) -> float:
-    from trsim.numbers import number
-
-    try:
-        value = number(text, ("s",))
-    except ScenarioError as error:
-        raise UsageError(f"'{text}' is no step: {error.what}", error.hint) from None
-    if value <= 0.0:
-        raise UsageError(f"'{text}' is no step", "A step is positive, for example 1e-6 or '1 us'.")
-    return value
-
-
-def chosen(text: str, what: str = "reference", option: str = "--reference") -> Any:
-    """METHOD:TOLERANCE; the method may have a colon of its own."""
-    from trsim.analyse.trajectory import Setting
-
-    method, _, value = text.rpartition(":")
-    if method == "rk4":
-        raise UsageError("rk4 has no tolerance", f"Name an adaptive method: {option} radau:1e-10")
-    if not method:
-        raise UsageError(f"'{text}' is no {what}", "Write for example radau:1e-10.")
-    return Setting(known_method(method), tolerance(value))
 
 
 # --- what is told ----------------------------------------------------------------------------

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trsim.cli.frame import Answer, Stop
+from trsim.cli.running import look, placed, ran
 from trsim.cli.source import loaded
 from trsim.errors import FileError, TrsimError, UsageError
 
@@ -26,7 +27,6 @@ def twin(
     resume: bool, checkpoint: float | None, asked: Any,
 ) -> Closing:  # fmt: skip
     """Have the twin's file; what is to be done with it at the end of the run."""
-    from trsim.cli.run import ran
     from trsim.store.checkpoint import beside as kept
     from trsim.store.checkpoint import keys
 
@@ -55,9 +55,7 @@ def other_scenario(
     answer: Answer, source: str, scenario: Any, sets: tuple[str, ...], asked: Any
 ) -> Any:
     """The scenario of the twin; `asked`: its setting, or True to have it found."""
-    from trsim.cli.bench import look
     from trsim.cli.progress import compiling
-    from trsim.cli.run import placed
 
     compiling(answer, scenario.solver.method)
     from trsim.analyse.twin import overrides, twin_setting

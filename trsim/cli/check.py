@@ -43,7 +43,7 @@ def command(
 def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False) -> dict[str, Any]:
     """What a scenario is once assembled, where it would start, and what is fast in it."""
     from trsim.cli.progress import Doing, compiling
-    from trsim.cli.run import placed
+    from trsim.cli.running import placed
 
     scenario = loaded(source, sets)
     compiling(answer)

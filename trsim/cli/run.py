@@ -1,15 +1,14 @@
 """trsim run: simulate scenarios, each into its result file."""
 
-import shlex
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
-from trsim.cli.frame import NAMED, Answer, Stop, framed
+from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.redundancy import redundancy
-from trsim.cli.resume import Seconds, found, interval
+from trsim.cli.resume import Seconds
+from trsim.cli.running import placed, ran
 from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
 from trsim.store.target import RESULT, replaceable
@@ -47,7 +46,7 @@ def command(
     answer.data["runs"] = []
     asked: Any = certify
     if certify_with is not None:
-        from trsim.cli.bench import chosen
+        from trsim.cli.given import chosen
 
         asked = chosen(certify_with, "twin", "--certify-with")
     for source, target in targets(scenarios, output):
@@ -108,48 +107,6 @@ def one(
     return summary
 
 
-def ran(
-    answer: Answer, source: str, target: Path, scenario: Any, resume: bool,
-    checkpoint: float | None, closing: Any = None, twin: bool = False,
-) -> dict[str, Any]:  # fmt: skip
-    """Simulate a scenario into a file; its summary.  A twin repeats no warnings."""
-    from trsim.cli.progress import compiling, compiling_sparse, watched
-
-    every = interval(answer, source, scenario, checkpoint)
-    kept = found(answer, source, target, scenario, resume)
-    compiling(answer, scenario.solver.method)
-    from trsim.assemble.assemble import assemble
-    from trsim.scenario.lint import lint
-    from trsim.solve.simulate import simulate
-    from trsim.store.hdf5 import write
-
-    try:
-        mechanism = assemble(scenario)
-        compiling_sparse(answer, scenario, mechanism)
-        for note in () if twin else (*mechanism.notes, *lint(scenario)):
-            answer.warn(source, note)
-        if mechanism.spatial_because and not twin:
-            answer.say(f"{source}: spatial motion: {shown(mechanism.spatial_because)}")
-        running = simulate(scenario, mechanism, kept.state if kept else None)
-        blocks = watched(running, answer, source, scenario.solver.end)
-        called = shlex.join(["trsim", *sys.argv[1:]])
-        summary = write(target, scenario, mechanism, blocks, called, every, kept, closing)
-        summary["resumed_from"] = kept.time if kept else None
-    except TrsimError as error:
-        raise placed(error, scenario) from None
-    finally:
-        Stop.patient = False
-    if Stop.number:
-        raise KeyboardInterrupt
-    return summary
-
-
-def shown(reasons: tuple[str, ...]) -> str:
-    """The first of some reasons, and how many more there are."""
-    more = f", and {len(reasons) - 1} more (see `trsim check`)" if len(reasons) > 1 else ""
-    return reasons[0] + more
-
-
 def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
     """Say what is worth knowing of a result: doubts, redundancy, the same content as before."""
     for text in summary["warnings"]:
@@ -162,13 +119,6 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
     if (identical := same(source, summary)) is not None:
         summary["identical"] = identical
         answer.say(f"the content {'is identical to' if identical else 'differs from'} {source}")
-
-
-def placed(error: TrsimError, scenario: Any) -> TrsimError:
-    """The error with its place in the scenario's files, if it is about something in them."""
-    from trsim.scenario.load import locate
-
-    return locate(error, scenario) if any(one.path for one in error.problems) else error
 
 
 def line(summary: dict[str, Any]) -> str:

@@ -157,7 +157,7 @@ def reasons(answer: Answer, planned: Any, folder: Path, told: Any, each: bool) -
 def assembled(answer: Answer, planned: Any, part: Any) -> None:
     """Assemble every case.  Raises what is wrong with the first that cannot be."""
     from trsim.assemble.assemble import assemble
-    from trsim.cli.run import placed
+    from trsim.cli.running import placed
 
     mine = planned.cases[part.i - 1 :: part.n]
     with Doing(answer, "assembling") as doing:

@@ -22,9 +22,10 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError
-from trsim.kernels import ahead, fingerprint, kept
+from trsim.kernels import fingerprint, kept
 from trsim.kernels.kept import folder
 from trsim.kernels.lazy import Lazy
+from trsim.kernels.lock import turn
 from trsim.kernels.signatures import Kind, Signature
 
 # what an object file may ask of the process: the C library's mathematics and memory
@@ -38,7 +39,7 @@ ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
 
 
 def lock() -> Path:
-    """The file that tells who is compiling what (ahead.py)."""
+    """The file that tells who is compiling what (lock.py)."""
     return folder() / "lock"
 
 
@@ -77,13 +78,13 @@ class Compiled(Lazy):
         """Where the machine code starts."""
         code = _read(self.file)
         if code is None:
-            with ahead.turn(lock(), self.key):  # another process may be compiling it
+            with turn(lock(), self.key):  # another process may be compiling it
                 code = _read(self.file) or self._compiled()
         return _loaded(*code)
 
     def keep(self) -> None:
         """Have the machine code in the cache, unless another process is at it."""
-        with ahead.turn(lock(), self.key, wait=False) as ours:
+        with turn(lock(), self.key, wait=False) as ours:
             if ours and _read(self.file) is None:
                 self._compiled()
 

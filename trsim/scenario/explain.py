@@ -14,6 +14,7 @@ from trsim.scenario.schema import schema
 
 SIGNS = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
 TYPES = {"integer": "whole number", "string": "text", "boolean": "true or false", "null": ""}
+LAWS = ("trsim.scenario.contact_law", "trsim.scenario.event")  # modules that tell one
 
 Page = dict[str, Any]
 
@@ -74,7 +75,7 @@ def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
     [key] = _keys("", {"properties": {word: rule}}, {}, Scenario)
     held = _held(Scenario, word)
     keys = _keys(word, of[held.__name__], of, held) if held else _keys(word, rule, of)
-    module = sys.modules[held.__module__] if held and _is_element(held) else None
+    module = sys.modules[held.__module__] if held and _tells_a_law(held) else None
     law = module.__doc__ if module else ""
     return {
         "word": word,
@@ -88,9 +89,9 @@ def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
     }
 
 
-def _is_element(spec: type[Spec]) -> bool:
-    """Whether its module tells a law."""
-    return spec.__module__.startswith(f"{elements.__name__}.")
+def _tells_a_law(spec: type[Spec]) -> bool:
+    """Whether its module does: those of the elements, of contact laws and of events."""
+    return spec.__module__ in LAWS or spec.__module__.startswith(f"{elements.__name__}.")
 
 
 def _keys(

@@ -12,10 +12,10 @@ from annotated_types import Ge, Gt, Interval
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
 
 from trsim import elements
-from trsim.elements.contact_law import ContactLaw
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import Flag, Spec, Unit, vector
 from trsim.scenario import shown
+from trsim.scenario.contact_law import ContactLaw
 from trsim.scenario.event import Event
 from trsim.scenario.initial import Initial, initial_of
 from trsim.scenario.limits import Limits

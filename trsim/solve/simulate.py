@@ -232,6 +232,6 @@ def ending(
         reason = CONTRADICTORY
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     if reason != NO_STEPS_LEFT:
-        at = mechanism.stages.mechanism(mechanism, r.stage, r.left_out)
+        at = mechanism.in_stage(r.stage, r.left_out)
         text = why(scenario, at, r) or text
     return "failed", text

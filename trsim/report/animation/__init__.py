@@ -2,22 +2,9 @@
 
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple
 
+from trsim.report.animation.reel import Film
 from trsim.store.read import Run
-
-
-class Film(NamedTuple):
-    """An animation, and what is to be said of it."""
-
-    glb: bytes
-    title: str
-    start: float  # s, of its first frame
-    scale: float  # m/N of the arrows; 0 without contact forces
-    magnified: float  # clearances
-    open: float  # m, by which ideal joints come apart in it
-    colours: dict[str, str]  # kind of body -> colour
-    warnings: tuple[str, ...]
 
 
 def film(run: Run, magnified: float = 1.0) -> Film:

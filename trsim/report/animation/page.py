@@ -7,7 +7,7 @@ import base64
 from html import escape
 from pathlib import Path
 
-from trsim.report.animation import Film
+from trsim.report.animation.reel import Film
 from trsim.report.animation.things import FORCE, JOURNAL
 
 SCRIPTS = "film.js", "viewer.js"

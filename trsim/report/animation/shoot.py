@@ -5,12 +5,13 @@ from itertools import product
 import numpy as np
 
 from trsim.errors import UsageError
-from trsim.report.animation import Film, bodies, fittings, lines
+from trsim.report.animation import bodies, fittings, lines
 from trsim.report.animation.bodies import LONG
 from trsim.report.animation.drawing import Array, Drawing
 from trsim.report.animation.forces import arrows
 from trsim.report.animation.glb import glb
 from trsim.report.animation.motion import Motion, motion
+from trsim.report.animation.reel import Film
 from trsim.report.animation.things import Look, colours, kinds, look
 from trsim.store.read import Run
 

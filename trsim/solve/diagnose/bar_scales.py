@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.laws.cable_section import mass
-from trsim.solve.diagnose.scales import IMAGINARY, ContactScale
+from trsim.solve.diagnose.contact_scales import ContactScale
+from trsim.solve.methods.rk4 import IMAGINARY
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
-from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.assemble.instances import Instance
+from trsim.assemble.mechanism import Mechanism
 from trsim.elements.actuator import LENGTH
 from trsim.elements.prescribed import ENTRY
 from trsim.elements.scene import workspace

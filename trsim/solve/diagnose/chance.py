@@ -15,8 +15,9 @@ from math import sqrt
 
 import numpy as np
 
+from trsim.assemble.instances import Column
 from trsim.assemble.linear import SINGULAR
-from trsim.assemble.mechanism import Column, Mechanism
+from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import project_positions
 from trsim.elements.scene import scene
 from trsim.solve.diagnose.locked import dependent

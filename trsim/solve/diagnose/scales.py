@@ -14,46 +14,22 @@ imaginary one.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import pi
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import gaps, poses
-from trsim.assemble.mechanism import Instance, Mechanism
-from trsim.assemble.reduce import against_rates
-from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR, R_B, C
-from trsim.elements.scene import Scene, scene
-from trsim.laws.contact import hertz_contact_time
-from trsim.laws.friction import CODES
-from trsim.solve.diagnose.linearised import Linearised, linearised, rounding
+from trsim.assemble.mechanism import Mechanism
+from trsim.solve.diagnose.bar_scales import bar_scales
+from trsim.solve.diagnose.contact_scales import ContactScale, contact_scales
+from trsim.solve.diagnose.linearised import linearised, rounding
+from trsim.solve.methods.rk4 import IMAGINARY, REAL
 from trsim.solve.start.consistent import Start
-from trsim.solve.start.velocities import twist_gradient
 
 Array = NDArray[np.float64]
 
-REAL, IMAGINARY = 2.785, 2.828  # where the stability region of rk4 ends
 LARGEST = 600  # velocities of a mechanism with flexible bars that is linearised: some seconds
-SLOWEST = 1e-3  # m/s: speed of an impact where none is given
-DIRECTIONS = 8  # of the normal of a journal that touches nothing yet
-IMMOVABLE = 1e-4  # of what the bodies alone would give: a contact that joints and drives fix
-
-
-@dataclass(frozen=True)
-class ContactScale:
-    """Time scales of one contact."""
-
-    name: str
-    closed: bool  # at the start
-    depth: float  # m or rad
-    force: float  # N or N*m, elastic, at this depth
-    stiffness: float  # N/m or N*m/rad, tangent there
-    mass: float  # kg or kg*m^2 that it moves; inf where drives and joints fix it
-    half_period: float  # s, at this stiffness; inf where it moves nothing
-    impact_time: float  # s, at the slowest impact
-    friction_rate: float  # 1/s, 0 without a ramp
-    unit: str  # of the force: N or N*m
 
 
 @dataclass(frozen=True)
@@ -101,8 +77,6 @@ def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
 
 def of_meshes(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
     """What is known without a linearisation, which so many nodes would make slow."""
-    from trsim.solve.diagnose.bar_scales import bar_scales
-
     step, name = min((bar.explicit_step, bar.name) for bar in bar_scales(scenario, mechanism, ()))
     return Scales(
         eigenvalues=(),
@@ -138,93 +112,3 @@ def bounds(
         if contact.friction_rate > 0.0:
             rate = contact.friction_rate
             yield REAL / rate, rate, f"friction of {contact.name}"
-
-
-def contact_scales(
-    mechanism: Mechanism, begun: Start, linear: Linearised
-) -> Iterator[ContactScale]:
-    """Every contact, pressed as the forces of the start would."""
-    w = scene(mechanism.model)
-    w.branch[:] = begun.branch
-    poses(w, begun.y)
-    gaps(w, 0.0)
-    closed = w.gap[:, 0] > 0.0
-    unit = {column.name: column.unit for column in mechanism.columns}
-    for c, e in enumerate(mechanism.model.contact.tolist()):
-        instance = mechanism.instances[e]
-        K, n, alone, _, slowest, *_ = w.contact_par[c].tolist()
-        d = float(begun.depth[c])
-        if instance.element.key == "clearance_joint":
-            poses(w, begun.y)
-            inverse, sliding = journal(w, e, linear.twists, bool(closed[e]))
-        else:
-            inverse, sliding = along(w, begun.y, e, instance, linear.twists), 0.0
-        free = inverse * alone > IMMOVABLE
-        mass = 1.0 / inverse if free else np.inf
-        k, force = n * K * d ** (n - 1.0), K * d**n
-        v = slowest or SLOWEST
-        yield ContactScale(
-            name=instance.name,
-            closed=bool(closed[e]),
-            depth=d,
-            force=force,
-            stiffness=k,
-            mass=mass,
-            half_period=pi * sqrt(mass / k) if free else np.inf,
-            impact_time=hertz_contact_time(mass, K, n, v) if free else np.inf,
-            friction_rate=ramp(w, e, instance.element.key) * force * sliding,
-            unit=unit.get(f"{instance.name}.normal_force", "N"),
-        )
-
-
-def along(w: Scene, y: Array, e: int, instance: Instance, twists: Array) -> float:
-    """g Z Z^T g^T of a gap, 1/kg."""
-
-    def rate(moving: Array) -> float:
-        poses(w, moving)
-        gaps(w, 0.0)
-        return float(w.gap[e, 1])
-
-    frames = instance.element.acts_on(instance.row)
-    return float(np.sum((twist_gradient(w, y, rate, frames) @ twists) ** 2))
-
-
-def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float]:
-    """Inverse masses of a journal in its bearing, along the normal and along the tangent, 1/kg.
-
-    The largest over the directions in which it may touch; where it touches, that one.
-    """
-    i, j = w.con[e, 0], w.con[e, 1]
-    R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-    p_i, p_j = R_i @ w.par[e, 0:3], R_j @ w.par[e, 3:6]
-    u, v, a = (R_i @ w.par[e, 6 + 3 * k : 9 + 3 * k] for k in range(3))
-    d = w.X[j, :3] + p_j - w.X[i, :3] - p_i
-    angles = pi * np.arange(DIRECTIONS) / DIRECTIONS
-    if closed:
-        angles = np.array([np.arctan2(v @ d, u @ d)])
-    reach = w.par[e, R_B] - w.par[e, C]
-    normal = tangent = 0.0
-    for angle in angles:
-        for sign in (1.0,) if closed else (1.0, -1.0):
-            n = sign * (np.cos(angle) * u + np.sin(angle) * v)
-            g = gradient(w, i, j, p_i + d, p_j, n)
-            g_t = gradient(w, i, j, p_i + d + reach * n, p_j + reach * n, np.cross(a, n))
-            normal = max(normal, float(np.sum((g @ twists) ** 2)))
-            tangent = max(tangent, float(np.sum((g_t @ twists) ** 2)))
-    return normal, tangent
-
-
-def gradient(w: Scene, i: int, j: int, c_i: Array, c_j: Array, n: Array) -> Array:
-    """n . (v_j - v_i) of two points, arms c_i and c_j, against all world-axes rates."""
-    g = np.zeros(6 * w.n)
-    g[6 * i : 6 * i + 6] -= np.concatenate([n, np.cross(c_i, n)])
-    g[6 * j : 6 * j + 6] += np.concatenate([n, np.cross(c_j, n)])
-    return against_rates(w, g[None, 6:])[0]
-
-
-def ramp(w: Scene, e: int, key: str) -> float:
-    """mu / (v1 - v0) of modified Coulomb friction, s/m; 0 for other laws."""
-    if key != "clearance_joint" or w.con[e, FRICTION_LAW] != CODES["modified_coulomb"]:
-        return 0.0
-    mu, v0, v1 = w.par[e, FRICTION_PAR : FRICTION_PAR + 3].tolist()
-    return float(mu / (v1 - v0))

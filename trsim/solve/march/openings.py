@@ -19,8 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, poses
+from trsim.assemble.instances import Instance
 from trsim.assemble.linear import smallest_pivot
-from trsim.assemble.mechanism import Instance, Mechanism
+from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import close_positions
 from trsim.assemble.tables import turns_by
 from trsim.elements.contract import compiled

@@ -22,6 +22,7 @@ from trsim.solve.methods import hermite
 ORDER = 4
 STAGES = 5
 LAST = 4
+REAL, IMAGINARY = 2.785, 2.828  # where its stability region ends: h lambda on either axis
 DENSE_ROWS = hermite.ROWS
 DENSE_DEGREE = 3
 ESTIMATE = 4  # of no use: the step is fixed

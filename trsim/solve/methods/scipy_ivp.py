@@ -169,7 +169,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     cpu = time.process_time() - clock0
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
-        at = mechanism.stages.mechanism(mechanism, r.stage, r.left_out)
+        at = mechanism.in_stage(r.stage, r.left_out)
         known = r.count[rec.OPENED] or r.count[rec.LOST] or r.count[rec.TORN]
         reason = reason if known else why(scenario, at, r) or reason
     bends = Bends(mechanism)

@@ -1,0 +1,64 @@
+"""Elements of a scenario packed, and the names of their rows, columns and sections."""
+
+from dataclasses import dataclass
+from math import inf
+from typing import NamedTuple
+
+from trsim.elements.contract import Channel, Element, Row
+
+
+class Column(NamedTuple):
+    """One channel of the output rows."""
+
+    name: str
+    unit: str
+    meaning: str
+    start: int
+    size: int
+    wanted: bool
+    for_points: bool = False  # measured only because a section or a portrait shows it
+    least: float = -inf  # what its definition alone keeps it above, or at
+
+
+class Section(NamedTuple):
+    """A Poincare section; of `when`, `every` and `at_onset` one is given."""
+
+    name: str
+    when: str
+    crosses: str
+    every: float  # s, or 0
+    at_onset: str
+    after: float  # s
+    x: str
+    y: str
+    x_unit: str
+    y_unit: str
+
+
+@dataclass(frozen=True)
+class Instance:
+    """One element of the scenario, packed."""
+
+    section: str
+    name: str
+    element: Element
+    row: Row
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Its channels, each in its own unit."""
+        found = self.element.channels if self.row.channels is None else self.row.channels
+        own = "rad" if self.row.turns else "m"
+        return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
+
+
+@dataclass(frozen=True)
+class RowName:
+    """A constraint row, for messages and reports."""
+
+    element: str  # joint or drive
+    axis: str
+    instance: int
+    index: int  # which of the element's rows
+    frames: tuple[int, int]
+    rotation: bool
