@@ -11,8 +11,8 @@ from trsim.expressions import evaluate, names, parse
 from trsim.scenario.load import load
 
 from .checking import written
+from .scenario.test_text import HOSTILE
 from .sizes import size
-from .spec.test_text import HOSTILE
 from .store.outside import ROOT, started
 from .test_expressions import REFUSED
 from .watching import NETWORK, PROCESSES, watched

@@ -5,7 +5,8 @@ import pytest
 
 from trsim.errors import ModelError
 from trsim.scenario.load import load
-from trsim.solve.start.consistent import start, statics
+from trsim.solve.start import statics
+from trsim.solve.start.consistent import start
 from trsim.solve.start.statics import static_forces
 
 from ..linkages import REVERSER, four_bar, slider_crank

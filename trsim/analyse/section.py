@@ -133,13 +133,12 @@ def crossings(
 ) -> tuple[Array, Array, Array, Array, Array, Array]:
     """Times, x and y of the crossings, and their errors; `events` are times of kinks.
 
-    A run that starts on zero, to rounding, does not cross it there, nor one that rests at zero.
+    A run that starts on zero, to rounding, does not cross it there.
     """
-    from trsim.solve.march.sections import AT_START, FAINT  # with it numba
+    from trsim.solve.march.sections import AT_START  # with it numba
 
     if abs(when[0]) <= AT_START * abs(when[1]):
         when = np.append(0.0, when[1:])
-    when = np.where(np.abs(when) <= FAINT * np.abs(when).max(), 0.0, when)
     up, down = (when[:-1] < 0.0) & (when[1:] >= 0.0), (when[:-1] > 0.0) & (when[1:] <= 0.0)
     k: Numbers = np.flatnonzero({"up": up, "down": down}.get(crosses, up | down))
     best, root = along(time, (when, x, y), k, CUBIC)

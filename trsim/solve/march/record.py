@@ -226,8 +226,8 @@ PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
 
 SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
 # side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
-# end of the step; number of the next instant; the largest it has been
-ON, LAST, RATE, KNOWN, END_RATE, NEXT, AMPLITUDE, N_SECTION = range(8)
+# end of the step; number of the next instant
+ON, LAST, RATE, KNOWN, END_RATE, NEXT, N_SECTION = range(7)
 # columns of the buffer of points
 POINT_TIME, POINT_SECTION, POINT_X, POINT_Y, N_POINT = range(5)
 

@@ -15,8 +15,7 @@ so this is sampled, not bounded as events are.
 The root is found to the resolution of the time.
 
 Like the phase of a contact the side `when` is on is a discrete state: zero is on the side it came
-from, so a start at zero is no crossing, and neither is a touch of zero that turns back.  Zero is
-what is no more than the rounding of the largest value so far: a channel may rest there.  What a
+from, so a start at zero is no crossing, and neither is a touch of zero that turns back.  What a
 channel jumps over at an event, or between two neighbouring doubles of the time, it does not cross.
 
 Nothing here has a part in the motion: a run makes the same steps with its sections and without.
@@ -50,7 +49,6 @@ from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import (
-    AMPLITUDE,
     END_RATE,
     ENERGY_0,
     KNOWN,
@@ -75,7 +73,6 @@ AHEAD = 1e-4  # of a step: how far the rate of a channel looks
 JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
 TRIALS = 100
 RESOLUTION = 2.3e-16
-FAINT = 1e-12  # of the largest value so far: what rounding leaves of a channel that rests at zero
 AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and rounding is left
 
 
@@ -197,7 +194,7 @@ def ends_known(s, r, b, t, t1, last, built, event):
         for k in range(s.section.shape[0]):
             if crosses_after(s, k, t1) and r.section[k, KNOWN] == 0.0:
                 r.section[k, LAST] = s.out[s.section[k, WHEN]]
-                take_side(r, k, r.section[k, LAST])
+                r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
     if asked:
         ahead = AHEAD * (t1 - t)
         for c in range(b.y2.size):
@@ -211,18 +208,9 @@ def ends_known(s, r, b, t, t1, last, built, event):
 
 
 @internal
-def side_of(value, before, most):
+def side_of(value, before):
     """The side of zero a value is on: 1, -1, or for zero the side it was on before."""
-    if abs(value) <= FAINT * most:
-        return before
-    return 1.0 if value > 0.0 else -1.0
-
-
-@internal
-def take_side(r, k, value):
-    """The state of section k where its channel has a value."""
-    r.section[k, AMPLITUDE] = max(r.section[k, AMPLITUDE], abs(value))
-    r.section[k, ON] = side_of(value, r.section[k, ON], r.section[k, AMPLITUDE])
+    return 1.0 if value > 0.0 else (-1.0 if value < 0.0 else before)
 
 
 @internal
@@ -231,7 +219,7 @@ def keep_end(s, r, b, k, t1, event):
     if s.section[k, KIND] != CROSSING:
         return
     r.section[k, LAST] = b.out[s.section[k, WHEN]]
-    take_side(r, k, r.section[k, LAST])
+    r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
     r.section[k, RATE] = r.section[k, END_RATE]
     r.section[k, KNOWN] = 1.0 if event == 0 and t1 >= s.section_at[k, AFTER] else 0.0
 
@@ -277,21 +265,19 @@ def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
     when, reach = s.section[k, WHEN], (t1 - t) / h
     before, f_before = -1.0, 0.0  # the neighbour before the last, where both are on one side
     low, f_low, side = 0.0, r.section[k, LAST], r.section[k, ON]
-    most = max(r.section[k, AMPLITUDE], abs(b.out[when]))
     for j in range(1, parts + 1):
         high = reach * j / parts
         f_high = value(s, r, b, k, interpolate, t, h, high, projected) if j < parts else b.out[when]
         if t == 0.0 and j == 1 and abs(f_low) <= AT_START * abs(f_high):
             side = 0.0
-        most = max(most, abs(f_high))
-        new = side_of(f_high, side, most)
+        new = side_of(f_high, side)
         if side * new < 0.0:
             crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, new, projected)
             before = -1.0
         else:
             if before >= 0.0 and side * f_low < min(side * f_before, side * f_high):
                 bottom = dip(s, r, b, k, interpolate, t, h, before, f_before, low, f_low, high,
-                             f_high, side, most, projected)  # fmt: skip
+                             f_high, side, projected)  # fmt: skip
                 if bottom >= 0.0:
                     f = value(s, r, b, k, interpolate, t, h, bottom, projected)
                     crossed(s, r, b, k, interpolate, t, h, t1, before, f_before, bottom, f, -side,
@@ -323,7 +309,7 @@ def crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, to, pro
 
 
 @internal
-def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, most, projected):
+def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, projected):
     """A place beyond zero at the bottom of three values of one side; -1 where it stays on it.
 
     By parabolas through the three lowest, as far as these may reach zero.
@@ -340,7 +326,7 @@ def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, most, proje
         if abs(x - x1) < 1e-3 * (x2 - x0):  # the middle is the bottom: look beside it
             x = x1 + 0.1 * (x2 - x1 if x2 - x1 > x1 - x0 else x0 - x1)
         f = value(s, r, b, k, interpolate, t, h, x, projected)
-        if side * f < -FAINT * most:
+        if side * f < 0.0:
             return x
         if side * f < side * f1:
             if x > x1:
@@ -358,8 +344,8 @@ def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, most, proje
 @internal
 def root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected):
     """Where column `when` is zero between low and high, as theta; -1 where it jumps over zero."""
-    if f_low == 0.0 or (f_low > 0.0) == (f_high > 0.0):
-        return low  # within rounding it was on the other side already
+    if f_low == 0.0:
+        return low
     rising, change = f_high > 0.0, abs(f_high - f_low)
     finest = RESOLUTION * max(1.0, abs(t) / h)
     bracket, f0, f1 = (low, f_low, high, f_high, 0.0), f_low, f_high

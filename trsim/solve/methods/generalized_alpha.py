@@ -18,7 +18,7 @@ import numpy as np
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, internal
-from trsim.solve.march.accelerations import FURTHEST, ONE, doubted, held, in_units, largest
+from trsim.solve.march.accelerations import FURTHEST, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import (
     FACTORED_H,
@@ -207,7 +207,7 @@ def estimate(s, r, b, setting, t, h):
     if ratio == 0.0 and held(s):
         halved(s, r, b, t, h)
     if ratio > 0.0 or held(s):
-        moved = max(moved, accelerated(s, r, b, setting, ratio, FURTHER * moved))
+        moved = max(moved, accelerated(s, r, b, setting, h, ratio, FURTHER * moved))
     worst = size = 0.0
     for c in range(first_work(s), first_work(s) + N_BOOK):
         bend = K[NEW, c] - r.yd[c]
@@ -229,7 +229,7 @@ def halved(s, r, b, t, h):
 
 
 @internal
-def accelerated(s, r, b, setting, ratio, further):
+def accelerated(s, r, b, setting, h, ratio, further):
     """The same of accelerations, a 12th of the second difference of the derivative, in units of the
     tolerance times the largest one met; at most `further` where a step does not resolve them.
 
@@ -254,7 +254,8 @@ def accelerated(s, r, b, setting, ratio, further):
     if held(s):
         doubted(s, r, setting, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
-        strict = min(STRICT * in_units(s, r, setting, off, most, 0.0, ONE), FURTHEST * further)
+        units = in_units(s, r, setting, off, most, 0.0, share(setting, h))
+        strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
     return max(strict, min(off / (setting[TOLERANCE] * turned), further)) if turned > 0.0 else 0.0
 
