@@ -151,6 +151,16 @@ def test_accelerations_that_steps_are_not_held_to_are_doubted(method, first):
     assert not false
 
 
+@pytest.mark.parametrize("seed, end", [(5300, 0.020611453741464725), (5240, 0.07397202931942015)])
+def test_rounding_that_adds_up_over_a_run_is_doubted(seed, end):
+    """They were off by 20,101 and 8,192 tolerances at default settings, and nothing was said."""
+    text, *true = drawn(seed, faint=True)
+    tolerance = re.search(r"tolerance: ([^,}]*)", text)[1]
+    r = run(text.replace(tolerance, "1e-8"), f"solver.end={end}")
+    assert doubted(r) or off_of(r, *true).max() < SILENT
+    assert off_of(r, *true).max() < 3000
+
+
 @pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])
 def test_the_doubt_says_how_fast_and_what_tolerance(method):
     text, *true = drawn(72, faint=True)

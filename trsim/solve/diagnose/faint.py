@@ -10,11 +10,12 @@ from math import pi
 from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.solve.march.accelerations import ALLOWED
-from trsim.solve.march.record import BLURRED, BLURRED_W, GAIN
+from trsim.solve.march.accelerations import ALLOWED, RUN
+from trsim.solve.march.record import BLURRED, BLURRED_SUM, BLURRED_W, GAIN
 from trsim.solve.outcome import Outcome
 
 TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
+SUM = 5.0 * RUN  # tolerances, of all steps together: estimates are a few times too large
 ADDS = 0.1  # of the tolerance that leaves ALLOWED in one step: errors add up
 NOTHING = 1e-9  # of what the speed expected takes on the mechanism's size: at rest
 FINEST = 1e-11  # tolerance: less leaves what rounding makes of such accelerations
@@ -27,10 +28,20 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     """
     if outcome.record is None:
         return
-    off, w, largest = (float(outcome.record.clock[k]) for k in (BLURRED, BLURRED_W, GAIN))
+    clock = outcome.record.clock
+    off, total, w, largest = (float(clock[k]) for k in (BLURRED, BLURRED_SUM, BLURRED_W, GAIN))
     tolerance = scenario.solver.tolerance
     natural = outcome.start.speed**2 / mechanism.model.size
-    if not off > TOLD * tolerance * largest or largest < NOTHING * natural:
+    if largest < NOTHING * natural:
+        return
+    if not off > TOLD * tolerance * largest:
+        if total > SUM * tolerance * largest:
+            yield (
+                "solver.tolerance: accelerations, and with them forces, may be off by "
+                f"{min(total / largest, 1.0):.1g} of the largest over the run: something vibrates "
+                "with so small an amplitude that rounding shows in its accelerations, and adds up; "
+                "soften or damp it (`stiffness`, `compliance`, `damping`), or run it by itself"
+            )
         return
     known = (
         "solver.tolerance: accelerations, and with them forces, may be off by "

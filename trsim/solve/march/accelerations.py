@@ -25,8 +25,10 @@ from trsim.solve.march.record import (
     BLUR_W,
     BLURRED,
     BLURRED_H,
+    BLURRED_SUM,
     BLURRED_W,
     DECAY,
+    EXCESS,
     LENGTH,
     NOISY,
     SPEED,
@@ -78,7 +80,7 @@ def stiffness(r, h):
 
 
 @internal
-def in_units(s, r, setting, off, most, mean, times):
+def in_units(s, r, setting, h, off, most, mean, times):
     """An error of accelerations in units of what is allowed, none of it rounding.
 
     most: the largest acceleration; mean: w^2 of what the error consists of; times: the tolerance.
@@ -88,7 +90,7 @@ def in_units(s, r, setting, off, most, mean, times):
     most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
     allowed = times * setting[WRITTEN] * most
     error = off / allowed if allowed > 0.0 else 0.0
-    return error if error <= 1.0 else off / max(allowed, rounded(s, r))
+    return error if error <= 1.0 else off / max(allowed, rounded(s, r, sqrt(mean) * h))
 
 
 @internal
@@ -99,18 +101,28 @@ def share(setting, h):
 
 
 @internal
-def doubted(s, r, setting, off, most, w):
+def doubted(s, r, setting, h, off, most, w):
     """Note what accelerations may be off by where that is more than is allowed and no rounding.
 
     w: rad/s, how fast what the error consists of turns, 0 where it is not known.
     """
-    if off > ALLOWED * setting[WRITTEN] * most and off > rounded(s, r):
+    if off > ALLOWED * setting[WRITTEN] * most and off > rounded(s, r, w * h):
         r.clock[BLUR], r.clock[BLUR_W] = off, w
 
 
 @internal
-def rounded(s, r):
-    """What rounding makes of accelerations, m/s^2."""
+def exceeded(r, setting, h, off, most):
+    """Note what accelerations are off by where it is more than their share, rounding or not."""
+    r.clock[EXCESS] = off if off > share(setting, h) * setting[WRITTEN] * most else 0.0
+
+
+@internal
+def rounded(s, r, turned):
+    """What rounding makes of accelerations, m/s^2.
+
+    turned: rad, by which what the error consists of turns in the step, 0 where it is not known.
+    That of speeds is as many times that of forces.
+    """
     free, noise = r.clock[SPEED] ** 2 / r.clock[LENGTH], 0.0
     for f in range(1, s.n_r):
         for c in range(s.d):
@@ -119,7 +131,8 @@ def rounded(s, r):
     if r.clock[NOISY] > 0.0:
         for c in range(s.n_q, s.n_q + s.v_node):
             noise = max(noise, s.scale[c] * r.noise[c])
-    return max(ROUNDING * free, WIDEST * noise)
+    turned = max(min(turned, WIDEST), 1.0) if turned > 0.0 else WIDEST
+    return max(ROUNDING * free, turned * noise)
 
 
 @internal
@@ -130,10 +143,12 @@ def unknown(s, r):
 
 @internal
 def blurred(r, h):
-    """Keep the largest error of accelerations that an accepted step h was not held for.
+    """Keep the largest error of accelerations that an accepted step h was not held for, and the sum
+    of those that are more than their share, as rounding may have them: it adds up as well.
 
     How fast it turns is that of the longest such step: in short ones rounding is seen.
     """
+    r.clock[BLURRED_SUM] += r.clock[EXCESS]
     if r.clock[BLUR] > 0.0:
         r.clock[BLURRED] = max(r.clock[BLURRED], r.clock[BLUR])
         if h > r.clock[BLURRED_H]:

@@ -56,6 +56,7 @@ from trsim.solve.march.record import (
     ENERGY_0,
     EVENT_ROWS,
     EVERY,
+    EXCESS,
     FASTEST,
     FIRED,
     FIXED_STEP,
@@ -184,7 +185,7 @@ def march(s, r, b, setting, methods, most):
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
         s.status[4] = s.status[6] = 0
-        r.clock[BLUR] = 0.0
+        r.clock[BLUR] = r.clock[EXCESS] = 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
             error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)

@@ -50,10 +50,12 @@ from trsim.kernels.packed import A1, A2, I1, I2, T14, Packed
     CROSSED_T,  # s, when the run first changed its branch                         crossed.py
     GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
     BLUR,  # m/s^2, error of accelerations the last trial was not held for    accelerations.py
+    EXCESS,  # m/s^2, the same where it was more than its share, rounding or not
     BLUR_W,  # rad/s, how fast what it consists of turns, 0: not known
     BLURRED,  # m/s^2, the largest of accepted steps
     BLURRED_W,  # rad/s, of the longest of them, and its length
     BLURRED_H,
+    BLURRED_SUM,  # m/s^2, of all that were more than their share
     EARLIER_T,  # s, where the step began that is kept in `earlier`                earlier.py
     EARLIER_H,  # s, its length
     EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
@@ -66,7 +68,7 @@ from trsim.kernels.packed import A1, A2, I1, I2, T14, Packed
     VIBRATION,  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known    stiffness.py
     DECAY,  # 1/s, of the fastest decay
     N_CLOCK,
-) = range(59)
+) = range(61)
 
 # count: integer state of the march
 (

@@ -15,6 +15,7 @@ from trsim.solve.march.accelerations import (
     EACH,
     ROUNDED,
     doubted,
+    exceeded,
     frequency,
     held,
     in_units,
@@ -155,11 +156,12 @@ def of_accelerations(s, r, b, setting, h):
     mean = turned / moved
     inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.clock[MET])
     most = max(most, inside)
-    doubted(s, r, setting, off, most, sqrt(mean))
+    doubted(s, r, setting, h, off, most, sqrt(mean))
+    exceeded(r, setting, h, off, most)
     if seen5 == 0.0:
         return 0.0
     off = h * seen5 / sqrt((seen5 + 0.01 * seen3) * bodies)
-    return in_units(s, r, setting, off, most, mean, share(setting, h))
+    return in_units(s, r, setting, h, off, most, mean, share(setting, h))
 
 
 @internal
@@ -217,8 +219,8 @@ def inside(scene, r, b, setting, t, h):
     of_rates = min(r.clock[DECAY], sqrt(ww)) * speed
     off = sqrt(of_places**2 * places + of_rates**2 * rates) / sqrt(EACH * (scene.n_r - 1))
     most = largest(scene, r.yd, r.clock[GAIN])
-    doubted(scene, r, setting, off, most, sqrt(ww))
-    return in_units(scene, r, setting, off, most, ww, share(setting, h))
+    doubted(scene, r, setting, h, off, most, sqrt(ww))
+    return in_units(scene, r, setting, h, off, most, ww, share(setting, h))
 
 
 @compiled(INTERPOLATE)

@@ -252,9 +252,9 @@ def accelerated(s, r, b, setting, h, ratio, further):
         moved = max(moved, abs(by) * weight[c])
     off, strict = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0, 0.0
     if held(s):
-        doubted(s, r, setting, LEFT * off, most, 0.0)
+        doubted(s, r, setting, h, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
-        units = in_units(s, r, setting, off, most, 0.0, share(setting, h))
+        units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
         strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
     return max(strict, min(off / (setting[TOLERANCE] * turned), further)) if turned > 0.0 else 0.0

@@ -346,8 +346,8 @@ def of_accelerations(s, r, b, setting, h):
             off += ww * by
             off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
     off, mean = sqrt(off / (EACH * (s.n_r - 1))), bent / moved
-    doubted(s, r, setting, off, most, sqrt(mean))
-    return in_units(s, r, setting, off, most, mean, share(setting, h))
+    doubted(s, r, setting, h, off, most, sqrt(mean))
+    return in_units(s, r, setting, h, off, most, mean, share(setting, h))
 
 
 @internal
