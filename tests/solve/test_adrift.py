@@ -88,19 +88,11 @@ def of_plate(r):
 
 
 def test_what_accelerations_feel_of_open_joints_is_told():
-    """At delta from where branches meet what is open by e is felt by e / delta^3: how near a step
-    comes to it is chance, so there are several runs, of which some feel more than is allowed."""
-    felt = []
-    for rates in np.linspace(22.0, 24.5, 6):
-        r = turned(2, RATE, *drifting(rates), "output.every=0.0005", fails=None)
-        if r.outcome.status == "failed":
-            continue
-        told = " ".join(of_drift(r.scenario, r.mechanism, r.outcome.record))
-        stated = [float(x) for x in re.findall(r"change accelerations by (\S+) of the larg", told)]
-        felt.append(of_plate(r))
-        assert felt[-1] < max(2 * max(stated, default=0.0), 100 * 1e-8)
-        assert max(stated, default=0.0) < 0.01
-    assert max(felt) > 100 * 1e-8
+    """At delta from where branches meet what is open by e is felt by e / delta^3."""
+    r = turned(2, RATE, *drifting(24), "output.every=0.0005")
+    (said,) = of_drift(r.scenario, r.mechanism, r.outcome.record)
+    (stated,) = map(float, re.findall(r"change accelerations by (\S+) of the largest", said))
+    assert 100 * 1e-8 < of_plate(r) < 2 * stated < 1e-3
     for sets in (drifting(500), ["solver.stabilisation=projection"]):
         r = turned(2, RATE, *sets, "output.every=0.0005")
         assert not list(of_drift(r.scenario, r.mechanism, r.outcome.record))

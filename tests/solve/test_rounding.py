@@ -62,7 +62,9 @@ def test_a_needle(method, small):
     assert "angular velocity of 'rod'" in told and "larger tolerance" in told
     # the rod is where it must be, as nearly as is told; how it turned about itself nobody can say
     off = np.abs(2.0 * r["rod.position"][-1] - end_of_needle(r)).max()
-    assert off < r.outcome.record.clock[ROUNDED_BY] < 1e-3
+    told = r.outcome.record.clock[ROUNDED_BY]
+    assert off < told < 1e-3
+    assert off < 1e-7 or (method != "radau" and small == "1e-12")  # there chance makes up to 9e-7
 
 
 @pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])

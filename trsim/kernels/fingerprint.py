@@ -29,18 +29,10 @@ LOAD_GLOBAL, LOAD_ATTR = opmap["LOAD_GLOBAL"], opmap["LOAD_ATTR"]
 LOAD_METHOD = opmap.get("LOAD_METHOD", LOAD_ATTR)  # until Python 3.11
 ATTRIBUTE_SHIFT = 0 if "LOAD_METHOD" in opmap else 1  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
-COMPILER = tuple(
-    f"kernels/{name}.py"
-    for name in (
-        "compiler",
-        "fingerprint",
-        "lazy",
-        "numba_quick",
-        "packed",
-        "pipeline",
-        "signatures",
-    )
-)
+COMPILER = (
+    "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py", "kernels/numba_quick.py",
+    "kernels/packed.py", "kernels/pipeline.py", "kernels/signatures.py",
+)  # fmt: skip
 # told by their names: they belong to Python, numpy or numba, whose versions are in every key
 OF_OTHERS = frozenset({"builtins", "cmath", "math", "operator", "numpy", "numba"})
 LARGEST = 10**6  # bytes of an array whose numbers numba puts into the machine code
@@ -83,10 +75,9 @@ def _surroundings() -> str:
     package = Path(__file__).parents[1]
     files = [_digest((package / name).read_bytes()) for name in COMPILER]
     settings = sorted(
-        (name, value)
-        for name, value in os.environ.items()
+        (name, value) for name, value in os.environ.items()
         if name.startswith("NUMBA_") and name != "NUMBA_NUM_THREADS"  # nothing is parallel
-    )
+    )  # fmt: skip
     versions = sys.version, np.__version__, version("numba"), llvmlite.__version__
     processor = llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
     options = COMPILED, UNWRAPPED

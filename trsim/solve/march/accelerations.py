@@ -113,15 +113,16 @@ def doubted(s, r, setting, h, off, most, w):
 @internal
 def exceeded(r, setting, h, off, most):
     """Note what accelerations are off by where it is more than their share, rounding or not."""
-    r.clock[EXCESS] = off if off > share(setting, h) * setting[WRITTEN] * most else 0.0
+    if off > share(setting, h) * setting[WRITTEN] * most:
+        r.clock[EXCESS] = off
 
 
 @internal
 def rounded(s, r, turned):
     """What rounding makes of accelerations, m/s^2.
 
-    turned: rad, by which what the error consists of turns in the step, 0 where it is not known.
-    That of speeds is as many times that of forces.
+    turned: rad, by which what the error consists of turns in the step, 0 where it is not known;
+    rounding of speeds is felt that many times.
     """
     free, noise = r.clock[SPEED] ** 2 / r.clock[LENGTH], 0.0
     for f in range(1, s.n_r):

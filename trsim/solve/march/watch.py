@@ -117,7 +117,7 @@ def crossing(s, r, b, setting, t, h, k, end, interpolate):
         g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
     for passed in range(PASSED):
         if side * g <= 0.0:
-            at = passed > 0
+            at = r.watch[k, SIDE] == AT or passed > 0
             left = -1.0
             if at or side * rate >= 0.0:
                 left = leaves(s, r, b, setting, t, h, c, side, band if at else 0.0, low, side * g,
