@@ -67,9 +67,10 @@ def cross(u, v):
     return u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
 
 
-def changes(x):
-    """How often x changes its sign, what is close to zero left out."""
-    sign = np.sign(x[np.abs(x) > 0.02])
+def changes(r, x):
+    """How often x changes its sign, what is zero to ten tolerances left out: on a branch it is some
+    0.7 wide, and a row in a step past such a place is no better than its tolerance."""
+    sign = np.sign(x[np.abs(x) > max(0.02, 10.0 * r.scenario.solver.tolerance)])
     return int(np.sum(sign[1:] != sign[:-1]))
 
 
@@ -77,12 +78,12 @@ def of_cranks(r, R):
     feet = [np.array(r.scenario.joints[f"F{k}"].at) for k in (0, 1)]
     first, second = (2.0 * (r[f"crank{k}.position"] - feet[k]) @ R for k in (0, 1))
     plate = (feet[1] - feet[0]) @ R + second - first
-    return changes((r["crank0.angular_velocity"] @ R)[:, 2] * cross(plate, second))
+    return changes(r, (r["crank0.angular_velocity"] @ R)[:, 2] * cross(plate, second))
 
 
 def of_rod(r, R):
     rod = (r["rod.position"] - 2.0 * r["crank.position"]) @ R
-    return changes((r["crank.angular_velocity"] @ R)[:, 2] * rod[:, 0])
+    return changes(r, (r["crank.angular_velocity"] @ R)[:, 2] * rod[:, 0])
 
 
 def told(r):
@@ -100,7 +101,10 @@ def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
         for tolerance in ("1e-2", "1e-3", "1e-4", "1e-6", "5e-7"):
             made, sets = drawn(longer, R)
             ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
-            r = run(made, *sets, *ways)
+            r = run(made, *sets, *ways, fails=None)
+            if r.outcome.status == "failed":  # it says so, where a step came to end between them
+                assert "branches of the motion nearly meet" in r.outcome.reason
+                continue
             changed = branches(r, np.asarray(R)) > 0
             assert bool(told(r)) == changed, (longer, tolerance)
             wrong += changed
