@@ -1,7 +1,9 @@
 """What a run says against itself: a changed start, a contact beyond its law, an open book."""
 
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.small import SLIDER_CRANK
@@ -163,3 +165,29 @@ forces:
 solver: {{end: 0.1}}
 output: {{every: 0.05}}
 """)
+
+
+SPUN = """
+bodies: {{b: {{mass: 1, inertia: [0.02, 0.03, 0.04], angular_velocity: [0.1, 20, 0.1]}}}}
+solver: {{end: 1, {method}}}
+"""
+
+
+@pytest.mark.parametrize("step, says", [(0.02, 3e-4), (0.005, None)])
+def test_a_fixed_step_that_a_body_turns_far_in_is_told(step, says):
+    """RK4 errs by x^4/120 of a turn by x: the work of no force shows that."""
+    r = run(SPUN.format(method=f"method: rk4, step: {step}"))
+    found = [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "RK4" in x]
+    exact = run(SPUN.format(method="method: dop853, tolerance: 1e-12"))
+    off = np.abs(r["b.angular_velocity"][-1] - exact["b.angular_velocity"][-1]).max() / 20.0
+    if says is None:
+        assert not found
+        assert off < 1e-5
+    else:
+        (one,) = found
+        assert float(re.findall(r"about (\S+) of it", one)[0]) == says
+        assert 1e-4 < off < 10 * says * 20.0
+
+
+def test_a_method_that_chooses_its_steps_has_no_such_doubt():
+    assert told(SPUN.format(method="method: dop853, tolerance: 1e-2")) == ()

@@ -140,6 +140,7 @@ def stated(r: Ran) -> float:
         if "energy book does not close" in text:
             told += [float(x) / 100 for x in re.findall(r"by ([0-9.e+-]+) %", text)]
         told += [float(x) for x in re.findall(r"joints were open by up to ([0-9.e+-]+)", text)]
+        told += [float(x) for x in re.findall(r"makes RK4 err by about ([0-9.e+-]+)", text)]
     return max(told)
 
 
@@ -147,13 +148,6 @@ def stated_of_accelerations(r: Ran) -> float:
     """The error of accelerations that a run reports, of joints open without projection."""
     told = [re.findall(r"change accelerations by ([0-9.e+-]+) of", text) for text in r.warnings]
     return max((float(x) for found in told for x in found), default=0.0)
-
-
-def accuracy(scene: Scene, w: float) -> float:
-    """The tolerance of a run; of rk4 what its step makes of the fastest turn."""
-    if scene.step is None:
-        return scene.tolerance
-    return max(1e-8, (scene.step * w) ** 4)
 
 
 def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:

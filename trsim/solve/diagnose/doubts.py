@@ -7,6 +7,7 @@ bars       strained by more than a linear law holds                             
 bushings   turned to half a turn, beyond which theirs is the one from the other side
 shafts     that moved too slowly for the friction of their gears to be whole
 meshes     of bars bent further than their elements follow                           mesh_error.py
+turns      too fast for a fixed step
 waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                       march/rounding.py
 vibrations are too small for the tolerance, but not their accelerations                   faint.py
@@ -40,7 +41,8 @@ from trsim.solve.diagnose.skipped import unread
 from trsim.solve.diagnose.strained import of_bars
 from trsim.solve.diagnose.unhinged import of_hinges
 from trsim.solve.march.openings import apart
-from trsim.solve.march.record import JOLTS, ROUNDED_AT, ROUNDED_BY, Record, T
+from trsim.solve.march.record import JOLTS, ROUNDED_AT, ROUNDED_BY, STEP_TURN, Record, T
+from trsim.solve.methods.rk4 import ORDER, PER_RADIAN
 from trsim.solve.outcome import NOTHING, Outcome, natural, whose
 from trsim.solve.start.bars import places
 from trsim.solve.start.consistent import Start
@@ -59,6 +61,7 @@ LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
 GIVEN = 1e-2  # of it: more done by projection says so too
 AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
+COARSE = 0.2  # rad in a fixed step: 31 steps a turn
 PASSED = 2.0  # periods of the fastest wave in a mean step
 TOLD = 3  # jumps of velocities, one by one
 OPEN = 1e-5  # of the mechanism's size: joints open by more, without projection
@@ -74,6 +77,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_shafts(scenario, mechanism, outcome.peaks),
         *of_meshes(scenario, mechanism, outcome.bent),
         *of_bars(scenario, mechanism, outcome.peaks),
+        *of_turns(scenario, outcome),
         *of_waves(mechanism, outcome),
         *of_rounding(scenario, mechanism, outcome),
         *of_vibrations(scenario, mechanism, outcome),
@@ -194,6 +198,18 @@ def of_shafts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str
                 f"and friction of its gears turns round over {shaft.turning_speed:g} m/s: it is "
                 f"not whole below {WHOLE:g} times that; give a smaller one"
             )
+
+
+def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:
+    """What a fixed step makes of the fastest turn: no tolerance holds it."""
+    turn = float(outcome.record.clock[STEP_TURN]) if outcome.record is not None else 0.0
+    if turn > COARSE:
+        step = scenario.solver.step
+        yield (
+            f"solver.step: a body turns by up to {turn:.2g} rad in a step of {step:.3g} s, which "
+            f"makes RK4 err by about {turn**ORDER / PER_RADIAN:.1g} of it, step after step; take "
+            f"at most {step * COARSE / turn:.2g} s, or a method that chooses its steps"
+        )
 
 
 def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:

@@ -19,8 +19,8 @@ Array = NDArray[np.float64]
 NEARLY = 1e-3  # smallest singular value, of the largest: a place that steps were too short to pass
 AHEAD = 0.02  # rad, or of the mechanism's size: how far is looked for a way on
 CLOSED = 1e-9  # of the mechanism's size
-# of that way: between branches that nearly meet a motion turns by up to a right angle, and less than
-# a tenth of it may lie along the one it goes on
+# of that way: between branches that nearly meet a motion turns by up to a right angle, and a tenth
+# of it or less may lie along the branch it goes on
 PARTLY = 0.05
 TAKES_PART = 0.1  # of the largest entry of the dependent combination of rows
 

@@ -67,8 +67,9 @@ from trsim.kernels.packed import A1, A2, I1, I2, T14, Packed
     FELT_T,  # s, when
     VIBRATION,  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known    stiffness.py
     DECAY,  # 1/s, of the fastest decay
+    STEP_TURN,  # rad, the most a body turned by in a fixed step                        rk4.py
     N_CLOCK,
-) = range(61)
+) = range(62)
 
 # count: integer state of the march
 (
