@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from tests import small
-from trsim.analyse.section import asked, crossings, passed_over, section
+from trsim.analyse.section import asked, crossings, faint, passed_over, section
 from trsim.assemble.assemble import assemble
 from trsim.errors import UsageError
-from trsim.scenario.load import load
+from trsim.scenario.load import load, loads
 from trsim.solve.simulate import simulate
 from trsim.store.hdf5 import write
 from trsim.store.read import read
@@ -115,6 +115,28 @@ def test_stated_errors_of_the_thrust_reverser(tmp_path):
             seen.extend(true <= getattr(found, f"{axis}_error") + 1e-15)
     for axis, seen in covered.items():
         assert np.mean(seen) > 0.95, axis
+
+
+def test_swings_that_are_not_resolved_are_counted(tmp_path):
+    """Across its guide a body trembles by rounding, or rests; along it its motion is real."""
+    text = """
+bodies: {b: {mass: 1, inertia: 1, at: [0.1, 0], velocity: [1, 0]}}
+joints: {guide: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
+forces: {s: {type: spring_damper, bodies: [ground, b], points: [[-1, 0.5], [0.1, 0]],
+         stiffness: 100}}
+solver: {end: 5}
+output: {every: 0.01, channels: ["*"]}
+"""
+    scenario = loads(text)
+    mechanism = assemble(scenario)
+    write(tmp_path / "r.h5", scenario, mechanism, simulate(scenario, mechanism))
+    run = read(tmp_path / "r.h5")
+    across = section(run, "b.position.y", "b.position.x", "b.velocity.x", "both")
+    assert across.faint >= len(across.time) - 1
+    assert section(run, "b.velocity.x", "b.position.x", "b.velocity.x", "both").faint == 0
+    trembling = np.array([1.0, -1e-12, 1e-12, -1e-12, 1.0, -1.0])
+    assert faint(run, "b.position.y", trembling) == 3
+    assert faint(run, "b.position.y", trembling[:2]) == 0
 
 
 def test_touches_between_two_rows():

@@ -15,6 +15,9 @@ All of these can agree by chance where a journal trembles on its contact faster 
 follow.  So the error is never less than COVERED times the scatter of the rows near the point: the
 median distance of a row from the polynomial through the three before and the three behind it.
 
+A channel that rests at zero crosses it by rounding: `faint` counts the swings between crossings
+that go less far than the run resolves, as its own sections do (solve/diagnose/swings.py).
+
 Two crossings between two rows are not seen at all, and a contact shorter than their distance may
 leave no trace in the rows: `unresolved` counts the touches that no row saw.
 """
@@ -56,6 +59,7 @@ class Interpolated(NamedTuple):
     x_error: Array
     y_error: Array
     unresolved: int  # touches of contacts that no row saw
+    faint: int = 0  # swings of `when` between crossings that go less far than the run resolves
 
     @property
     def worst(self) -> tuple[float, float, float]:
@@ -88,7 +92,7 @@ def section(run: Any, when: str, x: str, y: str, crosses: str = "up") -> Interpo
     found = crossings(run.time, w, across, upwards, crosses, events.time[contact])
     definition = {"when": when, "crosses": crosses, "x": x, "y": y}
     unresolved = sum(passed_over(run.time, opened) for opened in touches(events, run.contacts))
-    return Interpolated(definition, *found, unresolved)
+    return Interpolated(definition, *found, unresolved, faint(run, when, w))
 
 
 def asked(text: str) -> dict[str, str]:
@@ -109,6 +113,21 @@ def asked(text: str) -> dict[str, str]:
     if not (x and colon and y) or ":" in y:
         raise UsageError(f"plot= is two channels, got '{given['plot']}'", example)
     return {"when": given["when"], "crosses": given.get("crosses", "up"), "x": x, "y": y}
+
+
+def faint(run: Any, when: str, values: Array) -> int:
+    """How many swings between two changes of sign go less far than the run resolves."""
+    from trsim.solve.diagnose.swings import largest, resolved
+
+    unit = run.unit(when)
+    alike = (run.channel(name) for name in run.names if run.unit(name) == unit)
+    tolerance = float(run.group("solver").get("tolerance", 0.0))  # none in an unfinished file
+    least = resolved(tolerance, largest(alike), unit)
+    ends = np.flatnonzero((values[1:] < 0.0) != (values[:-1] < 0.0)) + 1
+    if len(ends) < 2:
+        return 0
+    far = np.maximum.reduceat(np.abs(values), ends)[:-1]
+    return int(np.count_nonzero(far < least))
 
 
 def touches(events: Any, contacts: tuple[str, ...]) -> Iterator[tuple[Array, Array]]:

@@ -42,6 +42,8 @@ def figure(runs: list[Shown], found: list[tuple[Shown, Interpolated]]) -> Any:
     text = f"{surface(definition)}; interpolated, errors up to {errors[0]}, {errors[1]}"
     missed = sum(one.unresolved for _, one in found)
     text += f"; {missed} touches between two rows" if missed else ""
+    faint = sum(one.faint for _, one in found)
+    text += f"; {faint} swings too small to be resolved" if faint else ""
     return scattered(runs, there, text)
 
 

@@ -14,6 +14,7 @@ vibrations are too small for the tolerance, but not their accelerations         
 energy     the book of the run does not close
 hinges     that came apart with a drive or a lock on them                              unhinged.py
 branches   the run changed from one to another where they nearly meet                   crossed.py
+sections   have points between swings that are not resolved                              swings.py
 extremes   of forces are chance, next to where rows depend on each other                 chance.py
 rows       that were left out as redundant are open, though not so far that the run ended
 """
@@ -39,6 +40,7 @@ from trsim.solve.diagnose.faint import of_vibrations
 from trsim.solve.diagnose.mesh_error import of_meshes
 from trsim.solve.diagnose.skipped import unread
 from trsim.solve.diagnose.strained import of_bars
+from trsim.solve.diagnose.swings import of_sections
 from trsim.solve.diagnose.unhinged import of_hinges
 from trsim.solve.march.openings import apart
 from trsim.solve.march.record import JOLTS, ROUNDED_AT, ROUNDED_BY, STEP_TURN, Record, T
@@ -86,6 +88,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_hinges(mechanism, outcome.record),
         *of_events(outcome),
         *of_branches(mechanism, outcome.record),
+        *of_sections(scenario, mechanism, outcome.record),
         *of_drift(scenario, mechanism, outcome.record),
         *of_extremes(mechanism, outcome),
     )

@@ -230,7 +230,10 @@ PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
 SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
 # side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
 # end of the step; number of the next instant
-ON, LAST, RATE, KNOWN, END_RATE, NEXT, N_SECTION = range(7)
+ON, LAST, RATE, KNOWN, END_RATE, NEXT, FAR, SWINGS = range(8)
+# SWINGS and what follows: how many swings between two crossings went as far as 10^(k - 1) LEAST
+LEAST, DECADES = 1e-24, 40
+N_SECTION = SWINGS + DECADES
 # columns of the buffer of points
 POINT_TIME, POINT_SECTION, POINT_X, POINT_Y, N_POINT = range(5)
 

@@ -18,10 +18,14 @@ Like the phase of a contact the side `when` is on is a discrete state: zero is o
 from, so a start at zero is no crossing, and neither is a touch of zero that turns back.  What a
 channel jumps over at an event, or between two neighbouring doubles of the time, it does not cross.
 
+A channel that rests at zero crosses it wherever rounding takes it.  That is not for a kernel to
+judge: how far swings between two crossings go is counted by decades, and the run tells of those
+below what its tolerance resolves (diagnose/swings.py).
+
 Nothing here has a part in the motion: a run makes the same steps with its sections and without.
 """
 
-from math import isfinite
+from math import isfinite, log10
 
 from trsim.assemble.equations import evaluate
 from trsim.assemble.outputs import measure
@@ -49,10 +53,13 @@ from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import (
+    DECADES,
     END_RATE,
     ENERGY_0,
+    FAR,
     KNOWN,
     LAST,
+    LEAST,
     NEXT,
     ON,
     POINT_ROWS,
@@ -61,6 +68,7 @@ from trsim.solve.march.record import (
     POINT_X,
     POINT_Y,
     RATE,
+    SWINGS,
     WORK_PROJECTION,
 )
 from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
@@ -219,6 +227,7 @@ def keep_end(s, r, b, k, t1, event):
     if s.section[k, KIND] != CROSSING:
         return
     r.section[k, LAST] = b.out[s.section[k, WHEN]]
+    r.section[k, FAR] = max(r.section[k, FAR], abs(r.section[k, LAST]))
     r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
     r.section[k, RATE] = r.section[k, END_RATE]
     r.section[k, KNOWN] = 1.0 if event == 0 and t1 >= s.section_at[k, AFTER] else 0.0
@@ -272,7 +281,9 @@ def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
             side = 0.0
         new = side_of(f_high, side)
         if side * new < 0.0:
+            swung(r, k, abs(f_low))
             crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, new, projected)
+            r.section[k, FAR] = abs(f_high)
             before = -1.0
         else:
             if before >= 0.0 and side * f_low < min(side * f_before, side * f_high):
@@ -280,12 +291,24 @@ def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
                              f_high, side, projected)  # fmt: skip
                 if bottom >= 0.0:
                     f = value(s, r, b, k, interpolate, t, h, bottom, projected)
+                    swung(r, k, f_before)
+                    swung(r, k, f)
                     crossed(s, r, b, k, interpolate, t, h, t1, before, f_before, bottom, f, -side,
                             projected)  # fmt: skip
                     crossed(s, r, b, k, interpolate, t, h, t1, bottom, f, high, f_high, side,
                             projected)  # fmt: skip
+            r.section[k, FAR] = max(r.section[k, FAR], abs(f_high))
             before, f_before = low, f_low
         low, f_low, side = high, f_high, new
+
+
+@internal
+def swung(r, k, f):
+    """Count the swing of section k that ends here, and the value f is one of."""
+    far = max(r.section[k, FAR], abs(f))
+    decade = int(log10(far / LEAST)) + 1 if far > LEAST else 0
+    r.section[k, SWINGS + min(decade, DECADES - 1)] += 1.0
+    r.section[k, FAR] = 0.0
 
 
 @internal
