@@ -59,8 +59,9 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     if not np.all(np.isfinite(r.y)):
         return ""
     t, step = float(r.clock[rec.T]), scenario.solver.step or 0.0
+    rates = r.yd if np.all(np.isfinite(r.yd)) else np.zeros_like(r.y)
     for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
-        found = blamed(mechanism, t + ahead, r.y, r.mem)
+        found = blamed(mechanism, t + ahead, r.y + ahead * rates, r.mem)
         if found is not None and found.section:
             place = scenario.place((found.section, found.name))
             where = f" ({place.show()})" if place else ""
