@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import signal
 import subprocess
 import time
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "runs" / "truth"
 CHUNK = 5
+LIMIT = 300  # s for a scene: one that goes on for ever is a finding, and holds up no other
 
 
 def commit() -> str:
@@ -43,7 +45,16 @@ def judged(scenes: list[tuple[str, int]]) -> list[dict[str, Any]]:
     """In a process of its own."""
     from .trial import cautious
 
-    return [cautious(family, seed).line() for family, seed in scenes]
+    def late(*_: Any) -> None:
+        raise TimeoutError(f"more than {LIMIT} s")
+
+    signal.signal(signal.SIGALRM, late)
+    found = []
+    for family, seed in scenes:
+        signal.alarm(LIMIT)
+        found.append(cautious(family, seed).line())
+        signal.alarm(0)
+    return found
 
 
 def chunks(left: list[tuple[str, int]]) -> Iterator[list[tuple[str, int]]]:

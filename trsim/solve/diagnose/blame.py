@@ -63,6 +63,8 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
         found = blamed(mechanism, t + ahead, r.y + ahead * rates, r.mem)
         if found is not None and found.section:
+            if found.element.key == "actuator" and (short := drawn_in(scenario, mechanism, r.y)):
+                return short
             place = scenario.place((found.section, found.name))
             where = f" ({place.show()})" if place else ""
             return (

@@ -33,6 +33,7 @@ from trsim.solve.march.openings import opened
 from trsim.solve.march.peaks import finish, sample
 from trsim.solve.march.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.march.works import ROUNDING
+from trsim.solve.methods.jacobian import PART
 from trsim.solve.outcome import (
     CRAWLS,
     Outcome,
@@ -59,9 +60,11 @@ LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
+IMPLICIT = ("BDF", "Radau")
 ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
+SHOWN = 0.5  # of the error allowed: what Newton's method leaves of it in third derivatives
 TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
@@ -122,7 +125,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         h = solver.t - solver.t_old
         hand_over(solver, b)
         before = finer
-        finer = min(of_accelerations(s, r, b, setting, h), EASED * before)
+        finer = min(of_accelerations(scenario, s, r, b, setting, h, before), EASED * before)
         if finer < TOO_LONG * before:
             r.clock[rec.H] = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer)
@@ -202,13 +205,27 @@ def restarted(
         return yd
 
     atol = allowed(scenario, s, r, b, setting, finer)
-    make = getattr(scipy.integrate, scenario.solver.method.split(":", 1)[1])
+    # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
+    # a body is 50 m from the origin and entries of its quaternion are zero
+    step = PART / np.where(b.weight > 0.0, b.weight * setting[rec.TOLERANCE], PART)
+
+    def jacobian(t: float, y: Array) -> Array:
+        J, f = np.zeros((y.size, y.size)), right_hand_side(t, y)
+        for c in np.delete(np.arange(y.size), books(s)):  # on works nothing depends
+            x = y.copy()
+            x[c] += step[c]
+            J[:, c] = (right_hand_side(t, x) - f) / (x[c] - y[c])
+        return J
+
+    name = scenario.solver.method.split(":", 1)[1]
+    make = getattr(scipy.integrate, name)
+    more = {"jac": jacobian} if name in IMPLICIT else {}
     t = float(r.clock[rec.T])
     until = next_time(s, t, setting[rec.T_END])
     first = min(float(r.clock[rec.H]), until - t)
     longest = min(most, setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
     return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
-                max_step=longest, rtol=RELATIVE, atol=atol)  # fmt: skip
+                max_step=longest, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
 
 
 def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
@@ -221,7 +238,9 @@ def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, fine
     return absolute
 
 
-def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) -> float:
+def of_accelerations(
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, h: float, finer: float
+) -> float:
     """What part of the error allowed to places and velocities keeps accelerations to their share of
     the tolerance, 1 at most: see accelerations.py.
 
@@ -235,7 +254,9 @@ def of_accelerations(s: Scene, r: Record, b: Buffers, setting: Array, h: float) 
     r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
     weight = b.weight * setting[rec.TOLERANCE]
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
-    v = h * speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
+    third = THIRD @ b.P[:, rates] * weight[rates]
+    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting[rec.TOLERANCE]
+    v = h * speed * max(float(np.linalg.norm(third)) - SHOWN * allowed, 0.0)
     w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
     most = max(most, w * speed / FURTHEST)
     made = w * np.hypot(w * length, speed)
