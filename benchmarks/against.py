@@ -60,7 +60,10 @@ def cases() -> dict[str, tuple[str, list[str]]]:
 WORKER = r"""
 import json, sys
 from pathlib import Path
-from trsim.scenario.load import load, loads
+try:
+    from trsim.scenario.load import load, loads
+except ModuleNotFoundError:  # as it was called in trees before November 2026
+    from trsim.spec.load import load, loads
 from trsim.assemble.assemble import assemble
 from trsim.analyse.trajectory import marched
 source, sets, draws, spread, chance = json.loads(sys.stdin.readline())
