@@ -195,12 +195,12 @@ def most_points(mechanism: Mechanism, setting: Array) -> int:
 
 
 def first_step(scenario: Any, record: Record) -> float:
-    """A first step from the size of the derivative, a hundredth of the natural time scale."""
+    """A first step from the size of the derivative, a third of the natural time scale."""
     if scenario.solver.first_step:
         return float(scenario.solver.first_step)
     speed = max(record.clock[rec.SPEED], record.clock[rec.MOST], 1e-300)
     natural = record.clock[rec.LENGTH] / speed
-    return float(min(0.01 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
+    return float(min(0.3 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
 
 
 def new_record(

@@ -42,10 +42,9 @@ from trsim.solve.march.record import (
     T,
 )
 from trsim.solve.march.stiffness import stiff_load
-from trsim.solve.methods import dop853_tableau
 from trsim.solve.methods.displacements import active
+from trsim.solve.methods.dop853 import FROM_LAST_STAGE, combined
 
-A = dop853_tableau.A
 EXPLICIT, IMPLICIT = 0, 1  # rows of `methods`
 STABLE = 6.1  # h rho of DOP853 on the negative real axis
 HELD = 0.9  # of the longest steps in which what is stiff dies out: as good as held by them
@@ -143,16 +142,14 @@ def explicit_rate(s, r, b, h):
 
     0 where what changes is SEEN by no tolerance: of bodies at rest a quotient of two roundings.
     """
-    K, weight = b.K, b.weight
+    K, weight, away = b.K, b.weight, b.y2
+    # r.y is the end of the step by now: the difference to the last stage is in K alone
+    combined(K, FROM_LAST_STAGE, 0, away.size, away)
     top = bottom = 0.0
-    for c in range(r.y.size):
+    for c in range(away.size):
         if weight[c] > 0.0:
-            # r.y is the end of the step by now: the difference to the last stage is in K alone
-            away = 0.0
-            for k in range(12):
-                away += (A[12, k] - A[11, k]) * K[k, c]
             top += ((K[12, c] - K[11, c]) * weight[c]) ** 2
-            bottom += (h * away * weight[c]) ** 2
+            bottom += (h * away[c] * weight[c]) ** 2
     return sqrt(top / bottom) if bottom > 0.0 and h * sqrt(top) > SEEN else 0.0
 
 

@@ -42,17 +42,18 @@ A, C, D, E3, E5 = tableau.A, tableau.C, tableau.D, tableau.E3, tableau.E5
 
 
 # rows of sums: stages, then what the error estimates are made of, into these rows of K
-OF_FIFTH, OF_THIRD, OF_PLACES = 16, 17, 18
+OF_FIFTH, OF_THIRD, OF_PLACES, FROM_LAST_STAGE = 16, 17, 18, 19
 FIFTH, THIRD, PLACES = 13, 14, 15
-_sums = np.zeros((19, 16))
+_sums = np.zeros((20, 16))
 _sums[:16] = A
 _sums[OF_FIFTH, :12], _sums[OF_THIRD, :12] = E5[:12], E3[:12]
 _sums[OF_PLACES, :12] = E5[:12] @ A[:12, :12]  # h times that: places at the stages, by weights E5
+_sums[FROM_LAST_STAGE, :12] = A[12, :12] - A[11, :12]  # to the end of the step
 # of each: the columns that are not zero, in fours, and how many fours there are
-IN_FOURS = np.zeros((19, 16), np.int64)
-WEIGHTS = np.zeros((19, 16))
-FOURS = np.zeros(19, np.int64)
-for _s in range(19):
+IN_FOURS = np.zeros(_sums.shape, np.int64)
+WEIGHTS = np.zeros(_sums.shape)
+FOURS = np.zeros(len(_sums), np.int64)
+for _s in range(len(_sums)):
     _columns = np.flatnonzero(_sums[_s])
     FOURS[_s] = -(-_columns.size // 4)
     IN_FOURS[_s, : _columns.size], WEIGHTS[_s, : _columns.size] = _columns, _sums[_s, _columns]
@@ -61,6 +62,12 @@ FAR = 2.5  # rad: the dense output errs by three times the estimate, of longer s
 # of the last term of the dense output: what is missing.  1/1000 to 1/600 of vibrations w and forced
 # motions W, wherever it is no more than rounding: w h from 0.1 to 4, W h from 0.1 to 1
 LEFT = 1.0 / 700.0
+# both estimates shrink each other, which is right where they see the same motion.  Where that of
+# third order sees a slow motion and that of fifth order a vibration or decay at the limit of
+# stability, w h of 5 to 5.6, the error is 0.9 to 5 times the estimate of fifth order itself
+APART = 3.0  # the frequency of this one over that of the other: another motion
+HOLDS = 6.0  # w h of that limit
+SLOWER = 2.0  # times the frequency known from the steps before: by as much that may lag
 IN_DENSE = np.flatnonzero(np.any(D != 0.0, axis=0))  # and those that the dense output does
 
 
@@ -127,7 +134,7 @@ def of_accelerations(s, r, b, setting, h):
     r.clock[GAIN] = most = largest(s, K[0], r.clock[GAIN])
     length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
-    error5 = error3 = seen5 = seen3 = moved = turned = 0.0
+    error5 = error3 = seen5 = seen3 = least = moved = turned = 0.0
     stiff, rounding = stiffness(r, h), unknown(s, r) ** 2
     for _ in range(1, s.n_r):
         x5 = x3 = v5 = v3 = placed = 0.0
@@ -148,6 +155,9 @@ def of_accelerations(s, r, b, setting, h):
             error5, error3 = error5 + by5, error3 + by3
             if speed * v5 > rounding:
                 seen5, seen3 = seen5 + by5, seen3 + by3
+                if v5 * x3 > APART**2 * v3 * x5:
+                    turns = min(h * h * speed * v5 / (length * x5), SLOWER**2 * stiff * h * h)
+                    least += by5 * min((turns / HOLDS**2) ** 3, 1.0)
     if error5 == 0.0:
         return 0.0
     bodies = EACH * (s.n_r - 1)
@@ -160,7 +170,7 @@ def of_accelerations(s, r, b, setting, h):
     exceeded(r, setting, h, off, most)
     if seen5 == 0.0:
         return 0.0
-    off = h * seen5 / sqrt((seen5 + 0.01 * seen3) * bodies)
+    off = h * sqrt(max(seen5 / (seen5 + 0.01 * seen3) * seen5, least) / bodies)
     return in_units(s, r, setting, h, off, most, mean, share(setting, h))
 
 
