@@ -11,7 +11,7 @@ from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, rows, velocity_residual
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels.signatures import A1, f8, float64, i8, void
-from trsim.kernels.vectors import clear_table
+from trsim.kernels.vectors import clear, clear_table
 
 DOUBTFUL = 1e-2  # a pivot, of its diagonal
 
@@ -98,6 +98,27 @@ def close_positions(s, t, y, near, steps):
         if not worst > near:
             break
     return worst
+
+
+@equation
+def onto_rows(s, w):
+    """w -= M^-1 J^T S^-1 J w: what the rows allow of rates of bodies, nearest in the metric of M.
+
+    With the factors at hand; in mechanisms with beams w stays as it is.
+    """
+    if s.m == 0 or s.n_r < s.n:
+        return
+    clear(s.x)
+    for f in range(1, s.n_r):
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for a in range(s.d):
+                s.x[s.slot_row[p]] += s.B[p, a] * w[s.d * (f - 1) + a]
+    solve(s, s.x)
+    clear_table(s.free)
+    for f in range(1, s.n_r):
+        pull(s, f, s.x)
+        for a in range(s.d):
+            w[s.d * (f - 1) + a] += s.free[f, a]
 
 
 @compiled(void(SCENE, f8, A1))

@@ -1,8 +1,8 @@
 """The end of a trial step: brought to the constraints, evaluated, its work booked."""
 
-from math import nan
+from math import inf, nan
 
-from trsim.assemble.equations import corners, evaluate, gaps, kinetic
+from trsim.assemble.equations import constraints, corners, evaluate, gaps, kinetic, poses
 from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import (
@@ -21,6 +21,9 @@ from trsim.solve.march.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WO
 from trsim.solve.march.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
+# the same: the step just made left its square, as rows tell that are not factorised again, and
+# velocities are brought to them with factors of the place that far away
+PHI_SQUARED, PHI_BELOW = 1e-6, 1e-12
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
 NEWTON = 8
 CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
@@ -41,13 +44,18 @@ def land(s, r, b, t, y, yd):
     if s.stabilisation == PROJECTION and s.m > 0:
         for k in range(s.n_q):
             b.y2[k] = y[k]
-        first = 0.0
+        first, at_hand = 0.0, False
         for k in range(NEWTON):
             worst = project_positions(s, t, y)
             if k == 0:
                 first = worst
             if not worst > (PHI_SMALL if s.status[0] == SOUND else CLOSED) * s.size:
                 break
+            if worst <= PHI_SQUARED * s.size and s.status[0] == SOUND:
+                worst = still_open(s, t, y)
+                at_hand = worst <= PHI_BELOW * s.size
+                if at_hand:
+                    break
         if not worst <= PHI_LOST * s.size:
             s.status[3] += 1
             y[0] = nan
@@ -55,7 +63,8 @@ def land(s, r, b, t, y, yd):
             r.clock[WORST_PHI] = max(r.clock[WORST_PHI], first)
         r.clock[OFF] = first
         T0 = kinetic(s, y)
-        poses_and_rows(s, t, y)
+        if not at_hand:
+            poses_and_rows(s, t, y)
         worst = r.clock[OFF_RATE] = project_velocities(s, y)
         r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
         done += kinetic(s, y) - T0
@@ -84,6 +93,22 @@ def land(s, r, b, t, y, yd):
     for k in range(s.n_s):
         b.branch1[k], b.turning1[k] = s.S[k, 0], s.S[k, 1]
     return done
+
+
+@internal
+def still_open(s, t, y):
+    """The largest |Phi| at y, whose rows replace those of the last Newton step; its factors stay.
+
+    inf where pivots are so small that velocities feel by what factors are off.
+    """
+    if smallest_pivot(s) <= DOUBTFUL:
+        return inf
+    poses(s, y)
+    constraints(s, t)
+    worst = 0.0
+    for k in range(s.m):
+        worst = max(worst, abs(s.phi[k]))
+    return worst
 
 
 @internal

@@ -15,7 +15,9 @@ OFTEN steps, twice as many, and so on up to SELDOM; after OFTEN again where it h
 from math import sqrt
 
 from trsim.assemble.equations import evaluate
+from trsim.assemble.projection import onto_rows
 from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
+from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.vectors import copy_to, internal
@@ -126,6 +128,8 @@ def turned(s, r, b, of_rates):
     evaluate(s, r.clock[T], place, rates)
     for k in range(many):
         rates[k] = rates[w_index(s, k)] - r.yd[w_index(s, k)]
+    if s.stabilisation == PROJECTION:  # nothing leaves the rows
+        onto_rows(s, rates)
     felt = size_of(s, rates, speed, many)
     if not felt > 0.0 or felt > 1e150:
         return 0.0
