@@ -62,9 +62,10 @@ def test_work_is_of_runs_without_rows(pendulum, tight):
     """A thousand rows cost dense outputs, and none of them is in what is timed."""
     setting = Setting("dop853", 1e-6)
     found = point(pendulum, tight, setting, repeats=1)
-    with_rows = trajectory(pendulum, setting).outcome.statistics
-    assert found.steps == with_rows["steps"]
-    assert found.evaluations < with_rows["evaluations"]
+    starts = precision.first_steps(pendulum, tight, setting)
+    with_rows = [trajectory(pendulum, setting, first).outcome.statistics for first in starts]
+    assert found.steps == median(one["steps"] for one in with_rows)
+    assert found.evaluations < median(one["evaluations"] for one in with_rows)
 
 
 def test_an_error_below_the_uncertainty_is_marked(pendulum):
