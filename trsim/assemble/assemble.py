@@ -21,7 +21,7 @@ from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
-from trsim.assemble.pattern import Hubs, no_pattern, pattern
+from trsim.assemble.pattern import Hubs, lines, no_pattern, pattern
 from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.rows import (
     all_rows,
@@ -301,7 +301,8 @@ def build(
         n_s=at.n_s,
         **turns(at, d),
         **kernels(instances),
-        **(no_pattern(frames, n) if hubs is None else pattern(frames, n, spans(at), hubs)),
+        **lines([*frames, *(r.frames for r in redundant)]),
+        **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **watched_rows(instances, rows, redundant, size),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),

@@ -60,5 +60,5 @@ class RowName:
     axis: str
     instance: int
     index: int  # which of the element's rows
-    frames: tuple[int, int]
+    frames: tuple[int, ...]  # that it names, each once
     rotation: bool

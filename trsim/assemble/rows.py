@@ -40,7 +40,8 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
             turns = axis.startswith(("tilt", "turn"))
             if instance.element.key == "fixed" and axis == unheld(instances, i, j):
                 continue  # a weld to a beam turns with its tangent; about it there is no torsion
-            rows.append(RowName(instance.name, axis, n, index, (i, j), turns))
+            frames = instance.row.frames(index)
+            rows.append(RowName(instance.name, axis, n, index, frames, turns))
     return rows
 
 

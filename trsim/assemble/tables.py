@@ -48,10 +48,10 @@ def watched_rows(
     instances: list[Instance], rows: Sequence[RowName], redundant: Sequence[RowName], size: float
 ) -> dict[str, Any]:
     """The rows that are only looked at, and what makes the opening of every row relative."""
-    named = [(*row.frames, row.instance, row.index) for row in redundant]
+    named = [(row.instance, row.index) for row in redundant]
     turning = [turns_by(instances[row.instance], row.index) for row in (*rows, *redundant)]
     return {
-        "redundant": np.array(named, np.int64).reshape(-1, 4),
+        "redundant": np.array(named, np.int64).reshape(-1, 2),
         "row_unit": np.where(turning, 1.0, size) if turning else np.zeros(0),
     }
 

@@ -134,6 +134,12 @@ class Row:
         ""  # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
     )
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
+    named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
+
+    def frames(self, index: int) -> tuple[int, ...]:
+        """The frames that a constraint row of it names, each once, in the order of its lines of J:
+        unless it says otherwise the first two columns of con."""
+        return self.named[index] if self.named else self.con[:2]
 
 
 class Reach(NamedTuple):
@@ -155,8 +161,8 @@ class Reach(NamedTuple):
 
 
 def ends(row: Row) -> frozenset[int]:
-    """The first two columns of con: the frames that most elements join."""
-    return frozenset(row.con[:2])
+    """The frames of its rows; of most elements the first two columns of con."""
+    return frozenset(row.con[:2]).union(*row.named)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,18 @@ from trsim.elements.contract import (
     Row,
     kernel,
 )
-from trsim.elements.frames import along_row, arm, cross, dot, helper, push, separation, spin, twist
+from trsim.elements.frames import (
+    along_row,
+    arm,
+    cross,
+    dot,
+    helper,
+    push,
+    separation,
+    spin,
+    turn_lines,
+    twist,
+)
 from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, holds, prescribed
 from trsim.fields import Function, Spec, Unit
 
@@ -115,14 +126,7 @@ def pack(name, spec, at):
 @kernel
 def constraint(t, scene, a, b):
     X, V, S, z, con, mem = scene.X, scene.V, scene.S, scene.z, scene.con, scene.mem
-    par, tab, phi, phi_t, J, gamma = (
-        scene.par,
-        scene.tab,
-        scene.phi,
-        scene.phi_t,
-        scene.J,
-        scene.gamma,
-    )
+    par, tab, phi, phi_t, gamma = scene.par, scene.tab, scene.phi, scene.phi_t, scene.gamma
     for e in range(a, b):
         k = con[e, 3]
         if k < 0:
@@ -132,11 +136,7 @@ def constraint(t, scene, a, b):
         axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         o_i, o_j = spin(V, i), spin(V, j)
         if con[e, ROTATES] == 1:
-            for c in range(3):
-                J[k, c] = 0.0
-                J[k, 6 + c] = 0.0
-                J[k, 3 + c] = -axis[c]
-                J[k, 9 + c] = axis[c]
+            turn_lines(scene, k, axis)
             turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
             gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
         else:

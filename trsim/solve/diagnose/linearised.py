@@ -24,7 +24,15 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import constraints, derivative, forces, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
-from trsim.assemble.reduce import IN_PLANE, along_rates, in_solve_axes, jacobian, moves, world_rates
+from trsim.assemble.reduce import (
+    IN_PLANE,
+    along_rates,
+    in_solve_axes,
+    jacobian,
+    less_reactions,
+    moves,
+    world_rates,
+)
 from trsim.elements.actuator import piston_of
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
@@ -252,9 +260,7 @@ class Probe:
         constraints(work, 0.0)
         forces(work, 0.0)
         wrenches = work.F.copy()
-        J = work.J[: work.m]
-        for end, part in enumerate((J[:, :6], J[:, 6:])):
-            np.subtract.at(wrenches, work.row_frame[:, end], self.lam[:, None] * part)
+        less_reactions(work, wrenches, self.lam)
         F = along_rates(work, wrenches)
         if self.bars:
             poses(self.bars, y)
@@ -270,9 +276,9 @@ class Probe:
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
         work = self.work
-        i, j = work.row_frame[:, 0], work.row_frame[:, 1]
-        J, phi_t = work.J[: work.m], work.phi_t[: work.m]
-        return np.asarray(np.sum(J[:, :6] * work.V[i] + J[:, 6:] * work.V[j], axis=1) + phi_t)
+        start, lines = work.row_start[: work.m], work.row_start[work.m]
+        parts = (work.J * work.V[work.line_frame])[:lines]
+        return np.asarray(np.sum(np.add.reduceat(parts, start), axis=1) + work.phi_t[: work.m])
 
     def turning(self) -> Array:
         """Z^T M (omega x) Z: a body that spins carries its small rotations along."""

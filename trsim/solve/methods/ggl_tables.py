@@ -310,7 +310,8 @@ def constraint_groups(found: Nodes, model: Model, held: Any) -> list[tuple[list[
     by_nodes: dict[tuple[int, ...], list[int]] = {}
     state, before = dict(held.tolist()), before_hubs(model)
     for j in range(model.m):
-        on = {frame - 1 for frame in model.row_frame[j].tolist() if frame > 0}
+        named = model.line_frame[model.row_start[j] : model.row_start[j + 1]]
+        on = {frame - 1 for frame in named.tolist() if frame > 0}
         if j in state:
             on.add(found.bodies + state[j] - model.n_v)
         by_nodes.setdefault((j in before, *sorted(on)), []).append(j)

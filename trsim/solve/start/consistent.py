@@ -16,7 +16,7 @@ from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import closest, jacobian
+from trsim.assemble.reduce import closest, jacobian, largest_reaction
 from trsim.assemble.switches import LIMITS
 from trsim.elements.contract import (
     BRANCH,
@@ -338,8 +338,7 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     w.mem[:] = mem
     derivative(w, 0.0, y, yd)
     force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
-    reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
-    force = max(force, float(max(reaction, default=0.0)))
+    force = max(force, largest_reaction(w))
     end = max(scenario.solver.end, 1e-300)
     moving = max(of_frames(w.V, reach), CREEP * reach / end)
     speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)
