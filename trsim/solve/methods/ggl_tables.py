@@ -76,13 +76,14 @@ class SparseBuffers(Buffers):
 def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -> SparseRecord:
     """A Record with room for a sparse Jacobian, for any stage of the mechanism."""
     starts, _ = columns(nodes(scenario, mechanism), mechanism.model)
-    rows = sum(len(instance.element.rows) for instance in mechanism.instances)
+    lines = sum(len(instance.row.frames(k)) for instance in mechanism.instances
+                for k in range(len(instance.element.rows)))  # fmt: skip
     return SparseRecord(
         **{**dense.arrays(), "past": np.zeros((past_rows, dense.y.size))},
         at_place=np.zeros(starts[-1]),
         at_rate=np.zeros(starts[-1]),
-        at_rows=np.zeros((2 * rows, 6)),
-        at_turn=np.zeros((2 * rows, 6)),
+        at_rows=np.zeros((lines, 6)),
+        at_turn=np.zeros((lines, 6)),
         at_state=np.zeros(len(mechanism.instances)),
     )
 
