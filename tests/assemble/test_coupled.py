@@ -168,9 +168,9 @@ def test_of_redundant_gears_one_is_released():
 def test_a_gear_couples_all_its_bodies_in_sparse_systems():
     text = epicyclic(planets=2)
     mechanism = built(text)
-    groups = nodes(loads(text), mechanism).groups
+    groups = nodes(mechanism).groups
     assert frozenset({0, 1, 2}) in groups and frozenset({0, 1, 3}) in groups
-    assert tables(nodes(loads(text), mechanism), mechanism, mechanism.model)
+    assert tables(nodes(mechanism), mechanism, mechanism.model)
 
 
 # --- a coupler of four joints ----------------------------------------------------------------

@@ -15,6 +15,7 @@ from trsim.assemble.reduce import (
 )
 from trsim.assemble.redundant import Dependence, dependences
 from trsim.assemble.shaky import shaky
+from trsim.elements.contract import ends
 from trsim.elements.scene import Model
 from trsim.errors import ModelError
 
@@ -31,31 +32,17 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
     """
     rows = []
     for n, instance in enumerate(instances):
-        i, j = instance.row.con[0], instance.row.con[1] if len(instance.row.con) > 1 else 0
         if instance.row.is_force:
             continue
         if instance.section == "events" and instance.name not in held:
             continue
         for index, axis in enumerate(instance.element.rows):
             turns = axis.startswith(("tilt", "turn"))
-            if instance.element.key == "fixed" and axis == unheld(instances, i, j):
-                continue  # a weld to a beam turns with its tangent; about it there is no torsion
+            if axis == instance.row.unheld:
+                continue
             frames = instance.row.frames(index)
             rows.append(RowName(instance.name, axis, n, index, frames, turns))
     return rows
-
-
-def on_a_beam(instances: list[Instance], frames: tuple[int, int]) -> bool:
-    """Whether one of the frames is a node of a flexible bar."""
-    first = [i.row.con[0] for i in instances if i.element.key == "ancf_cable"]
-    return bool(first) and max(frames) >= min(first)
-
-
-def unheld(instances: list[Instance], i: int, j: int) -> str:
-    """The row of a weld that a flexible bar has nothing to hold by, see elements/fixed.py."""
-    if on_a_beam(instances, (j, j)):
-        return "turn"
-    return "tilt 2" if on_a_beam(instances, (i, i)) else ""
 
 
 def in_solve(full: Model, J: Array, planar: bool) -> NDArray[np.bool_]:
@@ -154,9 +141,9 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
     bushings(at, instances)
     cross_sections(at, instances)
     for instance in instances:
-        i, j = (*instance.row.con[:2], 0)[:2] if instance.section == "joints" else (0, 0)
-        free = instance.element.key in ("spherical", "fixed")
-        if on_a_beam(instances, (i, j)) and not free:
+        if instance.section != "joints" or not instance.element.holds_twist:
+            continue
+        if any(at.is_node(f) for f in ends(instance.row)):
             raise ModelError(
                 f"a {instance.element.key} holds the turning of a flexible bar about itself, "
                 "and in space that has no torsion",
@@ -221,7 +208,7 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
                 "let it turn with a rigid body, or draw the mechanism in the x-y plane",
                 (instance.section, instance.name),
             )
-        bars = key == "fixed" and at.is_node(con[0]) and at.is_node(con[1])
+        bars = instance.element.welds and at.is_node(con[0]) and at.is_node(con[1])
         if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:
             raise ModelError(
                 "welds two flexible bars at an angle, and in space these have no torsion",

@@ -102,7 +102,7 @@ def holders(at: Addresses, instances: list[Instance]) -> list[list[Holder]]:
     line = {name: name for name in at.beams}
     found = []
     for instance in instances:
-        if instance.element.key != "fixed":
+        if not instance.element.welds:
             continue
         i, j = instance.row.con[:2]
         if at.is_node(i) and at.is_node(j):
@@ -139,7 +139,7 @@ def idles(one: Holder, at: Addresses, instances: list[Instance]) -> bool:
 def cluster(body: int, at: Addresses, instances: list[Instance]) -> set[int]:
     """A body and all rigid bodies that are welded to it."""
     found = {body}
-    welds = [i.row.con[:2] for i in instances if i.element.key == "fixed"]
+    welds = [i.row.con[:2] for i in instances if i.element.welds]
     pairs = [pair for pair in welds if not at.is_node(pair[0]) and not at.is_node(pair[1])]
     for _ in pairs:
         found |= {other for pair in pairs if found & {*pair} for other in pair}

@@ -51,8 +51,10 @@ def pack(name, spec, at):
     # the direction is drawn in world axes at t = 0 and then turns with its frame
     n = at.axes(frame, direction(spec.direction))
     is_torque = spec.force is None
-    f = at.function(spec.torque if is_torque else spec.force, "torque" if is_torque else "force")
-    return Row((i, frame, f, int(is_torque)), (*at.local(i, place), *n), turns=is_torque)
+    load = spec.torque if is_torque else spec.force
+    f = at.function(load, "torque" if is_torque else "force")
+    con, par = (i, frame, f, int(is_torque)), (*at.local(i, place), *n)
+    return Row(con, par, turns=is_torque, reads=frozenset(load.names - {"t", "pi"}))
 
 
 @kernel

@@ -156,7 +156,7 @@ def pack(name, spec, at):
         law.slowest_impact,
         *friction,
     )
-    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi)
+    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state)
     return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
 
 
@@ -373,7 +373,8 @@ ELEMENT = Element(
         Channel("eccentricity_y_rate", "m/s", "its rate in the axes of the bearing's body"),
         Channel("force", "N", "contact force on the journal's body, world axes", 3),
     ),
-    n_mem=3,
+    meets=True,
+    ideal="revolute",
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,

@@ -45,7 +45,7 @@ KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stif
 # con: the first columns of every element that joins two frames
 I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
-# mem: the first columns of every element with a gap
+# mem: its first N_MEM columns, the march's own; an element's own follow.  Of elements with a gap
 PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
 FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
 WHOLE = 9.0  # BRANCH: the law with all its branches
@@ -106,6 +106,7 @@ class Contact(NamedTuple):
     clearance: float  # m; inf where the contact has none
     slowest_impact: float  # m/s
     damping: float  # chi: of the elastic force at the rate at which the contact began
+    state: int = -1  # entry of z that a touch sets to zero
 
 
 class Limit(NamedTuple):
@@ -134,6 +135,11 @@ class Row:
         ""  # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
     )
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
+    unheld: str = ""  # the row of its element that holds nothing here
+    reads: frozenset[str] = frozenset()  # sensors its functions depend on
+    piston: int = -1  # entry of z with the stroke of a piston that a supply moves
+    slip: int = -1  # and with its rate less that of the prescribed motion
+    length: float = 0.0  # m, as drawn, of the line it drives the ends of apart
     named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
 
     def frames(self, index: int) -> tuple[int, ...]:
@@ -180,8 +186,12 @@ class Element:
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
-    n_mem: int = 0
-    n_state: int = 0  # entries of z an instance owns
+    meets: bool = False  # its bodies meet at the point `at`
+    welds: bool = False  # its two bodies move as one
+    pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else
+    holds_twist: bool = True  # its rows hold how a flexible bar turns about itself
+    ideal: str = ""  # the element it is where it has no clearance
+    n_mem: int = 0  # columns of mem of its own, behind the N_MEM of all
     kernels: dict[str, Compiled] = field(default_factory=dict)
     example: str = ""  # a scenario that runs, as short as it can be
 

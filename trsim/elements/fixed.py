@@ -26,10 +26,11 @@ def pack(name, spec, at):
         # t . u = t . w = 0 with the tangent t of bar i and u, w fixed in body j: rows tilt 1, turn
         t = at.axes(i, at.tangent(i))
         u, w, _ = perpendicular(at.tangent(i))
-        return Row((i, j, -1), (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0))
-    # about the tangent of a flexible bar j the weld holds nothing: that is the row `turn`
+        par = (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0)
+        return Row((i, j, -1), par, unheld="tilt 2")
+    # a bar has no torsion, so about its tangent the weld holds nothing: of bar j the row `turn`
     axes = triads(i, j, at.tangent(j) or (0.0, 0.0, 1.0), at)
-    return Row((i, j, -1), (*places, *axes))
+    return Row((i, j, -1), (*places, *axes), unheld="turn" if at.tangent(j) else "")
 
 
 @kernel
@@ -56,6 +57,9 @@ ELEMENT = Element(
     spec=Fixed,
     pack=pack,
     rows=("x", "y", "z", "tilt 1", "tilt 2", "turn"),
+    meets=True,
+    welds=True,
+    holds_twist=False,
     kernels={"constraint": constraint},
     example="""
 bodies:

@@ -272,7 +272,6 @@ ELEMENT = Element(
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
-    n_mem=3,
     kernels={
         "force": force,
         "gaps": gap,

@@ -91,6 +91,8 @@ ELEMENT = Element(
     reach=reach,
     rows=("x", "y", "z", "tilt 1", "tilt 2"),
     coordinate="angle",
+    meets=True,
+    pin=(2,),
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

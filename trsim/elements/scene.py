@@ -19,7 +19,7 @@ from trsim.kernels.packed import A1, A2, I1, I2, T2, T3, T6, T9, T12, Packed, f8
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
 N_STORED = 3
-N_MEM = 4  # columns of `mem`, see contract.py
+N_MEM = 4  # columns of `mem` that all elements have, see contract.py
 COMPONENTS = {".x": 0, ".y": 1, ".z": 2}  # of a channel of three, in its name
 
 
@@ -41,6 +41,7 @@ class Model(Packed):
     m: i8  # constraint rows in the solve
     unequal: i8  # 1: masses or moments of inertia are so unequal that multipliers are too coarse
     n_s: i8  # entries of S
+    n_mem: i8  # columns of mem
     n_out: i8  # output columns
     size: f8  # m, the mechanism's
     reach: f8  # m, the largest arm of a body
@@ -214,7 +215,7 @@ def scene(model: Model) -> Scene:
             "branch": (max(model.n_s, 1),),
             "z": (model.n_z,),
             "zd": (model.n_z,),
-            "mem": (len(model.con), N_MEM),
+            "mem": (len(model.con), model.n_mem),
             "F": (n, 6),
             "phi": (rows,),
             "phi_t": (rows,),

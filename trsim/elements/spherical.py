@@ -40,6 +40,9 @@ ELEMENT = Element(
     spec=Spherical,
     pack=pack,
     rows=("x", "y", "z"),
+    meets=True,
+    pin=(2, 3),
+    holds_twist=False,
     kernels={"constraint": constraint},
     example="""
 planar: false

@@ -82,6 +82,7 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     rows=("x", "y", "z", "tilt"),
+    meets=True,
     kernels={"constraint": constraint},
     example="""
 planar: false

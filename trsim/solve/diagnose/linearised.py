@@ -33,7 +33,6 @@ from trsim.assemble.reduce import (
     moves,
     world_rates,
 )
-from trsim.elements.actuator import piston_of
 from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
@@ -159,7 +158,7 @@ class Probe:
         self.work, self.y = work, begun.y
         self.n_q, self.n_v = work.n_q, work.n_v
         self.names = [name for name, f in mechanism.frames.items() if f > 0]
-        moving = {piston_of(instance) for instance in mechanism.instances}
+        moving = {instance.row.piston for instance in mechanism.instances}
         self.states = [
             N_BOOK + k
             for k, s in enumerate(mechanism.follows)

@@ -73,9 +73,9 @@ class SparseBuffers(Buffers):
     mu: A2  # (2, n_x) of rows, and of hubs
 
 
-def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -> SparseRecord:
+def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
     """A Record with room for a sparse Jacobian, for any stage of the mechanism."""
-    starts, _ = columns(nodes(scenario, mechanism), mechanism.model)
+    starts, _ = columns(nodes(mechanism), mechanism.model)
     lines = sum(len(instance.row.frames(k)) for instance in mechanism.instances
                 for k in range(len(instance.element.rows)))  # fmt: skip
     return SparseRecord(
@@ -88,10 +88,10 @@ def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -
     )
 
 
-def buffers(dense: Buffers, scenario: Any, mechanism: Mechanism, model: Model) -> SparseBuffers:
+def buffers(dense: Buffers, mechanism: Mechanism, model: Model) -> SparseBuffers:
     """Buffers with the pattern of a stage of the mechanism, whose model is given."""
     own = {name: getattr(dense, name) for name, _ in Buffers.kind.fields}
-    found = nodes(scenario, mechanism)
+    found = nodes(mechanism)
     return SparseBuffers(**{**own, **tables(found, mechanism, model)})
 
 
