@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
 
-from trsim.elements.contract import Channel, Element, Row
+from trsim.elements.contract import Channel, Element, Row, Turning
 
 
 class Column(NamedTuple):
@@ -50,6 +50,12 @@ class Instance:
         found = self.element.channels if self.row.channels is None else self.row.channels
         own = "rad" if self.row.turns else "m"
         return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
+
+    @property
+    def turning(self) -> Turning:
+        """How it depends on the turns of its frames."""
+        own = self.element.turning
+        return own(self.row) if own else Turning(tuple(self.element.acts_on(self.row)))
 
 
 @dataclass(frozen=True)

@@ -138,7 +138,7 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
                 ("bodies", name),
             )
     loads(at, instances)
-    bushings(at, instances)
+    resisted(at, instances)
     cross_sections(at, instances)
     for instance in instances:
         if instance.section != "joints" or not instance.element.holds_twist:
@@ -155,35 +155,32 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
 def loads(at: Addresses, instances: list[Instance]) -> None:
     """A torque along a flexible bar in space, which turns nothing."""
     for instance in instances:
-        if instance.element.key != "applied_load":
-            continue
-        node, frame, _, is_torque = instance.row.con[:4]
-        if not is_torque or not at.is_node(node):
-            continue
-        along = at.rotation[frame] @ np.array(instance.row.par[3:6]) @ at.rotation[node][:, 0]
-        if abs(along) > PARTLY:
-            part = "" if abs(along) > ALONG else f"with {abs(along):.2g} of it "
-            raise ModelError(
-                f"turns '{at.owners[node]}' {part}about itself, and in space that has no torsion",
-                "give the torque a direction across the bar, make the bar rigid "
-                "(`flexible: false`), or draw the mechanism in the x-y plane",
-                ("forces", instance.name, "direction"),
-            )
+        for node, frame, direction in instance.turning.torques:
+            if not at.is_node(node):
+                continue
+            along = at.rotation[frame] @ np.array(direction) @ at.rotation[node][:, 0]
+            if abs(along) > PARTLY:
+                part = "" if abs(along) > ALONG else f"with {abs(along):.2g} of it "
+                raise ModelError(
+                    f"turns '{at.owners[node]}' {part}about itself, and in space that has no "
+                    "torsion",
+                    "give the torque a direction across the bar, make the bar rigid "
+                    "(`flexible: false`), or draw the mechanism in the x-y plane",
+                    (instance.section, instance.name, "direction"),
+                )
 
 
-def bushings(at: Addresses, instances: list[Instance]) -> None:
+def resisted(at: Addresses, instances: list[Instance]) -> None:
     """What a bushing holds of a flexible bar in space: places, no turns."""
     for instance in instances:
-        if instance.element.key != "bushing":
-            continue
-        _, j, _, turns = instance.row.con
-        if turns and at.is_node(j):
+        node = next(filter(at.is_node, instance.turning.held), None)
+        if node is not None:
             raise ModelError(
-                f"holds the turning of '{at.owners[j]}', a flexible bar, about itself, and in "
+                f"holds the turning of '{at.owners[node]}', a flexible bar, about itself, and in "
                 "space that has no torsion",
                 "leave out its rotational stiffness and damping, let it act on a rigid body fixed "
                 "to the bar, or draw the mechanism in the x-y plane",
-                ("forces", instance.name),
+                (instance.section, instance.name),
             )
 
 
@@ -191,23 +188,15 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
     """What would be carried along by the cross-section of a bar in space, whose turn about the bar
     nobody knows: welds of bars at an angle, walls and directions across a bar."""
     for instance in instances:
-        key, con, par = instance.element.key, instance.row.con, instance.row.par
-        # frame and direction, in its axes, of what turns with a body
-        turning = {
-            "limit_stop": (con[0], par[6:9]) if key == "limit_stop" and con[3] == 0 else None,
-            "applied_load": (con[1], par[3:6]) if key == "applied_load" and not con[3] else None,
-            "distributed_load": (con[2], par[1:4]) if key == "distributed_load" else None,
-            # of its three axes two at least point across a bar
-            "bushing": (con[0], (0.0, 0.0, 0.0)),
-            "displacement": (con[0], par[6:9]),
-        }.get(key)
-        if turning and at.is_node(turning[0]) and abs(turning[1][0]) < ALONG:
-            raise ModelError(
-                f"turns with '{at.owners[turning[0]]}', a flexible bar, of which in space nobody "
-                "knows how it turns about itself",
-                "let it turn with a rigid body, or draw the mechanism in the x-y plane",
-                (instance.section, instance.name),
-            )
+        con = instance.row.con
+        for frame, direction in instance.turning.axes:
+            if at.is_node(frame) and abs(direction[0]) < ALONG:
+                raise ModelError(
+                    f"turns with '{at.owners[frame]}', a flexible bar, of which in space nobody "
+                    "knows how it turns about itself",
+                    "let it turn with a rigid body, or draw the mechanism in the x-y plane",
+                    (instance.section, instance.name),
+                )
         bars = instance.element.welds and at.is_node(con[0]) and at.is_node(con[1])
         if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:
             raise ModelError(

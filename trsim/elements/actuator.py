@@ -29,6 +29,7 @@ from trsim.elements.contract import (
     Limit,
     Reach,
     Row,
+    between_points,
     kernel,
 )
 from trsim.elements.frames import distance_row, helper, line, push
@@ -280,6 +281,7 @@ ELEMENT = Element(
     reach=reach,
     rows=("length",),
     channels=CHANNELS,
+    turning=between_points,
     kernels={
         "coordinate": coordinate,
         "constraint": constraint,

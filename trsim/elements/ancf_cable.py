@@ -17,7 +17,16 @@ from typing import ClassVar
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
-from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
+from trsim.elements.contract import (
+    DAMPERS,
+    GRAVITY,
+    SPRINGS,
+    Channel,
+    Element,
+    Row,
+    kernel,
+    no_turning,
+)
 from trsim.elements.frames import cross, dot, helper
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
@@ -288,6 +297,7 @@ ELEMENT = Element(
     spec=AncfCable,
     pack=pack,
     channels=channels(5),
+    turning=no_turning,
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:

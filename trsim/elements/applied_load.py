@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.laws.functions import value
@@ -97,6 +97,13 @@ def reach(row):
     return Reach(forces=way, places=((i, row.par[:3], (i,)),))
 
 
+def turning(row):
+    body, frame, _, is_torque = row.con
+    if is_torque:
+        return Turning((body, frame), torques=((body, frame, row.par[3:6]),))
+    return Turning(points=((body, row.par[:3]),), axes=((frame, row.par[3:6]),))
+
+
 ELEMENT = Element(
     key="applied_load",
     section="forces",
@@ -107,6 +114,7 @@ ELEMENT = Element(
         Channel("magnitude", "drive", "the force or torque along its direction"),
         Channel("load", "drive", "its components, world axes", 3),
     ),
+    turning=turning,
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

@@ -17,7 +17,16 @@ from typing import Annotated, ClassVar
 
 from annotated_types import Ge
 
-from trsim.elements.contract import DAMPERS, SPRINGS, Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import (
+    DAMPERS,
+    SPRINGS,
+    Channel,
+    Element,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+)
 from trsim.elements.frames import arm, dot, helper, push, separation, spin, twist, velocity
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
@@ -193,6 +202,12 @@ def reach(row):
     )
 
 
+def turning(row):
+    """Of its three axes two at least point across a bar."""
+    i, j, _, turns = row.con
+    return Turning((i, j), axes=((i, (0.0, 0.0, 0.0)),), held=(j,) if turns else ())
+
+
 ELEMENT = Element(
     key="bushing",
     section="forces",
@@ -206,6 +221,7 @@ ELEMENT = Element(
         Channel("displacement", "m", "of the second body's point, in the axes of the first", 3),
         Channel(TURN, "rad", "of the second body, in the same axes", 3),
     ),
+    turning=turning,
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 planar: false

@@ -47,7 +47,7 @@ from trsim.elements.frames import (
     separation,
     velocity,
 )
-from trsim.elements.joint import triads
+from trsim.elements.joint import of_a_hinge, triads
 from trsim.elements.revolute import Revolute, coordinate
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
@@ -350,6 +350,10 @@ def reach(row):
     return Reach(hinges=((i, row.par[12:15]),), places=((i, row.par[:3], (i, j)),))
 
 
+def changes(_):
+    return of_a_hinge("axial", None, None)
+
+
 ELEMENT = Element(
     key="clearance_joint",
     section="joints",
@@ -375,6 +379,7 @@ ELEMENT = Element(
     ),
     meets=True,
     ideal="revolute",
+    changes=changes,
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,

@@ -166,6 +166,39 @@ class Reach(NamedTuple):
     tilts: bool = False  # lets bodies turn out of the plane, though its rows hold in it
 
 
+class Turning(NamedTuple):
+    """How an instance depends on the turns of frames, or acts on them: of a flexible bar in space
+    nobody knows how it turns about itself; see assemble/torsion.py and rows.py.
+
+    Points and directions are (frame, three numbers in the axes of the frame, from its centre).
+    """
+
+    frames: tuple[int, ...] = ()  # whose turns it feels, or acts on
+    points: tuple = ()  # where it pushes or holds: all that it feels of these frames
+    axes: tuple = ()  # directions that turn with a frame; zero: several
+    torques: tuple = ()  # (frame it turns, frame of its direction, direction)
+    held: tuple[int, ...] = ()  # frames whose turns it resists
+
+
+class Change(NamedTuple):
+    """Rows of a joint that can go together, and what it is without them; see release.py."""
+
+    rows: tuple[str, ...]
+    becomes: str  # in words
+    type: str | None = None  # the joint type of a scenario, where there is one
+
+
+def between_points(row: Row) -> Turning:
+    """Of what acts between a point of either body and does nothing else to them."""
+    (i, j), par = row.con[:2], row.par
+    return Turning(points=((i, par[:3]), (j, par[3:6])))
+
+
+def no_turning(_: Row) -> Turning:
+    """Of what no turn of a body matters to."""
+    return Turning()
+
+
 def ends(row: Row) -> frozenset[int]:
     """The frames of its rows; of most elements the first two columns of con."""
     return frozenset(row.con[:2]).union(*row.named)
@@ -184,6 +217,8 @@ class Element:
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
+    turning: Callable[[Row], Turning] | None = None  # None: the turns of all frames it acts on
+    changes: Callable[[Row], tuple[Change, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
     meets: bool = False  # its bodies meet at the point `at`

@@ -9,7 +9,7 @@ the stroke of a body on compliant rails.
 
 from typing import Annotated, ClassVar, Literal
 
-from trsim.elements.contract import Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
 from trsim.fields import Spec, Unit, point, vector
@@ -74,6 +74,10 @@ def reach(row):
     return Reach(shown=((row.con[0], row.par[6:9]),))
 
 
+def turning(row):
+    return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
+
+
 ELEMENT = Element(
     key="displacement",
     section="sensors",
@@ -86,6 +90,7 @@ ELEMENT = Element(
         Channel("rate", "m/s", "its rate"),
         Channel("acceleration", "m/s^2", "its acceleration"),
     ),
+    turning=turning,
     kernels={"coordinate": coordinate, "measure": measure},
     example="""
 planar: false

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
@@ -117,6 +117,10 @@ def reach(row):
     return Reach(forces=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),))
 
 
+def turning(row):
+    return Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),))
+
+
 ELEMENT = Element(
     key="distributed_load",
     section="forces",
@@ -128,6 +132,7 @@ ELEMENT = Element(
         Channel("magnitude", "N/m", "force per length along its direction"),
         Channel("load", "N", "of the whole bar, world axes", 3),
     ),
+    turning=turning,
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

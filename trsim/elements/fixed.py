@@ -8,9 +8,9 @@ reaction and reaction_moment act on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.contract import Change, Element, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
-from trsim.elements.joint import Joint, perpendicular, triads
+from trsim.elements.joint import TILTS, Joint, perpendicular, triads
 
 
 class Fixed(Joint):
@@ -51,6 +51,11 @@ def constraint(t, scene, a, b):
         perpendicular_row(scene, i, w, j, u_j, con[e, 8])
 
 
+def changes(_):
+    ball = (*TILTS, "turn")
+    return Change(("turn",), "revolute", "revolute"), Change(ball, "spherical", "spherical")
+
+
 ELEMENT = Element(
     key="fixed",
     section="joints",
@@ -60,6 +65,7 @@ ELEMENT = Element(
     meets=True,
     welds=True,
     holds_twist=False,
+    changes=changes,
     kernels={"constraint": constraint},
     example="""
 bodies:

@@ -28,6 +28,7 @@ from trsim.elements.contract import (
     Element,
     Reach,
     Row,
+    Turning,
     kernel,
 )
 from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
@@ -261,6 +262,13 @@ def reach(row):
     return Reach(forces=((i, row.par[6:9]),), places=((j, row.par[3:6], (i, j)),))
 
 
+def turning(row):
+    """The wall is carried along by its body."""
+    if row.con[3] != ON_WALL:
+        return Turning(frames=row.con[:2])
+    return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
+
+
 ELEMENT = Element(
     key="limit_stop",
     section="forces",
@@ -272,6 +280,7 @@ ELEMENT = Element(
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
+    turning=turning,
     kernels={
         "force": force,
         "gaps": gap,

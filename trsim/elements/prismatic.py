@@ -9,9 +9,9 @@ The stroke is a_i . d, zero as drawn.  reaction acts on body j at its point.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, kernel
+from trsim.elements.contract import Change, Element, Reach, Row, kernel
 from trsim.elements.frames import along_row, arm, perpendicular_row, stroke
-from trsim.elements.joint import triads
+from trsim.elements.joint import TILTS, triads
 from trsim.fields import Spec, point, vector
 
 
@@ -77,6 +77,10 @@ def reach(row):
     return Reach(slides=((row.con[0], row.par[12:15]),))
 
 
+def changes(_):
+    return Change(("turn",), "cylindrical"), Change((*TILTS, "turn"), "a ball in a sleeve")
+
+
 ELEMENT = Element(
     key="prismatic",
     section="joints",
@@ -85,6 +89,7 @@ ELEMENT = Element(
     reach=reach,
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
+    changes=changes,
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

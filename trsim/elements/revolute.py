@@ -20,7 +20,7 @@ from trsim.elements.frames import (
     point_rows,
     spin,
 )
-from trsim.elements.joint import Joint, triads
+from trsim.elements.joint import Joint, axial_row, of_a_hinge, triads
 from trsim.fields import vector
 
 
@@ -83,6 +83,10 @@ def reach(row):
     return Reach(hinges=((row.con[0], row.par[12:15]),))
 
 
+def changes(row):
+    return of_a_hinge(axial_row(row), "spherical", "universal")
+
+
 ELEMENT = Element(
     key="revolute",
     section="joints",
@@ -93,6 +97,7 @@ ELEMENT = Element(
     coordinate="angle",
     meets=True,
     pin=(2,),
+    changes=changes,
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

@@ -7,7 +7,7 @@ reaction is the force on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.contract import Element, Row, between_points, kernel
 from trsim.elements.frames import arm, point_rows
 from trsim.elements.joint import Joint
 
@@ -43,6 +43,7 @@ ELEMENT = Element(
     meets=True,
     pin=(2, 3),
     holds_twist=False,
+    turning=between_points,
     kernels={"constraint": constraint},
     example="""
 planar: false

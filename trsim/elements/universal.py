@@ -9,7 +9,7 @@ mass.  reaction is the force on body j at the point, world axes; reaction_moment
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, kernel
+from trsim.elements.contract import Change, Element, Reach, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
 from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
@@ -75,6 +75,10 @@ def reach(row):
     return Reach(tilts=True)
 
 
+def changes(_):
+    return (Change(("tilt",), "spherical", "spherical"),)
+
+
 ELEMENT = Element(
     key="universal",
     section="joints",
@@ -83,6 +87,7 @@ ELEMENT = Element(
     reach=reach,
     rows=("x", "y", "z", "tilt"),
     meets=True,
+    changes=changes,
     kernels={"constraint": constraint},
     example="""
 planar: false
