@@ -282,6 +282,7 @@ ELEMENT = Element(
     rows=("length",),
     channels=CHANNELS,
     turning=between_points,
+    picture="cylinder",
     kernels={
         "coordinate": coordinate,
         "constraint": constraint,

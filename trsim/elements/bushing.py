@@ -222,6 +222,7 @@ ELEMENT = Element(
         Channel(TURN, "rad", "of the second body, in the same axes", 3),
     ),
     turning=turning,
+    picture="block",
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 planar: false

@@ -380,6 +380,7 @@ ELEMENT = Element(
     meets=True,
     ideal="revolute",
     changes=changes,
+    picture="journal",
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,

@@ -225,6 +225,7 @@ class Element:
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else
     holds_twist: bool = True  # its rows hold how a flexible bar turns about itself
+    picture: str = ""  # what it is drawn as in animations, see report/animation/drawing.py
     ideal: str = ""  # the element it is where it has no clearance
     n_mem: int = 0  # columns of mem of its own, behind the N_MEM of all
     kernels: dict[str, Compiled] = field(default_factory=dict)

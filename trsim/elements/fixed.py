@@ -66,6 +66,7 @@ ELEMENT = Element(
     welds=True,
     holds_twist=False,
     changes=changes,
+    picture="weld",
     kernels={"constraint": constraint},
     example="""
 bodies:

@@ -281,6 +281,7 @@ ELEMENT = Element(
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
     turning=turning,
+    picture="stop",
     kernels={
         "force": force,
         "gaps": gap,

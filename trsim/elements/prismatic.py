@@ -90,6 +90,7 @@ ELEMENT = Element(
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
     changes=changes,
+    picture="slide",
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

@@ -98,6 +98,7 @@ ELEMENT = Element(
     meets=True,
     pin=(2,),
     changes=changes,
+    picture="pin",
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

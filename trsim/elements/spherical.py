@@ -44,6 +44,7 @@ ELEMENT = Element(
     pin=(2, 3),
     holds_twist=False,
     turning=between_points,
+    picture="ball",
     kernels={"constraint": constraint},
     example="""
 planar: false

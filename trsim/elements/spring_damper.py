@@ -106,6 +106,7 @@ ELEMENT = Element(
         Channel("length", "m", "distance of the two points"),
     ),
     turning=between_points,
+    picture="coil",
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

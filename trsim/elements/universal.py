@@ -88,6 +88,7 @@ ELEMENT = Element(
     rows=("x", "y", "z", "tilt"),
     meets=True,
     changes=changes,
+    picture="cross",
     kernels={"constraint": constraint},
     example="""
 planar: false
