@@ -45,6 +45,7 @@ from trsim.elements.frames import (
     perpendicular_row,
     push,
     separation,
+    two_points,
     velocity,
 )
 from trsim.elements.joint import of_a_hinge, triads
@@ -167,9 +168,7 @@ def constraint(t, scene, a, b):
         k3, k4, k5 = con[e, AXIAL], con[e, TILT_1], con[e, TILT_2]
         if k3 < 0 and k4 < 0 and k5 < 0:
             continue
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        i, p_i, j, p_j = two_points(X, con, par, e)
         u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
         axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
@@ -182,9 +181,7 @@ def constraint(t, scene, a, b):
 @helper
 def play(X, V, con, par, e):
     """Arms, separation, unit normal and tangent, penetration and its rate."""
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    i, p_i, j, p_j = two_points(X, con, par, e)
     axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
     d = separation(X, i, p_i, j, p_j)
     along = dot(axis, d)
@@ -328,9 +325,7 @@ def measure(t, scene, a, b):
         if o < 0:
             continue
         F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        i, p_i, j, p_j = two_points(X, con, par, e)
         d = separation(X, i, p_i, j, p_j)
         v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
         v_j = velocity(V, j, p_j)

@@ -45,11 +45,8 @@ def pack(name, spec, at):
 def coordinate(t, scene, a, b):
     X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
     for e in range(a, b):
-        i, j, s = con[e, 0], con[e, 1], con[e, 2]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        x, x_dot = stroke(X, V, i, p_i, j, p_j, axis)
+        s, axis = con[e, 2], arm(X, con[e, 0], par[e, 6], par[e, 7], par[e, 8])
+        x, x_dot = stroke(X, V, con, par, e, axis)
         S[s, 0] = par[e, 9] * x + par[e, 10]
         S[s, 1] = par[e, 9] * x_dot
 
@@ -62,12 +59,9 @@ def measure(t, scene, a, b):
         o = col[e]
         if o < 0:
             continue
-        i, j, s = con[e, 0], con[e, 1], con[e, 2]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        s, axis = con[e, 2], arm(X, con[e, 0], par[e, 6], par[e, 7], par[e, 8])
         out[o], out[o + 1] = S[s, 0], S[s, 1]
-        out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, i, p_i, j, p_j, axis)
+        out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, con, par, e, axis)
 
 
 def reach(row):

@@ -37,11 +37,7 @@ def pack(name, spec, at):
 def constraint(t, scene, a, b):
     X, con, par = scene.X, scene.con, scene.par
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
-        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        i, j = point_rows(scene, e)
         u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
         u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])

@@ -49,6 +49,14 @@ def dot(a, b):
 
 
 @helper
+def two_points(X, con, par, e):
+    """Both bodies of instance e with the arms of its points, the first six columns of par."""
+    i, j = con[e, 0], con[e, 1]
+    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+    return i, p_i, j, arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+
+
+@helper
 def spin(V, i):
     """omega_i."""
     return (V[i, 3], V[i, 4], V[i, 5])
@@ -141,10 +149,13 @@ def turn_lines(scene, k, n):
 
 
 @helper
-def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
-    """The points coincide along the world axes whose row index is not negative."""
-    X, V = scene.X, scene.V
+def point_rows(scene, e):
+    """The points of instance e coincide along the world axes whose row, the first three of its own,
+    is not negative.  Returns its bodies."""
+    X, V, con = scene.X, scene.V, scene.con
     phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
+    i, p_i, j, p_j = two_points(X, con, scene.par, e)
+    kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
     d = separation(X, i, p_i, j, p_j)
     if scene.d == 3:
         c_i, c_j = inward(V, i, p_i), inward(V, j, p_j)
@@ -165,6 +176,7 @@ def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
         l = scene.row_start[kz]
         _put(J, l, -1.0, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0))
         _put(J, l + 1, 1.0, (0.0, 0.0, 1.0), (p_j[1], -p_j[0], 0.0))
+    return i, j
 
 
 @helper
@@ -224,9 +236,7 @@ def line(X, V, con, par, e):
     par holds the points, in the axes of both bodies, in its first six columns.  A line without
     length has no direction: its unit vector is zero.
     """
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    i, p_i, j, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     length = sqrt(dot(d, d))
     if length == 0.0:
@@ -272,8 +282,9 @@ def turn_acceleration(V, A, i, j, axis):
 
 
 @helper
-def stroke(X, V, i, p_i, j, p_j, axis):
+def stroke(X, V, con, par, e, axis):
     """axis . d and its rate, with the axis fixed in body i and d the separation."""
+    i, p_i, j, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
@@ -281,8 +292,9 @@ def stroke(X, V, i, p_i, j, p_j, axis):
 
 
 @helper
-def stroke_acceleration(X, V, A, i, p_i, j, p_j, axis):
+def stroke_acceleration(X, V, A, con, par, e, axis):
     """Second rate of the same."""
+    i, p_i, j, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])

@@ -31,7 +31,16 @@ from trsim.elements.contract import (
     Turning,
     kernel,
 )
-from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
+from trsim.elements.frames import (
+    arm,
+    dot,
+    helper,
+    push,
+    separation,
+    twist,
+    two_points,
+    velocity,
+)
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.laws.contact import (
@@ -156,8 +165,7 @@ def touch(X, V, S, con, par, e):
         if low > high:
             return low, -S[s, 1], n
         return high, S[s, 1], (-n[0], -n[1], -n[2])
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    _, p_i, _, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     # the wall turns: the speed of its body under the point counts
     v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
