@@ -54,8 +54,11 @@ class Instance:
     @property
     def turning(self) -> Turning:
         """How it depends on the turns of its frames."""
-        own = self.element.turning
-        return own(self.row) if own else Turning(tuple(self.element.acts_on(self.row)))
+        if self.element.turning:
+            return self.element.turning(self.row)
+        # of bodies themselves, and of their weight, no turn matters here
+        own = self.section not in ("bodies", "")
+        return Turning(tuple(self.element.acts_on(self.row)) if own else ())
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,6 @@ from trsim.elements.contract import (
     Element,
     Row,
     kernel,
-    no_turning,
 )
 from trsim.elements.frames import cross, dot, helper
 from trsim.errors import ScenarioError
@@ -297,7 +296,6 @@ ELEMENT = Element(
     spec=AncfCable,
     pack=pack,
     channels=channels(5),
-    turning=no_turning,
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:

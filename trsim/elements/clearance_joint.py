@@ -157,7 +157,10 @@ def pack(name, spec, at):
         law.slowest_impact,
         *friction,
     )
-    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state)
+    ramp = law.friction.law == "modified_coulomb"
+    slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
+    jump = FRICTION_PAR if law.friction.law == "coulomb" else -1
+    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump)
     return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
 
 
@@ -345,10 +348,6 @@ def reach(row):
     return Reach(hinges=((i, row.par[12:15]),), places=((i, row.par[:3], (i, j)),))
 
 
-def changes(_):
-    return of_a_hinge("axial", None, None)
-
-
 ELEMENT = Element(
     key="clearance_joint",
     section="joints",
@@ -374,7 +373,7 @@ ELEMENT = Element(
     ),
     meets=True,
     ideal="revolute",
-    changes=changes,
+    changes=lambda _: of_a_hinge("axial", None, None),
     picture="journal",
     kernels={
         "constraint": constraint,

@@ -103,10 +103,12 @@ class Contact(NamedTuple):
 
     stiffness: float  # N/m^exponent
     exponent: float
-    clearance: float  # m; inf where the contact has none
+    clearance: float  # m, of a journal in its bearing; inf where the contact is none
     slowest_impact: float  # m/s
     damping: float  # chi: of the elastic force at the rate at which the contact began
     state: int = -1  # entry of z that a touch sets to zero
+    slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
+    jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
 
 
 class Limit(NamedTuple):
@@ -194,11 +196,6 @@ def between_points(row: Row) -> Turning:
     return Turning(points=((i, par[:3]), (j, par[3:6])))
 
 
-def no_turning(_: Row) -> Turning:
-    """Of what no turn of a body matters to."""
-    return Turning()
-
-
 def ends(row: Row) -> frozenset[int]:
     """The frames of its rows; of most elements the first two columns of con."""
     return frozenset(row.con[:2]).union(*row.named)
@@ -217,7 +214,7 @@ class Element:
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
-    turning: Callable[[Row], Turning] | None = None  # None: the turns of all frames it acts on
+    turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
     changes: Callable[[Row], tuple[Change, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False

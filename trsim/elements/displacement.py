@@ -64,10 +64,6 @@ def measure(t, scene, a, b):
         out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, con, par, e, axis)
 
 
-def reach(row):
-    return Reach(shown=((row.con[0], row.par[6:9]),))
-
-
 def turning(row):
     return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
 
@@ -77,7 +73,7 @@ ELEMENT = Element(
     section="sensors",
     spec=Displacement,
     pack=pack,
-    reach=reach,
+    reach=lambda row: Reach(shown=((row.con[0], row.par[6:9]),)),
     coordinate="stroke",
     channels=(
         Channel("", "m", "displacement along the axis"),

@@ -117,10 +117,6 @@ def reach(row):
     return Reach(forces=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),))
 
 
-def turning(row):
-    return Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),))
-
-
 ELEMENT = Element(
     key="distributed_load",
     section="forces",
@@ -132,7 +128,7 @@ ELEMENT = Element(
         Channel("magnitude", "N/m", "force per length along its direction"),
         Channel("load", "N", "of the whole bar, world axes", 3),
     ),
-    turning=turning,
+    turning=lambda row: Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),)),
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

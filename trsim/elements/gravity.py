@@ -3,7 +3,7 @@
 F = m g at the centre of mass,     E = -m g . r
 """
 
-from trsim.elements.contract import GRAVITY, Element, Reach, Row, kernel, no_turning
+from trsim.elements.contract import GRAVITY, Element, Reach, Row, kernel
 from trsim.fields import Spec
 
 
@@ -51,7 +51,6 @@ ELEMENT = Element(
     spec=Gravity,
     pack=pack,
     reach=reach,
-    turning=no_turning,
     kernels={"force": force, "energy": energy},
     example="""
 bodies:

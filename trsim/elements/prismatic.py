@@ -74,23 +74,18 @@ def coordinate(t, scene, a, b):
         S[s, 0], S[s, 1] = stroke(X, V, con, par, e, axis)
 
 
-def reach(row):
-    return Reach(slides=((row.con[0], row.par[12:15]),))
-
-
-def changes(_):
-    return Change(("turn",), "cylindrical"), Change((*TILTS, "turn"), "a ball in a sleeve")
-
-
 ELEMENT = Element(
     key="prismatic",
     section="joints",
     spec=Prismatic,
     pack=pack,
-    reach=reach,
+    reach=lambda row: Reach(slides=((row.con[0], row.par[12:15]),)),
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
-    changes=changes,
+    changes=lambda _: (
+        Change(("turn",), "cylindrical"),
+        Change((*TILTS, "turn"), "a ball in a sleeve"),
+    ),
     picture="slide",
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""

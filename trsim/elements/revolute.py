@@ -76,25 +76,17 @@ def coordinate(t, scene, a, b):
         S[s, 1] = dot(axis, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
 
 
-def reach(row):
-    return Reach(hinges=((row.con[0], row.par[12:15]),))
-
-
-def changes(row):
-    return of_a_hinge(axial_row(row), "spherical", "universal")
-
-
 ELEMENT = Element(
     key="revolute",
     section="joints",
     spec=Revolute,
     pack=pack,
-    reach=reach,
+    reach=lambda row: Reach(hinges=((row.con[0], row.par[12:15]),)),
     rows=("x", "y", "z", "tilt 1", "tilt 2"),
     coordinate="angle",
     meets=True,
     pin=(2,),
-    changes=changes,
+    changes=lambda row: of_a_hinge(axial_row(row), "spherical", "universal"),
     picture="pin",
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""

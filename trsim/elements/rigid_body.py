@@ -13,7 +13,7 @@ from annotated_types import Ge
 from pydantic import BeforeValidator
 
 from trsim.elements.cable import Cable
-from trsim.elements.contract import Channel, Element, Row, kernel, no_turning
+from trsim.elements.contract import Channel, Element, Row, kernel
 from trsim.fields import Spec, Unit, point, vector
 
 KG_M2 = Unit("kg*m^2")
@@ -108,7 +108,6 @@ ELEMENT = Element(
         Channel("angular_acceleration", "rad/s^2", "world axes", 3),
         Channel("rotation", "-", "rotation matrix, row by row", 9),
     ),
-    turning=no_turning,
     kernels={"measure": measure},
     example="""
 bodies:

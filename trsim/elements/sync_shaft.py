@@ -35,7 +35,6 @@ from trsim.elements.contract import (
     Limit,
     Row,
     kernel,
-    no_turning,
 )
 from trsim.elements.frames import helper
 from trsim.errors import ScenarioError
@@ -248,7 +247,6 @@ ELEMENT = Element(
     pack=pack,
     channels=channels(2),  # and so on for more actuators
     acts_on=no_frames,
-    turning=no_turning,
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
     example="""
 bodies:

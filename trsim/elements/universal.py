@@ -67,23 +67,15 @@ def constraint(t, scene, a, b):
         perpendicular_row(scene, i, a_i, j, b_j, con[e, 6])
 
 
-def reach(row):
-    return Reach(tilts=True)
-
-
-def changes(_):
-    return (Change(("tilt",), "spherical", "spherical"),)
-
-
 ELEMENT = Element(
     key="universal",
     section="joints",
     spec=Universal,
     pack=pack,
-    reach=reach,
+    reach=lambda _: Reach(tilts=True),
     rows=("x", "y", "z", "tilt"),
     meets=True,
-    changes=changes,
+    changes=lambda _: (Change(("tilt",), "spherical", "spherical"),),
     picture="cross",
     kernels={"constraint": constraint},
     example="""

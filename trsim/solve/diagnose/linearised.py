@@ -33,11 +33,9 @@ from trsim.assemble.reduce import (
     moves,
     world_rates,
 )
-from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
 from trsim.errors import ModelError
-from trsim.laws.friction import CODES
 from trsim.solve.start.consistent import Start
 from trsim.solve.start.elastic import acted_on, bars_alone, elastic_stiffness
 from trsim.solve.start.velocities import with_velocities
@@ -121,10 +119,8 @@ def smooth(mechanism: Mechanism) -> Model:
     """The model without Coulomb's friction, whose jump at rest has no derivative."""
     par = mechanism.model.par.copy()
     for e, instance in enumerate(mechanism.instances):
-        if instance.element.key != "clearance_joint":
-            continue
-        if mechanism.model.con[e, FRICTION_LAW] == CODES["coulomb"]:
-            par[e, FRICTION_PAR] = 0.0
+        if instance.row.contact and instance.row.contact.jump >= 0:
+            par[e, instance.row.contact.jump] = 0.0
     return mechanism.model.replaced(par=par)
 
 
