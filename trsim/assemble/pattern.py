@@ -176,17 +176,7 @@ def structure(
 
 def no_pattern(m: int, n: int) -> dict[str, Any]:
     """That of a model whose equations nobody solves: only its m rows are looked at."""
-    none = np.zeros(0, np.int64)
-    return {
-        "frame_start": np.zeros(n + 1, np.int64),
-        "slot_row": none,
-        "slot_line": none,
-        "hub": np.full(n, -1),
-        "entry": none,
-        "column_start": np.zeros(m + 1, np.int64),
-        "row": none,
-        "target": none,
-    }
+    return {**pattern([], n), "column_start": np.zeros(m + 1, np.int64)}
 
 
 def pattern(
