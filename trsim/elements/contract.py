@@ -12,7 +12,8 @@ for its rows a <= e < b.  It reads poses and twists of the scene in world axes (
 coordinates and sensors (S, angles unwrapped), the states z, and writes what its kind may write:
 
     force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
-    constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma
+    constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma; J of row k
+                are the lines from row_start[k] on, one for each frame that Row.frames names
     coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to,
                 the angle itself in a planar scene
     gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s); or how far a limit of
