@@ -61,7 +61,7 @@ def acting(s, y):
 def test_every_influence_is_counted(planar):
     scenario = loads(EVERYTHING.format(planar=planar))
     mechanism = assemble(scenario)
-    s, found = scene(mechanism.model), nodes(scenario, mechanism)
+    s, found = scene(mechanism.model), nodes(mechanism)
     assert found.bodies == 5
     assert found.states == len(mechanism.follows) == s.n_z - N_BOOK
     s.mem[:, PHASE], s.mem[:, BRANCH] = UNLOCATED, WHOLE
@@ -90,7 +90,7 @@ def test_every_influence_is_counted(planar):
 
 def test_columns_of_one_colour_act_on_different_nodes():
     scenario = loads(EVERYTHING.format(planar="true"))
-    found = nodes(scenario, assemble(scenario))
+    found = nodes(assemble(scenario))
     near, sets = found.neighbours(), colours(found)
     assert sorted(node for one in sets for node in one) == list(range(found.bodies + found.states))
     for one in sets:

@@ -59,7 +59,7 @@ def test_small_mechanisms_have_none(path):
 def test_rows_of_chains_come_before_the_hub_and_those_of_the_guide_after():
     model = assemble(loads(hung_chains(20))).model
     rank = np.argsort(model.row[model.column_start[:-1]])
-    guide = np.flatnonzero(np.all(np.isin(model.row_frame, [0, 1]), axis=1))
+    guide = np.flatnonzero(np.all(np.isin(model.line_frame.reshape(-1, 2), [0, 1]), axis=1))
     assert len(guide) == 5
     assert rank[guide].min() > rank[model.m :].max() > rank[: model.m].argmax()
     assert sorted(rank[model.m :]) == list(range(rank[model.m], rank[model.m] + 6))
@@ -86,7 +86,7 @@ def test_so_do_the_sparse_systems_of_radau():
     for n in (10, 20, 40):
         scenario = loads(hung_chains(n))
         mechanism = assemble(scenario)
-        made = tables(nodes(scenario, mechanism), mechanism, mechanism.model)
+        made = tables(nodes(mechanism), mechanism, mechanism.model)
         entries[n] = len(made["lower"])
     print(f"entries below the diagonal: {entries}")
     assert entries[40] - entries[20] == pytest.approx(2 * (entries[20] - entries[10]), rel=0.01)

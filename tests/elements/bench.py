@@ -19,7 +19,7 @@ from trsim.elements.contract import (
     UNLOCATED,
     WHOLE,
 )
-from trsim.elements.scene import N_MEM, scene
+from trsim.elements.scene import scene
 
 from ..runs import built
 
@@ -123,7 +123,7 @@ def bench(
     p = rng.normal(size=(n, 4))
     p /= np.linalg.norm(p, axis=1)[:, None]
     r[0], V[0], p[0] = 0.0, 0.0, (1.0, 0.0, 0.0, 0.0)
-    mem = np.zeros((len(mechanism.model.con), N_MEM))
+    mem = np.zeros((len(mechanism.model.con), mechanism.model.n_mem))
     mem[:, PHASE], mem[:, IMPACT_SPEED], mem[:, BRANCH] = UNLOCATED, 0.8, WHOLE
     z = np.zeros(mechanism.model.n_z)
     return Bench(mechanism, r, p, V, z, mem)

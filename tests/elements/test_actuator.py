@@ -38,11 +38,11 @@ def test_derivatives_of_the_rigid_one(motion, seed):
     b, h = between(seed, MOTIONS[motion]), 1e-5
     w, ahead, behind = b.rows(), b.later(h).rows(), b.later(-h).rows()
     V = np.hstack([b.V[1], b.V[2]])
-    phi_dot, later, before = (s.J @ V + s.phi_t for s in (w, ahead, behind))
+    phi_dot, later, before = (s.J.reshape(-1, 12) @ V + s.phi_t for s in (w, ahead, behind))
     assert phi_dot == pytest.approx((ahead.phi - behind.phi) / (2 * h), abs=1e-7)
     assert w.gamma == pytest.approx(-(later - before) / (2 * h), abs=1e-6)
     w.lam[:] = 1.0
-    wrenches = np.vstack([np.zeros(6), -w.J[0].reshape(2, 6)])
+    wrenches = np.vstack([np.zeros(6), -w.J[:2]])
     check_action_is_reaction(b, wrenches)
 
 

@@ -64,7 +64,7 @@ def test_derivatives(case, seed):
     b, h = thrown(case, seed), 1e-5
     w, ahead, behind = b.rows(), b.later(h).rows(), b.later(-h).rows()
     V = np.hstack([b.V[1], b.V[2]])
-    phi_dot, later, before = (s.J @ V + s.phi_t for s in (w, ahead, behind))
+    phi_dot, later, before = (s.J.reshape(-1, 12) @ V + s.phi_t for s in (w, ahead, behind))
     assert phi_dot == pytest.approx((ahead.phi - behind.phi) / (2 * h), abs=1e-7)
     assert w.gamma == pytest.approx(-(later - before) / (2 * h), abs=1e-7)
 
@@ -79,12 +79,12 @@ def test_rows_against_every_twist(case):
         twist[k] = 1.0
         twist = twist.reshape(3, 6)
         columns.append((b.moved(twist, h).rows().phi - b.moved(twist, -h).rows().phi) / (2 * h))
-    assert pytest.approx(np.array(columns).T, abs=1e-8) == b.rows().J
+    assert pytest.approx(np.array(columns).T, abs=1e-8) == b.rows().J.reshape(-1, 12)
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_reactions_add_no_force_and_no_moment(case):
     b = thrown(case, 9)
     put_right(b, PLACE, np.zeros(3), np.zeros(3))  # closed: off it, a pair of forces has a lever
-    for row in b.rows().J:
-        check_action_is_reaction(b, np.vstack([np.zeros(6), row.reshape(2, 6)]))
+    for row in b.rows().J.reshape(-1, 2, 6):
+        check_action_is_reaction(b, np.vstack([np.zeros(6), row]))

@@ -82,7 +82,7 @@ def test_its_bodies_act_on_what_its_load_pushes():
     text = RAIL % (LOAD % "-200*s").replace("body: slider", "body: other")
     other = "bodies: {other: {mass: 1, inertia: [1, 1, 1], at: [1, 1]}, "
     read = scenario(text.replace("bodies: {", other, 1))
-    assert frozenset({0, 1}) in nodes(read, built(read)).groups
+    assert frozenset({0, 1}) in nodes(built(read)).groups
 
 
 def test_in_events():

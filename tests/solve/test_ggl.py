@@ -228,7 +228,7 @@ def test_a_step_of_a_long_stiff_chain_costs_what_its_bodies_cost():
         text = stiff_chain(n)
         scenario = loads(text)
         mechanism = assemble(scenario)
-        found = nodes(scenario, mechanism)
+        found = nodes(mechanism)
         table = tables(found, mechanism, mechanism.model)
         r = run(text, *GGL)
         told[n] = {

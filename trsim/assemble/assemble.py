@@ -21,7 +21,7 @@ from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
-from trsim.assemble.pattern import Hubs, no_pattern, pattern
+from trsim.assemble.pattern import Hubs, lines, no_pattern, pattern
 from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.rows import (
     all_rows,
@@ -37,7 +37,6 @@ from trsim.assemble.stages import Choice, Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
     contact_numbers,
-    contact_states,
     drawn,
     eccentricity,
     extent,
@@ -59,7 +58,7 @@ from trsim.elements.contract import (
     N_BOOK,
 )
 from trsim.elements.prescribed import ENTRY
-from trsim.elements.scene import BAUMGARTE, NONE, PROJECTION, Model, scene
+from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
 Array = NDArray[np.float64]
@@ -196,8 +195,9 @@ def pack(  # type: ignore[no-untyped-def]
     for section, entries in sections.items():
         for name, spec in entries.items():
             key = spec.type
-            if key == "clearance_joint" and (spec.clearance == 0.0 or name in ideal):
-                key = "revolute"
+            other = elements.load(key).ideal
+            if other and (spec.clearance == 0.0 or name in ideal):
+                key = other
             wanted.append((key, section, name, spec))
     if any(scenario.gravity):
         gravity = elements.load("gravity")
@@ -299,9 +299,11 @@ def build(
         par=par,
         tab=np.array(at.tab),
         n_s=at.n_s,
+        n_mem=N_MEM + max((i.element.n_mem for i in instances), default=0),
         **turns(at, d),
         **kernels(instances),
-        **(no_pattern(frames, n) if hubs is None else pattern(frames, n, spans(at), hubs)),
+        **lines([*frames, *(r.frames for r in redundant)]),
+        **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **watched_rows(instances, rows, redundant, size),
         **band_tables(list(at.beams.values()), frames),
         derivative=derivative.address(),
@@ -320,7 +322,7 @@ def build(
         scale=scale,
         contact=np.array(contacts, np.int64),
         contact_par=contact_numbers(at, instances, contacts, arms),
-        contact_state=contact_states(instances, contacts),
+        contact_state=np.array([i.row.contact.state for i in instances if i.row.contact], np.int64),
         contact_angle=np.array([eccentricity(instances[e].element) for e in contacts], np.int64),
         contact_width=np.array(
             [sum(c.size for c in instances[e].channels) for e in contacts], np.int64

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.members import Beam
-from trsim.assemble.pattern import slots
+from trsim.assemble.pattern import Rows, slots
 from trsim.laws.cable_section import mass
 
 Array = NDArray[np.float64]
@@ -62,7 +62,7 @@ def inverse_of(factors: Array) -> Array:
     return X
 
 
-def band_tables(beams: list[Beam], row_frames: list[tuple[int, int]]) -> dict[str, Any]:
+def band_tables(beams: list[Beam], row_frames: Rows) -> dict[str, Any]:
     """`beam`, `band`, `consistent` and `across` of a model."""
     if not beams:
         none = np.zeros((0, WIDTH))

@@ -135,11 +135,11 @@ def node_rows(s):
     for f in range(s.n_r, s.n):
         square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
-            k, o = s.slot_row[p], s.slot_column[p]
+            l = s.slot_line[p]
             for c in range(width):
                 x, y = (c + 1) % 3, (c + 2) % 3
-                B[p, c] = J[k, o + c]
-                B[p, width + c] = (J[k, o + 3 + x] * G[f, y] - J[k, o + 3 + y] * G[f, x]) / square
+                B[p, c] = J[l, c]
+                B[p, width + c] = (J[l, 3 + x] * G[f, y] - J[l, 3 + y] * G[f, x]) / square
 
 
 @equation
@@ -190,13 +190,12 @@ def node_right_hand_side(s, x):
         square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
         sigma = (G[f, 0] * G[f, 3] + G[f, 1] * G[f, 4] + G[f, 2] * G[f, 5]) / square
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
-            k, o = s.slot_row[p], s.slot_column[p]
             total = 0.0
             for c in range(s.d_node):
                 total += B[p, c] * free[f, c]
             for c in range(3):
-                total -= 2.0 * sigma * s.J[k, o + 3 + c] * V[f, 3 + c]
-            x[k] += total
+                total -= 2.0 * sigma * s.J[s.slot_line[p], 3 + c] * V[f, 3 + c]
+            x[s.slot_row[p]] += total
 
 
 @equation

@@ -34,6 +34,7 @@ have no such places, all do.
 """
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import Any
 
 from trsim.assemble.equations import (
@@ -111,10 +112,11 @@ def closes_a_loop(rows: Sequence[RowName], bars: Iterable[tuple[int, int]] = ())
 
     for first, nodes in bars:
         above.update((f, first) for f in range(first + 1, first + nodes))
-    for _, (i, j) in sorted({(row.instance, row.frames) for row in rows}):
-        if top(i) == top(j):
-            return True
-        above[top(i)] = top(j)
+    for _, frames in sorted({(row.instance, row.frames) for row in rows}):
+        for i, j in pairwise(frames):
+            if top(i) == top(j):
+                return True
+            above[top(i)] = top(j)
     return False
 
 

@@ -5,7 +5,7 @@ are coupled where a force, a joint or a rate of change of one depends on the oth
 let go by user events are counted as they are in any stage, so the coupling is that of all stages.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
@@ -32,10 +32,10 @@ class Nodes(NamedTuple):
         return found
 
 
-def nodes(scenario: Any, mechanism: Mechanism) -> Nodes:
+def nodes(mechanism: Mechanism) -> Nodes:
     """The nodes of a mechanism, and which of them its elements couple."""
     bodies, states = mechanism.model.n - 1, mechanism.model.n_z - N_BOOK
-    of = _Coupling(scenario, mechanism, bodies)
+    of = _Coupling(mechanism, bodies)
     groups = {of.group(instance) for instance in mechanism.instances}
     of_beams = {k for beam in mechanism.beams.values() for k in nodes_of(beam)}
     acting = (of.group(i) for i in mechanism.instances if not holds_still(i, mechanism))
@@ -49,8 +49,8 @@ def nodes(scenario: Any, mechanism: Mechanism) -> Nodes:
 def holds_still(instance: Instance, mechanism: Mechanism) -> bool:
     """Whether an element is a pin right at its nodes of beams, along world axes: whatever these do,
     its rows stay as they are."""
-    key, con, par = instance.element.key, instance.row.con, instance.row.par
-    if key != "spherical" and not (key == "revolute" and mechanism.planar):
+    con, par = instance.row.con, instance.row.par
+    if (2 if mechanism.planar else 3) not in instance.element.pin:
         return False
     first = mechanism.model.n_r
     arms = [par[3 * end : 3 * end + 3] for end in (0, 1) if con[end] >= first]
@@ -63,8 +63,8 @@ def nodes_of(beam: Beam) -> range:
 
 
 class _Coupling:
-    def __init__(self, scenario: Any, mechanism: Mechanism, bodies: int) -> None:
-        self.scenario, self.bodies = scenario, bodies
+    def __init__(self, mechanism: Mechanism, bodies: int) -> None:
+        self.bodies = bodies
         self.sensed = {
             instance.name: instance.element.acts_on(instance.row)
             for instance in mechanism.instances
@@ -76,20 +76,10 @@ class _Coupling:
         """The nodes that an element couples."""
         if instance.section not in ("joints", "drives", "forces", "events"):
             return frozenset()
-        key = instance.element.key
         frames = set(instance.element.acts_on(instance.row))
         states = set(instance.row.states)
         if instance.section in ("drives", "events"):
             states |= {state for state, _ in self.motions.get(instance.name, ())}
-        if key in ("applied_load", "distributed_load"):
-            frames |= self.read(self.scenario.forces[instance.name])
+        frames = frames.union(*(self.sensed[name] for name in instance.row.reads))
         own = {f - 1 for f in frames if f > 0}
         return frozenset(own | {self.bodies + z - N_BOOK for z in states if z >= 0})
-
-    def read(self, load: Any) -> set[int]:
-        """The bodies whose motion a load depends on through sensors."""
-        if load.type == "distributed_load":
-            function = load.force_per_length
-        else:
-            function = load.torque if load.force is None else load.force
-        return {f for name in function.names - {"t", "pi"} for f in self.sensed[name]}

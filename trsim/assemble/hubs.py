@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.instances import RowName
-from trsim.assemble.pattern import Hubs, structure
+from trsim.assemble.pattern import Hubs, Rows, structure
 from trsim.assemble.rank import dependent_rows, of_length_one, plainly_independent
 from trsim.assemble.reduce import jacobian, moves, weights
 from trsim.elements.scene import Model
@@ -35,7 +35,7 @@ def hubs(
 ) -> Hubs:
     """The hubs of a mechanism.  rows: those of `full`; kept: of these the ones in the solve."""
     frames, d = [r.frames for r in kept], 3 if planar else 6
-    count = Counter(f for pair in frames for f in pair if 0 < f < full.n_r)
+    count = Counter(f for named in frames for f in named if 0 < f < full.n_r)
     found, many = Hubs(), [f for f, n in count.most_common(TRIED) if n > MANY * d]
     if not many:
         return found
@@ -58,14 +58,14 @@ def clique(rows: int) -> int:
 
 
 def late_rows(
-    full: Model, J: Array, frames: list[tuple[int, int]], held: tuple[int, ...], planar: bool
+    full: Model, J: Array, frames: Rows, held: tuple[int, ...], planar: bool
 ) -> frozenset[int]:
     """Rows that depend on others while some bodies are held; of these rather the rows on them."""
     keep = moves(full, planar).reshape(-1, 6).copy()
     keep[[f - 1 for f in held]] = False
     J, scale = J[:, keep.ravel()], weights(full)[keep.ravel()]
     still = {0, *held}
-    moved = [k for k, pair in enumerate(frames) if not still.issuperset(pair)]
+    moved = [k for k, named in enumerate(frames) if not still.issuperset(named)]
     late = frozenset(range(len(frames))).difference(moved)
     if plainly_independent(of_length_one(J[moved], scale)):
         return late

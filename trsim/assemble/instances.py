@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
 
-from trsim.elements.contract import Channel, Element, Row
+from trsim.elements.contract import Channel, Element, Row, Turning
 
 
 class Column(NamedTuple):
@@ -51,6 +51,15 @@ class Instance:
         own = "rad" if self.row.turns else "m"
         return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
 
+    @property
+    def turning(self) -> Turning:
+        """How it depends on the turns of its frames."""
+        if self.element.turning:
+            return self.element.turning(self.row)
+        # of bodies themselves, and of their weight, no turn matters here
+        own = self.section not in ("bodies", "")
+        return Turning(tuple(self.element.acts_on(self.row)) if own else ())
+
 
 @dataclass(frozen=True)
 class RowName:
@@ -60,5 +69,5 @@ class RowName:
     axis: str
     instance: int
     index: int  # which of the element's rows
-    frames: tuple[int, int]
+    frames: tuple[int, ...]  # that it names, each once
     rotation: bool

@@ -25,7 +25,6 @@ STEEP = frozenset({DIV, POW, ATAN2, SQRT, SIN, COS, TAN, EXP, LOG})
 TORN = 1e-6  # of the mechanism's size, rad: more is a jump in place, less the rounding of numbers
 SUDDEN = 1e-6  # of the largest rate of a motion: less is no jump of it
 SHOWN = 3  # jumps of one motion in a note
-SLIP = 7  # of Row.con of an actuator
 
 
 class Driven(NamedTuple):
@@ -47,11 +46,10 @@ def driven(at: Any, instances: list[Any]) -> dict[int, Driven]:
         if instance.section != "drives":
             continue
         con = instance.row.con
-        slip = con[SLIP] if instance.element.key == "actuator" else -1
         switched = bool(at.switches) and ("drives", instance.name) in at.switches.names
-        found[con[OWN_MOTION]] = Driven(e, con[OWN_STATE] >= 0, switched, slip)
+        found[con[OWN_MOTION]] = Driven(e, con[OWN_STATE] >= 0, switched, instance.row.slip)
         for state, offset in at.switches.motions.get(instance.name, ()) if at.switches else ():
-            found[offset] = Driven(e, state >= 0, True, slip)
+            found[offset] = Driven(e, state >= 0, True, instance.row.slip)
     return found
 
 

@@ -22,20 +22,19 @@ def looped(
     bars: first frame and number of nodes of each, which is one body.
     """
     of_bar = {f: first for first, nodes in bars for f in range(first, first + nodes)}
-    edges: dict[int, tuple[int, int]] = {}
-    drives: dict[int, tuple[int, int]] = {}
+    edges: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {}
+    drives: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {}
     for row in rows:
-        i, j = (of_bar.get(f, f) for f in row.frames)
         driven = instances[row.instance].section == "drives"
-        (drives if driven else edges)[row.instance] = (min(i, j), max(i, j))
+        bodies = tuple(sorted(of_bar.get(f, f) for f in row.frames))
+        (drives if driven else edges)[row.instance, row.frames] = bodies
     joined = set(edges.values())
-    edges |= {e: pair for e, pair in drives.items() if pair not in joined}
-    left = list(edges.values())
+    left = [*edges.values(), *(bodies for bodies in drives.values() if bodies not in joined)]
     while True:
-        ends = [f for pair in left for f in pair]
+        ends = [f for bodies in left for f in bodies]
         single = {f for f in ends if f != 0 and ends.count(f) == 1}
         if not single:
             break
-        left = [pair for pair in left if not single & set(pair)]
+        left = [bodies for bodies in left if not single & set(bodies)]
     nodes = set(of_bar.values())
-    return np.array(sorted({f for pair in left for f in pair} - {0} - nodes), np.int64)
+    return np.array(sorted({f for bodies in left for f in bodies} - {0} - nodes), np.int64)

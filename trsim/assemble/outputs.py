@@ -57,15 +57,17 @@ def measure(s, t, y, work_projection, energy_0):
 @equation
 def reaction(s, k):
     """Force and moment of one joint on its body j, at the joint."""
-    out, con, par, lam, J = s.out, s.con, s.par, s.lam, s.J
+    out, con, par, lam, J, row_start = s.out, s.con, s.par, s.lam, s.J, s.row_start
     e, first, number, o = s.joint_out[k, 0], s.joint_out[k, 1], s.joint_out[k, 2], s.joint_out[k, 3]
     for c in range(6):
         out[o + c] = 0.0
     for r in range(first, first + number):
         row = con[e, r]
         if row >= 0:
-            for c in range(6):
-                out[o + c] -= lam[row] * J[row, 6 + c]
+            for l in range(row_start[row], row_start[row + 1]):
+                if s.line_frame[l] == con[e, 1]:
+                    for c in range(6):
+                        out[o + c] -= lam[row] * J[l, c]
     p = arm(s.X, con[e, 1], par[e, 3], par[e, 4], par[e, 5])
     f0, f1, f2 = out[o], out[o + 1], out[o + 2]
     out[o + 3] -= p[1] * f2 - p[2] * f1

@@ -18,6 +18,7 @@ is quasi-definite: it has factors L D L^T in every order, and D has the signs of
 with) are eliminated after all hubs, when S_0 has become S.  hubs.py says which bodies are hubs.
 """
 
+from collections.abc import Sequence
 from heapq import heapify, heappop, heappush
 from typing import Any, NamedTuple
 
@@ -25,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Indices = NDArray[np.int64]
+Rows = Sequence[tuple[int, ...]]  # frames that each row names, each once
 
 
 class Hubs(NamedTuple):
@@ -52,14 +54,26 @@ class Structure(NamedTuple):
         return under + 3 * pairs
 
 
-def slots(row_frames: list[tuple[int, int]], n: int) -> list[list[tuple[int, int]]]:
-    """For each of n frames its slots: (row, column of J) of the rows between frames (i, j)."""
+def slots(row_frames: Rows, n: int) -> list[list[tuple[int, int]]]:
+    """For each of n frames its slots: (row, line of J) of the rows that name it."""
     found: list[list[tuple[int, int]]] = [[] for _ in range(n)]
-    for k, (i, j) in enumerate(row_frames):
-        for f, column in ((i, 0), (j, 6)):
+    line = 0
+    for k, frames in enumerate(row_frames):
+        for f in frames:
             if f > 0:
-                found[f].append((k, column))
+                found[f].append((k, line))
+            line += 1
     return found
+
+
+def lines(row_frames: Rows) -> dict[str, Indices]:
+    """The lines of J: of each row one for every frame it names."""
+    number = [len(frames) for frames in row_frames]
+    return {
+        "row_start": np.cumsum([0, *number]),
+        "line_row": np.repeat(np.arange(len(number)), number),
+        "line_frame": np.array([f for frames in row_frames for f in frames], np.int64),
+    }
 
 
 def minimum_degree(
@@ -126,7 +140,7 @@ def triangle(members: Indices, ranks: list[Indices], column_start: Indices) -> I
 
 
 def structure(
-    row_frames: list[tuple[int, int]],
+    row_frames: Rows,
     n: int,
     beams: list[tuple[int, int]] | None = None,
     hubs: Hubs = Hubs(),  # noqa: B008 - nothing in it can change
@@ -160,29 +174,18 @@ def structure(
     return Structure(of_body, order, below)
 
 
-def no_pattern(row_frames: list[tuple[int, int]], n: int) -> dict[str, Any]:
-    """That of a model whose equations nobody solves: only its rows are looked at."""
-    none, m = np.zeros(0, np.int64), len(row_frames)
-    return {
-        "row_frame": np.array(row_frames, np.int64).reshape(-1, 2),
-        "frame_start": np.zeros(n + 1, np.int64),
-        "slot_row": none,
-        "slot_column": none,
-        "hub": np.full(n, -1),
-        "entry": none,
-        "column_start": np.zeros(m + 1, np.int64),
-        "row": none,
-        "target": none,
-    }
+def no_pattern(m: int, n: int) -> dict[str, Any]:
+    """That of a model whose equations nobody solves: only its m rows are looked at."""
+    return {**pattern([], n), "column_start": np.zeros(m + 1, np.int64)}
 
 
 def pattern(
-    row_frames: list[tuple[int, int]],
+    row_frames: Rows,
     n: int,
     beams: list[tuple[int, int]] | None = None,
     hubs: Hubs = Hubs(),  # noqa: B008 - nothing in it can change
 ) -> dict[str, Any]:
-    """Index arrays of Model for rows between pairs of its n frames; see the comments there.
+    """Index arrays of Model for rows over its n frames; see the comments there.
 
     beams: first frame and number of nodes of each; they follow the rigid bodies.
     """
@@ -204,10 +207,9 @@ def pattern(
         hub = rank[first[f] : first[f] + hubs.d] if f in hubs.frames else None
         entry += places(rank[[k for k, _ in members]], hub, ranks, column_start)
     return {
-        "row_frame": np.array(row_frames, np.int64).reshape(-1, 2),
         "frame_start": np.cumsum([0, *map(len, of_frame)]),
         "slot_row": np.array([k for members in of_frame for k, _ in members], np.int64),
-        "slot_column": np.array([c for members in of_frame for _, c in members], np.int64),
+        "slot_line": np.array([l for members in of_frame for _, l in members], np.int64),
         "hub": first,
         "entry": np.concatenate([*entry, np.zeros(0, np.int64)]),
         "column_start": column_start,

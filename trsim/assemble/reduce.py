@@ -29,25 +29,35 @@ def jacobian(model: Model, t: float, y: Array) -> tuple[Array, Array, Array]:
     poses(w, y)
     constraints(w, t)
     m = model.m
-    J = np.zeros((m, model.n, 6))
-    for end, block in ((0, w.J[:m, :6]), (1, w.J[:m, 6:])):
-        J[np.arange(m), model.row_frame[:, end]] = block
-    return (
-        w.phi[:m].copy(),
-        w.phi_t[:m].copy(),
-        against_rates(w, J[:, 1:].reshape(m, 6 * (model.n - 1))),
-    )
+    return w.phi[:m].copy(), w.phi_t[:m].copy(), spread_out(w, m)
 
 
 def all_rows(work: Scene, y: Array) -> Array:
     """J against the world-axes rates, of the rows of the solve and of the redundant ones."""
     poses(work, y)
     constraints(work, 0.0)
-    frames = np.vstack([work.row_frame, work.redundant[:, :2]])
-    J = np.zeros((len(frames), work.n, 6))
-    for end, block in ((0, work.J[:, :6]), (1, work.J[:, 6:])):
-        J[np.arange(len(frames)), frames[:, end]] = block
-    return against_rates(work, J[:, 1:].reshape(len(frames), 6 * (work.n - 1)))
+    return spread_out(work, len(work.phi))
+
+
+def spread_out(work: Scene, rows: int) -> Array:
+    """The first rows of J of the last evaluation, against the world-axes rates (rows, 6 (n-1))."""
+    J, end = np.zeros((rows, work.n, 6)), work.row_start[rows]
+    J[work.line_row[:end], work.line_frame[:end]] = work.J[:end]
+    return against_rates(work, J[:, 1:].reshape(rows, 6 * (work.n - 1)))
+
+
+def less_reactions(work: Scene, wrenches: Array, lam: Array) -> None:
+    """wrenches (n, 6) -= J^T lam of the rows of the solve, at the last evaluation."""
+    number = np.diff(work.row_start[: work.m + 1])
+    for place in range(number.max(initial=0)):
+        rows = np.flatnonzero(number > place)
+        line = work.row_start[rows] + place
+        np.subtract.at(wrenches, work.line_frame[line], work.J[line] * lam[rows, None])
+
+
+def largest_reaction(work: Scene) -> float:
+    """The largest force of a row on a frame along a world axis, at the last evaluation, N."""
+    return float(np.abs(work.lam[work.line_row, None] * work.J[:, :3]).max(initial=0.0))
 
 
 def moves(model: Model, planar: bool) -> NDArray[np.bool_]:

@@ -31,7 +31,6 @@ Array = NDArray[np.float64]
 
 REGULAR = 1e-6  # smallest singular value of N[L]: below, it is not sure that L may go
 MOST_JOINTS = 3  # changed together in the search; beyond that, rows one by one
-ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
 
 
 class Change(NamedTuple):
@@ -120,35 +119,10 @@ def changes(instance: Instance, stress: Stress, used: Any) -> Iterator[Change]:
     if instance.name in used:
         return
     own = {stress.rows[r].axis: r for r in stress.inside if stress.rows[r].element == instance.name}
-    tilts, turn = ("tilt 1", "tilt 2"), ("turn",)
-    key = instance.element.key
-    axial = axial_row(instance)
-    wanted: list[tuple[tuple[str, ...], str, str | None]] = []
-    if key in ("revolute", "clearance_joint"):
-        ball = ("spherical", "spherical") if key == "revolute" else ("free to tilt", None)
-        wanted += [(tilts, *ball)]
-        cross = "universal" if key == "revolute" else None
-        wanted += [(("tilt 1",), "universal", cross), (("tilt 2",), "universal", cross)]
-        if axial:
-            wanted += [((axial,), "cylindrical", None)]
-            wanted += [((axial, *tilts), "a ball in a sleeve", None)]
-    elif key == "universal":
-        wanted += [(("tilt",), "spherical", "spherical")]
-    elif key == "prismatic":
-        wanted += [(turn, "cylindrical", None), ((*tilts, *turn), "a ball in a sleeve", None)]
-    elif key == "fixed":
-        wanted += [(turn, "revolute", "revolute"), ((*tilts, *turn), "spherical", "spherical")]
-    for axes, becomes, kind in wanted:
-        if all(axis in own for axis in axes) and len(axes) < len(own):
-            yield Change(instance.name, tuple(own[axis] for axis in axes), becomes, kind)
-
-
-def axial_row(instance: Instance) -> str:
-    """The row that holds a hinge along its axis, where one row does."""
-    if instance.element.key == "clearance_joint":
-        return "axial"
-    axis = np.abs(instance.row.par[12:15])
-    return "xyz"[int(np.argmax(axis))] if axis.size == 3 and axis.max() > ALONG else ""
+    for change in instance.element.changes(instance.row):
+        if all(axis in own for axis in change.rows) and len(change.rows) < len(own):
+            gone = tuple(own[axis] for axis in change.rows)
+            yield Change(instance.name, gone, change.becomes, change.type)
 
 
 def choices(options: list[list[Change]], k: int) -> Iterator[tuple[Change, ...]]:

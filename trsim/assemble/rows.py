@@ -15,6 +15,7 @@ from trsim.assemble.reduce import (
 )
 from trsim.assemble.redundant import Dependence, dependences
 from trsim.assemble.shaky import shaky
+from trsim.elements.contract import ends
 from trsim.elements.scene import Model
 from trsim.errors import ModelError
 
@@ -31,30 +32,17 @@ def all_rows(instances: list[Instance], held: Collection[str] = ()) -> list[RowN
     """
     rows = []
     for n, instance in enumerate(instances):
-        i, j = instance.row.con[0], instance.row.con[1] if len(instance.row.con) > 1 else 0
         if instance.row.is_force:
             continue
         if instance.section == "events" and instance.name not in held:
             continue
         for index, axis in enumerate(instance.element.rows):
             turns = axis.startswith(("tilt", "turn"))
-            if instance.element.key == "fixed" and axis == unheld(instances, i, j):
-                continue  # a weld to a beam turns with its tangent; about it there is no torsion
-            rows.append(RowName(instance.name, axis, n, index, (i, j), turns))
+            if axis == instance.row.unheld:
+                continue
+            frames = instance.row.frames(index)
+            rows.append(RowName(instance.name, axis, n, index, frames, turns))
     return rows
-
-
-def on_a_beam(instances: list[Instance], frames: tuple[int, int]) -> bool:
-    """Whether one of the frames is a node of a flexible bar."""
-    first = [i.row.con[0] for i in instances if i.element.key == "ancf_cable"]
-    return bool(first) and max(frames) >= min(first)
-
-
-def unheld(instances: list[Instance], i: int, j: int) -> str:
-    """The row of a weld that a flexible bar has nothing to hold by, see elements/fixed.py."""
-    if on_a_beam(instances, (j, j)):
-        return "turn"
-    return "tilt 2" if on_a_beam(instances, (i, i)) else ""
 
 
 def in_solve(full: Model, J: Array, planar: bool) -> NDArray[np.bool_]:
@@ -150,12 +138,12 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
                 ("bodies", name),
             )
     loads(at, instances)
-    bushings(at, instances)
+    resisted(at, instances)
     cross_sections(at, instances)
     for instance in instances:
-        i, j = (*instance.row.con[:2], 0)[:2] if instance.section == "joints" else (0, 0)
-        free = instance.element.key in ("spherical", "fixed")
-        if on_a_beam(instances, (i, j)) and not free:
+        if instance.section != "joints" or not instance.element.holds_twist:
+            continue
+        if any(at.is_node(f) for f in ends(instance.row)):
             raise ModelError(
                 f"a {instance.element.key} holds the turning of a flexible bar about itself, "
                 "and in space that has no torsion",
@@ -167,35 +155,32 @@ def check_space(at: Addresses, instances: list[Instance]) -> None:
 def loads(at: Addresses, instances: list[Instance]) -> None:
     """A torque along a flexible bar in space, which turns nothing."""
     for instance in instances:
-        if instance.element.key != "applied_load":
-            continue
-        node, frame, _, is_torque = instance.row.con[:4]
-        if not is_torque or not at.is_node(node):
-            continue
-        along = at.rotation[frame] @ np.array(instance.row.par[3:6]) @ at.rotation[node][:, 0]
-        if abs(along) > PARTLY:
-            part = "" if abs(along) > ALONG else f"with {abs(along):.2g} of it "
-            raise ModelError(
-                f"turns '{at.owners[node]}' {part}about itself, and in space that has no torsion",
-                "give the torque a direction across the bar, make the bar rigid "
-                "(`flexible: false`), or draw the mechanism in the x-y plane",
-                ("forces", instance.name, "direction"),
-            )
+        for node, frame, direction in instance.turning.torques:
+            if not at.is_node(node):
+                continue
+            along = at.rotation[frame] @ np.array(direction) @ at.rotation[node][:, 0]
+            if abs(along) > PARTLY:
+                part = "" if abs(along) > ALONG else f"with {abs(along):.2g} of it "
+                raise ModelError(
+                    f"turns '{at.owners[node]}' {part}about itself, and in space that has no "
+                    "torsion",
+                    "give the torque a direction across the bar, make the bar rigid "
+                    "(`flexible: false`), or draw the mechanism in the x-y plane",
+                    (instance.section, instance.name, "direction"),
+                )
 
 
-def bushings(at: Addresses, instances: list[Instance]) -> None:
+def resisted(at: Addresses, instances: list[Instance]) -> None:
     """What a bushing holds of a flexible bar in space: places, no turns."""
     for instance in instances:
-        if instance.element.key != "bushing":
-            continue
-        _, j, _, turns = instance.row.con
-        if turns and at.is_node(j):
+        node = next(filter(at.is_node, instance.turning.held), None)
+        if node is not None:
             raise ModelError(
-                f"holds the turning of '{at.owners[j]}', a flexible bar, about itself, and in "
+                f"holds the turning of '{at.owners[node]}', a flexible bar, about itself, and in "
                 "space that has no torsion",
                 "leave out its rotational stiffness and damping, let it act on a rigid body fixed "
                 "to the bar, or draw the mechanism in the x-y plane",
-                ("forces", instance.name),
+                (instance.section, instance.name),
             )
 
 
@@ -203,24 +188,16 @@ def cross_sections(at: Addresses, instances: list[Instance]) -> None:
     """What would be carried along by the cross-section of a bar in space, whose turn about the bar
     nobody knows: welds of bars at an angle, walls and directions across a bar."""
     for instance in instances:
-        key, con, par = instance.element.key, instance.row.con, instance.row.par
-        # frame and direction, in its axes, of what turns with a body
-        turning = {
-            "limit_stop": (con[0], par[6:9]) if key == "limit_stop" and con[3] == 0 else None,
-            "applied_load": (con[1], par[3:6]) if key == "applied_load" and not con[3] else None,
-            "distributed_load": (con[2], par[1:4]) if key == "distributed_load" else None,
-            # of its three axes two at least point across a bar
-            "bushing": (con[0], (0.0, 0.0, 0.0)),
-            "displacement": (con[0], par[6:9]),
-        }.get(key)
-        if turning and at.is_node(turning[0]) and abs(turning[1][0]) < ALONG:
-            raise ModelError(
-                f"turns with '{at.owners[turning[0]]}', a flexible bar, of which in space nobody "
-                "knows how it turns about itself",
-                "let it turn with a rigid body, or draw the mechanism in the x-y plane",
-                (instance.section, instance.name),
-            )
-        bars = key == "fixed" and at.is_node(con[0]) and at.is_node(con[1])
+        con = instance.row.con
+        for frame, direction in instance.turning.axes:
+            if at.is_node(frame) and abs(direction[0]) < ALONG:
+                raise ModelError(
+                    f"turns with '{at.owners[frame]}', a flexible bar, of which in space nobody "
+                    "knows how it turns about itself",
+                    "let it turn with a rigid body, or draw the mechanism in the x-y plane",
+                    (instance.section, instance.name),
+                )
+        bars = instance.element.welds and at.is_node(con[0]) and at.is_node(con[1])
         if bars and abs(np.dot(at.tangent(con[0]), at.tangent(con[1]))) < ALONG:
             raise ModelError(
                 "welds two flexible bars at an angle, and in space these have no torsion",

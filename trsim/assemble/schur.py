@@ -33,8 +33,8 @@ def planar_rows(s):
     pair = 0
     for f in range(1, s.n_r):
         for p in range(frame_start[f], frame_start[f + 1]):
-            k, c = s.slot_row[p], s.slot_column[p]
-            b0, b1, b2 = J[k, c], J[k, c + 1], J[k, c + 5]
+            l = s.slot_line[p]
+            b0, b1, b2 = J[l, 0], J[l, 1], J[l, 5]
             w0, w1 = b0 * s.mass_inverse[f], b1 * s.mass_inverse[f]
             w2 = b2 * s.inertia_inverse[f, 8]
             B[p, 0], B[p, 1], B[p, 2] = b0, b1, b2
@@ -56,9 +56,8 @@ def spatial_rows(s):
     pair = 0
     for f in range(1, s.n_r):
         for p in range(frame_start[f], frame_start[f + 1]):
-            k, c = s.slot_row[p], s.slot_column[p]
-            b0, b1, b2 = J[k, c], J[k, c + 1], J[k, c + 2]
-            t0, t1, t2 = J[k, c + 3], J[k, c + 4], J[k, c + 5]
+            l = s.slot_line[p]
+            b0, b1, b2, t0, t1, t2 = J[l, 0], J[l, 1], J[l, 2], J[l, 3], J[l, 4], J[l, 5]
             b3 = X[f, 3] * t0 + X[f, 6] * t1 + X[f, 9] * t2
             b4 = X[f, 4] * t0 + X[f, 7] * t1 + X[f, 10] * t2
             b5 = X[f, 5] * t0 + X[f, 8] * t1 + X[f, 11] * t2
@@ -157,11 +156,14 @@ def plain_hub(s, f, pair, turn):
 @equation
 def velocity_residual(s, k):
     """Phi' = J V + Phi_t of row k."""
-    J, V = s.J, s.V
-    i, j = s.row_frame[k, 0], s.row_frame[k, 1]
+    J, V, line_frame = s.J, s.V, s.line_frame
+    start, end = s.row_start[k], s.row_start[k + 1]
     total = s.phi_t[k]
     for a in range(6):
-        total += J[k, a] * V[i, a] + J[k, 6 + a] * V[j, a]
+        part = J[start, a] * V[line_frame[start], a]
+        for l in range(start + 1, end):
+            part += J[l, a] * V[line_frame[l], a]
+        total += part
     return total
 
 

@@ -185,7 +185,7 @@ class _Packing:
         check(drive, self.scenario.drives, "drive", path)
         by_velocity = motion.position is None
         spec = self.scenario.drives[drive]
-        if spec.type == "actuator":
+        if self.instances["drives", drive].row.length:  # of its own line, without a joint
             if by_velocity != (spec.position is None):
                 raise ScenarioError(
                     "an actuator goes on with what it began with",
@@ -228,7 +228,7 @@ class _Packing:
         check(one, [*joints, *drives], "joint or drive", path)
         if one in drives:
             return self.switch("drives", one, LOOSE)
-        if self.instances["joints", one].element.key == "clearance_joint":
+        if self.instances["joints", one].element.ideal:
             raise ScenarioError(
                 f"joint '{one}' has clearance and cannot come apart",
                 "make it ideal with `clearance: 0`, or release a joint next to it",

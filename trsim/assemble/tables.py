@@ -14,7 +14,6 @@ from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
-from trsim.elements.prescribed import ROTATES
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -48,19 +47,17 @@ def watched_rows(
     instances: list[Instance], rows: Sequence[RowName], redundant: Sequence[RowName], size: float
 ) -> dict[str, Any]:
     """The rows that are only looked at, and what makes the opening of every row relative."""
-    named = [(*row.frames, row.instance, row.index) for row in redundant]
+    named = [(row.instance, row.index) for row in redundant]
     turning = [turns_by(instances[row.instance], row.index) for row in (*rows, *redundant)]
     return {
-        "redundant": np.array(named, np.int64).reshape(-1, 4),
+        "redundant": np.array(named, np.int64).reshape(-1, 2),
         "row_unit": np.where(turning, 1.0, size) if turning else np.zeros(0),
     }
 
 
 def turns_by(instance: Instance, index: int) -> bool:
     """Whether a row of an element is an angle, as drives and locks of hinges are."""
-    if instance.element.key == "drive":
-        return instance.row.con[ROTATES - 1] == 1
-    return instance.element.rows[index].startswith(("tilt", "turn"))
+    return instance.row.turns or instance.element.rows[index].startswith(("tilt", "turn"))
 
 
 def judged(instances: Sequence[Instance]) -> NDArray[np.int64]:
@@ -321,16 +318,6 @@ def contact_numbers(
         mass = arm**2 / inverse
         rows.append((c.stiffness, c.exponent, mass, c.clearance, c.slowest_impact, arm, c.damping))
     return np.array(rows, float).reshape(-1, 7)
-
-
-def contact_states(instances: list[Instance], contacts: list[int]) -> NDArray[np.int64]:
-    """The state of z a touch resets, or -1."""
-    first = FIRST_ROW  # a clearance joint's own numbers start behind i, j and its coordinate
-    states = [
-        instances[e].row.con[first] if instances[e].element.key == "clearance_joint" else -1
-        for e in contacts
-    ]
-    return np.array(states, np.int64)
 
 
 def eccentricity(element: Element) -> int:

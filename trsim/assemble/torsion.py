@@ -15,9 +15,8 @@ missed either
                   bar's line, pushed on that line only, and not turning at the start
 """
 
-from collections.abc import Iterator
 from itertools import combinations
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,14 +33,6 @@ Array = NDArray[np.float64]
 
 FREE = 1e-6  # of a turn: what is left of it beside the rows of the joints
 ROUND = 1e-9  # of an inertia, of a length
-# con: whose points these elements push or hold; nothing else of them feels how a body turns
-POINTS = {
-    "spherical": (0, 1),
-    "spring_damper": (0, 1),
-    "actuator": (0, 1),
-    "limit_stop": (1,),
-    "displacement": (1,),
-}
 
 
 class Holder(NamedTuple):
@@ -102,7 +93,7 @@ def holders(at: Addresses, instances: list[Instance]) -> list[list[Holder]]:
     line = {name: name for name in at.beams}
     found = []
     for instance in instances:
-        if instance.element.key != "fixed":
+        if not instance.element.welds:
             continue
         i, j = instance.row.con[:2]
         if at.is_node(i) and at.is_node(j):
@@ -139,7 +130,7 @@ def idles(one: Holder, at: Addresses, instances: list[Instance]) -> bool:
 def cluster(body: int, at: Addresses, instances: list[Instance]) -> set[int]:
     """A body and all rigid bodies that are welded to it."""
     found = {body}
-    welds = [i.row.con[:2] for i in instances if i.element.key == "fixed"]
+    welds = [i.row.con[:2] for i in instances if i.element.welds]
     pairs = [pair for pair in welds if not at.is_node(pair[0]) and not at.is_node(pair[1])]
     for _ in pairs:
         found |= {other for pair in pairs if found & {*pair} for other in pair}
@@ -170,32 +161,17 @@ def on_line(point: Array, place: Array, t: Array, at: Addresses) -> bool:
 
 def feels(instance: Instance, at: Addresses, bodies: set[int], place: Array, t: Array) -> bool:
     """Whether an element depends on how bodies turn about a line, or turns them about it."""
-    key, con, par = instance.element.key, instance.row.con, instance.row.par
-    if key in ("rigid_body", "gravity", "ancf_cable", "sync_shaft", "distributed_load"):
-        return key == "distributed_load" and con[2] in bodies
-    if not bodies & {*con[:2]}:
-        return False
-    if key == "fixed":
+    con, own = instance.row.con, instance.turning
+    if instance.element.welds:
         node = next((f for f in con[:2] if at.is_node(f)), None)
-        if node is None:
+        if node is None or not bodies & {*con[:2]}:
             return False
         straight = abs(np.dot(at.tangent(node), t)) > 1.0 - ROUND
         return not (straight and on_line(at.at_start[node], place, t, at))
-    if key == "applied_load":
-        body, frame, _, is_torque = con
-        held = body in bodies and not is_torque
-        return frame in bodies or not (held and all(points(at, par, (0,), con, bodies, place, t)))
-    if key in POINTS and not any(con[end] in bodies for end in {0, 1} - {*POINTS[key]}):
-        return not all(points(at, par, POINTS[key], con, bodies, place, t))
-    return True
-
-
-def points(
-    at: Addresses, par: Any, ends: tuple[int, ...], con: Any, bodies: set[int], place: Array,
-    t: Array,
-) -> Iterator[bool]:  # fmt: skip
-    """Whether the points of an element on the given bodies lie on a line."""
-    for end in ends:
-        if con[end] in bodies:
-            s = at.rotation[con[end]] @ np.array(par[3 * end : 3 * end + 3])
-            yield on_line(at.at_start[con[end]] + s, place, t, at)
+    if bodies.intersection(own.frames) or any(frame in bodies for frame, _ in own.axes):
+        return True
+    return any(
+        frame in bodies
+        and not on_line(at.at_start[frame] + at.rotation[frame] @ np.array(s), place, t, at)
+        for frame, s in own.points
+    )

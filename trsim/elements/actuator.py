@@ -29,6 +29,7 @@ from trsim.elements.contract import (
     Limit,
     Reach,
     Row,
+    between_points,
     kernel,
 )
 from trsim.elements.frames import distance_row, helper, line, push
@@ -122,12 +123,9 @@ def pack(name, spec, at):
     limits = (Limit("stall", spec.stall, "N", "jammed", STALLED),) if spec.stall else ()
     own = None if spec.supply is None else (*CHANNELS, *WITH_SUPPLY)
     con = (i, j, entry, states[0], 0, f, *states[1:])
-    return Row(con, par, None, own, spec.stiffness is not None, states, limits)
-
-
-def piston_of(instance):
-    """The state that holds the place of the piston of an actuator with a supply; else -1."""
-    return instance.row.con[PLACE - 1] if instance.element.key == "actuator" else -1
+    _, piston, slip = states
+    return Row(con, par, None, own, spec.stiffness is not None, states, limits,
+               piston=piston, slip=slip, length=drawn)  # fmt: skip
 
 
 STALLED = "reached its stall force"
@@ -283,6 +281,8 @@ ELEMENT = Element(
     reach=reach,
     rows=("length",),
     channels=CHANNELS,
+    turning=between_points,
+    picture="cylinder",
     kernels={
         "coordinate": coordinate,
         "constraint": constraint,

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.laws.functions import value
@@ -51,8 +51,10 @@ def pack(name, spec, at):
     # the direction is drawn in world axes at t = 0 and then turns with its frame
     n = at.axes(frame, direction(spec.direction))
     is_torque = spec.force is None
-    f = at.function(spec.torque if is_torque else spec.force, "torque" if is_torque else "force")
-    return Row((i, frame, f, int(is_torque)), (*at.local(i, place), *n), turns=is_torque)
+    load = spec.torque if is_torque else spec.force
+    f = at.function(load, "torque" if is_torque else "force")
+    con, par = (i, frame, f, int(is_torque)), (*at.local(i, place), *n)
+    return Row(con, par, turns=is_torque, reads=frozenset(load.names - {"t", "pi"}))
 
 
 @kernel
@@ -95,6 +97,13 @@ def reach(row):
     return Reach(forces=way, places=((i, row.par[:3], (i,)),))
 
 
+def turning(row):
+    body, frame, _, is_torque = row.con
+    if is_torque:
+        return Turning((body, frame), torques=((body, frame, row.par[3:6]),))
+    return Turning(points=((body, row.par[:3]),), axes=((frame, row.par[3:6]),))
+
+
 ELEMENT = Element(
     key="applied_load",
     section="forces",
@@ -105,6 +114,7 @@ ELEMENT = Element(
         Channel("magnitude", "drive", "the force or torque along its direction"),
         Channel("load", "drive", "its components, world axes", 3),
     ),
+    turning=turning,
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

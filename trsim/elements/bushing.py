@@ -17,8 +17,26 @@ from typing import Annotated, ClassVar
 
 from annotated_types import Ge
 
-from trsim.elements.contract import DAMPERS, SPRINGS, Channel, Element, Reach, Row, kernel
-from trsim.elements.frames import arm, dot, helper, push, separation, spin, twist, velocity
+from trsim.elements.contract import (
+    DAMPERS,
+    SPRINGS,
+    Channel,
+    Element,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+)
+from trsim.elements.frames import (
+    dot,
+    helper,
+    push,
+    separation,
+    spin,
+    twist,
+    two_points,
+    velocity,
+)
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
@@ -101,9 +119,7 @@ def half_square(par, e, k, v):
 @helper
 def slide(X, con, par, e):
     """The axes A_i, the arm to P_j on body i and on body j, and d."""
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    i, p_i, j, p_j = two_points(X, con, par, e)
     D = separation(X, i, p_i, j, p_j)
     A = triad(X, i, par, e, 6)
     return A, (p_i[0] + D[0], p_i[1] + D[1], p_i[2] + D[2]), p_j, into(A, D)
@@ -193,6 +209,12 @@ def reach(row):
     )
 
 
+def turning(row):
+    """Of its three axes two at least point across a bar."""
+    i, j, _, turns = row.con
+    return Turning((i, j), axes=((i, (0.0, 0.0, 0.0)),), held=(j,) if turns else ())
+
+
 ELEMENT = Element(
     key="bushing",
     section="forces",
@@ -206,6 +228,8 @@ ELEMENT = Element(
         Channel("displacement", "m", "of the second body's point, in the axes of the first", 3),
         Channel(TURN, "rad", "of the second body, in the same axes", 3),
     ),
+    turning=turning,
+    picture="block",
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 planar: false

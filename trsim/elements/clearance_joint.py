@@ -45,9 +45,10 @@ from trsim.elements.frames import (
     perpendicular_row,
     push,
     separation,
+    two_points,
     velocity,
 )
-from trsim.elements.joint import triads
+from trsim.elements.joint import of_a_hinge, triads
 from trsim.elements.revolute import Revolute, coordinate
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
@@ -156,7 +157,10 @@ def pack(name, spec, at):
         law.slowest_impact,
         *friction,
     )
-    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi)
+    ramp = law.friction.law == "modified_coulomb"
+    slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
+    jump = FRICTION_PAR if law.friction.law == "coulomb" else -1
+    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump)
     return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
 
 
@@ -167,9 +171,7 @@ def constraint(t, scene, a, b):
         k3, k4, k5 = con[e, AXIAL], con[e, TILT_1], con[e, TILT_2]
         if k3 < 0 and k4 < 0 and k5 < 0:
             continue
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        i, p_i, j, p_j = two_points(X, con, par, e)
         u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
         axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
@@ -182,9 +184,7 @@ def constraint(t, scene, a, b):
 @helper
 def play(X, V, con, par, e):
     """Arms, separation, unit normal and tangent, penetration and its rate."""
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    i, p_i, j, p_j = two_points(X, con, par, e)
     axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
     d = separation(X, i, p_i, j, p_j)
     along = dot(axis, d)
@@ -328,9 +328,7 @@ def measure(t, scene, a, b):
         if o < 0:
             continue
         F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        i, p_i, j, p_j = two_points(X, con, par, e)
         d = separation(X, i, p_i, j, p_j)
         v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
         v_j = velocity(V, j, p_j)
@@ -373,7 +371,10 @@ ELEMENT = Element(
         Channel("eccentricity_y_rate", "m/s", "its rate in the axes of the bearing's body"),
         Channel("force", "N", "contact force on the journal's body, world axes", 3),
     ),
-    n_mem=3,
+    meets=True,
+    ideal="revolute",
+    changes=lambda _: of_a_hinge("axial", None, None),
+    picture="journal",
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,

@@ -12,7 +12,8 @@ for its rows a <= e < b.  It reads poses and twists of the scene in world axes (
 coordinates and sensors (S, angles unwrapped), the states z, and writes what its kind may write:
 
     force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
-    constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma
+    constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma; J of row k
+                are the lines from row_start[k] on, one for each frame that Row.frames names
     coordinate  S[s] = value and rate; S[s, 0] comes in holding the branch to unwrap to,
                 the angle itself in a planar scene
     gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s); or how far a limit of
@@ -45,7 +46,7 @@ KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stif
 # con: the first columns of every element that joins two frames
 I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
-# mem: the first columns of every element with a gap
+# mem: its first N_MEM columns, the march's own; an element's own follow.  Of elements with a gap
 PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
 FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
 WHOLE = 9.0  # BRANCH: the law with all its branches
@@ -103,9 +104,12 @@ class Contact(NamedTuple):
 
     stiffness: float  # N/m^exponent
     exponent: float
-    clearance: float  # m; inf where the contact has none
+    clearance: float  # m, of a journal in its bearing; inf where the contact is none
     slowest_impact: float  # m/s
     damping: float  # chi: of the elastic force at the rate at which the contact began
+    state: int = -1  # entry of z that a touch sets to zero
+    slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
+    jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
 
 
 class Limit(NamedTuple):
@@ -134,6 +138,17 @@ class Row:
         ""  # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
     )
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
+    unheld: str = ""  # the row of its element that holds nothing here
+    reads: frozenset[str] = frozenset()  # sensors its functions depend on
+    piston: int = -1  # entry of z with the stroke of a piston that a supply moves
+    slip: int = -1  # and with its rate less that of the prescribed motion
+    length: float = 0.0  # m, as drawn, of the line it drives the ends of apart
+    named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
+
+    def frames(self, index: int) -> tuple[int, ...]:
+        """The frames that a constraint row of it names, each once, in the order of its lines of J:
+        unless it says otherwise the first two columns of con."""
+        return self.named[index] if self.named else self.con[:2]
 
 
 class Reach(NamedTuple):
@@ -154,9 +169,37 @@ class Reach(NamedTuple):
     tilts: bool = False  # lets bodies turn out of the plane, though its rows hold in it
 
 
+class Turning(NamedTuple):
+    """How an instance depends on the turns of frames, or acts on them: of a flexible bar in space
+    nobody knows how it turns about itself; see assemble/torsion.py and rows.py.
+
+    Points and directions are (frame, three numbers in the axes of the frame, from its centre).
+    """
+
+    frames: tuple[int, ...] = ()  # whose turns it feels, or acts on
+    points: tuple = ()  # where it pushes or holds: all that it feels of these frames
+    axes: tuple = ()  # directions that turn with a frame; zero: several
+    torques: tuple = ()  # (frame it turns, frame of its direction, direction)
+    held: tuple[int, ...] = ()  # frames whose turns it resists
+
+
+class Change(NamedTuple):
+    """Rows of a joint that can go together, and what it is without them; see release.py."""
+
+    rows: tuple[str, ...]
+    becomes: str  # in words
+    type: str | None = None  # the joint type of a scenario, where there is one
+
+
+def between_points(row: Row) -> Turning:
+    """Of what acts between a point of either body and does nothing else to them."""
+    (i, j), par = row.con[:2], row.par
+    return Turning(points=((i, par[:3]), (j, par[3:6])))
+
+
 def ends(row: Row) -> frozenset[int]:
-    """The first two columns of con: the frames that most elements join."""
-    return frozenset(row.con[:2])
+    """The frames of its rows; of most elements the first two columns of con."""
+    return frozenset(row.con[:2]).union(*row.named)
 
 
 @dataclass(frozen=True)
@@ -172,10 +215,17 @@ class Element:
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
+    turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
+    changes: Callable[[Row], tuple[Change, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
-    n_mem: int = 0
-    n_state: int = 0  # entries of z an instance owns
+    meets: bool = False  # its bodies meet at the point `at`
+    welds: bool = False  # its two bodies move as one
+    pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else
+    holds_twist: bool = True  # its rows hold how a flexible bar turns about itself
+    picture: str = ""  # what it is drawn as in animations, see report/animation/drawing.py
+    ideal: str = ""  # the element it is where it has no clearance
+    n_mem: int = 0  # columns of mem of its own, behind the N_MEM of all
     kernels: dict[str, Compiled] = field(default_factory=dict)
     example: str = ""  # a scenario that runs, as short as it can be
 

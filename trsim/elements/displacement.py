@@ -9,7 +9,7 @@ the stroke of a body on compliant rails.
 
 from typing import Annotated, ClassVar, Literal
 
-from trsim.elements.contract import Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
 from trsim.fields import Spec, Unit, point, vector
@@ -45,11 +45,8 @@ def pack(name, spec, at):
 def coordinate(t, scene, a, b):
     X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
     for e in range(a, b):
-        i, j, s = con[e, 0], con[e, 1], con[e, 2]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        x, x_dot = stroke(X, V, i, p_i, j, p_j, axis)
+        s, axis = con[e, 2], arm(X, con[e, 0], par[e, 6], par[e, 7], par[e, 8])
+        x, x_dot = stroke(X, V, con, par, e, axis)
         S[s, 0] = par[e, 9] * x + par[e, 10]
         S[s, 1] = par[e, 9] * x_dot
 
@@ -62,16 +59,13 @@ def measure(t, scene, a, b):
         o = col[e]
         if o < 0:
             continue
-        i, j, s = con[e, 0], con[e, 1], con[e, 2]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        s, axis = con[e, 2], arm(X, con[e, 0], par[e, 6], par[e, 7], par[e, 8])
         out[o], out[o + 1] = S[s, 0], S[s, 1]
-        out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, i, p_i, j, p_j, axis)
+        out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, con, par, e, axis)
 
 
-def reach(row):
-    return Reach(shown=((row.con[0], row.par[6:9]),))
+def turning(row):
+    return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
 
 
 ELEMENT = Element(
@@ -79,13 +73,14 @@ ELEMENT = Element(
     section="sensors",
     spec=Displacement,
     pack=pack,
-    reach=reach,
+    reach=lambda row: Reach(shown=((row.con[0], row.par[6:9]),)),
     coordinate="stroke",
     channels=(
         Channel("", "m", "displacement along the axis"),
         Channel("rate", "m/s", "its rate"),
         Channel("acceleration", "m/s^2", "its acceleration"),
     ),
+    turning=turning,
     kernels={"coordinate": coordinate, "measure": measure},
     example="""
 planar: false

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
@@ -57,9 +57,10 @@ def pack(name, spec, at):
     frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame")
     n = at.axes(frame, direction(spec.direction))
     f = at.function(spec.force_per_length, "force_per_length")
+    reads = frozenset(spec.force_per_length.names - {"t", "pi"})
     if beam is None:  # stiff for a start: all of it at the centre
-        return Row((i, 1, frame, f), (bar.length, *n))
-    return Row((beam.first, beam.nodes, frame, f), (beam.length, *n))
+        return Row((i, 1, frame, f), (bar.length, *n), reads=reads)
+    return Row((beam.first, beam.nodes, frame, f), (beam.length, *n), reads=reads)
 
 
 def acts_on(row):
@@ -127,6 +128,7 @@ ELEMENT = Element(
         Channel("magnitude", "N/m", "force per length along its direction"),
         Channel("load", "N", "of the whole bar, world axes", 3),
     ),
+    turning=lambda row: Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),)),
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

@@ -23,7 +23,19 @@ from trsim.elements.contract import (
     Row,
     kernel,
 )
-from trsim.elements.frames import along_row, arm, cross, dot, helper, push, separation, spin, twist
+from trsim.elements.frames import (
+    along_row,
+    arm,
+    cross,
+    dot,
+    helper,
+    push,
+    separation,
+    spin,
+    turn_lines,
+    twist,
+    two_points,
+)
 from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, holds, prescribed
 from trsim.fields import Function, Spec, Unit
 
@@ -115,14 +127,7 @@ def pack(name, spec, at):
 @kernel
 def constraint(t, scene, a, b):
     X, V, S, z, con, mem = scene.X, scene.V, scene.S, scene.z, scene.con, scene.mem
-    par, tab, phi, phi_t, J, gamma = (
-        scene.par,
-        scene.tab,
-        scene.phi,
-        scene.phi_t,
-        scene.J,
-        scene.gamma,
-    )
+    par, tab, phi, phi_t, gamma = scene.par, scene.tab, scene.phi, scene.phi_t, scene.gamma
     for e in range(a, b):
         k = con[e, 3]
         if k < 0:
@@ -132,16 +137,11 @@ def constraint(t, scene, a, b):
         axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         o_i, o_j = spin(V, i), spin(V, j)
         if con[e, ROTATES] == 1:
-            for c in range(3):
-                J[k, c] = 0.0
-                J[k, 6 + c] = 0.0
-                J[k, 3 + c] = -axis[c]
-                J[k, 9 + c] = axis[c]
+            turn_lines(scene, k, axis)
             turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
             gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
         else:
-            p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-            p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+            _, p_i, _, p_j = two_points(X, con, par, e)
             along_row(scene, i, p_i, axis, j, p_j, k)
             gamma[k] += f_ddot
         phi[k] = S[con[e, 2], 0] - f
@@ -150,8 +150,8 @@ def constraint(t, scene, a, b):
 
 @kernel
 def force(t, scene, a, b):
-    X, S, z, con, mem = scene.X, scene.S, scene.z, scene.con, scene.mem
-    par, tab, F, zd = scene.par, scene.tab, scene.F, scene.zd
+    S, z, con, mem = scene.S, scene.z, scene.con, scene.mem
+    par, tab, zd = scene.par, scene.tab, scene.zd
     for e in range(a, b):
         state, k = con[e, STATE], par[e, K]
         if k == 0.0 and state < 0:
@@ -160,27 +160,27 @@ def force(t, scene, a, b):
         if state >= 0:
             zd[state] = f_dot if holds(con, par, e) else 0.0
         if k > 0.0:
-            i, j, s = con[e, 0], con[e, 1], con[e, 2]
+            s = con[e, 2]
             slip = S[s, 1] - f_dot
             damping = -par[e, C] * slip
             pull = -k * (S[s, 0] - f) + damping
             zd[DAMPERS] += damping * slip
             zd[DRIVES] += pull * f_dot
-            axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-            act(X, F, i, j, con[e, ROTATES], par, e, axis, pull)
+            act(scene, e, pull)
 
 
 @helper
-def act(X, F, i, j, rotates, par, e, axis, pull):
+def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
+    X, con, par, F = scene.X, scene.con, scene.par, scene.F
+    i, p_i, j, p_j = two_points(X, con, par, e)
+    axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
     f = (pull * axis[0], pull * axis[1], pull * axis[2])
     g = (-f[0], -f[1], -f[2])
-    if rotates == 1:
+    if con[e, ROTATES] == 1:
         twist(F, j, f)
         twist(F, i, g)
     else:
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
         d = separation(X, i, p_i, j, p_j)
         push(F, j, p_j, f)
         push(F, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]), g)

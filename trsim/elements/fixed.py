@@ -8,9 +8,9 @@ reaction and reaction_moment act on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.contract import Change, Element, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
-from trsim.elements.joint import Joint, perpendicular, triads
+from trsim.elements.joint import TILTS, Joint, perpendicular, triads
 
 
 class Fixed(Joint):
@@ -26,21 +26,18 @@ def pack(name, spec, at):
         # t . u = t . w = 0 with the tangent t of bar i and u, w fixed in body j: rows tilt 1, turn
         t = at.axes(i, at.tangent(i))
         u, w, _ = perpendicular(at.tangent(i))
-        return Row((i, j, -1), (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0))
-    # about the tangent of a flexible bar j the weld holds nothing: that is the row `turn`
+        par = (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0)
+        return Row((i, j, -1), par, unheld="tilt 2")
+    # a bar has no torsion, so about its tangent the weld holds nothing: of bar j the row `turn`
     axes = triads(i, j, at.tangent(j) or (0.0, 0.0, 1.0), at)
-    return Row((i, j, -1), (*places, *axes))
+    return Row((i, j, -1), (*places, *axes), unheld="turn" if at.tangent(j) else "")
 
 
 @kernel
 def constraint(t, scene, a, b):
     X, con, par = scene.X, scene.con, scene.par
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
-        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        i, j = point_rows(scene, e)
         u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
         u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
@@ -50,12 +47,22 @@ def constraint(t, scene, a, b):
         perpendicular_row(scene, i, w, j, u_j, con[e, 8])
 
 
+def changes(_):
+    ball = (*TILTS, "turn")
+    return Change(("turn",), "revolute", "revolute"), Change(ball, "spherical", "spherical")
+
+
 ELEMENT = Element(
     key="fixed",
     section="joints",
     spec=Fixed,
     pack=pack,
     rows=("x", "y", "z", "tilt 1", "tilt 2", "turn"),
+    meets=True,
+    welds=True,
+    holds_twist=False,
+    changes=changes,
+    picture="weld",
     kernels={"constraint": constraint},
     example="""
 bodies:

@@ -13,8 +13,9 @@ All joints are intersections of four rows [Nikravesh1988] [Haug1989]:
     perpendicular  Phi = u . w                            u fixed in frame i, w in frame j
     distance       Phi = |r_j + p_j - r_i - p_i| - f
 
-J holds the row against (r_i', omega_i, r_j', omega_j); gamma the terms without accelerations,
-J V' = gamma.  A row index below 0 means the row was dropped (planar scene, redundant).
+J holds a row line by line, one of (r_f', omega_f) for each frame f it names: of these rows i, then
+j.  gamma are the terms without accelerations, J V' = gamma.  A row index below 0 means the row was
+dropped (planar scene, redundant).
 The multiplier of a row is minus the generalised force it puts on body j along its direction.
 """
 
@@ -45,6 +46,14 @@ def cross(a, b):
 @helper
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@helper
+def two_points(X, con, par, e):
+    """Both bodies of instance e with the arms of its points, the first six columns of par."""
+    i, j = con[e, 0], con[e, 1]
+    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+    return i, p_i, j, arm(X, j, par[e, 3], par[e, 4], par[e, 5])
 
 
 @helper
@@ -116,24 +125,37 @@ def separation(X, i, p_i, j, p_j):
 
 
 @helper
-def _fill(J, k, sign, f, p):
-    """Row k, columns of one frame: the force direction f at the arm p, times sign."""
-    _put(J, k, sign, f, cross(p, f))
+def _fill(J, line, sign, f, p):
+    """A line of J: the force direction f at the arm p, times sign."""
+    _put(J, line, sign, f, cross(p, f))
 
 
 @helper
-def _put(J, k, sign, f, m):
-    """Row k, columns of one frame: the force f and the moment m, times sign."""
-    o = 6 if sign > 0.0 else 0
-    J[k, o], J[k, o + 1], J[k, o + 2] = sign * f[0], sign * f[1], sign * f[2]
-    J[k, o + 3], J[k, o + 4], J[k, o + 5] = sign * m[0], sign * m[1], sign * m[2]
+def _put(J, line, sign, f, m):
+    """A line of J: the force f and the moment m, times sign."""
+    J[line, 0], J[line, 1], J[line, 2] = sign * f[0], sign * f[1], sign * f[2]
+    J[line, 3], J[line, 4], J[line, 5] = sign * m[0], sign * m[1], sign * m[2]
 
 
 @helper
-def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
-    """The points coincide along the world axes whose row index is not negative."""
-    X, V = scene.X, scene.V
+def turn_lines(scene, k, n):
+    """J of row k between two frames, where Phi' = n . (omega_j - omega_i)."""
+    J, l = scene.J, scene.row_start[k]
+    for c in range(3):
+        J[l, c] = 0.0
+        J[l + 1, c] = 0.0
+        J[l, 3 + c] = -n[c]
+        J[l + 1, 3 + c] = n[c]
+
+
+@helper
+def point_rows(scene, e):
+    """The points of instance e coincide along the world axes whose row, the first three of its own,
+    is not negative.  Returns its bodies."""
+    X, V, con = scene.X, scene.V, scene.con
     phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
+    i, p_i, j, p_j = two_points(X, con, scene.par, e)
+    kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
     d = separation(X, i, p_i, j, p_j)
     if scene.d == 3:
         c_i, c_j = inward(V, i, p_i), inward(V, j, p_j)
@@ -141,16 +163,20 @@ def point_rows(scene, i, p_i, j, p_j, kx, ky, kz):
         c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
     if kx >= 0:
         phi[kx], phi_t[kx], gamma[kx] = d[0], 0.0, c_i[0] - c_j[0]
-        _put(J, kx, -1.0, (1.0, 0.0, 0.0), (0.0, p_i[2], -p_i[1]))
-        _put(J, kx, 1.0, (1.0, 0.0, 0.0), (0.0, p_j[2], -p_j[1]))
+        l = scene.row_start[kx]
+        _put(J, l, -1.0, (1.0, 0.0, 0.0), (0.0, p_i[2], -p_i[1]))
+        _put(J, l + 1, 1.0, (1.0, 0.0, 0.0), (0.0, p_j[2], -p_j[1]))
     if ky >= 0:
         phi[ky], phi_t[ky], gamma[ky] = d[1], 0.0, c_i[1] - c_j[1]
-        _put(J, ky, -1.0, (0.0, 1.0, 0.0), (-p_i[2], 0.0, p_i[0]))
-        _put(J, ky, 1.0, (0.0, 1.0, 0.0), (-p_j[2], 0.0, p_j[0]))
+        l = scene.row_start[ky]
+        _put(J, l, -1.0, (0.0, 1.0, 0.0), (-p_i[2], 0.0, p_i[0]))
+        _put(J, l + 1, 1.0, (0.0, 1.0, 0.0), (-p_j[2], 0.0, p_j[0]))
     if kz >= 0:
         phi[kz], phi_t[kz], gamma[kz] = d[2], 0.0, c_i[2] - c_j[2]
-        _put(J, kz, -1.0, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0))
-        _put(J, kz, 1.0, (0.0, 0.0, 1.0), (p_j[1], -p_j[0], 0.0))
+        l = scene.row_start[kz]
+        _put(J, l, -1.0, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0))
+        _put(J, l + 1, 1.0, (0.0, 0.0, 1.0), (p_j[1], -p_j[0], 0.0))
+    return i, j
 
 
 @helper
@@ -163,8 +189,9 @@ def along_row(scene, i, p_i, u, j, p_j, k):
     d = separation(X, i, p_i, j, p_j)
     # the direction turns with body i, so its lever on i reaches to the point on j
     reach = (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2])
-    _fill(J, k, -1.0, u, reach)
-    _fill(J, k, 1.0, u, p_j)
+    l = scene.row_start[k]
+    _fill(J, l, -1.0, u, reach)
+    _fill(J, l + 1, 1.0, u, p_j)
     phi_t[k] = 0.0
     if scene.d == 3:
         o_i, o_j = V[i, 5], V[j, 5]
@@ -190,7 +217,7 @@ def perpendicular_row(scene, i, u, j, w, k):
     """u . w with u an arm of body i and w an arm of body j, both in world axes."""
     if k < 0:
         return
-    V, phi, phi_t, J, gamma = scene.V, scene.phi, scene.phi_t, scene.J, scene.gamma
+    V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
     n = cross(u, w)
     phi[k] = dot(u, w)
     phi_t[k] = 0.0
@@ -199,11 +226,7 @@ def perpendicular_row(scene, i, u, j, w, k):
         - dot(centripetal(V, i, u), w)
         - dot(u, centripetal(V, j, w))
     )
-    for c in range(3):
-        J[k, c] = 0.0
-        J[k, 6 + c] = 0.0
-        J[k, 3 + c] = n[c]
-        J[k, 9 + c] = -n[c]
+    turn_lines(scene, k, (-n[0], -n[1], -n[2]))
 
 
 @helper
@@ -213,9 +236,7 @@ def line(X, V, con, par, e):
     par holds the points, in the axes of both bodies, in its first six columns.  A line without
     length has no direction: its unit vector is zero.
     """
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    i, p_i, j, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     length = sqrt(dot(d, d))
     if length == 0.0:
@@ -238,8 +259,9 @@ def distance_row(scene, e, k):
     scene.phi[k] = length
     scene.phi_t[k] = 0.0
     scene.gamma[k] = dot(n, c_i) - dot(n, c_j) - (dot(d_dot, d_dot) - rate * rate) / length
-    _fill(scene.J, k, -1.0, n, p_i)
-    _fill(scene.J, k, 1.0, n, p_j)
+    l = scene.row_start[k]
+    _fill(scene.J, l, -1.0, n, p_i)
+    _fill(scene.J, l + 1, 1.0, n, p_j)
 
 
 @helper
@@ -260,8 +282,9 @@ def turn_acceleration(V, A, i, j, axis):
 
 
 @helper
-def stroke(X, V, i, p_i, j, p_j, axis):
+def stroke(X, V, con, par, e, axis):
     """axis . d and its rate, with the axis fixed in body i and d the separation."""
+    i, p_i, j, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
@@ -269,8 +292,9 @@ def stroke(X, V, i, p_i, j, p_j, axis):
 
 
 @helper
-def stroke_acceleration(X, V, A, i, p_i, j, p_j, axis):
+def stroke_acceleration(X, V, A, con, par, e, axis):
     """Second rate of the same."""
+    i, p_i, j, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])

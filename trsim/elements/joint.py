@@ -6,6 +6,7 @@ par[15:18], [18:21]             u and a in the axes of body j
 par[21]                         joint angle as drawn
 """
 
+from trsim.elements.contract import Change
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
@@ -20,6 +21,31 @@ class Joint(Spec):
 
     bodies: tuple[str, str]
     at: point("m")
+
+
+TILTS = ("tilt 1", "tilt 2")
+ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
+
+
+def axial_row(row):
+    """The row that holds a joint along its axis, where one row does."""
+    largest = max(range(3), key=lambda c: abs(row.par[12 + c]))
+    return "xyz"[largest] if abs(row.par[12 + largest]) > ALONG else ""
+
+
+def of_a_hinge(axial, ball, cross):
+    """What a hinge becomes without some of its rows; ball, cross: types that hold what is left."""
+    changes = (
+        Change(TILTS, ball or "free to tilt", ball),
+        *(Change((tilt,), "universal", cross) for tilt in TILTS),
+    )
+    if not axial:
+        return changes
+    return (
+        *changes,
+        Change((axial,), "cylindrical"),
+        Change((axial, *TILTS), "a ball in a sleeve"),
+    )
 
 
 def perpendicular(axis, frame=None):

@@ -28,9 +28,19 @@ from trsim.elements.contract import (
     Element,
     Reach,
     Row,
+    Turning,
     kernel,
 )
-from trsim.elements.frames import arm, dot, helper, push, separation, twist, velocity
+from trsim.elements.frames import (
+    arm,
+    dot,
+    helper,
+    push,
+    separation,
+    twist,
+    two_points,
+    velocity,
+)
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.laws.contact import (
@@ -155,8 +165,7 @@ def touch(X, V, S, con, par, e):
         if low > high:
             return low, -S[s, 1], n
         return high, S[s, 1], (-n[0], -n[1], -n[2])
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+    _, p_i, _, p_j = two_points(X, con, par, e)
     d = separation(X, i, p_i, j, p_j)
     # the wall turns: the speed of its body under the point counts
     v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
@@ -261,6 +270,13 @@ def reach(row):
     return Reach(forces=((i, row.par[6:9]),), places=((j, row.par[3:6], (i, j)),))
 
 
+def turning(row):
+    """The wall is carried along by its body."""
+    if row.con[3] != ON_WALL:
+        return Turning(frames=row.con[:2])
+    return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
+
+
 ELEMENT = Element(
     key="limit_stop",
     section="forces",
@@ -272,7 +288,8 @@ ELEMENT = Element(
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
-    n_mem=3,
+    turning=turning,
+    picture="stop",
     kernels={
         "force": force,
         "gaps": gap,

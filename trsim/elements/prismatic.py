@@ -9,9 +9,15 @@ The stroke is a_i . d, zero as drawn.  reaction acts on body j at its point.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, kernel
-from trsim.elements.frames import along_row, arm, perpendicular_row, stroke
-from trsim.elements.joint import triads
+from trsim.elements.contract import Change, Element, Reach, Row, kernel
+from trsim.elements.frames import (
+    along_row,
+    arm,
+    perpendicular_row,
+    stroke,
+    two_points,
+)
+from trsim.elements.joint import TILTS, triads
 from trsim.fields import Spec, point, vector
 
 
@@ -42,9 +48,7 @@ def pack(name, spec, at):
 def constraint(t, scene, a, b):
     X, con, par = scene.X, scene.con, scene.par
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+        i, p_i, j, p_j = two_points(X, con, par, e)
         a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
         k3, k4, k5, k6, k7 = con[e, 3], con[e, 4], con[e, 5], con[e, 6], con[e, 7]
         if k3 >= 0 or k5 >= 0:
@@ -66,15 +70,8 @@ def coordinate(t, scene, a, b):
         s = con[e, 2]
         if s < 0:
             continue
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
-        S[s, 0], S[s, 1] = stroke(X, V, i, p_i, j, p_j, axis)
-
-
-def reach(row):
-    return Reach(slides=((row.con[0], row.par[12:15]),))
+        axis = arm(X, con[e, 0], par[e, 12], par[e, 13], par[e, 14])
+        S[s, 0], S[s, 1] = stroke(X, V, con, par, e, axis)
 
 
 ELEMENT = Element(
@@ -82,9 +79,14 @@ ELEMENT = Element(
     section="joints",
     spec=Prismatic,
     pack=pack,
-    reach=reach,
+    reach=lambda row: Reach(slides=((row.con[0], row.par[12:15]),)),
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
+    changes=lambda _: (
+        Change(("turn",), "cylindrical"),
+        Change((*TILTS, "turn"), "a ball in a sleeve"),
+    ),
+    picture="slide",
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

@@ -20,7 +20,7 @@ from trsim.elements.frames import (
     point_rows,
     spin,
 )
-from trsim.elements.joint import Joint, triads
+from trsim.elements.joint import Joint, axial_row, of_a_hinge, triads
 from trsim.fields import vector
 
 
@@ -46,11 +46,8 @@ def pack(name, spec, at):
 def constraint(t, scene, a, b):
     X, con, par = scene.X, scene.con, scene.par
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        kx, ky, kz, k4, k5 = con[e, 3], con[e, 4], con[e, 5], con[e, 6], con[e, 7]
-        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        i, j = point_rows(scene, e)
+        k4, k5 = con[e, 6], con[e, 7]
         if k4 >= 0 or k5 >= 0:
             u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
             w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
@@ -79,18 +76,18 @@ def coordinate(t, scene, a, b):
         S[s, 1] = dot(axis, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
 
 
-def reach(row):
-    return Reach(hinges=((row.con[0], row.par[12:15]),))
-
-
 ELEMENT = Element(
     key="revolute",
     section="joints",
     spec=Revolute,
     pack=pack,
-    reach=reach,
+    reach=lambda row: Reach(hinges=((row.con[0], row.par[12:15]),)),
     rows=("x", "y", "z", "tilt 1", "tilt 2"),
     coordinate="angle",
+    meets=True,
+    pin=(2,),
+    changes=lambda row: of_a_hinge(axial_row(row), "spherical", "universal"),
+    picture="pin",
     kernels={"constraint": constraint, "coordinate": coordinate},
     example="""
 bodies:

@@ -19,7 +19,7 @@ from trsim.kernels.packed import A1, A2, I1, I2, T2, T3, T6, T9, T12, Packed, f8
 NONE, BAUMGARTE, PROJECTION = 0, 1, 2  # stabilisation
 OUTSIDE, LENGTH, ANGLE, SPEED, RATE, MAGNITUDE = 0, 1, 2, 3, 4, 5  # scale_kind
 N_STORED = 3
-N_MEM = 4  # columns of `mem`, see contract.py
+N_MEM = 4  # columns of `mem` that all elements have, see contract.py
 COMPONENTS = {".x": 0, ".y": 1, ".z": 2}  # of a channel of three, in its name
 
 
@@ -41,6 +41,7 @@ class Model(Packed):
     m: i8  # constraint rows in the solve
     unequal: i8  # 1: masses or moments of inertia are so unequal that multipliers are too coarse
     n_s: i8  # entries of S
+    n_mem: i8  # columns of mem
     n_out: i8  # output columns
     size: f8  # m, the mechanism's
     reach: f8  # m, the largest arm of a body
@@ -68,12 +69,14 @@ class Model(Packed):
     energy: I2
     stiffness: I2
     measure: I2
-    row_frame: I2  # (m, 2) frames i and j of a row                        assemble/pattern.py
-    redundant: I2  # (n_d, 4) rows left out of the solve: frames i and j, row e, which of its rows
+    row_start: I1  # (m+n_d+1) lines of J of a row: one per frame it names  assemble/pattern.py
+    line_row: I1  # (lines) whose they are
+    line_frame: I1  # (lines) their frames, the ground too
+    redundant: I2  # (n_d, 2) rows left out of the solve: row e, which of its rows
     row_unit: A1  # (m+n_d) what makes the opening of a row relative: size, or 1 rad
     frame_start: I1  # (n+1) slots of a frame: one per row that touches it, the ground has none
     slot_row: I1  # (slots) its row
-    slot_column: I1  # (slots) its first column of J: 0 for frame i, 6 for frame j
+    slot_line: I1  # (slots) its line of J
     hub: I1  # (n) first unknown of a body whose motion is one of the solve, after the rows; or -1
     entry: I1  # (pairs) the place in S that two slots of one frame, or slot and hub, add to
     column_start: I1  # (n_x+1) places of the column of S and of L that is eliminated k-th
@@ -151,7 +154,7 @@ class Scene(Model):
     # of the m rows of the solve, then of the redundant ones, which are only looked at
     phi: A1  # (m+n_d)
     phi_t: A1  # (m+n_d)
-    J: T12  # (m+n_d, 12) against the twists of frames i and j
+    J: T6  # (lines, 6) a row against the twist of a frame it names
     gamma: A1  # (m+n_d)
     lam: A1  # (m+n_d) multipliers; 0 of the redundant
     B: T6  # (slots, 6) rows of J in the axes of the solve
@@ -212,11 +215,11 @@ def scene(model: Model) -> Scene:
             "branch": (max(model.n_s, 1),),
             "z": (model.n_z,),
             "zd": (model.n_z,),
-            "mem": (len(model.con), N_MEM),
+            "mem": (len(model.con), model.n_mem),
             "F": (n, 6),
             "phi": (rows,),
             "phi_t": (rows,),
-            "J": (rows, 12),
+            "J": (len(model.line_row), 6),
             "gamma": (rows,),
             "lam": (rows,),
             "B": (slots, 6),

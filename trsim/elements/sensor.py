@@ -68,9 +68,7 @@ def measure(t, scene, a, b):
         if con[e, 4] == 1:
             out[o + 2] = par[e, 9] * turn_acceleration(V, A, i, j, axis)
         else:
-            p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-            p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-            out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, i, p_i, j, p_j, axis)
+            out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, con, par, e, axis)
 
 
 ELEMENT = Element(

@@ -7,8 +7,8 @@ reaction is the force on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, kernel
-from trsim.elements.frames import arm, point_rows
+from trsim.elements.contract import Element, Row, between_points, kernel
+from trsim.elements.frames import point_rows
 from trsim.elements.joint import Joint
 
 
@@ -25,13 +25,8 @@ def pack(name, spec, at):
 
 @kernel
 def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
-        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        point_rows(scene, e)
 
 
 ELEMENT = Element(
@@ -40,6 +35,11 @@ ELEMENT = Element(
     spec=Spherical,
     pack=pack,
     rows=("x", "y", "z"),
+    meets=True,
+    pin=(2, 3),
+    holds_twist=False,
+    turning=between_points,
+    picture="ball",
     kernels={"constraint": constraint},
     example="""
 planar: false

@@ -18,6 +18,7 @@ from trsim.elements.contract import (
     Element,
     Reach,
     Row,
+    between_points,
     kernel,
 )
 from trsim.elements.frames import line, push
@@ -104,6 +105,8 @@ ELEMENT = Element(
         Channel("force", "N", "tension"),
         Channel("length", "m", "distance of the two points"),
     ),
+    turning=between_points,
+    picture="coil",
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

@@ -9,7 +9,7 @@ mass.  reaction is the force on body j at the point, world axes; reaction_moment
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, kernel
+from trsim.elements.contract import Change, Element, Reach, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
 from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
@@ -61,18 +61,10 @@ def pack(name, spec, at):
 def constraint(t, scene, a, b):
     X, con, par = scene.X, scene.con, scene.par
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-        kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
-        point_rows(scene, i, p_i, j, p_j, kx, ky, kz)
+        i, j = point_rows(scene, e)
         a_i = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
         b_j = arm(X, j, par[e, 9], par[e, 10], par[e, 11])
         perpendicular_row(scene, i, a_i, j, b_j, con[e, 6])
-
-
-def reach(row):
-    return Reach(tilts=True)
 
 
 ELEMENT = Element(
@@ -80,8 +72,11 @@ ELEMENT = Element(
     section="joints",
     spec=Universal,
     pack=pack,
-    reach=reach,
+    reach=lambda _: Reach(tilts=True),
     rows=("x", "y", "z", "tilt"),
+    meets=True,
+    changes=lambda _: (Change(("tilt",), "spherical", "spherical"),),
+    picture="cross",
     kernels={"constraint": constraint},
     example="""
 planar: false

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
+from trsim import elements
 from trsim.elements.clearance_joint import normal_numbers
 from trsim.laws.contact import (
     damping_factor,
@@ -91,7 +92,7 @@ def _sizes(scenario: Any) -> Iterator[str]:
     everywhere = [p for of_body in points.values() for p in of_body]
     everywhere += [body.at for _, body in plausible.rigid(scenario)]
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)
-    slides = {b for j in scenario.joints.values() if j.type == "prismatic" for b in j.bodies}
+    slides = plausible.slides(scenario)
     for name, body in plausible.rigid(scenario):
         about_z = isinstance(body.inertia, float)
         largest = body.inertia if about_z else max(_principal(body.inertia))
@@ -220,7 +221,8 @@ def _stop_mass(scenario: Any, stop: Any) -> float:
     joint = scenario.joints.get(stop.joint)
     if joint is None:
         return inf
-    return _reduced(scenario, joint.bodies, None if joint.type == "prismatic" else joint)
+    slides = elements.load(joint.type).coordinate == "stroke"
+    return _reduced(scenario, joint.bodies, None if slides else joint)
 
 
 def _all_stops(scenario: Any) -> Iterator[tuple[str, Any, float]]:

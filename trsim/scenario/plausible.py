@@ -13,12 +13,13 @@ from itertools import combinations
 from math import dist, sqrt
 from typing import Any
 
+from trsim import elements
+
 SOFTEST, HARDEST = 1e6, 1e12  # Pa
 POISSON = 0.3  # where a law that gives K says nothing
 STICKIEST = 2.0  # rubber on rubber is about 1
 LIGHTEST, HEAVIEST = 1.0, 3e4  # kg/m^3; osmium is 22 600
 WIRE = 100.0  # length over thickness
-POINT_JOINTS = ("revolute", "spherical", "universal", "clearance_joint", "fixed")
 
 
 def moduli(scenario: Any) -> Iterator[str]:
@@ -80,17 +81,27 @@ def rigid(scenario: Any) -> Iterator[tuple[str, Any]]:
     return ((name, body) for name, body in scenario.bodies.items() if body.type == "rigid_body")
 
 
+def slides(scenario: Any) -> set[str]:
+    """The bodies on slides, of which nobody knows whether they turn."""
+    return {
+        body
+        for joint in scenario.joints.values()
+        if elements.load(joint.type).coordinate == "stroke"
+        for body in joint.bodies
+    }
+
+
 def densities(scenario: Any) -> Iterator[str]:
     """Mass of each body against its extent; a body held at one point has none to speak of."""
     held = points(scenario)
-    slides = {b for j in scenario.joints.values() if j.type == "prismatic" for b in j.bodies}
+    sliding = slides(scenario)
     for name, body in rigid(scenario):
         places = [*held.get(name, ()), body.at]
         reach = max((dist(p, q) for p, q in combinations(places, 2)), default=0.0)
         if reach**3 == 0.0 or body.mass == 0.0:  # the cube of 1e-108 m is none
             continue
         inertia = body.inertia if isinstance(body.inertia, float) else max(body.inertia[:3])
-        L = max(reach, 0.0 if name in slides else sqrt(12.0 * max(inertia, 0.0) / body.mass))
+        L = max(reach, 0.0 if name in sliding else sqrt(12.0 * max(inertia, 0.0) / body.mass))
         cube, wire = body.mass / L**3, body.mass * WIRE**2 / reach**3
         text = f"bodies.{name}: {body.mass:.3g} kg"
         ask = "; steel has 7850: check the mass (kg) and the points (m)"
@@ -115,7 +126,7 @@ def points(scenario: Any) -> dict[str, list[tuple[float, ...]]]:
             found.setdefault(body, []).append(at)
 
     for joint in scenario.joints.values():
-        if joint.type in POINT_JOINTS:
+        if elements.load(joint.type).meets:
             for body in joint.bodies:
                 add(body, getattr(joint, "at", None))
     for force in scenario.forces.values():

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.features import READS
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.reduce import largest_reaction
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
@@ -379,7 +380,7 @@ def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
         return 0.0
     kinetic, drives = work.column_energy, work.column_energy + 1 + N_STORED + DRIVES
     force = np.abs(work.F[:, :3]).max(initial=0.0)
-    force = max(force, np.abs(work.lam[:, None] * work.J[:, :3]).max(initial=0.0))
+    force = max(force, largest_reaction(work))
     there = float(force * work.size) + natural(work, begun)
     driven = np.any(r.peak[[rec.PEAK_MAX, rec.PEAK_MIN], drives])
     still = r.peak[rec.PEAK_MAX, kinetic] <= AT_REST * there

@@ -152,8 +152,8 @@ def compiled(
     room = most_points(mechanism, setting)
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned, room)
     if sparse:
-        r = sparse.record(r, scenario, mechanism, dense_rows)
-        b = sparse.buffers(b, scenario, mechanism, work)
+        r = sparse.record(r, mechanism, dense_rows)
+        b = sparse.buffers(b, mechanism, work)
     methods = np.zeros((len(used), len(FIELDS)), np.int64)
     called = called_by(mechanism, setting)
     if len(r.passed):
@@ -165,7 +165,7 @@ def compiled(
     if checkpoint:
         clock0 -= put_back(checkpoint, r, work)
         work = resumed(mechanism, work, r)
-        b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
+        b = sparse.buffers(b, mechanism, work) if sparse else b
         put_back_held(work, r)
     else:
         begin(work, r, b, setting)
@@ -189,7 +189,7 @@ def compiled(
                 work = anew(mechanism, work, r, b, setting, acted=work is not before)
                 reason = STUCK if stuck(r, setting) else reason
             if work is not before:
-                b = sparse.buffers(b, scenario, mechanism, work) if sparse else b
+                b = sparse.buffers(b, mechanism, work) if sparse else b
         bends.look(float(r.clock[rec.T]), r.y)
         if reason in GO_ON and ended is None and mechanism.beams:
             text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)

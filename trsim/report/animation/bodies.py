@@ -36,7 +36,7 @@ def shapes(drawn: Drawing, look: Look, body: str) -> list[Mesh]:
 
 
 def slides(drawn: Drawing, body: str) -> list[Joint]:
-    return [joint for joint in drawn.joints if joint.type == "prismatic" and joint.j == body]
+    return [joint for joint in drawn.joints if joint.picture == "slide" and joint.j == body]
 
 
 def skeleton(drawn: Drawing, look: Look, body: str) -> list[tuple[Array, Array]]:
@@ -106,7 +106,7 @@ def lifted(mesh: Mesh, look: Look, body: str) -> Mesh:
 def rails(moved: Motion, look: Look) -> Iterator[Thing]:
     """What slides run on, and bushings that are free along one axis."""
     for joint in moved.drawn.joints:
-        if joint.type == "prismatic":
+        if joint.picture == "slide":
             yield rail(moved, look, joint, joint.at, joint.axis)
     for line in moved.drawn.lines:
         axis = np.zeros(3) if line.slide is None else line.axes[line.slide]

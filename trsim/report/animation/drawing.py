@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
 from trsim.assemble.members import members
 from trsim.assemble.orientation import quaternion
 from trsim.elements.bushing import axes as bushing_axes
@@ -16,18 +17,19 @@ from trsim.store.read import Run
 Array = NDArray[np.float64]
 
 GROUND = "ground"
-# joints that hold two points together
-IDEAL_POINTS = ("revolute", "spherical", "universal", "fixed")
-SPATIAL = ("spherical", "universal")  # joints that let a body leave a plane
-LINES = ("actuator", "spring_damper", "bushing")  # forces and drives that have a place
-STIFF = ("prismatic", "fixed")  # joints that let no body turn against the other
+# what elements are drawn as; other joints, drives and forces are not
+IDEAL_POINTS = ("pin", "ball", "cross", "weld")  # joints that hold two points together
+SPATIAL = ("ball", "cross")  # joints that let a body leave a plane
+STIFF = ("slide", "weld")  # joints that let no body turn against the other
+JOINTS = (*IDEAL_POINTS, "slide", "journal")
+LINES = ("cylinder", "coil", "block")  # forces and drives that have a place
 
 
 class Joint(NamedTuple):
     """A joint between bodies i and j; a and w of a universal one are its first and second axis."""
 
     name: str
-    type: str
+    picture: str
     i: str
     j: str
     at: Array  # (3) m, as drawn
@@ -45,7 +47,7 @@ class Line(NamedTuple):
     """What acts between a point of body i and a point of body j without joining them."""
 
     name: str
-    type: str
+    picture: str
     i: str
     j: str
     ends: tuple[Array, Array]  # (3) m, as drawn; a bushing has both in one place
@@ -105,24 +107,24 @@ def joints(drawn: Drawing) -> tuple[Joint, ...]:
     released = {name for event in scenario.events.values() for name in event.do.release}
     found = []
     for name, spec in scenario.joints.items():
-        i, j = spec.bodies
-        if not (drawn.has(i) and drawn.has(j)):
+        made, clearance = elements.load(spec.type), getattr(spec, "clearance", 0.0)
+        # a clearance of 0 is an ideal joint, also where it was written down
+        picture = elements.load(made.ideal if made.ideal and not clearance else made.key).picture
+        if picture not in JOINTS or not all(drawn.has(body) for body in spec.bodies):
             continue
+        i, j = spec.bodies
         at = getattr(spec, "at", None)
         if at is None:  # a slide: at the centre of the second body
             at = drawn.bodies[j] if j in drawn.bodies else middle(drawn, j)
         axes = np.array(perpendicular(getattr(spec, "axis", (0.0, 0.0, 1.0)), spec.drawn_in))
-        if spec.type == "universal":
+        if picture == "cross":
             axes[1] = direction(spec.second_axis)
             axes[0] = np.cross(axes[1], axes[2])
-        clearance = getattr(spec, "clearance", 0.0)
-        # a clearance of 0 is an ideal joint, also where it was written down
-        kind = "revolute" if spec.type == "clearance_joint" and clearance == 0.0 else spec.type
         radius = 0.0
-        if kind == "clearance_joint":
+        if picture == "journal":
             law = spec.contact or next(iter(scenario.contact_laws))
             radius = scenario.contact_laws[law].bearing_radius or 0.0
-        found.append(Joint(name, kind, i, j, np.array(at), axes, clearance, radius,
+        found.append(Joint(name, picture, i, j, np.array(at), axes, clearance, radius,
                            name in released))  # fmt: skip
     return tuple(found)
 
@@ -131,16 +133,17 @@ def lines(drawn: Drawing) -> tuple[Line, ...]:
     """Actuators, springs and bushings between bodies that are drawn."""
     found = []
     for name, spec in {**drawn.scenario.drives, **drawn.scenario.forces}.items():
-        if spec.type not in LINES or not all(drawn.has(body) for body in spec.bodies):
+        picture = elements.load(spec.type).picture
+        if picture not in LINES or not all(drawn.has(body) for body in spec.bodies):
             continue
         axes, slide = np.eye(3), None
-        if spec.type == "bushing":
+        if picture == "block":
             axes, free = np.array(bushing_axes(spec)), np.flatnonzero(np.equal(spec.stiffness, 0.0))
             slide = int(free[0]) if len(free) == 1 else None
-        first, second = (spec.at, spec.at) if spec.type == "bushing" else spec.points
+        first, second = (spec.at, spec.at) if picture == "block" else spec.points
         ends = np.array(first), np.array(second)
         i, j = spec.bodies
-        found.append(Line(name, spec.type, i, j, ends, axes, slide))
+        found.append(Line(name, picture, i, j, ends, axes, slide))
     return tuple(found)
 
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trsim import elements
 from trsim.fields import direction
 from trsim.report.animation import solids, turns
 from trsim.report.animation.bodies import arm, lifted
@@ -27,18 +28,18 @@ PLAUSIBLE = 0.35, 1.6  # radii of bearings that are drawn to scale, of the half 
 def pins(moved: Motion, look: Look) -> Iterator[Thing]:
     """What holds bodies together at ideal joints."""
     for joint in moved.drawn.joints:
-        if joint.type in ("prismatic", "clearance_joint"):
+        if joint.picture in ("slide", "journal"):
             continue
         holder = joint.j if joint.j in moved.turns else joint.i
         place, turn = moved.point(holder, joint.at), moved.turn(holder)
-        if joint.type == "spherical":
+        if joint.picture == "ball":
             mesh = solids.ball(1.15 * look.radius)
-        elif joint.type == "universal":
+        elif joint.picture == "cross":
             arms = [
                 solids.cylinder(0.5 * look.radius, 2.6 * look.radius, a) for a in joint.axes[1:]
             ]
             mesh = solids.joined(*arms)
-        elif joint.type == "fixed":
+        elif joint.picture == "weld":
             mesh = solids.box(np.full(3, 1.3 * look.radius), np.eye(3))
         else:
             mesh = solids.cylinder(0.5 * look.radius, *spanned(joint, look))
@@ -55,7 +56,7 @@ def spanned(joint: Joint, look: Look) -> tuple[float, Array]:
 
 def middle(joint: Joint, look: Look) -> Array:
     """Of the layers of the two bodies, from the point of the joint."""
-    if look.normal is None or joint.type in SPATIAL:
+    if look.normal is None or joint.picture in SPATIAL:
         return np.zeros(3)
     return 0.5 * (look.height(joint.i) + look.height(joint.j)) * look.normal
 
@@ -66,7 +67,7 @@ def bearings(moved: Motion, look: Look, magnified: float) -> Iterator[Thing]:
     The play between them is to scale, or magnified; the bodies stay where they are.
     """
     for joint in moved.drawn.joints:
-        if joint.type != "clearance_joint":
+        if joint.picture != "journal":
             continue
         radius = journal(joint, look)
         bore = radius + magnified * joint.clearance
@@ -96,14 +97,14 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
     """The ground, where joints stand on it."""
     r = look.radius
     for joint in moved.drawn.joints:
-        if GROUND not in (joint.i, joint.j) or joint.type == "prismatic":
+        if GROUND not in (joint.i, joint.j) or joint.picture == "slide":
             continue
         if look.normal is not None:
             outline = r * np.array([[-2.0, -3.4], [2.0, -3.4], [0.8, 0.6], [-0.8, 0.6]])
             base = r * np.array([[-3.6, -4.2], [3.6, -4.2], [3.6, -3.4], [-3.6, -3.4]])
             parts = [solids.prism(shape, look.thick, look.normal) for shape in (outline, base)]
             mesh = solids.joined(*parts).moved(-look.pitch * look.normal)
-        elif joint.type in SPATIAL:
+        elif joint.picture in SPATIAL:
             post = solids.cylinder(0.9 * r, 3.0 * r, look.up).moved(-2.2 * r * look.up)
             foot = solids.cylinder(2.4 * r, 0.6 * r, look.up).moved(-3.8 * r * look.up)
             mesh = solids.joined(post, foot)
@@ -116,7 +117,7 @@ def stops(moved: Motion, look: Look) -> Iterator[Thing]:
     """Points that meet walls: a nose on the one, a plate on the other, where they are nearest."""
     drawn, r = moved.drawn, look.radius
     for name, spec in drawn.scenario.forces.items():
-        if spec.type != "limit_stop" or spec.point is None:
+        if elements.load(spec.type).picture != "stop" or spec.point is None:
             continue
         i, j = spec.wall.body, spec.point.body
         if not {i, j} <= {GROUND, *drawn.bodies}:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
 from trsim.report.animation import solids, turns
 from trsim.report.animation.drawing import Array, Joint
 from trsim.report.animation.fittings import journal
@@ -60,12 +61,12 @@ def metres_per_newton(sizes: Array, extent: float) -> float:
 
 def forces(run: Run, moved: Motion, look: Look, magnified: float) -> Iterator[Force]:
     for joint in moved.drawn.joints:
-        if joint.type == "clearance_joint" and f"{joint.name}.force" in run.units:
+        if joint.picture == "journal" and f"{joint.name}.force" in run.units:
             vector = largest(run.channel(f"{joint.name}.force"), moved.rows)
             yield Force(joint.name, contact(moved, joint, look, magnified), vector)
     for name, spec in moved.drawn.scenario.forces.items():
         channel = f"{name}.force"
-        if spec.type != "limit_stop" or run.units.get(channel) != "N":
+        if elements.load(spec.type).picture != "stop" or run.units.get(channel) != "N":
             continue  # that of an angle is a torque
         body, at = stop_point(moved, spec)
         if moved.drawn.has(body):

@@ -17,9 +17,9 @@ STEEL = "#7f8790"
 
 def lines(moved: Motion, look: Look) -> Iterator[Thing]:
     """Every line of the mechanism; in a flat one in front of the bodies it acts on."""
-    kinds = {"actuator": actuator, "spring_damper": spring, "bushing": bushing}
+    kinds = {"cylinder": actuator, "coil": spring, "block": bushing}
     for line in moved.drawn.lines:
-        yield from kinds[line.type](moved, look, line)
+        yield from kinds[line.picture](moved, look, line)
 
 
 def course(moved: Motion, look: Look, line: Line) -> tuple[Array, Array, Array, Array]:

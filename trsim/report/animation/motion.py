@@ -76,7 +76,7 @@ def motion(run: Run) -> Motion:
         nodes,
     )
     plays = {joint.name: play(moved, joint, recorded) for joint in drawn.joints
-             if joint.type == "clearance_joint"}  # fmt: skip
+             if joint.picture == "journal"}  # fmt: skip
     moved = replace(moved, plays=plays)
     apart = opened(moved)
     return replace(moved, open=apart, warnings=warnings(moved, left, apart, unknown))
@@ -97,7 +97,7 @@ def eccentricities(run: Run, drawn: Drawing) -> dict[str, Array]:
     found = {}
     for joint in drawn.joints:
         names = [f"{joint.name}.eccentricity_{c}" for c in "xy"]
-        if joint.type == "clearance_joint" and all(name in run.units for name in names):
+        if joint.picture == "journal" and all(name in run.units for name in names):
             x, y = (run.channel(name)[:, None] for name in names)
             found[joint.name] = x * joint.axes[0] + y * joint.axes[1]
     return found
@@ -140,9 +140,9 @@ def opened(moved: Motion) -> float:
         if joint.comes_apart:
             continue
         d = moved.point(joint.j, joint.at) - moved.point(joint.i, joint.at)
-        if joint.type == "clearance_joint":
+        if joint.picture == "journal":
             d = d - moved.plays[joint.name]
-        elif joint.type not in IDEAL_POINTS:
+        elif joint.picture not in IDEAL_POINTS:
             axis = turns.turned(moved.turn(joint.i), joint.axis)
             d = d - np.sum(d * axis, axis=-1, keepdims=True) * axis
         largest = max(largest, float(np.linalg.norm(d, axis=1).max()))

@@ -46,7 +46,7 @@ def shoot(run: Run, magnified: float) -> Film:
         "margin": 2.5 * sizes.radius,
     }
     extras |= sight(sizes)
-    playing = any(joint.type == "clearance_joint" for joint in moved.drawn.joints)
+    playing = any(joint.picture == "journal" for joint in moved.drawn.joints)
     return Film(
         glb([*things, *forces], moved.time, extras),
         title,
@@ -87,7 +87,7 @@ def outermost(moved: Motion, sizes: Look) -> Array:
     places = [*moved.places.values(), *(line.reshape(-1, 3) for line in moved.nodes.values())]
     for joint in moved.drawn.joints:
         places += [moved.point(body, joint.at) for body in (joint.i, joint.j)]
-        if joint.type == "prismatic":
+        if joint.picture == "slide":
             places += beyond(moved.point(joint.j, joint.at), joint.axis, sizes)
     for line in moved.drawn.lines:
         first, second = moved.point(line.i, line.ends[0]), moved.point(line.j, line.ends[1])

@@ -66,14 +66,14 @@ class Problem:
     def equations(self, joint: Joint) -> list[tuple[Array, Array, Array]]:
         """Vectors c, a, b of c + Q_i a - Q_j b = 0."""
         found = []
-        if joint.type != "prismatic":
+        if joint.picture != "slide":
             play = self.plays.get(joint.name, np.zeros(3))
             gap = self.base(joint.i, joint.at) - self.base(joint.j, joint.at)
             one = gap, self.arm(joint.i, joint.at) + play, self.arm(joint.j, joint.at)
             found.append(tuple(v / self.drawn.size for v in one))
-        if joint.type in STIFF:
+        if joint.picture in STIFF:
             found += [(np.zeros(3), axis, axis) for axis in joint.axes]
-        elif joint.type not in SPATIAL:
+        elif joint.picture not in SPATIAL:
             found.append((np.zeros(3), joint.axis, joint.axis))
         return found  # type: ignore[return-value]
 
@@ -108,7 +108,7 @@ class Problem:
         return [
             (joint, turned(turn[joint.i], joint.axis), turned(turn[joint.j], joint.axes[1]))
             for joint in self.drawn.joints
-            if joint.type == "universal"
+            if joint.picture == "cross"
         ]
 
     def passed_on(self, fixed: Mapping[str, Array]) -> dict[str, Array]:
@@ -121,8 +121,8 @@ class Problem:
             if not reached:
                 return {name: known.get(name, STILL) for name in self.names}
             # slides and welds tell the most, and of points the one farthest from the centre
-            joint, a, b = max(reached, key=lambda one: (one[0].type in STIFF, self.reach(*one)))
-            if joint.type in STIFF or self.reach(joint, a, b) < CLOSED:
+            joint, a, b = max(reached, key=lambda one: (one[0].picture in STIFF, self.reach(*one)))
+            if joint.picture in STIFF or self.reach(joint, a, b) < CLOSED:
                 known[b] = known[a]
                 continue
             arm = self.arm(b, joint.at)

@@ -77,7 +77,7 @@ def upward(drawn: Drawing) -> Array:
 def ends(drawn: Drawing, body: str) -> list[Array]:
     """Different points of a body that joints hold, as drawn."""
     return different(drawn, [joint.at for joint in drawn.joints if body in (joint.i, joint.j)
-                             and joint.type != "prismatic"])  # fmt: skip
+                             and joint.picture != "slide"])  # fmt: skip
 
 
 def points(drawn: Drawing, body: str) -> list[Array]:
@@ -99,12 +99,12 @@ def different(drawn: Drawing, places: list[Array]) -> list[Array]:
 
 def plane(drawn: Drawing) -> Array | None:
     """The normal of a flat mechanism; None of one in space."""
-    if any(joint.type in SPATIAL for joint in drawn.joints):
+    if any(joint.picture in SPATIAL for joint in drawn.joints):
         return None
-    hinges = [joint.axis for joint in drawn.joints if joint.type in ("revolute", "clearance_joint")]
+    hinges = [joint.axis for joint in drawn.joints if joint.picture in ("pin", "journal")]
     normal = hinges[0] if hinges else np.array([0.0, 0.0, 1.0])
     normal = normal * np.sign(normal[np.abs(normal).argmax()])  # towards who looks
-    slides = [joint.axis for joint in drawn.joints if joint.type == "prismatic"]
+    slides = [joint.axis for joint in drawn.joints if joint.picture == "slide"]
     heights = [joint.at @ normal for joint in drawn.joints]
     heights += [end @ normal for line in drawn.lines for end in line.ends]
     level = np.ptp(heights) < 1e-6 * drawn.size if heights else True

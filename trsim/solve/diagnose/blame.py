@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.actuator import LENGTH
 from trsim.elements.prescribed import ENTRY
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
@@ -63,7 +62,7 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
         found = blamed(mechanism, t + ahead, r.y + ahead * rates, r.mem)
         if found is not None and found.section:
-            if found.element.key == "actuator" and (short := drawn_in(scenario, mechanism, r.y)):
+            if found.row.length and (short := drawn_in(scenario, mechanism, r.y)):
                 return short
             place = scenario.place((found.section, found.name))
             where = f" ({place.show()})" if place else ""
@@ -79,9 +78,10 @@ def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
     w = workspace(mechanism.model)
     poses(w, y)
     for instance in mechanism.instances:
-        if instance.element.key != "actuator":
+        length = instance.row.length
+        if length == 0.0:
             continue
-        length, stroke = instance.row.par[LENGTH], float(w.S[instance.row.con[ENTRY], 0])
+        stroke = float(w.S[instance.row.con[ENTRY], 0])
         if length + stroke < SHORT * length:
             place = scenario.place((instance.section, instance.name))
             where = f" ({place.show()})" if place else ""

@@ -11,10 +11,9 @@ from trsim.assemble.equations import gaps, poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import against_rates
-from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR, R_B, C
+from trsim.elements.clearance_joint import R_B, C
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
-from trsim.laws.friction import CODES
 from trsim.solve.diagnose.linearised import Linearised
 from trsim.solve.start.consistent import Start
 from trsim.solve.start.velocities import twist_gradient
@@ -54,9 +53,9 @@ def contact_scales(
     unit = {column.name: column.unit for column in mechanism.columns}
     for c, e in enumerate(mechanism.model.contact.tolist()):
         instance = mechanism.instances[e]
-        K, n, alone, _, slowest, *_ = w.contact_par[c].tolist()
-        d = float(begun.depth[c])
-        if instance.element.key == "clearance_joint":
+        K, n, alone, clearance, slowest, *_ = w.contact_par[c].tolist()
+        d, slope = float(begun.depth[c]), instance.row.contact.slope
+        if clearance < np.inf:
             poses(w, begun.y)
             inverse, sliding = journal(w, e, linear.twists, bool(closed[e]))
         else:
@@ -74,7 +73,7 @@ def contact_scales(
             mass=mass,
             half_period=pi * sqrt(mass / k) if free else np.inf,
             impact_time=hertz_contact_time(mass, K, n, v) if free else np.inf,
-            friction_rate=ramp(w, e, instance.element.key) * force * sliding,
+            friction_rate=slope * force * sliding,
             unit=unit.get(f"{instance.name}.normal_force", "N"),
         )
 
@@ -122,11 +121,3 @@ def gradient(w: Scene, i: int, j: int, c_i: Array, c_j: Array, n: Array) -> Arra
     g[6 * i : 6 * i + 6] -= np.concatenate([n, np.cross(c_i, n)])
     g[6 * j : 6 * j + 6] += np.concatenate([n, np.cross(c_j, n)])
     return against_rates(w, g[None, 6:])[0]
-
-
-def ramp(w: Scene, e: int, key: str) -> float:
-    """mu / (v1 - v0) of modified Coulomb friction, s/m; 0 for other laws."""
-    if key != "clearance_joint" or w.con[e, FRICTION_LAW] != CODES["modified_coulomb"]:
-        return 0.0
-    mu, v0, v1 = w.par[e, FRICTION_PAR : FRICTION_PAR + 3].tolist()
-    return float(mu / (v1 - v0))

@@ -26,6 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import undecided
 from trsim.assemble.reduce import world_rates
@@ -153,7 +154,7 @@ def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
     """Journals that went deeper than their law holds."""
     column = {c.name: c.start for c in mechanism.columns}
     for name, joint in scenario.joints.items():
-        if f"{name}.penetration" not in column or joint.type != "clearance_joint":
+        if f"{name}.penetration" not in column or not elements.load(joint.type).ideal:
             continue
         depth, when = peaks[column[f"{name}.penetration"], :2].tolist()
         law = scenario.contact_laws.get(joint.contact) or next(iter(scenario.contact_laws.values()))
@@ -175,7 +176,7 @@ def of_bushings(mechanism: Mechanism, peaks: Array) -> Iterator[str]:
     """Bushings whose moment jumps, or is about to: turns in space cannot be counted."""
     model, column = mechanism.model, {c.name: c.start for c in mechanism.columns}
     for instance in mechanism.instances:
-        if instance.element.key != "bushing" or not instance.element.judged(instance.row):
+        if not instance.element.judged(instance.row):
             continue
         at = model.vector.tolist().index(column[f"{instance.name}.{TURN}"])
         angle, when = peaks[model.n_out + at, :2].tolist()

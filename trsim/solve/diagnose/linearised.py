@@ -24,13 +24,18 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import constraints, derivative, forces, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
-from trsim.assemble.reduce import IN_PLANE, along_rates, in_solve_axes, jacobian, moves, world_rates
-from trsim.elements.actuator import piston_of
-from trsim.elements.clearance_joint import FRICTION_LAW, FRICTION_PAR
+from trsim.assemble.reduce import (
+    IN_PLANE,
+    along_rates,
+    in_solve_axes,
+    jacobian,
+    less_reactions,
+    moves,
+    world_rates,
+)
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
 from trsim.elements.scene import Model, Scene, scene
 from trsim.errors import ModelError
-from trsim.laws.friction import CODES
 from trsim.solve.start.consistent import Start
 from trsim.solve.start.elastic import acted_on, bars_alone, elastic_stiffness
 from trsim.solve.start.velocities import with_velocities
@@ -114,10 +119,8 @@ def smooth(mechanism: Mechanism) -> Model:
     """The model without Coulomb's friction, whose jump at rest has no derivative."""
     par = mechanism.model.par.copy()
     for e, instance in enumerate(mechanism.instances):
-        if instance.element.key != "clearance_joint":
-            continue
-        if mechanism.model.con[e, FRICTION_LAW] == CODES["coulomb"]:
-            par[e, FRICTION_PAR] = 0.0
+        if instance.row.contact and instance.row.contact.jump >= 0:
+            par[e, instance.row.contact.jump] = 0.0
     return mechanism.model.replaced(par=par)
 
 
@@ -151,7 +154,7 @@ class Probe:
         self.work, self.y = work, begun.y
         self.n_q, self.n_v = work.n_q, work.n_v
         self.names = [name for name, f in mechanism.frames.items() if f > 0]
-        moving = {piston_of(instance) for instance in mechanism.instances}
+        moving = {instance.row.piston for instance in mechanism.instances}
         self.states = [
             N_BOOK + k
             for k, s in enumerate(mechanism.follows)
@@ -252,9 +255,7 @@ class Probe:
         constraints(work, 0.0)
         forces(work, 0.0)
         wrenches = work.F.copy()
-        J = work.J[: work.m]
-        for end, part in enumerate((J[:, :6], J[:, 6:])):
-            np.subtract.at(wrenches, work.row_frame[:, end], self.lam[:, None] * part)
+        less_reactions(work, wrenches, self.lam)
         F = along_rates(work, wrenches)
         if self.bars:
             poses(self.bars, y)
@@ -270,9 +271,9 @@ class Probe:
     def drift(self) -> Array:
         """Phi' = J V + Phi_t at the poses and rows of the last evaluation."""
         work = self.work
-        i, j = work.row_frame[:, 0], work.row_frame[:, 1]
-        J, phi_t = work.J[: work.m], work.phi_t[: work.m]
-        return np.asarray(np.sum(J[:, :6] * work.V[i] + J[:, 6:] * work.V[j], axis=1) + phi_t)
+        start, lines = work.row_start[: work.m], work.row_start[work.m]
+        parts = (work.J * work.V[work.line_frame])[:lines]
+        return np.asarray(np.sum(np.add.reduceat(parts, start), axis=1) + work.phi_t[: work.m])
 
     def turning(self) -> Array:
         """Z^T M (omega x) Z: a body that spins carries its small rotations along."""

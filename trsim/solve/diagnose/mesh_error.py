@@ -23,6 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import Beam
 from trsim.laws.cable import CURVATURES
@@ -123,7 +124,7 @@ def supports(scenario: Any, name: str, beam: Beam) -> list[tuple[int, bool]]:
     found: dict[int, bool] = {}
     for joint in grounded:
         node = int(np.argmin(np.linalg.norm(beam.places - np.array(joint.at), axis=1)))
-        found[node] = found.get(node, False) or joint.type == "fixed"
+        found[node] = found.get(node, False) or elements.load(joint.type).welds
     return [*found.items()]
 
 

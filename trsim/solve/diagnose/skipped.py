@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
+from trsim import elements
 from trsim.assemble.layout import all_names
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.sections import without_play
@@ -58,7 +59,7 @@ def _contacts(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
         yield "contact events: no joint has clearance and there is no limit stop"
     elif method == "rk4":
         yield "location of touches: rk4 has a fixed step, a contact begins at the end of a step"
-    joints = [j for j in scenario.joints.values() if j.type == "clearance_joint"]
+    joints = [j for j in scenario.joints.values() if elements.load(j.type).ideal]
     ideal = [n for n, j in scenario.joints.items() if getattr(j, "clearance", None) == 0.0]
     if ideal:
         yield f"play of {listed(ideal)}: clearance 0 is an ideal joint"

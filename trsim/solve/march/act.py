@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
-from trsim.elements.actuator import PLACE, SLIP, piston_of
-from trsim.elements.contract import SINCE
+from trsim.elements.contract import SINCE, Row
 from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, STATE, rates_at
 from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
@@ -72,7 +71,7 @@ def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
     told = {c.name: b.out[c.start] for c in mechanism.columns}
     forces = []
     for instance in mechanism.instances:
-        if instance.element.key == "actuator":  # of a supply where there is one: that stalls
+        if instance.row.length:  # an actuator: of a supply where there is one, that stalls
             of = (f"{instance.name}.{word}" for word in ("supply_force", "force"))
             forces += [f"{name} {told[name]:.4g} N" for name in of if name in told][:1]
     said = f"{event.when} {event.said} ({event.value:g} {event.unit}) at t = {t:.6g} s"
@@ -147,22 +146,21 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
         elif old < 0:
             since = t - float(r.mem[e, SINCE])
             r.y[first + new] = rates_at(work.tab, int(work.con[e, MOTION]), since)[0]
-    if piston_of(instance) >= 0:
-        slip = int(model.con[e, SLIP])
+    slip = instance.row.slip
+    if slip >= 0:
         if before == LOOSE:
-            take_along(work, model, r, e, instance)
+            take_along(work, r, instance.row)
         else:
             r.y[first + slip] += prescribed_rate(work, e, t - float(r.mem[e, SINCE]))
         r.y[first + slip] -= prescribed_rate(model, e, 0.0)
     r.mem[e, SINCE] = t
 
 
-def take_along(work: Scene, model: Any, r: Record, e: int, instance: Any) -> None:
+def take_along(work: Scene, r: Record, row: Row) -> None:
     """The piston of an actuator that takes hold again is where its end is, and as fast: its speed,
     not yet less that of the motion."""
-    entry, first = instance.row.con[ENTRY], work.n_q + work.n_v
-    r.y[first + model.con[e, PLACE]] = work.S[entry, 0]
-    r.y[first + model.con[e, SLIP]] = work.S[entry, 1]
+    first = work.n_q + work.n_v
+    r.y[first + row.piston], r.y[first + row.slip] = work.S[row.con[ENTRY]]
 
 
 def prescribed_rate(model: Any, e: int, since: float) -> float:

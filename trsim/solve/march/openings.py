@@ -23,6 +23,7 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import close_positions
+from trsim.assemble.schur import velocity_residual
 from trsim.assemble.tables import turns_by
 from trsim.elements.contract import compiled
 from trsim.elements.scene import workspace
@@ -46,7 +47,7 @@ from trsim.solve.march.record import (
 
 Array = NDArray[np.float64]
 
-FRAME_I, FRAME_J, ROW, INDEX = range(4)  # columns of s.redundant
+ROW, INDEX = range(2)  # columns of s.redundant
 OF_TOLERANCE, LEAST = 100.0, 1e-8
 TOLD, LEAST_TOLD = 0.01, 1e-9
 NEWTON, CLOSED = 12, 1e-14  # steps; of the mechanism's size
@@ -75,7 +76,7 @@ def look(s, r, b, setting, t, y, step):
     told, worst = max(TOLD * setting[HELD_TO], LEAST_TOLD), 0.0
     for k in range(s.redundant.shape[0]):
         worst = max(worst, opening(s, s.m + k))
-        r.clock[WORST_OPEN_RATE] = max(r.clock[WORST_OPEN_RATE], rate(s, k))
+        r.clock[WORST_OPEN_RATE] = max(r.clock[WORST_OPEN_RATE], rate(s, s.m + k))
     r.clock[WORST_OPEN] = max(r.clock[WORST_OPEN], worst)
     if worst <= (told if step == 1 else setting[HELD_TO]):
         return 0
@@ -128,13 +129,9 @@ def opening(s, row):
 
 
 @internal
-def rate(s, k):
-    """|Phi'| of redundant row k, relative, 1/s."""
-    i, j, row = s.redundant[k, FRAME_I], s.redundant[k, FRAME_J], s.m + k
-    total = s.phi_t[row]
-    for a in range(6):
-        total += s.J[row, a] * s.V[i, a] + s.J[row, 6 + a] * s.V[j, a]
-    return abs(total) / s.row_unit[row]
+def rate(s, row):
+    """|Phi'| of a row, relative, 1/s."""
+    return abs(velocity_residual(s, row)) / s.row_unit[row]
 
 
 def may_open(mechanism: Mechanism) -> bool:
@@ -197,7 +194,7 @@ def check_closed(mechanism: Mechanism, y: Array, tolerance: float) -> None:
     k = int(np.argmax(opening))
     if opening[k] <= held_to(tolerance):
         return
-    e, index = model.redundant[k, ROW:].tolist()
+    e, index = model.redundant[k].tolist()
     instance = mechanism.instances[e]
     raise ModelError(
         f"its row {instance.element.rows[index]} is off by "

@@ -26,7 +26,16 @@ import numpy as np
 from trsim.assemble.dense import inverse
 from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, UNKNOWN
 from trsim.elements.contract import I, J
-from trsim.elements.frames import arm, centripetal, cross, dot, separation, spin, velocity
+from trsim.elements.frames import (
+    arm,
+    centripetal,
+    cross,
+    dot,
+    separation,
+    spin,
+    two_points,
+    velocity,
+)
 from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import (
     CONTROL_AT,
@@ -208,25 +217,17 @@ def from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j):
     if kind == ANGLE:
         turn = spin_i + spin_j
         return turn, bend_i + bend_j + spin_i * turn
-    p_i, p_j = points(s, e)
+    _, p_i, _, p_j = two_points(s.X, s.con, s.par, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
     return from_points(s, kind, e, sign, length, bend, spin_i, round_i)
 
 
 @internal
-def points(s, e):
-    """The arms of an instance's points on both of its frames."""
-    X, par, i, j = s.X, s.par, s.con[e, I], s.con[e, J]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    return p_i, arm(X, j, par[e, 3], par[e, 4], par[e, 5])
-
-
-@internal
 def from_points(s, kind, e, sign, length, bend, spin_i, round_i):
     """Bounds of |g'| and -sign g'' of a stroke or a distance, with |d''| <= bend."""
     V, i, j = s.V, s.con[e, I], s.con[e, J]
-    p_i, p_j = points(s, e)
+    _, p_i, _, p_j = two_points(s.X, s.con, s.par, e)
     d = separation(s.X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
@@ -323,7 +324,7 @@ def apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j):
     Arms and spins are those at the end of the step, and what they turn by in it is added.
     """
     i, j, worst = s.con[e, I], s.con[e, J], 0.0
-    p_i, p_j = points(s, e)
+    _, p_i, _, p_j = two_points(s.X, s.con, s.par, e)
     if flat(s, i) and flat(s, j):
         return SAFETY * apart_in_plane(s, b, i, p_i, j, p_j) + slack_of(
             s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j

@@ -73,24 +73,25 @@ class SparseBuffers(Buffers):
     mu: A2  # (2, n_x) of rows, and of hubs
 
 
-def record(dense: Record, scenario: Any, mechanism: Mechanism, past_rows: int) -> SparseRecord:
+def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
     """A Record with room for a sparse Jacobian, for any stage of the mechanism."""
-    starts, _ = columns(nodes(scenario, mechanism), mechanism.model)
-    rows = sum(len(instance.element.rows) for instance in mechanism.instances)
+    starts, _ = columns(nodes(mechanism), mechanism.model)
+    lines = sum(len(instance.row.frames(k)) for instance in mechanism.instances
+                for k in range(len(instance.element.rows)))  # fmt: skip
     return SparseRecord(
         **{**dense.arrays(), "past": np.zeros((past_rows, dense.y.size))},
         at_place=np.zeros(starts[-1]),
         at_rate=np.zeros(starts[-1]),
-        at_rows=np.zeros((2 * rows, 6)),
-        at_turn=np.zeros((2 * rows, 6)),
+        at_rows=np.zeros((lines, 6)),
+        at_turn=np.zeros((lines, 6)),
         at_state=np.zeros(len(mechanism.instances)),
     )
 
 
-def buffers(dense: Buffers, scenario: Any, mechanism: Mechanism, model: Model) -> SparseBuffers:
+def buffers(dense: Buffers, mechanism: Mechanism, model: Model) -> SparseBuffers:
     """Buffers with the pattern of a stage of the mechanism, whose model is given."""
     own = {name: getattr(dense, name) for name, _ in Buffers.kind.fields}
-    found = nodes(scenario, mechanism)
+    found = nodes(mechanism)
     return SparseBuffers(**{**own, **tables(found, mechanism, model)})
 
 
@@ -310,7 +311,8 @@ def constraint_groups(found: Nodes, model: Model, held: Any) -> list[tuple[list[
     by_nodes: dict[tuple[int, ...], list[int]] = {}
     state, before = dict(held.tolist()), before_hubs(model)
     for j in range(model.m):
-        on = {frame - 1 for frame in model.row_frame[j].tolist() if frame > 0}
+        named = model.line_frame[model.row_start[j] : model.row_start[j + 1]]
+        on = {frame - 1 for frame in named.tolist() if frame > 0}
         if j in state:
             on.add(found.bodies + state[j] - model.n_v)
         by_nodes.setdefault((j in before, *sorted(on)), []).append(j)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.actuator import piston_of
 from trsim.elements.contract import N_BOOK
 from trsim.elements.prescribed import ENTRY, OWN_MOTION, OWN_STATE, K, rates_at
 from trsim.elements.scene import scene, workspace
@@ -43,8 +42,7 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
     sign_of = {int(entry): int(sign) for entry, _, _, sign in model.turn}
     for instance in mechanism.instances:
         row = instance.row
-        rigid = instance.section == "drives" and instance.element.key == "drive"
-        if not rigid or row.is_force or row.con[OWN_STATE] >= 0:
+        if instance.section != "drives" or row.is_force or row.con[OWN_STATE] >= 0:
             continue
         (i, j), entry = row.con[:2], row.con[ENTRY]
         place, _, _ = rates_at(model.tab, row.con[OWN_MOTION], 0.0)
@@ -102,8 +100,8 @@ def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float
         gap = f - float(w.S[rest.con[ENTRY], 0])
         if row.con[OWN_STATE] >= 0:
             found[row.con[OWN_STATE]] = gap
-        if (piston := piston_of(instance)) >= 0:
-            found[piston] = gap * rest.par[K] / row.par[K]
+        if row.piston >= 0:
+            found[row.piston] = gap * rest.par[K] / row.par[K]
     return found
 
 

@@ -16,7 +16,7 @@ from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import closest, jacobian
+from trsim.assemble.reduce import closest, jacobian, largest_reaction
 from trsim.assemble.switches import LIMITS
 from trsim.elements.contract import (
     BRANCH,
@@ -28,7 +28,7 @@ from trsim.elements.contract import (
     UNLOCATED,
     WHOLE,
 )
-from trsim.elements.scene import N_MEM, Model, workspace
+from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.blame import refuse_no_number
 from trsim.solve.march.openings import check_closed
@@ -71,7 +71,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
     for name, x in mechanism.coordinates.items():
         model.branch[x.entry] = angles.get(name, x.drawn)
     y = on_turns_of_drives(mechanism, y)
-    refuse_no_number(mechanism, follow(mechanism, y), np.zeros((len(model.con), N_MEM)))
+    refuse_no_number(mechanism, follow(mechanism, y), np.zeros((len(model.con), model.n_mem)))
     phi = jacobian(model, 0.0, follow(mechanism, y))[0]
     moved = float(np.max(np.abs(phi), initial=0.0))
     y, left = closest(model, 0.0, follow(mechanism, y))
@@ -175,7 +175,7 @@ def positions(
     far states are ahead of the coordinates they follow."""
     if not initial.settles and not initial.values:
         return mechanism.y0, 0.0, {}, {}
-    playing = {n for n, s in scenario.joints.items() if s.type == "clearance_joint"}
+    playing = {n for n, s in scenario.joints.items() if elements.load(s.type).ideal}
     ideal = frozenset(playing - set(initial.equilibrium))
     drives = holding_drives(scenario, initial)
     try:
@@ -312,7 +312,7 @@ def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
 
 def phases(model: Model, y: Array, located: bool) -> Array:
     """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
-    mem = np.zeros((len(model.con), N_MEM))
+    mem = np.zeros((len(model.con), model.n_mem))
     mem[:, BRANCH] = WHOLE  # until the march has looked
     w = workspace(model)
     poses(w, y)
@@ -338,8 +338,7 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     w.mem[:] = mem
     derivative(w, 0.0, y, yd)
     force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
-    reaction = [abs(w.lam[k]) * np.max(np.abs(w.J[k, :3])) for k in range(model.m)]
-    force = max(force, float(max(reaction, default=0.0)))
+    force = max(force, largest_reaction(w))
     end = max(scenario.solver.end, 1e-300)
     moving = max(of_frames(w.V, reach), CREEP * reach / end)
     speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)

@@ -21,7 +21,14 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
-from trsim.assemble.reduce import along_rates, displaced, in_solve_axes, jacobian, moves
+from trsim.assemble.reduce import (
+    along_rates,
+    displaced,
+    in_solve_axes,
+    jacobian,
+    less_reactions,
+    moves,
+)
 from trsim.elements.scene import Scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import remember
@@ -186,7 +193,5 @@ def unbalanced(work: Scene, y: Array, lam: Array) -> Array:
     """F - J^T lam at rest along the world-axes rates (6 (n-1))."""
     F = wrenches_at_rest(work, y).copy()
     constraints(work, 0.0)
-    for end in (0, 1):
-        pull = work.J[: work.m, 6 * end : 6 * end + 6] * lam[:, None]
-        np.subtract.at(F, work.row_frame[:, end], pull)
+    less_reactions(work, F, lam)
     return along_rates(work, F)

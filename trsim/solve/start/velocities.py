@@ -71,7 +71,7 @@ def given(scenario: Any) -> bool:
 def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) -> Mechanism:
     """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
     joints = scenario.joints.items() if not given(scenario) else ()
-    playing = frozenset(n for n, s in joints if s.type == "clearance_joint")
+    playing = frozenset(n for n, s in joints if elements.load(s.type).ideal)
     with_coordinate = [n for n in named if elements.load(scenario.joints[n].type).coordinate]
     if not playing and not mechanism.beams and {*with_coordinate} <= {*mechanism.coordinates}:
         return mechanism
