@@ -30,6 +30,7 @@ from trsim.analyse.trajectory import (
     work,
 )
 from trsim.errors import SolverError, UsageError
+from trsim.scenario.methods import METHODS, REFERENCES
 
 Array = NDArray[np.float64]
 
@@ -85,17 +86,20 @@ class Study:
 def plan(
     methods: Sequence[str], tolerances: Sequence[float], steps: Sequence[float]
 ) -> list[Setting]:
-    """What is to be measured: rk4 with steps, all others with tolerances."""
-    return [
-        Setting(method, None, value) if method == "rk4" else Setting(method, value)
-        for method in methods
-        for value in (steps if method == "rk4" else tolerances)
-    ]
+    """What is to be measured: methods of fixed steps with steps, all others with tolerances."""
+    found = []
+    for method in methods:
+        if METHODS[method].adaptive:
+            found += [Setting(method, value) for value in tolerances]
+        else:
+            found += [Setting(method, None, value) for value in steps]
+    return found
 
 
 def reference_setting(methods: Sequence[str], tolerances: Sequence[float]) -> Setting:
-    """radau, or dop853 where radau alone is measured, 100 times tighter than the tightest."""
-    method = "dop853" if set(methods) == {"radau"} else "radau"
+    """The first of REFERENCES, or the second where that alone is measured, 100 times tighter than
+    the tightest."""
+    method = REFERENCES[set(methods) == {REFERENCES[0]}]
     return Setting(method, max(min(tolerances, default=1e-8) / TIGHTER, TIGHTEST))
 
 
@@ -116,7 +120,7 @@ def reference(
     ranges = {name: value for name, value in ranges.items() if name not in rests}
     if not ranges:
         raise UsageError("none of the quantities moves", "Name others with --quantity CHANNEL.")
-    other = "dop853" if setting.method != "dop853" else "radau"
+    other = REFERENCES[setting.method != REFERENCES[1]]
     rows, apart, reason = len(run.time), None, ""
     uncertainty = peak_uncertainty = np.nan
     try:

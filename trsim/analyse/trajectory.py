@@ -76,7 +76,8 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
     full = changed(scenario, "output", channels=("*",))
     mechanism = assemble(full)
     # the same largest step, whatever the rows
-    full = changed(full, "solver", max_step=float(settings(full, mechanism, True)[H_MAX]))
+    longest = settings(changed(full, "solver", method="auto"), mechanism)[H_MAX]
+    full = changed(full, "solver", max_step=float(longest))
     lean = changed(full, "output", every=scenario.solver.end, channels=())
     names = [mechanism.instances[e].name for e in mechanism.model.contact]
     columns = {column.name: column for column in mechanism.columns}
@@ -172,6 +173,7 @@ def work(
 
 
 def own_first_step(outcome: Any, tolerance: float, end: float) -> float:
-    """About what the solver starts with, s: a hundredth of the natural time scale."""
-    natural = outcome.start.length / max(outcome.start.speed, 1e-300)
-    return float(min(0.01 * natural * tolerance ** (1 / 8), end))
+    """About what the solver starts with, s."""
+    from trsim.solve.outcome import step_of
+
+    return step_of(outcome.start.length, outcome.start.speed, tolerance, end)

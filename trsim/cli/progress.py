@@ -9,6 +9,7 @@ from typing import Any
 
 from trsim.cli.frame import Answer, Stop
 from trsim.errors import FileError, one_line
+from trsim.scenario.methods import GGL, INDEX_1, METHODS
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
 WHILE = 2.0  # s: what takes longer is told
@@ -24,18 +25,11 @@ def compiling(answer: Answer, method: str = "") -> None:
     from trsim.assemble.equations import derivative
 
     needed, later = derivative, []
-    if method.startswith("scipy:"):
-        later = ["scipy_ivp"]
-    elif method:
-        from trsim.solve.march.complete import complete as needed
-        from trsim.solve.simulate import COMPILED
-
+    if method:
         # the largest first; the first process comes to the rest before it needs an implicit method
-        later = [
-            "march.complete",
-            *(f"methods.{name}" for name in reversed(COMPILED[method])),
-            "march.loop",
-        ]
+        files = METHODS[method].files.get(INDEX_1, ("scipy_ivp",))
+        later = ["march.complete", *(f"methods.{name}" for name in reversed(files)), "march.loop"]
+        from trsim.solve.march.complete import complete as needed
     see_own(answer)
     if needed.known:
         return
@@ -52,7 +46,7 @@ def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
     from trsim.solve.simulate import files
 
     used = files(scenario, mechanism)
-    if "radau_ggl" not in used:
+    if used != METHODS[scenario.solver.method].files.get(GGL):
         return
     from trsim.solve.methods import radau_ggl
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError, SolverError, TrsimError
+from trsim.scenario.methods import METHODS
 from trsim.sweep.ledger import DIGEST, REFUSED
 
 CHECKPOINT = 60.0  # s of wall time between two
@@ -82,7 +83,7 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
         return {}
 
     blocks = _told(simulate(scenario, mechanism, kept.state if kept else None), begun)
-    every = 0.0 if scenario.solver.method.startswith("scipy:") else CHECKPOINT
+    every = CHECKPOINT if METHODS[scenario.solver.method].files else 0.0
     return write(target, scenario, mechanism, blocks, task["command"], every, kept, closing)
 
 

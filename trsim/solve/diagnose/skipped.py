@@ -53,11 +53,13 @@ def _bars(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
 
 def _contacts(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     """Events and friction."""
-    number, method = len(mechanism.model.contact), scenario.solver.method
+    number, solver = len(mechanism.model.contact), scenario.solver
     if number == 0:
         yield "contact events: no joint has clearance and there is no limit stop"
-    elif method == "rk4":
-        yield "location of touches: rk4 has a fixed step, a contact begins at the end of a step"
+    elif not solver.locates:
+        told = solver.locate_events is False
+        why = "`locate_events: false`" if told else f"{solver.method} has a fixed step"
+        yield f"location of touches: {why}, a contact begins at the end of a step"
     joints = [j for j in scenario.joints.values() if j.type == "clearance_joint"]
     ideal = [n for n, j in scenario.joints.items() if getattr(j, "clearance", None) == 0.0]
     if ideal:

@@ -29,14 +29,13 @@ from trsim.solve.march.record import DECAY, GAIN, LENGTH, MET, SPEED, TOLERANCE,
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import dop853_tableau as tableau
 
-ORDER = 8
 STAGES = 16  # 12 of a step, the new point, 3 of the dense output
 LAST = 12  # K[LAST] = y' at the end of the step
 ESTIMATE = 8  # the error estimate falls with h^8
 DENSE_ROWS = 7
 DENSE_DEGREE = 7
 DEAR = 13  # rows of K with derivatives of a step; its dense output takes three more
-ADAPTIVE, IMPLICIT = True, False
+IMPLICIT = False
 
 A, C, D, E3, E5 = tableau.A, tableau.C, tableau.D, tableau.E3, tableau.E5
 

@@ -42,13 +42,12 @@ from trsim.solve.methods.dense_lu import factorise_real, solve_real
 from trsim.solve.methods.displacements import active, turn, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
 
-ORDER = 2
 ESTIMATE = 2  # the error estimate falls with h^2
 STAGES = 7
 LAST = 2
 DENSE_ROWS = hermite.ROWS + 2
 DENSE_DEGREE = 3
-ADAPTIVE, IMPLICIT = True, True
+IMPLICIT = True
 
 RADIUS = 0.8
 A_M = (2.0 * RADIUS - 1.0) / (RADIUS + 1.0)

@@ -57,13 +57,12 @@ from trsim.solve.methods.displacements import active, moved_by, twisted, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 
-ORDER = 5
 ESTIMATE = 4  # the error estimate falls with h^4
 STAGES = 14
 LAST = 2
 DENSE_ROWS = 4
 DENSE_DEGREE = 3
-ADAPTIVE, IMPLICIT = True, True
+IMPLICIT = True
 
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
 # second differences over the stages: of what Z is, and of its rate times h; that rate at the end

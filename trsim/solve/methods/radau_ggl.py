@@ -64,8 +64,8 @@ from trsim.solve.methods.radau import (
 )
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, A, C, E
 
-ORDER, ESTIMATE, LAST = radau.ORDER, radau.ESTIMATE, radau.LAST
-ADAPTIVE, IMPLICIT = True, True
+ESTIMATE, LAST = radau.ESTIMATE, radau.LAST
+IMPLICIT = True
 STAGES = ggl_stages.STAGES
 SPARSE = ggl_tables  # its records have tables of their own
 interpolate = radau.interpolate

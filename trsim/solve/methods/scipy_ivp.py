@@ -18,6 +18,7 @@ from trsim.assemble.equations import derivative
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
+from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
@@ -60,7 +61,6 @@ LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
-IMPLICIT = ("BDF", "Radau")
 ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
@@ -91,7 +91,7 @@ def interpolate(P, y, theta, out):
 
 def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     """As solve/simulate.py's, with scipy's solver making the steps."""
-    setting = settings(scenario, mechanism, True)
+    setting = settings(scenario, mechanism)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     s, left_out = begun_with(mechanism, begun)
     r = new_record(s, begun, left_out, NODES.size)
@@ -217,9 +217,9 @@ def restarted(
             J[:, c] = (right_hand_side(t, x) - f) / (x[c] - y[c])
         return J
 
-    name = scenario.solver.method.split(":", 1)[1]
-    make = getattr(scipy.integrate, name)
-    more = {"jac": jacobian} if name in IMPLICIT else {}
+    method = scenario.solver.method
+    make = getattr(scipy.integrate, method.split(":", 1)[1])
+    more = {} if METHODS[method].explicit else {"jac": jacobian}
     t = float(r.clock[rec.T])
     until = next_time(s, t, setting[rec.T_END])
     first = min(float(r.clock[rec.H]), until - t)
