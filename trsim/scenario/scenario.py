@@ -117,7 +117,8 @@ class SolverSpec(Spec):
                    stabilised index 2 with sparse matrices; found out unless given
     end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
     step           of rk4
-    tolerance      error of a step, relative to the size of clearances or of bodies
+    tolerance      about the error of smooth motion at the end of a run, relative to the size of
+                   clearances or of bodies; steps are held to less
     stabilisation  how joints are kept closed
     baumgarte      rates of that stabilisation
     first_step     found out unless given

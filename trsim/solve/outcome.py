@@ -94,8 +94,8 @@ def settings(scenario: Any, mechanism: Mechanism) -> Array:
         )
     s = np.zeros(rec.N_SETTINGS)
     s[rec.T_END] = solver.end
-    s[rec.WRITTEN] = solver.tolerance
-    s[rec.TOLERANCE] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
+    s[rec.TOLERANCE] = solver.tolerance
+    s[rec.STEP_ERROR] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
     s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
     s[rec.H_MAX] = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:

@@ -10,7 +10,7 @@ class Reference(TypedDict):
     """What errors are taken against.
 
     method            of the run
-    tolerance         of its steps
+    tolerance         of that run
     second_method     of another run, at the same tolerance
     second_failed     why that one did not reach its end, or ""
     uncertainty       error of the second run
@@ -36,7 +36,7 @@ class Measured(TypedDict):
     """One method at one setting.
 
     method           as in a scenario
-    tolerance        of its steps; null with fixed ones
+    tolerance        of the runs; null with fixed steps
     step             s; null without fixed ones
     status           how the runs ended; nothing is measured of one that failed
     reason           why it failed, or ""

@@ -16,7 +16,7 @@ class Solver(Statistics, total=False):
     method         as in the scenario, all of these
     end            s
     step           s
-    tolerance      of a step
+    tolerance      of the run
     stabilisation  of the constraints
     first_step     s
     max_step       s

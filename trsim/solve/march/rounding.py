@@ -47,8 +47,8 @@ from trsim.solve.march.record import (
     ROUNDED,
     ROUNDED_AT,
     ROUNDED_BY,
+    STEP_ERROR,
     STEPS,
-    TOLERANCE,
     T,
 )
 
@@ -92,8 +92,8 @@ def look_closer(s, r, b, setting, method, h):
 def beside(s, r, setting, y, moved, sign):
     """moved <- y with every entry moved by its last bit, or to the other side with the sign -1."""
     for c in range(y.size):
-        weight = weight_of(s, r, setting[TOLERANCE], c)
-        unit = 1.0 / (weight * setting[TOLERANCE]) if weight > 0.0 else 0.0
+        weight = weight_of(s, r, setting[STEP_ERROR], c)
+        unit = 1.0 / (weight * setting[STEP_ERROR]) if weight > 0.0 else 0.0
         d = sign * EPS * max(abs(y[c]), unit)
         # neighbours in ways of their own
         moved[c] = y[c] + (d if (c * c + c // 2) % 4 < 2 else -d)
@@ -154,7 +154,7 @@ def largest(s, r, setting):
     """The largest noise in units of the tolerance per second."""
     r.clock[NOISY] = 0.0
     for c in range(r.noise.size):
-        noisy = r.noise[c] * weight_of(s, r, setting[TOLERANCE], c)
+        noisy = r.noise[c] * weight_of(s, r, setting[STEP_ERROR], c)
         if noisy > r.clock[NOISY]:
             r.clock[NOISY], r.clock[NOISY_AT] = noisy, c
 

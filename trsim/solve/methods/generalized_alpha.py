@@ -34,7 +34,7 @@ from trsim.solve.march.record import (
     OLD,
     PAST_H,
     SPEED,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import hermite
@@ -249,14 +249,14 @@ def accelerated(s, r, b, setting, h, ratio, further):
             bend = max(4.0 * abs(by - 2.0 * (K[SCRATCH, c] - r.yd[c])), UNKNOWN * abs(by))
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
-    off, strict = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0, 0.0
+    off, strict = setting[STEP_ERROR] * r.clock[SPEED] * bent / 12.0, 0.0
     if held(s):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
         units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
         strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
-    return max(strict, min(off / (setting[TOLERANCE] * turned), further)) if turned > 0.0 else 0.0
+    return max(strict, min(off / (setting[STEP_ERROR] * turned), further)) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)

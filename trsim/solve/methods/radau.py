@@ -43,7 +43,7 @@ from trsim.solve.march.record import (
     OLD_H,
     PAST_H,
     SPEED,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.march.rounding import jitter, noted, to_look
 from trsim.solve.march.works import first_work, works
@@ -314,7 +314,7 @@ def of_accelerations(s, r, b, setting, h):
     a first step, which may be of any length, the filter of the estimate may have left nothing of
     it: there what was filtered counts as well.
     """
-    K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
+    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
     r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
     for c in range(s.n_q + s.n_v):
         K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]

@@ -31,7 +31,7 @@ from trsim.solve.march.record import (
     OLD,
     PAST_ERROR,
     PAST_H,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
 from trsim.solve.methods.ggl_jacobian import sparse_jacobian
@@ -187,7 +187,7 @@ def newton(s, r, b, setting, t, h, stabilised):
     # small
     made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
-    wanted = max(min(KAPPA, sqrt(setting[TOLERANCE])) * made, floor) if strict else enough
+    wanted = max(min(KAPPA, sqrt(setting[STEP_ERROR])) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1

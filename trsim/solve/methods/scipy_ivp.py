@@ -207,7 +207,7 @@ def restarted(
     atol = allowed(scenario, s, r, b, setting, finer)
     # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
     # a body is 50 m from the origin and entries of its quaternion are zero
-    step = PART / np.where(b.weight > 0.0, b.weight * setting[rec.TOLERANCE], PART)
+    step = PART / np.where(b.weight > 0.0, b.weight * setting[rec.STEP_ERROR], PART)
 
     def jacobian(t: float, y: Array) -> Array:
         J, f = np.zeros((y.size, y.size)), right_hand_side(t, y)
@@ -231,7 +231,7 @@ def restarted(
 def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
     """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
     weigh(s, r, b, setting)
-    outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    outside = 1e6 * setting[rec.STEP_ERROR] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
     absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
     absolute[books(s)] = unit_of_works(r, setting)
@@ -252,15 +252,15 @@ def of_accelerations(
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
     length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
     r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
-    weight = b.weight * setting[rec.TOLERANCE]
+    weight = b.weight * setting[rec.STEP_ERROR]
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
     third = THIRD @ b.P[:, rates] * weight[rates]
-    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting[rec.TOLERANCE]
+    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting[rec.STEP_ERROR]
     v = h * speed * max(float(np.linalg.norm(third)) - SHOWN * allowed, 0.0)
     w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
     most = max(most, w * speed / FURTHEST)
     made = w * np.hypot(w * length, speed)
-    finest = min(1.0, RELATIVE / setting[rec.TOLERANCE])  # below it only rounding is left
+    finest = min(1.0, RELATIVE / setting[rec.STEP_ERROR])  # below it only rounding is left
     return (
         max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
     )
@@ -273,7 +273,7 @@ def books(s: Scene) -> slice:
 
 def unit_of_works(r: Record, setting: Array) -> float:
     """The error allowed to a work, J; see works.py."""
-    allowed = setting[rec.TOLERANCE] * r.clock[rec.EXCHANGED]
+    allowed = setting[rec.STEP_ERROR] * r.clock[rec.EXCHANGED]
     return max(float(allowed), ROUNDING * float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
 
 
