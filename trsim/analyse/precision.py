@@ -13,7 +13,7 @@ first steps; so is the CPU time, that of the integration alone, without rows.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import median
 
 import numpy as np
@@ -58,19 +58,32 @@ class Reference:
 
 @dataclass(frozen=True)
 class Point:
-    """One method at one setting.  What was not measured is nan."""
+    """One method at one setting.
+
+    reason           why it failed, or ""
+    error            largest difference to the reference over the range, of all quantities; median
+                     over first steps
+    worst            of the first steps
+    peak_error       largest relative difference of a contact's largest force; none without any
+    unresolved       whether the error is not above the uncertainty of the reference
+    peak_unresolved  the same of the peak error
+    cpu              s, of the integration without output rows; median
+    steps            accepted, median
+    evaluations      right-hand sides, median
+    errors           quantity -> error
+    """
 
     setting: Setting
     error: float = np.nan
-    worst: float = np.nan  # of the first steps
-    peak_error: float = np.nan  # nan without contacts
-    errors: dict[str, float] | None = None  # of each quantity
-    cpu: float = np.nan  # s
+    worst: float = np.nan
+    peak_error: float = np.nan
+    errors: dict[str, float] = field(default_factory=dict)
+    cpu: float = np.nan
     steps: int = 0
     evaluations: int = 0
-    unresolved: bool = False  # the error is below the reference's uncertainty
+    unresolved: bool = False
     peak_unresolved: bool = False
-    reason: str = ""  # why it failed, or ""
+    reason: str = ""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,12 @@ def unwatched() -> None:
 
 
 class Setting(NamedTuple):
-    """How a run is made: with a tolerance, or with a fixed step (s)."""
+    """How a run is made: with a tolerance, or with a fixed step.
+
+    method     as in a scenario
+    tolerance  of the runs; null with fixed steps
+    step       s; null without fixed ones
+    """
 
     method: str
     tolerance: float | None = None

@@ -135,19 +135,13 @@ def described(study: Any) -> dict[str, Any]:
             {
                 **p.setting._asdict(),
                 "status": "failed" if p.reason else "done",
-                "reason": p.reason,
-                **{key: getattr(p, key) for key in NUMBERS},
-                "errors": p.errors or {},
+                **{key: value for key, value in vars(p).items() if key != "setting"},
             }
             for p in study.points
         ],
         "slopes": study.slopes,
         "files": [],
     }
-
-
-NUMBERS = ("error", "worst", "peak_error", "unresolved", "peak_unresolved", "cpu", "steps",
-           "evaluations")  # fmt: skip
 
 
 def lines(study: Any) -> list[str]:
