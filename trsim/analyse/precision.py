@@ -17,7 +17,6 @@ from dataclasses import dataclass, field
 from statistics import median
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, still, windows
 from trsim.analyse.trajectory import (
@@ -31,8 +30,6 @@ from trsim.analyse.trajectory import (
 )
 from trsim.errors import SolverError, UsageError
 from trsim.scenario.methods import METHODS, REFERENCES
-
-Array = NDArray[np.float64]
 
 TOLERANCES = tuple(10.0**-k for k in range(3, 9))
 FIRST_STEPS = (1.0, 0.8, 1.25)  # times about the solver's own

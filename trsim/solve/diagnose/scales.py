@@ -18,7 +18,6 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.solve.diagnose.bar_scales import bar_scales
@@ -26,8 +25,6 @@ from trsim.solve.diagnose.contact_scales import ContactScale, contact_scales
 from trsim.solve.diagnose.linearised import linearised, rounding
 from trsim.solve.methods.rk4 import IMAGINARY, REAL
 from trsim.solve.start.consistent import Start
-
-Array = NDArray[np.float64]
 
 LARGEST = 600  # velocities of a mechanism with flexible bars that is linearised: some seconds
 

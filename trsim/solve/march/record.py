@@ -166,14 +166,6 @@ FOUND = 200  # places between two samples where extremes are looked for
     EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
-EVENT_NAMES = {
-    ONSET: "onset",
-    SEPARATION: "separation",
-    TO_IMPLICIT: "to implicit",
-    TO_EXPLICIT: "to explicit",
-    USER: "user",
-    JOLT: "jump",
-}
 
 
 class Record(Packed):

@@ -41,6 +41,7 @@ from trsim.solve.methods import hermite
 from trsim.solve.methods.dense_lu import factorise_real, solve_real
 from trsim.solve.methods.displacements import active, turn, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
+from trsim.solve.methods.newton import FAILS, GOES_ON, judged, resolution
 
 ESTIMATE = 2  # the error estimate falls with h^2
 STAGES = 7
@@ -138,14 +139,9 @@ def arrive(s, r, b, h):
 @internal
 def newton(s, r, b, t, h):
     """Solve for b_1.  1: converged, 0: not, -1: a value is not finite."""
-    K, y, weight, n_w = b.K, r.y, b.weight, active(s)
-    counted, floor = 0, 0.0
-    for c in range(y.size):
-        if weight[c] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(y[c]) + h * r.noise[c]) * weight[c])
-    kappa = max(KAPPA, floor)
-    before, rate = 0.0, 1.0
+    K, weight, n_w = b.K, b.weight, active(s)
+    counted, floor = resolution(r, weight, h)
+    kappa, before = max(KAPPA, floor), 0.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1
         arrive(s, r, b, h)
@@ -169,14 +165,10 @@ def newton(s, r, b, t, h):
         moved = sqrt(moved / max(counted, 1))
         if not isfinite(moved):
             return -1
-        if iteration > 0:
-            rate = moved / before if before > 0.0 else 0.0
-            left = MOST_ITERATIONS - 1 - iteration
-            slow = rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa
-            if slow or (rate >= 2.0 and moved > kappa):
-                return 0
-        small = iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa
-        if moved == 0.0 or small or moved < 0.1 * kappa:
+        verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
+        if verdict == FAILS:
+            return 0
+        if verdict != GOES_ON:
             r.clock[NEWTON_RATE] = rate if iteration > 0 else 0.0
             arrive(s, r, b, h)
             for c in range(first_work(s), first_work(s) + N_BOOK):

@@ -55,6 +55,7 @@ from trsim.solve.methods.dense_lu import (
 )
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
+from trsim.solve.methods.newton import FAILS, GOES_ON, NEXT_TO_NOTHING, judged, resolution
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 
 ESTIMATE = 4  # the error estimate falls with h^4
@@ -178,16 +179,11 @@ def newton(s, r, b, t, h):
     """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite."""
     K, n, weight = b.K, r.y.size, b.weight
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
-    counted, floor = 0, 0.0
-    for k in range(n):
-        if weight[k] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
-    kappa = max(KAPPA, floor)
+    counted, floor = resolution(r, weight, h)
+    kappa, before = max(KAPPA, floor), 0.0
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
     expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8
     r.clock[CONTRACTION] = expected
-    before, rate = 0.0, 1.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1
         for i in range(3):
@@ -218,21 +214,15 @@ def newton(s, r, b, t, h):
                 K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
         if not isfinite(moved):
             return -1
+        verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
         if iteration > 0:
-            rate = moved / before if before > 0.0 else 0.0
             r.clock[CONTRACTION] = rate
-            if rate >= 2.0 and moved > kappa:
-                return 0
-            left = MOST_ITERATIONS - 1 - iteration
-            if rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa:
-                return 0
         elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
             return 1
-        r.clock[NEWTON_RATE] = rate
-        if moved == 0.0 or (iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa):
-            return 1
-        if moved < 0.1 * kappa:
-            r.clock[NEWTON_RATE] = min(rate, 1e-4)
+        if verdict == FAILS:
+            return 0
+        r.clock[NEWTON_RATE] = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
+        if verdict != GOES_ON:
             return 1
         before = moved
     return 0

@@ -50,6 +50,7 @@ from trsim.solve.methods.ggl_stages import (
 )
 from trsim.solve.methods.ggl_tables import SparseBuffers, SparseRecord
 from trsim.solve.methods.jacobian import missing
+from trsim.solve.methods.newton import resolution
 from trsim.solve.methods.radau import (
     HALVE,
     KAPPA,
@@ -175,11 +176,7 @@ def newton(s, r, b, setting, t, h, stabilised):
     stabilised: on the equations of ggl_equations.py; on those of equations.py otherwise.
     """
     K, n, weight = b.K, r.y.size, b.weight
-    counted, floor = 0, 0.0
-    for k in range(n):
-        if weight[k] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
+    counted, floor = resolution(r, weight, h)
     strict = stabilised and b.made[TURNS] > 0.0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
