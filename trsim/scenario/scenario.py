@@ -261,6 +261,11 @@ class Scenario(Spec):
         """Where in the files a path of the scenario stands."""
         return self._unfolded.place(path)
 
+    def entry(self, section: str, name: str) -> str:
+        """An entry in words: its path, and where it stands."""
+        place = self.place((section, name))
+        return f"{section}.{name}" + (f" ({place.show()})" if place else "")
+
     def quantity(self, *path: str) -> tuple[float, str] | None:
         """The quantity written at the path of an entry, and its unit; None where none is."""
         raw = self._unfolded.value(path)

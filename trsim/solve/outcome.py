@@ -13,8 +13,9 @@ from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
+from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
-from trsim.solve.march.openings import held_to, look, may_open
+from trsim.solve.march.openings import held_to, look, may_open, opened
 from trsim.solve.march.record import Record
 from trsim.solve.march.works import LEAST, N_WORKED
 from trsim.solve.start.consistent import Start
@@ -305,6 +306,15 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
         "s, which no mechanism can follow: let it go there in a time of its own, as "
         "`step5(t, t0, x0, t1, x1)` does, or give the drive a compliance"
     )
+
+
+def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Why what a run comes to is no motion of the mechanism, in words; empty where it is one."""
+    if r.count[rec.TORN]:
+        return leapt(mechanism, r)
+    if r.count[rec.OPENED]:
+        return opened(scenario, mechanism, r)
+    return lost_its_way(scenario, mechanism, r) if r.count[rec.LOST] else ""
 
 
 def whose(mechanism: Mechanism, c: int) -> str:

@@ -12,7 +12,6 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
-from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
@@ -24,7 +23,6 @@ from trsim.solve.march.calls import FIELDS
 from trsim.solve.march.checkpoint import State, begun_at, put_back, state
 from trsim.solve.march.features import put_back as put_back_held
 from trsim.solve.march.loop import begin, march, method_table
-from trsim.solve.march.openings import opened
 from trsim.solve.march.record import Record, fresh_buffers
 from trsim.solve.outcome import (
     CRAWLS,
@@ -33,12 +31,12 @@ from trsim.solve.outcome import (
     called_by,
     emptied,
     first_step,
-    leapt,
     most_points,
     new_record,
     runaway,
     settings,
     statistics,
+    untrue,
 )
 from trsim.solve.start.consistent import start
 from trsim.statuses import Ended
@@ -215,12 +213,8 @@ def ending(
     if reason == rec.DONE:
         text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
         return ("failed", text) if text else ("done", "")
-    if reason == rec.OPEN:
-        return "failed", opened(scenario, mechanism, r)
-    if reason == rec.ADRIFT:
-        return "failed", lost_its_way(scenario, mechanism, r)
-    if reason == rec.LEAPT:
-        return "failed", leapt(mechanism, r)
+    if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT):
+        return "failed", untrue(scenario, mechanism, r)
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:

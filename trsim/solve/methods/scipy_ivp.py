@@ -19,7 +19,6 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
 from trsim.scenario.methods import METHODS
-from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
@@ -30,7 +29,6 @@ from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, c
 from trsim.solve.march.features import next_time
 from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
-from trsim.solve.march.openings import opened
 from trsim.solve.march.peaks import finish, sample
 from trsim.solve.march.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.march.works import ROUNDING
@@ -41,12 +39,12 @@ from trsim.solve.outcome import (
     called_by,
     emptied,
     first_step,
-    leapt,
     most_points,
     new_record,
     runaway,
     settings,
     statistics,
+    untrue,
 )
 from trsim.solve.start.consistent import start
 from trsim.statuses import Ended
@@ -138,14 +136,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             r.clock[rec.H] = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer, float(r.clock[rec.H]))
             continue
-        if r.count[rec.OPENED]:
-            status, reason = "failed", opened(scenario, mechanism, r)
-            break
-        if r.count[rec.LOST]:
-            status, reason = "failed", lost_its_way(scenario, mechanism, r)
-            break
-        if r.count[rec.TORN]:
-            status, reason = "failed", leapt(mechanism, r)
+        if untrue(scenario, mechanism, r):
+            status = "failed"
             break
         crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
         reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
@@ -173,8 +165,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
         at = mechanism.in_stage(r.stage, r.left_out)
-        known = r.count[rec.OPENED] or r.count[rec.LOST] or r.count[rec.TORN]
-        reason = reason if known else why(scenario, at, r) or reason
+        reason = untrue(scenario, mechanism, r) or why(scenario, at, r) or reason
     bends = Bends(mechanism)
     bends.look(float(r.clock[rec.T]), r.y)
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak.T.copy(), r, begun,
