@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.errors import ScenarioError, SolverError, UsageError, known
+from trsim.solve.blocks import Blocks
 
 Array = NDArray[np.float64]
 
@@ -135,13 +136,11 @@ def marched(
     """All rows (n, 1 + n_out) of a run, and its outcome; `look` is called now and then."""
     from trsim.solve.simulate import simulate
 
-    rows, blocks = [], simulate(scenario, mechanism)
-    while True:
-        try:
-            rows.append(next(blocks).rows.copy())
-        except StopIteration as stop:
-            return np.vstack(rows), stop.value
+    rows, run = [], Blocks(simulate(scenario, mechanism))
+    for block in run:
+        rows.append(block.rows.copy())
         look()
+    return np.vstack(rows), run.outcome
 
 
 def ended(scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched) -> tuple[Array, Any]:

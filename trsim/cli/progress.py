@@ -10,6 +10,7 @@ from typing import Any
 from trsim.cli.frame import Answer, Stop
 from trsim.errors import FileError, one_line
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
+from trsim.solve.blocks import Blocks
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
 WHILE = 2.0  # s: what takes longer is told
@@ -123,17 +124,15 @@ def watched(
     """
     show = Bar(name, end) if sys.stderr.isatty() else Lines(answer, name, end)
     try:
-        while True:
-            try:
-                block = next(blocks)
-            except StopIteration as stop:
-                return stop.value
+        run = Blocks(blocks)
+        for block in run:
             Stop.patient = True
             if not answer.quiet:
                 show.update(block)
             yield block
             if Stop.number:
                 raise KeyboardInterrupt
+        return run.outcome
     finally:
         show.close()
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from trsim.errors import FileError, SolverError, TrsimError
 from trsim.scenario.methods import METHODS
+from trsim.solve.blocks import Blocks
 from trsim.sweep.ledger import DIGEST, REFUSED
 
 CHECKPOINT = 60.0  # s of wall time between two
@@ -91,16 +92,12 @@ def _told(
     blocks: Generator[Any, None, Any], begun: Callable[[], None]
 ) -> Generator[Any, None, Any]:
     """The same blocks; the first is told."""
-    first = True
-    while True:
-        try:
-            block = next(blocks)
-        except StopIteration as stop:
-            return stop.value
-        if first:
+    run = Blocks(blocks)
+    for k, block in enumerate(run):
+        if k == 0:
             begun()
-            first = False
         yield block
+    return run.outcome
 
 
 def _checkpoint(target: Path, scenario: Any) -> Any:

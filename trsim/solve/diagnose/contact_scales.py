@@ -17,7 +17,7 @@ from trsim.laws.contact import hertz_contact_time
 from trsim.laws.friction import CODES
 from trsim.solve.diagnose.linearised import Linearised
 from trsim.solve.start.consistent import Start
-from trsim.solve.start.velocities import twist_gradient
+from trsim.solve.start.velocities import gap_gradient
 
 Array = NDArray[np.float64]
 
@@ -93,14 +93,7 @@ def contact_scales(
 
 def along(w: Scene, y: Array, e: int, instance: Instance, twists: Array) -> float:
     """g Z Z^T g^T of a gap, 1/kg."""
-
-    def rate(moving: Array) -> float:
-        poses(w, moving)
-        gaps(w, 0.0)
-        return float(w.gap[e, 1])
-
-    frames = instance.element.acts_on(instance.row)
-    return float(np.sum((twist_gradient(w, y, rate, frames) @ twists) ** 2))
+    return float(np.sum((gap_gradient(w, y, instance, e) @ twists) ** 2))
 
 
 def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float]:

@@ -30,7 +30,7 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.packed import A1, I1, f8
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.calls import NO_STEP, call_step
 from trsim.solve.march.norm import weight_of
 from trsim.solve.march.record import (
@@ -107,9 +107,7 @@ def to_look(r, h):
     second = r.count[AFTER_REJECTION] == 1
     if steps < APART or (MANY if second else MOST) * failed < steps:
         return False
-    stuck = r.clock[LONGEST] <= STUCK * h
-    again(r)
-    return stuck
+    return stuck(r, h)
 
 
 @internal
@@ -117,15 +115,16 @@ def overdue(r, h):
     """Whether a trial that did not fail is to be looked at, and made again."""
     if r.count[STEPS] - r.count[LOOKED] < OVERDUE or r.count[AFTER_REJECTION] > 0:
         return False
-    stuck = r.clock[LONGEST] <= STUCK * h
-    again(r)
-    return stuck
+    return stuck(r, h)
 
 
 @internal
-def again(r):
-    """Begin to count steps, failures and the longest step again."""
+def stuck(r, h):
+    """Whether no step was much longer than h since it was last asked; steps, failures and the
+    longest step are counted again from here."""
+    told = r.clock[LONGEST] <= STUCK * h
     r.count[LOOKED], r.count[FAILED], r.clock[LONGEST] = r.count[STEPS], r.count[REJECTED], 0.0
+    return told
 
 
 @internal
@@ -183,8 +182,7 @@ def remember(s, r, setting, h):
         r.clock[ROUNDED_BY] = r.noise[int(r.clock[NOISY_AT])] * h / MARGIN
     if r.clock[PASSING] > 0.0 and s.status[0] == SOUND:
         r.clock[NOISY] = r.clock[PASSING] = 0.0
-        for c in range(r.noise.size):
-            r.noise[c] = 0.0
+        clear(r.noise)
         return
     if (r.count[STEPS] - r.count[LOOKED]) % APART == 0:
         for c in range(r.noise.size):

@@ -17,7 +17,7 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, internal
+from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.accelerations import FURTHEST, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import (
@@ -73,10 +73,9 @@ HALVE = NO_STEP  # Newton failed: take about half the step
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
-    K, n = b.K, r.y.size
+    K = b.K
     if r.count[HISTORY] == 0:
-        for c in range(n):
-            r.past[FILTERED, c] = r.yd[c]
+        copy_to(r.past[FILTERED], r.yd)
     for attempt in range(2):
         if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
             jacobian(s, r, b, setting, t, K[SCRATCH], K[MOVE])
@@ -85,8 +84,7 @@ def step(s, r, b, setting, t, h):
             return HALVE
         if r.clock[FACTORED_H] != h and not factorised(s, r, h):
             return HALVE
-        for c in range(n):
-            K[B1, c] = r.past[FILTERED, c]
+        copy_to(K[B1], r.past[FILTERED])
         done = newton(s, r, b, t, h)
         if done > 0:
             break

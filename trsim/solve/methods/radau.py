@@ -19,7 +19,7 @@ import numpy as np
 from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, internal
+from trsim.kernels.vectors import all_finite, clear, internal
 from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import (
@@ -163,8 +163,7 @@ def guess(s, r, b, h):
                 K[Z + i, c] = ahead * r.past[3, c] + polynomial(r.past, c, theta)
     else:
         for i in range(3):
-            for c in range(n):
-                K[Z + i, c] = 0.0
+            clear(K[Z + i])
     for i in range(3):
         for c in range(n):
             K[W + i, c] = (

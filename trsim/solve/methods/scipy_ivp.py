@@ -18,6 +18,7 @@ from trsim.assemble.equations import derivative
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
+from trsim.kernels.vectors import clear, copy_to
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
@@ -72,12 +73,10 @@ def interpolate(P, y, theta, out):
     """The polynomial through the values P at the nodes, barycentric form."""
     for k in range(NODES.size):
         if theta == NODES[k]:
-            for c in range(out.size):
-                out[c] = P[k, c]
+            copy_to(out, P[k])
             return
     bottom = 0.0
-    for c in range(out.size):
-        out[c] = 0.0
+    clear(out)
     for k in range(NODES.size):
         part = SIGNS[k] / (theta - NODES[k])
         bottom += part
