@@ -208,7 +208,7 @@ def ran(
             if one.failed:
                 answer.say(f"{one.case}: {one.status}: {in_a_line(one.reason)[:300]}")
             assert show is not None  # noqa: S101
-            show.update(one)
+            show.ended(one)
     except KeyboardInterrupt:
         again = "the same command goes on with the sweep"
         raise KeyboardInterrupt(f"{folder / 'index.csv'} has what was done; {again}") from None
