@@ -9,6 +9,7 @@ import os
 import re
 import stat
 from collections.abc import Iterable
+from functools import partial
 from typing import Any, NamedTuple
 
 WIDTH = 90  # columns of an excerpt
@@ -167,6 +168,18 @@ def unreadable(path: str | os.PathLike) -> FileError | None:
     return FileError(f"{path} is {what_it_is(mode)}, not a file", file=str(path))
 
 
+def some(
+    texts: Iterable[Any], most: int, more: str = " and {} more", between: str = ", "
+) -> str:  # fmt: skip
+    """The first of some texts, and how many more there are."""
+    texts = list(texts)
+    left = len(texts) - most
+    return between.join(map(str, texts[:most])) + (more.format(left) if left > 0 else "")
+
+
+listed = partial(some, most=LISTED, more=" ... ({} more)")
+
+
 def known(word: object, words: Iterable[str], close: str | None = None) -> str:
     """The hint of every 'no such name' error; `close` is the guess, if there is a better one."""
     words = list(dict.fromkeys(words))
@@ -174,8 +187,7 @@ def known(word: object, words: Iterable[str], close: str | None = None) -> str:
         return "None is known."
     close = close or closest(word, words)
     guess = f"Did you mean '{close}'?  " if close else ""
-    more = f" ... ({len(words) - LISTED} more)" if len(words) > LISTED else ""
-    return f"{guess}Known: {', '.join(words[:LISTED])}{more or '.'}"
+    return f"{guess}Known: {listed(words)}{'.' if len(words) <= LISTED else ''}"
 
 
 def closest(word: object, words: Iterable[str]) -> str | None:

@@ -31,7 +31,6 @@ NEIGHBOURS = (
 )
 AT_ONCE = 1 << 15  # intervals enclosed in one go
 TRIED = 8_000_000  # intervals: more of them are not looked at
-ZERO, ONE = ("number", 0.0), ("number", 1.0)
 
 
 def instants(node: Node, end: float) -> list[float]:

@@ -7,7 +7,7 @@ import pytest
 
 from tests import small
 from trsim.analyse.fluctuation import fluctuation
-from trsim.analyse.outputs import KINDS, scalar, scalars
+from trsim.analyse.outputs import KINDS, scalar
 from trsim.errors import UsageError
 from trsim.report.display import compared
 from trsim.report.studies import usual
@@ -110,12 +110,6 @@ def test_every_kind_is_described():
     import trsim.analyse.outputs as module
 
     assert all(kind in module.__doc__ for kind in KINDS)
-
-
-def test_several(run):
-    assert scalars(run, ["final:stroke", "points:journal"]) == [
-        scalar(run, "final:stroke"), scalar(run, "points:journal"),
-    ]  # fmt: skip
 
 
 def test_extremes_of_a_component_in_a_window_are_of_accepted_steps(run):

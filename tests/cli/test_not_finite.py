@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tests import small
-from trsim.scenario.scenario import METHODS
+from trsim.scenario.methods import METHODS
 from trsim.store.read import read, verify
 
 END = 1.5e-3  # s; the contact has closed by then

@@ -51,3 +51,53 @@ def test_check_asks_whether_it_can_be_kept(tmp_path):
     told = process.stderr.readline()
     outside.killed(process)
     assert told.startswith("warning: machine code cannot be kept")
+
+
+class Ended:
+    failed = False
+
+
+def test_lines_of_a_run_that_goes_on(capsys, monkeypatch):
+    """The time left is that of what is done since it went on."""
+    now = iter([0.0, 0.0, 5.0, 20.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(now))
+    meter = progress.Meter(Answer("run", False), "x.yaml", 2.0)
+    for done in (1.0, 1.2, 1.5):
+        meter.update(done, "at work", "more")
+    meter.close()
+    assert capsys.readouterr().err == "x.yaml: more, 20 s left\n"
+
+
+def test_lines_of_a_sweep(capsys, monkeypatch):
+    now = iter([0.0, 11.0, 12.0, 22.0])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(now))
+    cases = progress.Cases(Answer("sweep", False), "runs/study", 4)
+    for _ in range(4):
+        cases.ended(Ended)
+    assert capsys.readouterr().err.splitlines() == [
+        "runs/study: 1 of 4 cases, 33 s left", "runs/study: 3 of 4 cases, 7 s left",
+    ]  # fmt: skip
+
+
+def test_a_bar_on_a_terminal(capsys, monkeypatch):
+    monkeypatch.setattr(progress.sys.stderr, "isatty", lambda: True, raising=False)
+    now = iter([0.0, 0.0, 0.5, 2.0, 2.1, 2.5])
+    monkeypatch.setattr(progress.time, "monotonic", lambda: next(now))
+    drawn = []
+
+    class Bar:
+        def add_task(self, name, **fields):
+            return name
+
+        def update(self, task, **fields):
+            drawn.append((task, fields["completed"]))
+
+        def stop(self):
+            drawn.append("stopped")
+
+    monkeypatch.setattr(progress, "bar", Bar)
+    meter = progress.Meter(Answer("run", False), "a/x.yaml", 2.0)
+    for done in (0.0, 0.5, 1.0, 1.1, 1.5):
+        meter.update(done, "at work")
+    meter.close()
+    assert drawn == [("x", 1.0), ("x", 1.5), "stopped"]

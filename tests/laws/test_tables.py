@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import Akima1DInterpolator
 
+from trsim.expressions import parse
+from trsim.laws.functions import expression, motion
 from trsim.laws.tables import (
     akima,
     akima_coefficients,
@@ -15,14 +17,9 @@ from trsim.laws.tables import (
     quintic_rates,
     smoothstep,
     smoothstep_rates,
-    step,
-    step5,
-    step5_rates,
-    step_rates,
 )
 
 VECTORS = json.loads((Path(__file__).parents[1] / "data" / "step_and_akima.json").read_text())
-STEPS = {"STEP": (step, step_rates), "STEP5": (step5, step5_rates)}
 
 
 def lookup(x, y, at, ends="hold"):
@@ -31,12 +28,15 @@ def lookup(x, y, at, ends="hold"):
     return np.array([akima(tab, 2, len(x), s) for s in at])
 
 
+def stepped(name, x, *rest):
+    """The words `step` and `step5` of expressions, and their first two derivatives."""
+    tree = parse(f"{name.lower()}(t, {', '.join(map(str, rest))})")
+    return motion(np.array(expression(tree, {})), 0, x)
+
+
 @pytest.mark.parametrize("name, args, expected", VECTORS["steps"])
 def test_step_vectors(name, args, expected):
-    f, f_rates = STEPS[name]
-    args = [float(a) for a in args]
-    assert f(*args) == pytest.approx(expected, abs=1e-15)
-    assert f_rates(*args)[0] == f(*args)
+    assert stepped(name, *args)[0] == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize("rates, f", [(smoothstep_rates, smoothstep), (quintic_rates, quintic)])
@@ -51,13 +51,13 @@ def test_unit_steps(rates, f):
         assert rates(x)[2] == pytest.approx(slope, rel=1e-8)
 
 
-@pytest.mark.parametrize("rates", [step_rates, step5_rates])
-def test_step_derivatives(rates):
+@pytest.mark.parametrize("name", ["STEP", "STEP5"])
+def test_step_derivatives(name):
     h, rest = 1e-5, (0.5, 3.0, 2.5, -4.0)
     for x in (0.2, 0.7, 1.4, 2.2, 3.0):
-        high, low = rates(x + h, *rest), rates(x - h, *rest)
-        assert rates(x, *rest)[1] == pytest.approx((high[0] - low[0]) / (2 * h), abs=1e-8)
-        assert rates(x, *rest)[2] == pytest.approx((high[1] - low[1]) / (2 * h), abs=1e-8)
+        high, low = stepped(name, x + h, *rest), stepped(name, x - h, *rest)
+        assert stepped(name, x, *rest)[1] == pytest.approx((high[0] - low[0]) / (2 * h), abs=1e-8)
+        assert stepped(name, x, *rest)[2] == pytest.approx((high[1] - low[1]) / (2 * h), abs=1e-8)
 
 
 def test_akima_vectors():

@@ -1,9 +1,9 @@
 """Every integrator converges at the order it claims, also through located events."""
 
-import importlib
-
 import numpy as np
 import pytest
+
+from trsim.scenario.methods import METHODS
 
 from ..mechanisms import central_impact, torsion_pendulum
 from ..runs import run
@@ -42,7 +42,7 @@ def error_at_end(method, count):
 
 @pytest.mark.parametrize("method", STEPS)
 def test_order(method):
-    claimed = importlib.import_module(f"trsim.solve.methods.{method}").ORDER
+    claimed = METHODS[method].order
     errors = [error_at_end(method, count) for count in STEPS[method]]
     observed = order(STEPS[method], errors)
     assert observed == pytest.approx(claimed, abs=SPREAD[method]), f"errors {errors}"
@@ -90,7 +90,7 @@ def test_order_is_kept_through_located_events(method):
     counts = {"rk4": (96, 136, 192, 272, 384), "dop853": (16, 19, 23, 27, 32, 38),
               "radau": (64, 91, 128, 181, 256),
               "generalized_alpha": (192, 272, 384, 543, 768)}[method]  # fmt: skip
-    claimed = importlib.import_module(f"trsim.solve.methods.{method}").ORDER
+    claimed = METHODS[method].order
     errors = [error_after_rebound(method, count) for count in counts]
     observed = order(counts, errors)
     print(f"{method}: order {observed:.2f} through a touch and a separation")

@@ -60,7 +60,7 @@ def stopped(steps):
     ended = run(scenario, fails=True)
     r, s = ended.outcome.record, scene(ended.mechanism.model)
     s.mem[:], s.branch[:] = r.mem, r.branch
-    setting = settings(scenario, ended.mechanism, True)
+    setting = settings(scenario, ended.mechanism)
     b = rec.fresh_buffers(s, r.y.size, radau.STAGES, radau.DENSE_ROWS, 16)
     weighed(s, r, b, setting)
     derivative(s, r.clock[rec.T], r.y, r.yd)

@@ -10,11 +10,11 @@ import pytest
 from tests import small
 from tests.sizes import RELEASE
 from trsim.errors import FileError, SolverError
-from trsim.solve.march.record import EVENT_NAMES
 from trsim.solve.simulate import simulate
 from trsim.store import grow, hdf5
 from trsim.store.hdf5 import read, write
 from trsim.store.read import verify
+from trsim.store.tables import KINDS
 
 WRITES = range(1, 101) if RELEASE else [0, 1, 7, 20, 60, 100, 150, 200, 250, 300]  # that succeed
 
@@ -102,7 +102,7 @@ def test_steps_and_events(result, scenario, mechanism):
     assert np.all(np.diff(steps["time"]) > 0.0)
     assert np.all(steps["penetration"] > 0.0)
     events = result.events
-    assert set(events.kind) == {"onset", "separation"} < set(EVENT_NAMES.values())
+    assert set(events.kind) == {"onset", "separation"} < set(KINDS)
     assert set(events.element) == {"B"}
     assert list(events.kind[:2]) == ["onset", "separation"]
     onsets = np.count_nonzero(events.kind == "onset")

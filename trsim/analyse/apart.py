@@ -13,8 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
 APART = 0.01  # of a range
 PAUSE = 0.01  # of the rows: runs that are together for less have not come together again
 STILL = 1e-9  # of the largest value of the same unit: less is rounding, not motion

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim.analyse.outputs import scalar
-from trsim.errors import LISTED, FileError, TrsimError, UsageError
+from trsim.errors import FileError, TrsimError, UsageError, listed
 from trsim.statuses import WELL
 from trsim.store.read import Run
 
@@ -126,12 +126,6 @@ def without(study: Any, key: str) -> list[str]:
     """Which cases do not vary a key, and are left out of figures over it."""
     names = [case.name for case in study.cases if key not in case.values]
     return [f"{listed(names)}: without {key}, left out of figures over it"] if names else []
-
-
-def listed(names: list[str]) -> str:
-    """Names, of many the first ones."""
-    more = f" ... ({len(names) - LISTED} more)" if len(names) > LISTED else ""
-    return ", ".join(names[:LISTED]) + more
 
 
 # --- swept keys ------------------------------------------------------------------------------

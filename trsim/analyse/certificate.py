@@ -189,7 +189,7 @@ def within(time: float, parted: list[Parted]) -> bool:
     return any(one.begin <= time and not time >= one.end for one in parted)
 
 
-def quantified(column: Column, quantity: str, value: float, twin: float, certain: bool) -> Quantity:
+def quantified(column: Column, quantity: Any, value: float, twin: float, certain: bool) -> Quantity:
     return Quantity(column.name, quantity, value, twin, value - twin, certain, column.unit)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-LEVEL = 0.95
+LEVEL = 0.95  # of all intervals
 MOST, FEWEST = 64, 8  # batches
 SMALLEST = 4  # values in one
 QUANTILE = {8: 2.3646, 16: 2.1314, 32: 2.0395, 64: 1.9983}  # of LEVEL, two-sided

@@ -5,6 +5,8 @@ none; but both runs drift alike, so their difference x - x' has one where neithe
 means agree where either interval covers their difference, or where that is small beside them.
 """
 
+from typing import Any
+
 import h5py
 import numpy as np
 from numpy.typing import NDArray
@@ -65,14 +67,14 @@ def resting(pair: Pair, both: tuple[Totals, Totals]) -> set[str]:
     return still(dict(zip(names, ranges, strict=True)), dict(zip(names, sizes, strict=True)), units)
 
 
-def level(window: int, name: str, quantity: str, numbers: list[float], unit: str) -> Level:
+def level(window: int, name: str, quantity: Any, numbers: list[float], unit: str) -> Level:
     """numbers: of run and twin, half their intervals, half that of the difference."""
     mine, twin, half, twin_half, off_half = map(float, numbers)
     told = verdict(mine, twin, half, twin_half, off_half)
     return Level(window, name, quantity, mine, twin, half, twin_half, off_half, told, unit)
 
 
-def verdict(mine: float, other: float, half: float, other_half: float, off_half: float) -> str:
+def verdict(mine: float, other: float, half: float, other_half: float, off_half: float) -> Any:
     """Whether two means agree or differ; unknown where there is no interval at all."""
     off, widths = abs(mine - other), [np.hypot(half, other_half), off_half]
     if off <= APART * min(abs(mine), abs(other)) or any(off <= width for width in widths):

@@ -55,11 +55,6 @@ def scalar(run: Run, word: str) -> Number:
     return float(value), unit
 
 
-def scalars(run: Run, words: list[str]) -> list[Number]:
-    """The numbers of several words."""
-    return [scalar(run, word) for word in words]
-
-
 # --- of channels -----------------------------------------------------------------------------
 
 

@@ -13,11 +13,10 @@ first steps; so is the CPU time, that of the integration alone, without rows.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import median
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, still, windows
 from trsim.analyse.trajectory import (
@@ -30,8 +29,7 @@ from trsim.analyse.trajectory import (
     work,
 )
 from trsim.errors import SolverError, UsageError
-
-Array = NDArray[np.float64]
+from trsim.scenario.methods import METHODS, REFERENCES
 
 TOLERANCES = tuple(10.0**-k for k in range(3, 9))
 FIRST_STEPS = (1.0, 0.8, 1.25)  # times about the solver's own
@@ -57,19 +55,32 @@ class Reference:
 
 @dataclass(frozen=True)
 class Point:
-    """One method at one setting.  What was not measured is nan."""
+    """One method at one setting.
+
+    reason           why it failed, or ""
+    error            largest difference to the reference over the range, of all quantities; median
+                     over first steps
+    worst            of the first steps
+    peak_error       largest relative difference of a contact's largest force; none without any
+    unresolved       whether the error is not above the uncertainty of the reference
+    peak_unresolved  the same of the peak error
+    cpu              s, of the integration without output rows; median
+    steps            accepted, median
+    evaluations      right-hand sides, median
+    errors           quantity -> error
+    """
 
     setting: Setting
     error: float = np.nan
-    worst: float = np.nan  # of the first steps
-    peak_error: float = np.nan  # nan without contacts
-    errors: dict[str, float] | None = None  # of each quantity
-    cpu: float = np.nan  # s
+    worst: float = np.nan
+    peak_error: float = np.nan
+    errors: dict[str, float] = field(default_factory=dict)
+    cpu: float = np.nan
     steps: int = 0
     evaluations: int = 0
-    unresolved: bool = False  # the error is below the reference's uncertainty
+    unresolved: bool = False
     peak_unresolved: bool = False
-    reason: str = ""  # why it failed, or ""
+    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -85,17 +96,20 @@ class Study:
 def plan(
     methods: Sequence[str], tolerances: Sequence[float], steps: Sequence[float]
 ) -> list[Setting]:
-    """What is to be measured: rk4 with steps, all others with tolerances."""
-    return [
-        Setting(method, None, value) if method == "rk4" else Setting(method, value)
-        for method in methods
-        for value in (steps if method == "rk4" else tolerances)
-    ]
+    """What is to be measured: methods of fixed steps with steps, all others with tolerances."""
+    found = []
+    for method in methods:
+        if METHODS[method].adaptive:
+            found += [Setting(method, value) for value in tolerances]
+        else:
+            found += [Setting(method, None, value) for value in steps]
+    return found
 
 
 def reference_setting(methods: Sequence[str], tolerances: Sequence[float]) -> Setting:
-    """radau, or dop853 where radau alone is measured, 100 times tighter than the tightest."""
-    method = "dop853" if set(methods) == {"radau"} else "radau"
+    """The first of REFERENCES, or the second where that alone is measured, 100 times tighter than
+    the tightest."""
+    method = REFERENCES[set(methods) == {REFERENCES[0]}]
     return Setting(method, max(min(tolerances, default=1e-8) / TIGHTER, TIGHTEST))
 
 
@@ -116,7 +130,7 @@ def reference(
     ranges = {name: value for name, value in ranges.items() if name not in rests}
     if not ranges:
         raise UsageError("none of the quantities moves", "Name others with --quantity CHANNEL.")
-    other = "dop853" if setting.method != "dop853" else "radau"
+    other = REFERENCES[setting.method != REFERENCES[1]]
     rows, apart, reason = len(run.time), None, ""
     uncertainty = peak_uncertainty = np.nan
     try:

@@ -19,11 +19,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.interval import LEVEL
 from trsim.errors import UsageError
 
 Array = NDArray[np.float64]
 
-LEVEL = 0.95
 RESAMPLES = 500
 CASE = "case"  # the key of named cases
 FIRST = 8  # rows of the smallest estimate

@@ -35,6 +35,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.interval import LEVEL
 from trsim.analyse.window import Window, scalar_channel
 from trsim.errors import UsageError
 from trsim.store.points import split
@@ -52,7 +53,6 @@ TOP = 0.9  # of the Nyquist frequency: what lies above is near it
 FOLDED = 0.01  # of the variance: more is told
 STRANGE = 0.1  # of a line: what may come from beyond, more is told
 MISSED = 0.1  # of the range: an extreme between the rows that is further out is told
-LEVEL = 0.95
 # the last word of a channel -> that of its rate, where that is another word
 RATES = {
     "position": "velocity",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.errors import ScenarioError, SolverError, UsageError, known
+from trsim.solve.blocks import Blocks
 
 Array = NDArray[np.float64]
 
@@ -23,7 +24,12 @@ def unwatched() -> None:
 
 
 class Setting(NamedTuple):
-    """How a run is made: with a tolerance, or with a fixed step (s)."""
+    """How a run is made: with a tolerance, or with a fixed step.
+
+    method     as in a scenario
+    tolerance  of the runs; null with fixed steps
+    step       s; null without fixed ones
+    """
 
     method: str
     tolerance: float | None = None
@@ -76,7 +82,8 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
     full = changed(scenario, "output", channels=("*",))
     mechanism = assemble(full)
     # the same largest step, whatever the rows
-    full = changed(full, "solver", max_step=float(settings(full, mechanism, True)[H_MAX]))
+    longest = settings(changed(full, "solver", method="auto"), mechanism)[H_MAX]
+    full = changed(full, "solver", max_step=float(longest))
     lean = changed(full, "output", every=scenario.solver.end, channels=())
     names = [mechanism.instances[e].name for e in mechanism.model.contact]
     columns = {column.name: column for column in mechanism.columns}
@@ -129,13 +136,11 @@ def marched(
     """All rows (n, 1 + n_out) of a run, and its outcome; `look` is called now and then."""
     from trsim.solve.simulate import simulate
 
-    rows, blocks = [], simulate(scenario, mechanism)
-    while True:
-        try:
-            rows.append(next(blocks).rows.copy())
-        except StopIteration as stop:
-            return np.vstack(rows), stop.value
+    rows, run = [], Blocks(simulate(scenario, mechanism))
+    for block in run:
+        rows.append(block.rows.copy())
         look()
+    return np.vstack(rows), run.outcome
 
 
 def ended(scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched) -> tuple[Array, Any]:
@@ -172,6 +177,7 @@ def work(
 
 
 def own_first_step(outcome: Any, tolerance: float, end: float) -> float:
-    """About what the solver starts with, s: a hundredth of the natural time scale."""
-    natural = outcome.start.length / max(outcome.start.speed, 1e-300)
-    return float(min(0.01 * natural * tolerance ** (1 / 8), end))
+    """About what the solver starts with, s."""
+    from trsim.solve.outcome import step_of
+
+    return step_of(outcome.start.length, outcome.start.speed, tolerance, end)

@@ -9,8 +9,8 @@ from typing import Any
 
 from trsim.analyse.precision import TIGHTEST
 from trsim.analyse.trajectory import Setting, changed, marched, unwatched
+from trsim.scenario.methods import METHODS
 
-OTHER = {"dop853": "radau", "radau": "dop853", "auto": "radau"}  # of the rest: auto
 SHARE = 1.0 / 20.0  # of a run: how long a trial is
 DECADES = (2, 1)  # how much tighter, by powers of ten, in the order of trial
 ROUNDING = 3.0  # times the steps for a tenth of the tolerance; dop853 takes 1.4, radau 1.7 to 2
@@ -25,7 +25,7 @@ def twin_setting(
     more, or are held to the rounding instead (solve/march/rounding.py), and no better.  Short
     trials find it.  Raises what `simulate` raises.
     """
-    method = OTHER.get(scenario.solver.method, "auto")
+    method = METHODS[scenario.solver.method].twin
     tolerance = found = scenario.solver.tolerance
     steps, _ = trial(scenario, mechanism, method, tolerance, look)
     for decades in DECADES:

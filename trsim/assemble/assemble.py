@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
@@ -60,8 +59,6 @@ from trsim.elements.contract import (
 from trsim.elements.prescribed import ENTRY
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
-
-Array = NDArray[np.float64]
 
 
 def assemble(

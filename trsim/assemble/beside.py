@@ -61,6 +61,7 @@ from trsim.assemble.projection import move_all, project_positions, project_veloc
 from trsim.assemble.schur import plain_rows, pull, rows
 from trsim.elements.contract import DRIVES, compiled
 from trsim.kernels.vectors import clear
+from trsim.scenario.methods import METHODS
 
 # rad, or of the mechanism's size; from one pair of places to the next; pairs looked at
 FARTHEST, NEARER, PAIRS = 0.08, 0.7, 18
@@ -85,7 +86,7 @@ def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) 
     A pivot is delta^2, and eps/delta^2 of an acceleration is rounding: further away it is below the
     tolerance.  bars: first frame and number of nodes of each.
     """
-    if solver.method.startswith("scipy") or not closes_a_loop(rows, bars):
+    if not METHODS[solver.method].files or not closes_a_loop(rows, bars):
         return 0.0
     return min(SMALL, NOISE / solver.tolerance)
 

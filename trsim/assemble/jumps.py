@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
 from trsim.elements.prescribed import OWN_MOTION, OWN_STATE
-from trsim.errors import ScenarioError
+from trsim.errors import ScenarioError, some
 from trsim.kernels.signatures import A1, A2, f8, i8, void
 from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, WIDTH, hold, motion
 from trsim.laws.operations import ATAN2, COS, DIV, EXP, LOG, POW, SIN, SQRT, TAN
@@ -133,9 +133,9 @@ def told(at: Any, instance: Any, times: list[float], jumps: Array, unit: str) ->
         return
     place = at.scenario.place(("drives", instance.name))
     line = f"{place.show()}: " if place else ""
-    said = ", ".join(f"by {jumps[k, 1]:.4g} {unit} at t = {times[k]:.6g} s" for k in when[:SHOWN])
-    more = f", and {len(when) - SHOWN} times more" if len(when) > SHOWN else ""
+    each = (f"by {jumps[k, 1]:.4g} {unit} at t = {times[k]:.6g} s" for k in when)
+    said = some(each, SHOWN, ", and {} times more")
     yield (
-        f"{line}drives.{instance.name}: its velocity jumps {said}{more}: an impulse, whose work is "
+        f"{line}drives.{instance.name}: its velocity jumps {said}: an impulse, whose work is "
         "in `energy.work.events`"
     )

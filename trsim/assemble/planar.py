@@ -27,7 +27,7 @@ from trsim.assemble.reduce import displaced, jacobian, moves
 from trsim.elements.contract import PHASE, UNLOCATED
 from trsim.elements.rigid_body import tensor
 from trsim.elements.scene import Model, scene
-from trsim.errors import ModelError
+from trsim.errors import ModelError, some
 
 Array = NDArray[np.float64]
 
@@ -74,10 +74,9 @@ class Planarity(NamedTuple):
         return tuple(said)
 
 
-def listed(reasons: tuple[Out, ...]) -> str:
+def listed(reasons: Iterable[Out]) -> str:
     """A few reasons, and how many more."""
-    more = f", and {len(reasons) - SHOWN} more" if len(reasons) > SHOWN else ""
-    return "; ".join(map(str, reasons[:SHOWN])) + more
+    return some(reasons, SHOWN, ", and {} more", "; ")
 
 
 def planarity(
@@ -99,7 +98,7 @@ def planarity(
         if scenario.planar:
             raise ModelError(
                 "`planar: true`, but joints, loads or velocities leave the x-y plane: "
-                + listed(tuple(reasons)),
+                + listed(reasons),
                 "draw the mechanism in the x-y plane or set `planar: false`",
                 ("planar",),
             )

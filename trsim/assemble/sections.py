@@ -83,8 +83,7 @@ def surface(
     if spec.at_onset not in contacts:
         hint = known(spec.at_onset, contacts) if contacts else "no joint here has clearance"
         raise ScenarioError(f"no contact named '{spec.at_onset}'", hint, path)
-    solver = scenario.solver
-    if solver.locate_events is False or (solver.method == "rk4" and not solver.locate_events):
+    if not scenario.solver.locates:
         what = "touches are not located in this run"
         raise ScenarioError(what, "Write `solver: {locate_events: true}`.", path)
     return TOUCH, contacts[spec.at_onset]

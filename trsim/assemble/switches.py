@@ -20,6 +20,7 @@ from trsim.assemble.instances import Instance
 from trsim.elements.prescribed import ENTRY, OWN_STATE
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
+from trsim.scenario.methods import METHODS
 from trsim.statuses import Ended
 from trsim.units import fits
 
@@ -108,12 +109,10 @@ def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switche
     if not scenario.events and not limited:
         return Switches()
     method = scenario.solver.method
-    if method.startswith("scipy:"):
-        raise ScenarioError(
-            f"{method} knows no events: it keeps a state of its own",
-            "take auto, dop853, radau, generalized_alpha or rk4",
-            ("solver", "method"),
-        )
+    if not METHODS[method].files:
+        what = f"{method} knows no events: it keeps a state of its own"
+        hint = f"take one of {', '.join(name for name in METHODS if METHODS[name].files)}"
+        raise ScenarioError(what, hint, ("solver", "method"))
     of = _Packing(scenario, at, instances)
     events = tuple(of.event(name, spec) for name, spec in scenario.events.items())
     motions = {name: tuple(found) for name, found in of.motions.items()}

@@ -10,14 +10,15 @@ from trsim.cli.given import chosen, known_method, seconds, tolerance
 from trsim.cli.running import look, placed
 from trsim.cli.source import loaded, stem
 from trsim.errors import ScenarioError, TrsimError
+from trsim.scenario.methods import METHODS
 
-METHODS = "auto,dop853,radau"
+MEASURED = "auto,dop853,radau"
 MARK = "<"  # beside an error that the reference does not resolve
 
 
 @click.command("bench")
 @click.argument("scenario", type=click.Path())
-@click.option("--methods", default=METHODS, metavar="A,B", help=f"[default: {METHODS}]")
+@click.option("--methods", default=MEASURED, metavar="A,B", help=f"[default: {MEASURED}]")
 @click.option("--tolerances", metavar="X,Y", help="[default: 1e-3,1e-4 ... 1e-8]")
 @click.option("--steps", metavar="X,Y", help="Of rk4.  [default: end/1000 ... end/30000]")
 @click.option(
@@ -134,19 +135,13 @@ def described(study: Any) -> dict[str, Any]:
             {
                 **p.setting._asdict(),
                 "status": "failed" if p.reason else "done",
-                "reason": p.reason,
-                **{key: getattr(p, key) for key in NUMBERS},
-                "errors": p.errors or {},
+                **{key: value for key, value in vars(p).items() if key != "setting"},
             }
             for p in study.points
         ],
         "slopes": study.slopes,
         "files": [],
     }
-
-
-NUMBERS = ("error", "worst", "peak_error", "unresolved", "peak_unresolved", "cpu", "steps",
-           "evaluations")  # fmt: skip
 
 
 def lines(study: Any) -> list[str]:
@@ -166,7 +161,7 @@ def lines(study: Any) -> list[str]:
         out.append(f"{MARK}: not above the uncertainty of the reference")
     of = "error" if r.apart is None else "peak error"
     for method, value in study.slopes.items():
-        over = "step" if method == "rk4" else "tolerance"
+        over = METHODS[method].control
         told = f"{value:.2f}" if value == value else "- (fewer than two resolved errors)"
         out.append(f"slope of {of} over {over}, {method}: {told}")
     return out

@@ -9,7 +9,7 @@ from typing import Any
 from trsim.cli.frame import Answer, Stop
 from trsim.cli.running import look, placed, ran
 from trsim.cli.source import loaded
-from trsim.errors import FileError, TrsimError, UsageError
+from trsim.errors import FileError, TrsimError, UsageError, some
 
 BRIEF, REST = ("windows", "contacts"), ("curves", "quantities", "levels", "onsets")  # tables
 SHOWN = 3  # windows in a message
@@ -161,12 +161,11 @@ def parted(data: dict[str, Any], within: str) -> list[str]:
         f"{one['begin']:.6g} .. {data['compared_until'] if isnan(one['end']) else one['end']:.6g} s"
         for one in data["windows"]
     ]
-    more = f" and {len(times) - SHOWN} more" if len(times) > SHOWN else ""
     judged = data["agree"] + data["differ"]
     return [
         f"predictable until t = {data['apart']:.6g} s: there {data['apart_channel']} differs by "
         "more than 1 % of its range",
-        f"apart at {', '.join(times[:SHOWN])}{more}; otherwise motion agrees {within}",
+        f"apart at {some(times, SHOWN)}; otherwise motion agrees {within}",
         f"while apart {data['agree']} of {judged} means, RMS and shares of contact agree within "
         f"95 % intervals; {data['unknown']} have no interval",
     ]

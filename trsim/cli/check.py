@@ -71,7 +71,7 @@ def check_output(scenario: Any, mechanism: Any) -> None:
     from trsim.solve.outcome import settings
 
     if scenario.solver.end is not None:
-        settings(scenario, mechanism, scenario.solver.method != "rk4")
+        settings(scenario, mechanism)
     if scenario.poincare or scenario.phase_portraits:
         from trsim.store.points import plan
 

@@ -3,13 +3,12 @@
 from typing import Any
 
 from trsim.errors import ScenarioError, UsageError, known
+from trsim.scenario.methods import METHODS
 
 
 def known_method(name: str) -> str:
-    from trsim.scenario.scenario import METHODS as words
-
-    if name.strip() not in words:
-        raise UsageError(f"no method '{name}'", known(name, words))
+    if name.strip() not in METHODS:
+        raise UsageError(f"no method '{name}'", known(name, METHODS))
     return name.strip()
 
 
@@ -43,8 +42,10 @@ def chosen(text: str, what: str = "reference", option: str = "--reference") -> A
     from trsim.analyse.trajectory import Setting
 
     method, _, value = text.rpartition(":")
-    if method == "rk4":
-        raise UsageError("rk4 has no tolerance", f"Name an adaptive method: {option} radau:1e-10")
     if not method:
         raise UsageError(f"'{text}' is no {what}", "Write for example radau:1e-10.")
-    return Setting(known_method(method), tolerance(value))
+    method = known_method(method)
+    if not METHODS[method].adaptive:
+        hint = f"Name an adaptive method: {option} radau:1e-10"
+        raise UsageError(f"{method} has no tolerance", hint)
+    return Setting(method, tolerance(value))

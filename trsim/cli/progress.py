@@ -9,6 +9,8 @@ from typing import Any
 
 from trsim.cli.frame import Answer, Stop
 from trsim.errors import FileError, one_line
+from trsim.scenario.methods import GGL, INDEX_1, METHODS
+from trsim.solve.blocks import Blocks
 
 PATIENCE = 1.0  # s: a shorter run shows nothing
 WHILE = 2.0  # s: what takes longer is told
@@ -24,18 +26,11 @@ def compiling(answer: Answer, method: str = "") -> None:
     from trsim.assemble.equations import derivative
 
     needed, later = derivative, []
-    if method.startswith("scipy:"):
-        later = ["scipy_ivp"]
-    elif method:
-        from trsim.solve.march.complete import complete as needed
-        from trsim.solve.simulate import COMPILED
-
+    if method:
         # the largest first; the first process comes to the rest before it needs an implicit method
-        later = [
-            "march.complete",
-            *(f"methods.{name}" for name in reversed(COMPILED[method])),
-            "march.loop",
-        ]
+        files = METHODS[method].files.get(INDEX_1, ("scipy_ivp",))
+        later = ["march.complete", *(f"methods.{name}" for name in reversed(files)), "march.loop"]
+        from trsim.solve.march.complete import complete as needed
     see_own(answer)
     if needed.known:
         return
@@ -52,7 +47,7 @@ def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
     from trsim.solve.simulate import files
 
     used = files(scenario, mechanism)
-    if "radau_ggl" not in used:
+    if used != METHODS[scenario.solver.method].files.get(GGL):
         return
     from trsim.solve.methods import radau_ggl
 
@@ -127,19 +122,17 @@ def watched(
 
     Also the place where a run stops when a signal asked for it.
     """
-    show = Bar(name, end) if sys.stderr.isatty() else Lines(answer, name, end)
+    show = Meter(answer, name, end)
     try:
-        while True:
-            try:
-                block = next(blocks)
-            except StopIteration as stop:
-                return stop.value
+        run = Blocks(blocks)
+        for block in run:
             Stop.patient = True
-            if not answer.quiet:
-                show.update(block)
+            percent = f"{100 * block.time / end:.0f} %, "
+            show.update(block.time, told(block), percent + told(block))
             yield block
             if Stop.number:
                 raise KeyboardInterrupt
+        return run.outcome
     finally:
         show.close()
 
@@ -156,96 +149,69 @@ def told(block: Any) -> str:
     return f"t = {block.time:.4g} s, step {block.step:.1e} s, {block.n_events} contact events"
 
 
-class Lines:
-    """One plain line every ten seconds."""
-
-    def __init__(self, answer: Answer, name: str, end: float) -> None:
-        self.answer, self.name, self.end = answer, name, end
-        self.began = self.last = self.first = 0.0
-
-    def update(self, block: Any) -> None:
-        now = time.monotonic()
-        share = block.time / self.end
-        if not self.began:
-            self.began, self.last, self.first = now, now, share
-        if now - self.last < LINE:
-            return
-        self.last = now
-        to_go = left(now - self.began, share, self.first)
-        self.answer.say(f"{self.name}: {100 * share:.0f} %, {told(block)}, {to_go} left")
-
-    def close(self) -> None:
-        pass
-
-
-def bar(told: str) -> Any:
-    """A bar of rich, started; told: a column of it."""
+def bar() -> Any:
+    """A bar of rich, started."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn
 
     columns = [TextColumn("{task.description}", markup=False), BarColumn(bar_width=24)]
-    columns += [TextColumn("{task.percentage:>3.0f}%"), TextColumn(told, markup=False)]
+    columns += [TextColumn("{task.percentage:>3.0f}%")]
+    columns += [TextColumn("{task.fields[told]}", markup=False)]
     columns += [TextColumn("{task.fields[left]} left")]
     started = Progress(*columns, console=Console(stderr=True), transient=True)
     started.start()
     return started
 
 
-class Bar:
-    """A bar of rich, once the run has taken more than a second."""
+class Meter:
+    """How far something is: a bar on a terminal, otherwise a line every ten seconds.
 
-    def __init__(self, name: str, end: float) -> None:
-        self.name, self.end = name, end
-        self.began = self.last = self.first = 0.0
-        self.bar: Any = None
+    total: what `done` comes to; first: the share that is done at the start, None where the first
+    update tells it.
+    """
 
-    def update(self, block: Any) -> None:
-        now = time.monotonic()
-        share = block.time / self.end
-        if not self.began:
-            self.began, self.first = now, share
-        if now - self.began < PATIENCE or now - self.last < DRAWN:
-            return
-        self.last = now
-        if self.bar is None:
-            self.bar = bar("{task.fields[told]}")
-            self.task = self.bar.add_task(
-                one_line(Path(self.name).stem), total=self.end, told="", left=""
-            )
-        to_go = left(now - self.began, share, self.first)
-        self.bar.update(self.task, completed=block.time, told=told(block), left=to_go)
-
-    def close(self) -> None:
-        if self.bar is not None:
-            self.bar.stop()
-
-
-class Cases:
-    """How far a sweep is: a bar on a terminal, otherwise a line every ten seconds."""
-
-    def __init__(self, answer: Answer, name: str, total: int) -> None:
-        self.answer, self.name, self.total = answer, name, total
-        self.done = self.failed = 0
+    def __init__(
+        self, answer: Answer, name: str, total: float, first: float | None = None
+    ) -> None:  # fmt: skip
+        self.answer, self.name, self.total, self.first = answer, name, total, first
+        self.drawn = sys.stderr.isatty() and not answer.quiet
         self.began = self.last = time.monotonic()
         self.bar: Any = None
-        if sys.stderr.isatty() and not answer.quiet and total:
-            self.bar = bar("{task.fields[told]}")
-            self.task = self.bar.add_task(one_line(Path(name).name), total=total, told="", left="?")
 
-    def update(self, ended: Any) -> None:
-        """One more case ended."""
-        self.done += 1
-        self.failed += ended.failed
-        now = time.monotonic()
-        to_go = left(now - self.began, self.done / self.total, 0.0)
-        bad = f", {self.failed} failed" if self.failed else ""
-        told = f"{self.done} of {self.total} cases{bad}"
-        if self.bar is not None:
-            self.bar.update(self.task, completed=self.done, told=told, left=to_go)
-        elif now - self.last > LINE and self.done < self.total:
-            self.last = now
-            self.answer.say(f"{self.name}: {told}, {to_go} left")
+    def update(self, done: float, told: str, line: str = "") -> None:
+        """told: what a bar says beside the share; line: what a line says, where that is more."""
+        now, share = time.monotonic(), done / self.total
+        if self.first is None:
+            self.began, self.last, self.first = now, now, share
+        if now - self.last < (LINE if not self.drawn else DRAWN if self.bar else PATIENCE):
+            return
+        self.last = now
+        to_go = left(now - self.began, share, self.first)
+        if not self.drawn:
+            self.answer.say(f"{self.name}: {line or told}, {to_go} left")
+            return
+        if self.bar is None:
+            self.bar = bar()
+            about = one_line(Path(self.name).stem)
+            self.task = self.bar.add_task(about, total=self.total, told="", left="")
+        self.bar.update(self.task, completed=done, told=told, left=to_go)
 
     def close(self) -> None:
         if self.bar is not None:
             self.bar.stop()
+
+
+class Cases(Meter):
+    """How far a sweep is."""
+
+    def __init__(self, answer: Answer, name: str, total: int) -> None:
+        super().__init__(answer, name, total, 0.0)
+        self.done = self.failed = 0
+
+    def ended(self, one: Any) -> None:
+        """One more case ended."""
+        self.done += 1
+        self.failed += one.failed
+        bad = f", {self.failed} failed" if self.failed else ""
+        if self.done < self.total:
+            self.update(self.done, f"{self.done} of {self.total} cases{bad}")

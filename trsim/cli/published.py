@@ -4,7 +4,8 @@ The schema of a document is closed and knows with which exit codes its command c
 command, or a code, is one line in `ENDS` and one type in documents/.
 """
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, get_args, get_type_hints
 
 from pydantic import TypeAdapter
 
@@ -34,8 +35,9 @@ def of_document(command: str) -> dict[str, Any]:
     kind = getattr(documents, "Document" if command == "trsim" else command.capitalize())
     found = TypeAdapter(kind).json_schema()
     definitions = found.pop("$defs", {}) | {kind.__name__: found}
+    kinds = {kind.__name__: kind for kind in _inside(kind)}
     for name, entry in definitions.items():
-        _close(entry, getattr(documents, name))
+        _close(entry, kinds[name])
     common, own = documents.Document.__required_keys__, found["required"]
     codes = [code for code in EXIT_CODES if code in ENDS[command]]
     found["properties"]["command"] = {"const": None if command == "trsim" else command}
@@ -52,6 +54,14 @@ def of_document(command: str) -> dict[str, Any]:
         "else": {"properties": {"errors": {"minItems": 1}}},
         "$defs": definitions,
     }
+
+
+def _inside(kind: Any) -> Iterator[Any]:
+    """A typed dictionary, and those in it."""
+    if hasattr(kind, "__required_keys__"):
+        yield kind
+    for part in get_type_hints(kind).values() if isinstance(kind, type) else get_args(kind):
+        yield from _inside(part)
 
 
 def _close(entry: dict[str, Any], kind: Any) -> None:

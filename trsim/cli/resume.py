@@ -8,6 +8,7 @@ import click
 
 from trsim.cli.frame import Answer
 from trsim.errors import FileError, UsageError
+from trsim.scenario.methods import METHODS
 
 EVERY = 60.0  # s of wall time between two checkpoints
 
@@ -25,7 +26,7 @@ class Seconds(click.FloatRange):
 def interval(answer: Answer, source: str, scenario: Any, asked: float | None) -> float:
     """Seconds between two checkpoints, 0 for none; `asked` is what the command line says."""
     method = scenario.solver.method
-    if not method.startswith("scipy:"):
+    if METHODS[method].files:
         return EVERY if asked is None else asked
     if asked:
         answer.say(f"{source}: no checkpoints: {method} keeps a state of its own")

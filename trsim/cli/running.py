@@ -7,7 +7,7 @@ from typing import Any
 
 from trsim.cli.frame import Answer, Stop
 from trsim.cli.resume import found, interval
-from trsim.errors import TrsimError
+from trsim.errors import TrsimError, some
 
 
 def ran(
@@ -31,7 +31,8 @@ def ran(
         for note in () if twin else (*mechanism.notes, *lint(scenario)):
             answer.warn(source, note)
         if mechanism.spatial_because and not twin:
-            answer.say(f"{source}: spatial motion: {shown(mechanism.spatial_because)}")
+            told = some(mechanism.spatial_because, 1, ", and {} more (see `trsim check`)")
+            answer.say(f"{source}: spatial motion: {told}")
         running = simulate(scenario, mechanism, kept.state if kept else None)
         blocks = watched(running, answer, source, scenario.solver.end)
         called = shlex.join(["trsim", *sys.argv[1:]])
@@ -44,12 +45,6 @@ def ran(
     if Stop.number:
         raise KeyboardInterrupt
     return summary
-
-
-def shown(reasons: tuple[str, ...]) -> str:
-    """The first of some reasons, and how many more there are."""
-    more = f", and {len(reasons) - 1} more (see `trsim check`)" if len(reasons) > 1 else ""
-    return reasons[0] + more
 
 
 def placed(error: TrsimError, scenario: Any) -> TrsimError:

@@ -10,7 +10,7 @@ import click
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.progress import Cases, Doing
 from trsim.cli.resume import Seconds
-from trsim.errors import CasesFailed, Problems, TrsimError
+from trsim.errors import CasesFailed, Problems, TrsimError, some
 
 SHOWN = 10  # cases that are told one by one
 BYTES = {
@@ -208,7 +208,7 @@ def ran(
             if one.failed:
                 answer.say(f"{one.case}: {one.status}: {in_a_line(one.reason)[:300]}")
             assert show is not None  # noqa: S101
-            show.update(one)
+            show.ended(one)
     except KeyboardInterrupt:
         again = "the same command goes on with the sweep"
         raise KeyboardInterrupt(f"{folder / 'index.csv'} has what was done; {again}") from None
@@ -228,18 +228,14 @@ def ran(
         f"{folder}: {len(mine)} cases, {answer.data['ran']} run in {wall:.1f} s: {said or 'none'}"
     )
     if left := strays(folder, set(found.named)):
-        more = f" and {len(left) - 3} more" if len(left) > 3 else ""
-        answer.say(f"note: of an earlier plan: {', '.join(left[:3])}{more} in {folder / 'cases'}")
+        answer.say(f"note: of an earlier plan: {some(left, 3)} in {folder / 'cases'}")
     bad = [case for case in mine if case.failed]
     if bad:
-        listed = "\n  ".join(
-            f"{c.name}: {c.status}: {in_a_line(c.reason)[:200]}" for c in bad[:SHOWN]
-        )
-        more = f"\n  ... and {len(bad) - SHOWN} more" if len(bad) > SHOWN else ""
+        told = (f"{c.name}: {c.status}: {in_a_line(c.reason)[:200]}" for c in bad)
+        listed = some(told, SHOWN, "\n  ... and {} more", "\n  ")
         what = f"{len(bad)} of {len(mine)} cases failed"
-        answer.fail(
-            CasesFailed(what, f"{listed}{more}\n  All are in {folder / 'index.csv'}."), str(folder)
-        )
+        hint = f"{listed}\n  All are in {folder / 'index.csv'}."
+        answer.fail(CasesFailed(what, hint), str(folder))
 
 
 def warming(answer: Answer, planned: Any) -> bool:

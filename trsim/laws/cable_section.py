@@ -52,13 +52,6 @@ def position(e, l, xi):
 
 
 @law
-def tangent(e, l, xi):
-    """r' at xi; its length is 1 + the engineering strain."""
-    n = xi - 0.5
-    return mixed((1.0, n, n * n), parabola(e, l))
-
-
-@law
 def stress(e, l, EA, EI, strain, curvature, xi):
     """Axial force EA eps, N, positive in tension, and moment EI kappa >= 0, N*m, at xi.
 

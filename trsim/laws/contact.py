@@ -55,19 +55,6 @@ def elastic(d, K, n, c, form):
 
 
 @law
-def tangent(d, K, n, c, form):
-    """Slope dF_e/dd of the elastic force, N/m; 0 without contact.  Parameters as in `elastic`."""
-    if d <= 0.0:
-        return 0.0
-    if form == CYLINDER:
-        x = d / (d + c)
-        return K * sqrt(x) * (1.5 - 0.5 * x)
-    if n == 1.5:
-        return 1.5 * K * sqrt(d)
-    return n * K * d ** (n - 1.0)
-
-
-@law
 def stored(d, K, n, c, form):
     """Elastic energy, the integral of F_e from 0 to d, J.  Parameters as in `elastic`.
 

@@ -55,34 +55,6 @@ def quintic(x):
     return quintic_rates(x)[0]
 
 
-@law
-def step_rates(x, x0, h0, x1, h1):
-    """Cubic step from h0 at x0 to h1 at x1, and its first two derivatives in x."""
-    f, f_x, f_xx = smoothstep_rates((x - x0) / (x1 - x0))
-    k = (h1 - h0) / (x1 - x0)
-    return h0 + (h1 - h0) * f, k * f_x, k / (x1 - x0) * f_xx
-
-
-@law
-def step5_rates(x, x0, h0, x1, h1):
-    """Quintic step from h0 at x0 to h1 at x1, and its first two derivatives in x."""
-    f, f_x, f_xx = quintic_rates((x - x0) / (x1 - x0))
-    k = (h1 - h0) / (x1 - x0)
-    return h0 + (h1 - h0) * f, k * f_x, k / (x1 - x0) * f_xx
-
-
-@law
-def step(x, x0, h0, x1, h1):
-    """Cubic step from h0 at x0 to h1 at x1."""
-    return h0 + (h1 - h0) * smoothstep((x - x0) / (x1 - x0))
-
-
-@law
-def step5(x, x0, h0, x1, h1):
-    """Quintic step from h0 at x0 to h1 at x1."""
-    return h0 + (h1 - h0) * quintic((x - x0) / (x1 - x0))
-
-
 def _checked(x, y):
     """x and y as arrays; rows are counted from 1 in the messages."""
     import numpy as np

@@ -27,12 +27,19 @@ class Asked(NamedTuple):
 
 
 class Value(NamedTuple):
-    """One number that was found."""
+    """A number that an analysis found.
 
-    run: str  # file, case, or what tells it from the others
+    run    file, case, or what tells the run from the others
+    what   the word that asked for it, or what it is
+    value  in the unit; none where the run has nothing to make it of
+    half   of its 95 % interval; none without one
+    unit   SI
+    """
+
+    run: str
     what: str
     value: float
-    half: float  # of its interval; nan without one
+    half: float
     unit: str
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trsim.scenario.methods import METHODS
 from trsim.store.target import FIGURE, fresh, headed, replaceable, see_writable, told
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def curves(axes: Any, study: "Study", field: str, below: str, uncertainty: float
         x = np.array([getattr(p, field) for p in there])
         y = np.array([1e3 * p.cpu for p in there])
         filled = np.array([not getattr(p, below) for p in there], bool)
-        over = "step" if method == "rk4" else "tolerance"
+        over = METHODS[method].control
         of = "error" if study.reference.apart is None else "peak error"
         label = f"{method}, {of} ~ {over}$^{{{slope:.2f}}}$" if np.isfinite(slope) else method
         label += "" if there else " (nothing to show)"

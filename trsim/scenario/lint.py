@@ -17,6 +17,7 @@ from trsim.laws.contact import (
     hertz_peak,
 )
 from trsim.scenario import plausible
+from trsim.scenario.methods import METHODS
 from trsim.scenario.slender import slender
 
 LARGE, SMALL = 3.0, 0.01  # radius of gyration over the reach of the joints
@@ -248,7 +249,7 @@ def _stops(scenario: Any) -> Iterator[str]:
 def _ignored_step(scenario: Any) -> Iterator[str]:
     """A step for a method that chooses its own."""
     solver = scenario.solver
-    if solver.step is not None and solver.method != "rk4":
+    if solver.step is not None and METHODS[solver.method].adaptive:
         yield (
             f"solver.step: {solver.step:g} s has no influence: {solver.method} chooses its steps "
             "by `tolerance`; `max_step` bounds them, `method: rk4` takes a fixed one"
@@ -258,7 +259,7 @@ def _ignored_step(scenario: Any) -> Iterator[str]:
 def _fixed_step(scenario: Any) -> Iterator[str]:
     """rk4 against the time of a contact and the decay of its friction."""
     h = scenario.solver.step
-    if scenario.solver.method != "rk4" or h is None:
+    if METHODS[scenario.solver.method].adaptive or h is None:
         return
     for name, stop, mass in _all_stops(scenario):
         yield from _unresolved(f"forces.{name}", h, pi * sqrt(mass / stop.stiffness))

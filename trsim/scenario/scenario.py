@@ -19,14 +19,13 @@ from trsim.scenario.contact_law import ContactLaw
 from trsim.scenario.event import Event
 from trsim.scenario.initial import Initial, initial_of
 from trsim.scenario.limits import Limits
+from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.sections import PhasePortrait, PoincareSection
 from trsim.scenario.template import Instance, Template
 from trsim.scenario.text import Tree
 from trsim.scenario.unfolded import Entry, Unfolded
 from trsim.units import quantity
 
-METHODS = ("auto", "dop853", "radau", "generalized_alpha", "rk4",
-           "scipy:BDF", "scipy:Radau", "scipy:RK45")  # fmt: skip
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
@@ -118,7 +117,8 @@ class SolverSpec(Spec):
                    stabilised index 2 with sparse matrices; found out unless given
     end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
     step           of rk4
-    tolerance      error of a step, relative to the size of clearances or of bodies
+    tolerance      about the error of smooth motion at the end of a run, relative to the size of
+                   clearances or of bodies; steps are held to less
     stabilisation  how joints are kept closed
     baumgarte      rates of that stabilisation
     first_step     found out unless given
@@ -129,8 +129,8 @@ class SolverSpec(Spec):
     """
 
     type: ClassVar[str] = "solver"
-    method: Literal[METHODS] = "auto"  # type: ignore[valid-type]
-    formulation: Literal["index1", "ggl"] | None = None
+    method: Literal[tuple(METHODS)] = "auto"  # type: ignore[valid-type]
+    formulation: Literal[INDEX_1, GGL] | None = None  # type: ignore[valid-type]
     end: Seconds | None = None
     step: Seconds | None = None
     tolerance: Annotated[float, Interval(ge=1e-14, le=1e-1), Unit("-")] = 1e-8
@@ -151,18 +151,26 @@ class SolverSpec(Spec):
                 f"may move by less: give at least {SHORTEST:g} s, and check the unit."
             )
             raise ScenarioError(what, hint, ("end",))
-        if self.method == "rk4" and self.step is None:
-            raise ScenarioError("method rk4 needs a step", "Write for example `step: 1e-5`.")
+        if not METHODS[self.method].adaptive and self.step is None:
+            hint = "Write for example `step: 1e-5`."
+            raise ScenarioError(f"method {self.method} needs a step", hint)
         if self.baumgarte is not None and self.stabilisation != "baumgarte":
             hint = "Write `stabilisation: baumgarte` as well."
             raise ScenarioError("baumgarte is not the stabilisation", hint, ("baumgarte",))
-        if self.formulation is not None and self.method not in ("radau", "auto"):
+        if self.formulation is not None and GGL not in METHODS[self.method].files:
             hint = f"Method {self.method} has one formulation only: leave it out."
             raise ScenarioError("formulation is a choice of radau and auto", hint, ("formulation",))
-        if self.formulation == "ggl" and self.stabilisation == "baumgarte":
+        if self.formulation == GGL and self.stabilisation == "baumgarte":
             hint = "Its positions and velocities are held by multipliers: leave one of the two out."
             raise ScenarioError("ggl needs no baumgarte", hint, ("formulation",))
         return self
+
+    @property
+    def locates(self) -> bool:
+        """Whether steps end where contacts open or close."""
+        if self.locate_events is None:
+            return METHODS[self.method].adaptive
+        return self.locate_events
 
 
 class OutputSpec(Spec):
@@ -252,6 +260,11 @@ class Scenario(Spec):
     def place(self, path: tuple) -> Place | None:
         """Where in the files a path of the scenario stands."""
         return self._unfolded.place(path)
+
+    def entry(self, section: str, name: str) -> str:
+        """An entry in words: its path, and where it stands."""
+        place = self.place((section, name))
+        return f"{section}.{name}" + (f" ({place.show()})" if place else "")
 
     def quantity(self, *path: str) -> tuple[float, str] | None:
         """The quantity written at the path of an entry, and its unit; None where none is."""

@@ -13,8 +13,10 @@ from trsim.assemble.reduce import largest_reaction
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
+from trsim.scenario.methods import METHODS
+from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
-from trsim.solve.march.openings import held_to, look, may_open
+from trsim.solve.march.openings import held_to, look, may_open, opened
 from trsim.solve.march.record import Record
 from trsim.solve.march.works import LEAST, N_WORKED
 from trsim.solve.start.consistent import Start
@@ -60,9 +62,9 @@ SHARE, EASY, PROPORTION = 0.5, 1e-2, 8.0 / 7.0  # see `settings`
 MISSED = 0.3  # of the tolerance: what may be missed of an extreme
 LOOKS = 200  # of a run, at least: steps while something depends on time explicitly
 LOOK_ROWS = 5.0  # and never longer than this many output intervals
-EXPLICIT = ("auto", "dop853", "scipy:RK45")
-# h times the fastest rate of Baumgarte's feedback, inside the stability of these.  In longer steps
-# what rounding opens rows by grows from stage to stage, and the dense output is made of stages
+# h times the fastest rate of Baumgarte's feedback, inside the stability of explicit methods.  In
+# longer steps what rounding opens rows by grows from stage to stage, and the dense output is made
+# of stages
 FEEDBACK = 3.0
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
@@ -79,7 +81,7 @@ def fastest_feedback(model: Any) -> float:
     return alpha + sqrt(alpha**2 - beta**2) if alpha > beta else beta
 
 
-def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
+def settings(scenario: Any, mechanism: Mechanism) -> Array:
     """The constants of the march.
 
     The error of a run grows like tolerance^0.75..0.88 where each step keeps to the tolerance.  So
@@ -87,29 +89,24 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
     steps keeps to it at its end, steps are held to SHARE EASY (tolerance / EASY)^PROPORTION.
     """
     solver, output = scenario.solver, scenario.output
+    method = METHODS[solver.method]
     if solver.end is None:
         raise ScenarioError(
             "a run needs `solver: {end: ...}`", "for example `end: 1 s`", ("solver", "end")
         )
-    if not adaptive and not solver.step:
-        raise ScenarioError(
-            f"method '{solver.method}' needs a fixed `step`",
-            "for contact of steel parts start with 1e-6 s, and compare with dop853",
-            ("solver", "step"),
-        )
     s = np.zeros(rec.N_SETTINGS)
     s[rec.T_END] = solver.end
-    s[rec.WRITTEN] = solver.tolerance
-    s[rec.TOLERANCE] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
+    s[rec.TOLERANCE] = solver.tolerance
+    s[rec.STEP_ERROR] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
     s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
     s[rec.H_MAX] = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:
         # what is smooth and short between two stages of a long step would not be seen at all
         s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
-    if solver.stabilisation == "baumgarte" and solver.method in EXPLICIT:
+    if solver.stabilisation == "baumgarte" and method.explicit and method.adaptive:
         s[rec.H_MAX] = min(s[rec.H_MAX], FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
-    s[rec.FIXED_STEP] = 0.0 if adaptive else solver.step
-    see_steps(solver, adaptive)
+    s[rec.FIXED_STEP] = 0.0 if method.adaptive else solver.step
+    see_steps(solver, "max_step" if method.adaptive else "step")
     if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
         raise ScenarioError(
             f"a step of {solver.step:g} s spans more than {MOST_ROWS} output rows",
@@ -124,15 +121,13 @@ def settings(scenario: Any, mechanism: Mechanism, adaptive: bool) -> Array:
         )
     s[rec.MISSED] = MISSED * solver.tolerance
     s[rec.HELD_TO] = held_to(solver.tolerance)
-    located = adaptive if solver.locate_events is None else solver.locate_events
-    s[rec.CHOOSES] = float(solver.method == "auto")
-    s[rec.LOCATE] = float(located and len(mechanism.model.contact) > 0)
+    s[rec.CHOOSES] = float(method.chooses)
+    s[rec.LOCATE] = float(solver.locates and len(mechanism.model.contact) > 0)
     return s
 
 
-def see_steps(solver: Any, adaptive: bool) -> None:
+def see_steps(solver: Any, key: str) -> None:
     """Refuse steps that are given and cannot come to the end; raises ScenarioError."""
-    key = "max_step" if adaptive else "step"
     given, least = getattr(solver, key), FINEST * solver.end
     if given and given < least:
         raise ScenarioError(
@@ -199,9 +194,13 @@ def first_step(scenario: Any, record: Record) -> float:
     """A first step from the size of the derivative, a third of the natural time scale."""
     if scenario.solver.first_step:
         return float(scenario.solver.first_step)
-    speed = max(record.clock[rec.SPEED], record.clock[rec.MOST], 1e-300)
-    natural = record.clock[rec.LENGTH] / speed
-    return float(min(0.3 * natural * scenario.solver.tolerance ** (1 / 8), scenario.solver.end))
+    length, speed = record.clock[rec.LENGTH], max(record.clock[rec.SPEED], record.clock[rec.MOST])
+    return step_of(length, speed, scenario.solver.tolerance, scenario.solver.end)
+
+
+def step_of(length: float, speed: float, tolerance: float, end: float) -> float:
+    """A first step (s) in a run of `end`, by the units of the error norm (m, m/s)."""
+    return float(min(0.3 * (length / max(speed, 1e-300)) * tolerance ** (1 / 8), end))
 
 
 def new_record(
@@ -308,6 +307,15 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
         "s, which no mechanism can follow: let it go there in a time of its own, as "
         "`step5(t, t0, x0, t1, x1)` does, or give the drive a compliance"
     )
+
+
+def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+    """Why what a run comes to is no motion of the mechanism, in words; empty where it is one."""
+    if r.count[rec.TORN]:
+        return leapt(mechanism, r)
+    if r.count[rec.OPENED]:
+        return opened(scenario, mechanism, r)
+    return lost_its_way(scenario, mechanism, r) if r.count[rec.LOST] else ""
 
 
 def whose(mechanism: Mechanism, c: int) -> str:

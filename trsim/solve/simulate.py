@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
-from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
@@ -23,7 +23,6 @@ from trsim.solve.march.calls import FIELDS
 from trsim.solve.march.checkpoint import State, begun_at, put_back, state
 from trsim.solve.march.features import put_back as put_back_held
 from trsim.solve.march.loop import begin, march, method_table
-from trsim.solve.march.openings import opened
 from trsim.solve.march.record import Record, fresh_buffers
 from trsim.solve.outcome import (
     CRAWLS,
@@ -32,25 +31,18 @@ from trsim.solve.outcome import (
     called_by,
     emptied,
     first_step,
-    leapt,
     most_points,
     new_record,
     runaway,
     settings,
     statistics,
+    untrue,
 )
 from trsim.solve.start.consistent import start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
 
-COMPILED = {  # word -> files of this folder
-    "dop853": ("dop853",),
-    "rk4": ("rk4",),
-    "radau": ("radau",),
-    "generalized_alpha": ("generalized_alpha",),
-    "auto": ("dop853", "radau"),
-}
 SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured on stiff chains
 # what the multipliers of a tighter one are rounded to looks like its error, as it does in the first
 # moments of a hard touch, whose error is judged by depths of nanometres
@@ -88,25 +80,24 @@ def simulate(
 
     Raises ModelError where there is no consistent start.
     """
-    method = scenario.solver.method
-    if method.startswith("scipy:"):
+    used = [import_module(f"trsim.solve.methods.{name}") for name in files(scenario, mechanism)]
+    if not used:
         from trsim.solve.methods.scipy_ivp import simulate as by_scipy
 
         return by_scipy(scenario, mechanism)
-    used = [import_module(f"trsim.solve.methods.{name}") for name in files(scenario, mechanism)]
     return compiled(scenario, mechanism, used, checkpoint)
 
 
 def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """The methods (solve/methods) that make the steps of a run; none for a method of scipy."""
     solver = scenario.solver
-    sparse = solver.formulation == "ggl"
-    if solver.formulation is None:
+    known, formulation = METHODS[solver.method].files, solver.formulation or INDEX_1
+    if solver.formulation is None and GGL in known:
         large, touches = mechanism.model.n_v >= SPARSE_FROM, len(mechanism.model.contact) > 0
         held = solver.stabilisation == "baumgarte"  # whose terms belong to the accelerations
-        sparse = large and not touches and not held and solver.tolerance >= SPARSE_UNTIL
-    known = COMPILED.get(solver.method, ())
-    return tuple("radau_ggl" if sparse and name == "radau" else name for name in known)
+        if large and not touches and not held and solver.tolerance >= SPARSE_UNTIL:
+            formulation = GGL
+    return known.get(formulation, known.get(INDEX_1, ()))
 
 
 def check_step(scenario: Any, found: Any) -> None:
@@ -114,10 +105,12 @@ def check_step(scenario: Any, found: Any) -> None:
 
     Raises ScenarioError with the bound and what sets it.
     """
-    step = scenario.solver.step
-    if scenario.solver.method == "rk4" and not scenario.solver.force and step > found.explicit_step:
+    step, method = scenario.solver.step, scenario.solver.method
+    fixed = not METHODS[method].adaptive and not scenario.solver.force
+    if fixed and step > found.explicit_step:
         raise ScenarioError(
-            f"a step of {step:g} s is not stable: rk4 needs at most {found.explicit_step:.3g} s, "
+            f"a step of {step:g} s is not stable: {method} needs at most "
+            f"{found.explicit_step:.3g} s, "
             f"for {found.fastest_is} ({found.fastest:.3g}/s)",
             f"`step: {0.5 * found.explicit_step:.2g} s`, or `method: auto`; "
             "`force: true` tries it all the same",
@@ -129,7 +122,7 @@ def compiled(
     scenario: Any, mechanism: Mechanism, used: list[Any], checkpoint: State | None
 ) -> Generator[Block, None, Outcome]:
     """The march of march.py with a compiled method, or an explicit and an implicit one."""
-    setting = settings(scenario, mechanism, used[0].ADAPTIVE)
+    setting = settings(scenario, mechanism)
     located = setting[rec.LOCATE] > 0.0
     if checkpoint:
         begun = begun_at(checkpoint, mechanism, scene(mechanism.model))
@@ -220,12 +213,8 @@ def ending(
     if reason == rec.DONE:
         text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
         return ("failed", text) if text else ("done", "")
-    if reason == rec.OPEN:
-        return "failed", opened(scenario, mechanism, r)
-    if reason == rec.ADRIFT:
-        return "failed", lost_its_way(scenario, mechanism, r)
-    if reason == rec.LEAPT:
-        return "failed", leapt(mechanism, r)
+    if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT):
+        return "failed", untrue(scenario, mechanism, r)
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:

@@ -5,7 +5,7 @@ own, in the same manner.
 """
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import h5py
 import numpy as np
@@ -14,73 +14,122 @@ from trsim.store.content import content_hash
 from trsim.store.grow import Array
 
 GROUP = "certificate"
+TEXT = h5py.string_dtype()
 ROWS = 1 << 12  # rows looked at together
 
 
 class Parted(NamedTuple):
-    """A stretch of time in which the two runs are apart."""
+    """A stretch of time in which the two runs are apart.
+
+    number  from 1
+    begin   s
+    end     s, where they are together again; none where they never are
+    rows    output rows in it
+    share   of these rows, that are apart
+    """
 
     number: int
-    begin: float  # s
-    end: float  # s, where they are together again; nan where they never are
+    begin: float
+    end: float
     rows: int
-    share: float  # of its rows that are apart
+    share: float
 
 
 class Curve(NamedTuple):
-    """One channel while the runs are together."""
+    """One channel while the two runs are together.
+
+    channel     name
+    difference  largest, over the range; none where the channel does not move
+    range       largest less smallest value, of all components the largest, SI
+    motion      whether it has a part in where the two are apart
+    unit        SI
+    """
 
     channel: str
-    difference: float  # largest, of the range; nan where it does not move
+    difference: float
     range: float
-    motion: bool  # has a part in where the runs part
+    motion: bool
     unit: str
 
 
 class Quantity(NamedTuple):
-    """One summary quantity of one component of a channel."""
+    """One summary quantity of one component of a channel.
+
+    channel     with its component
+    quantity    which one; extremes are of output rows and, where kept, of accepted steps
+    value       of the run
+    twin        of the twin
+    difference  value less that of the twin
+    certain     whether nothing of it lies where the two are apart
+    unit        SI
+    """
 
     channel: str
-    quantity: str  # largest, smallest, final, mean, rms
+    quantity: Literal["largest", "smallest", "final", "mean", "rms"]
     value: float
     twin: float
     difference: float
-    certain: bool  # nothing of it lies where the runs are apart
+    certain: bool
     unit: str
 
 
 class Level(NamedTuple):
-    """A mean over a stretch in which the runs are apart, and half of its interval."""
+    """A mean over a stretch in which the two are apart, with 95 % intervals from batch means.
 
-    window: int  # number of the stretch
-    channel: str  # or contact
-    quantity: str  # mean, rms, in contact (share of time)
+    window     number of the stretch
+    channel    with its component; of `in contact` the joint or stop
+    quantity   which one; `in contact` is the share of time
+    value      of the run
+    twin       of the twin
+    half       of the interval of the run; none without one
+    twin_half  of the interval of the twin; none without one
+    off_half   of the interval of their difference; none without one
+    verdict    agree where an interval covers the difference, or that is below 1 % of both
+    unit       SI
+    """
+
+    window: int
+    channel: str
+    quantity: Literal["mean", "rms", "in contact"]
     value: float
     twin: float
-    half: float  # nan without an interval
+    half: float
     twin_half: float
-    off_half: float  # of the interval of the difference
-    verdict: str  # agree, differ; unknown without any interval
+    off_half: float
+    verdict: Literal["agree", "differ", "unknown"]
     unit: str
 
 
 class Onsets(NamedTuple):
-    """How often a contact closed."""
+    """How often a contact closed.
+
+    contact      joint or stop
+    impacts      of the run
+    twin         of the twin
+    before       of the run, before the two part
+    twin_before  of the twin, before the two part
+    """
 
     contact: str
     impacts: int
     twin: int
-    before: int  # the runs part
+    before: int
     twin_before: int
 
 
 class Onset(NamedTuple):
-    """One of the first onsets of a contact; the time of a run that has none is nan."""
+    """One of the first onsets of a contact.
+
+    contact  joint or stop
+    number   from 1
+    time     of the run, s; none where it has none
+    twin     of the twin, s; none where it has none
+    """
 
     contact: str
     number: int
-    time: float  # s
-    twin: float  # s
+    time: float
+    twin: float
 
 
 class Certificate(NamedTuple):
@@ -99,7 +148,7 @@ TABLES: dict[str, Any] = {
     "windows": Parted, "curves": Curve, "quantities": Quantity, "levels": Level,
     "contacts": Onsets, "onsets": Onset,
 }  # fmt: skip
-KINDS: dict[type, Any] = {str: h5py.string_dtype(), float: "f8", int: "i8", bool: "?"}
+KINDS: dict[type, str] = {float: "f8", int: "i8", bool: "?"}  # all else is text
 
 
 def store(file: h5py.File, certificate: Certificate) -> None:
@@ -109,7 +158,7 @@ def store(file: h5py.File, certificate: Certificate) -> None:
     for name, row in TABLES.items():
         table, rows = group.create_group(name), getattr(certificate, name)
         for key, kind in row.__annotations__.items():
-            values = np.array([getattr(one, key) for one in rows], dtype=KINDS[kind])
+            values = np.array([getattr(one, key) for one in rows], dtype=KINDS.get(kind, TEXT))
             table.create_dataset(key, data=values)
     group.attrs["content_sha256"] = content_hash(group)
 

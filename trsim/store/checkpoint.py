@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.errors import FileError
+from trsim.errors import FileError, some
 from trsim.store import own
 from trsim.store.disk import synced
 from trsim.store.target import CHECKPOINT
@@ -119,9 +119,9 @@ def differences(kept: Checkpoint, scenario: Any) -> str:
     names = differing(was, now)
     told = [
         f"{n.removeprefix('scenario.')} is {_short(now.get(n))}, was {_short(was.get(n))}"
-        for n in names[:SHOWN]
+        for n in names
     ]
-    return "; ".join(told) + (f"; {len(names) - SHOWN} more" if len(names) > SHOWN else "")
+    return some(told, SHOWN, "; {} more", "; ")
 
 
 def leaves(tree: Any) -> dict[str, str]:

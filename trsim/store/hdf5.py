@@ -15,6 +15,7 @@ from typing import Any
 import h5py
 
 from trsim.errors import FileError, TrsimError
+from trsim.solve.blocks import Blocks
 from trsim.statuses import Status
 from trsim.store import checkpoint as checkpoints
 from trsim.store import describe, own, peaks, points, tables
@@ -142,16 +143,14 @@ class Running:
 
     def take_all(self, blocks: Generator[Any, None, Any]) -> Any:
         """Store all blocks; the outcome."""
-        while True:
-            try:
-                block = next(blocks)
-            except StopIteration as stop:
-                with self.told():
-                    self.open()
-                return stop.value
+        run = Blocks(blocks)
+        for block in run:
             with self.told():
                 self.open()
                 self.take(block)
+        with self.told():
+            self.open()
+        return run.outcome
 
     # --- while the run goes on ---------------------------------------------------------------
 

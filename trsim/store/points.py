@@ -45,12 +45,18 @@ class Plan(NamedTuple):
 
 
 class Dispersion(NamedTuple):
-    """How far the points of a section lie apart: root mean squares about their mean."""
+    """How far the points of a section lie apart: root mean squares about their mean.
+
+    points  how many
+    x       in the unit of the channel; none without points
+    y       the same
+    radius  root of the sum of both squares; none where x and y have different units
+    """
 
     points: int
     x: float
     y: float
-    radius: float  # root of the sum of the squares; nan where x and y have different units
+    radius: float
 
 
 class Points(NamedTuple):

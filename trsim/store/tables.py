@@ -10,7 +10,7 @@ from trsim.store.grow import Field, Growing
 EVENT_COLUMNS = 7  # of a line of events, see solve/march/record.py
 EXPECTED = 256  # rows of the tables whose length nobody knows
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
-# of events, by number
+# of events, by their numbers in solve/march/record.py: ONSET = 1.0 and so on
 KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user", "jump")
 
 

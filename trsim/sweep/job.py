@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from trsim.errors import FileError, SolverError, TrsimError
+from trsim.scenario.methods import METHODS
+from trsim.solve.blocks import Blocks
 from trsim.sweep.ledger import DIGEST, REFUSED
 
 CHECKPOINT = 60.0  # s of wall time between two
@@ -82,7 +84,7 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
         return {}
 
     blocks = _told(simulate(scenario, mechanism, kept.state if kept else None), begun)
-    every = 0.0 if scenario.solver.method.startswith("scipy:") else CHECKPOINT
+    every = CHECKPOINT if METHODS[scenario.solver.method].files else 0.0
     return write(target, scenario, mechanism, blocks, task["command"], every, kept, closing)
 
 
@@ -90,16 +92,12 @@ def _told(
     blocks: Generator[Any, None, Any], begun: Callable[[], None]
 ) -> Generator[Any, None, Any]:
     """The same blocks; the first is told."""
-    first = True
-    while True:
-        try:
-            block = next(blocks)
-        except StopIteration as stop:
-            return stop.value
-        if first:
+    run = Blocks(blocks)
+    for k, block in enumerate(run):
+        if k == 0:
             begun()
-            first = False
         yield block
+    return run.outcome
 
 
 def _checkpoint(target: Path, scenario: Any) -> Any:

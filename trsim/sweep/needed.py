@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import h5py
 
+from trsim.errors import some
 from trsim.store.checkpoint import differing, leaves
 from trsim.sweep.job import CONTACT, STATISTICS
 from trsim.sweep.ledger import AGAIN, DIGEST, REFUSED, Entry, stamp
@@ -114,5 +115,4 @@ def explained(plan: Plan, case: Case, told: Need, folder: Path) -> str:
         f"{name} is {now.get(name, 'absent')}, was {was.get(name, 'absent')}"
         for name in differing(was, now)
     ]
-    more = f"; {len(parts) - SHOWN} more" if len(parts) > SHOWN else ""
-    return f"{told.why}: {'; '.join(parts[:SHOWN])}{more}"
+    return f"{told.why}: {some(parts, SHOWN, '; {} more', '; ')}"

@@ -2,7 +2,9 @@
 
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
-from trsim.cli.documents.common import Document, Number
+from trsim.analyse.precision import Point
+from trsim.analyse.trajectory import Setting
+from trsim.cli.documents.common import Document, Number, of
 from trsim.statuses import Ended
 
 
@@ -10,7 +12,7 @@ class Reference(TypedDict):
     """What errors are taken against.
 
     method            of the run
-    tolerance         of its steps
+    tolerance         of that run
     second_method     of another run, at the same tolerance
     second_failed     why that one did not reach its end, or ""
     uncertainty       error of the second run
@@ -32,40 +34,13 @@ class Reference(TypedDict):
     still: list[str]
 
 
-class Measured(TypedDict):
+class Measured(of(Setting), of(Point, "setting")):
     """One method at one setting.
 
-    method           as in a scenario
-    tolerance        of its steps; null with fixed ones
-    step             s; null without fixed ones
-    status           how the runs ended; nothing is measured of one that failed
-    reason           why it failed, or ""
-    error            largest difference to the reference over the range, of all quantities; median
-                     over first steps
-    worst            of the first steps
-    peak_error       largest relative difference of a contact's largest force; null without any
-    unresolved       whether the error is not above the uncertainty of the reference
-    peak_unresolved  the same of the peak error
-    cpu              s, of the integration without output rows; median
-    steps            accepted, median
-    evaluations      right-hand sides, median
-    errors           quantity -> error
+    status  how the runs ended; nothing is measured of one that failed
     """
 
-    method: str
-    tolerance: Number
-    step: Number
     status: Ended
-    reason: str
-    error: Number
-    worst: Number
-    peak_error: Number
-    unresolved: bool
-    peak_unresolved: bool
-    cpu: Number
-    steps: int
-    evaluations: int
-    errors: dict[str, Number]
 
 
 class Bench(Document):

@@ -1,8 +1,35 @@
 """What all documents have."""
 
+from functools import cache
+from typing import Any, get_args, get_origin, get_type_hints
+
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
 Number = float | None
+
+
+@cache
+def of(kind: type, *without: str) -> Any:
+    """What a dataclass or a named tuple becomes: a typed dictionary, and that of what it holds.
+
+    Its numbers may be null, tuples are lists, a complex number is the list of its two parts.
+    """
+    keys = {n: _json(t) for n, t in get_type_hints(kind).items() if n not in without}
+    found = TypedDict(kind.__name__, keys)  # type: ignore[operator]
+    found.__doc__ = kind.__doc__
+    return found
+
+
+def _json(kind: Any) -> Any:
+    if kind in (float, complex):
+        return Number if kind is float else list[Number]
+    if getattr(kind, "__module__", "").startswith("trsim."):
+        return of(kind)
+    if get_origin(kind) is tuple:
+        return list[_json(get_args(kind)[0])]
+    if get_origin(kind) is dict:
+        return dict[str, _json(get_args(kind)[1])]
+    return kind
 
 
 class Error(TypedDict):

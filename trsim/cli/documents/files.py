@@ -5,9 +5,11 @@ from typing import Literal, NotRequired, Required
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
 from trsim.cli.documents.certificate import Certificate
-from trsim.cli.documents.common import Document, Number
+from trsim.cli.documents.common import Document, Number, of
 from trsim.cli.documents.runs import Contact, Results, Statistics
+from trsim.report.asked import Value
 from trsim.statuses import Status
+from trsim.store.points import Dispersion
 
 
 class Solver(Statistics, total=False):
@@ -16,7 +18,7 @@ class Solver(Statistics, total=False):
     method         as in the scenario, all of these
     end            s
     step           s
-    tolerance      of a step
+    tolerance      of the run
     stabilisation  of the constraints
     first_step     s
     max_step       s
@@ -82,21 +84,6 @@ class Provenance(TypedDict, total=False):
     recovered_by: str
 
 
-class Dispersion(TypedDict):
-    """How far the points of a section lie apart: root mean squares about their mean.
-
-    points  how many
-    x       in the unit of the channel; null without points
-    y       the same
-    radius  root of the sum of both squares; null where x and y have different units
-    """
-
-    points: int
-    x: Number
-    y: Number
-    radius: Number
-
-
 class Show(Document):
     """trsim show.
 
@@ -143,26 +130,9 @@ class Show(Document):
     provenance: Provenance
     phase: list[str]
     poincare: dict[str, int]
-    dispersion: dict[str, Dispersion]
+    dispersion: dict[str, of(Dispersion)]
     fired: dict[str, int]
     certificate: NotRequired[Certificate]
-
-
-class Value(TypedDict):
-    """A number that an analysis found.
-
-    run    file, case, or what tells the run from the others
-    what   the word that asked for it, or what it is
-    value  in the unit; null where the run has nothing to make it of
-    half   of its 95 % interval; null without one
-    unit   SI
-    """
-
-    run: str
-    what: str
-    value: Number
-    half: Number
-    unit: str
 
 
 class Report(Document):
@@ -176,7 +146,7 @@ class Report(Document):
 
     folder: str
     files: list[str]
-    values: NotRequired[list[Value]]
+    values: NotRequired[list[of(Value)]]
     told: NotRequired[list[str]]
 
 

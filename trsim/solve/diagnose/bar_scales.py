@@ -35,20 +35,35 @@ ENOUGH = 16  # elements: more do not change the largest eigenvalue of their row 
 
 @dataclass(frozen=True)
 class BarScale:
-    """Compliances and time scales of one flexible bar."""
+    """What a flexible bar gives way, and its slowest and fastest motion.
+
+    name            of the body
+    elements        how many
+    length          m
+    mass            kg
+    axial           compliance along it, L/EA, m/N
+    bending         across, in the middle between hinges at its ends, L^3/(48 EI), m/N
+    cantilever      across, at the end of a cantilever, L^3/(3 EI), m/N
+    lowest          bending frequency between hinges, Hz
+    wave            time an axial wave takes from end to end, s
+    highest         largest frequency of its mesh, Hz
+    explicit_step   largest step of rk4 that is stable for it, s
+    contact_shares  joint with clearance -> its compliance at the load of the start, as a part of
+                    that of contact and bar in line
+    """
 
     name: str
     elements: int
-    length: float  # m
-    mass: float  # kg
-    axial: float  # m/N
-    bending: float  # m/N, in the middle between hinges
-    cantilever: float  # m/N
-    lowest: float  # Hz, bending between hinges
-    wave: float  # s, along the bar
-    highest: float  # Hz, of the mesh
-    explicit_step: float  # s, largest stable one of rk4
-    contact_shares: dict[str, float]  # joint -> its compliance over that of joint and bar in line
+    length: float
+    mass: float
+    axial: float
+    bending: float
+    cantilever: float
+    lowest: float
+    wave: float
+    highest: float
+    explicit_step: float
+    contact_shares: dict[str, float]
 
 
 def bar_scales(

@@ -64,12 +64,8 @@ def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
         if found is not None and found.section:
             if found.row.length and (short := drawn_in(scenario, mechanism, r.y)):
                 return short
-            place = scenario.place((found.section, found.name))
-            where = f" ({place.show()})" if place else ""
-            return (
-                f"{found.section}.{found.name}{where} is not a finite number beyond t = {t:.6g} s: "
-                f"{RANGE}?"
-            )
+            entry = scenario.entry(found.section, found.name)
+            return f"{entry} is not a finite number beyond t = {t:.6g} s: {RANGE}?"
     return ""
 
 
@@ -83,11 +79,9 @@ def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
             continue
         stroke = float(w.S[instance.row.con[ENTRY], 0])
         if length + stroke < SHORT * length:
-            place = scenario.place((instance.section, instance.name))
-            where = f" ({place.show()})" if place else ""
             return (
-                f"{instance.section}.{instance.name}{where}: a stroke of {stroke:.4g} m leaves a "
-                f"line of {length:.4g} m no length; limit its motion"
+                f"{scenario.entry(instance.section, instance.name)}: a stroke of {stroke:.4g} m "
+                f"leaves a line of {length:.4g} m no length; limit its motion"
             )
     return ""
 

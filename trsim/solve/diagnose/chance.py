@@ -20,6 +20,7 @@ from trsim.assemble.linear import SINGULAR
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import project_positions
 from trsim.elements.scene import scene
+from trsim.errors import some
 from trsim.solve.diagnose.locked import dependent
 from trsim.solve.march.record import CROSSED, MEETINGS
 from trsim.solve.outcome import Outcome
@@ -64,11 +65,10 @@ def sentence(mechanism: Mechanism, found: dict[str, tuple[float, float, float, s
     first = max(found, key=lambda name: found[name][0])
     _, t, pivot, value = found[first]
     names = [first, *(name for name in found if name != first)]
-    others = f" and {len(names) - TOLD} more" if len(names) > TOLD else ""
     part = first.split(".")[0]
     section = next(i.section for i in mechanism.instances if i.name == part)
     return (
-        f"{section}.{part}: extremes of {', '.join(names[:TOLD])}{others} are chance: {value} of "
+        f"{section}.{part}: extremes of {some(names, TOLD)} are chance: {value} of "
         f"{first} is that of t = {t:.6g} s, {sqrt(pivot):.1g} from where rows of joints depend on "
         "each other, and what they carry grows there like one over the distance."
     )

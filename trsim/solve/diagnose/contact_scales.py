@@ -16,7 +16,7 @@ from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
 from trsim.solve.diagnose.linearised import Linearised
 from trsim.solve.start.consistent import Start
-from trsim.solve.start.velocities import twist_gradient
+from trsim.solve.start.velocities import gap_gradient
 
 Array = NDArray[np.float64]
 
@@ -27,18 +27,30 @@ IMMOVABLE = 1e-4  # of what the bodies alone would give: a contact that joints a
 
 @dataclass(frozen=True)
 class ContactScale:
-    """Time scales of one contact."""
+    """How fast a contact is, pressed as the largest force of the start would.
+
+    name           joint or stop
+    closed         whether it is in touch at the start
+    depth          penetration, m or rad
+    force          N or N*m
+    stiffness      tangent, N/m or N*m/rad
+    mass           that moves, with all joints and drives in force, kg or kg*m^2; none: nothing can
+    half_period    of its vibration, s; none where nothing can move
+    impact_time    from touch to separation at the slowest impact, s; none where nothing can move
+    friction_rate  1/s, of the ramp of modified Coulomb friction; 0 without one
+    unit           of the force, N or N*m
+    """
 
     name: str
-    closed: bool  # at the start
-    depth: float  # m or rad
-    force: float  # N or N*m, elastic, at this depth
-    stiffness: float  # N/m or N*m/rad, tangent there
-    mass: float  # kg or kg*m^2 that it moves; inf where drives and joints fix it
-    half_period: float  # s, at this stiffness; inf where it moves nothing
-    impact_time: float  # s, at the slowest impact
-    friction_rate: float  # 1/s, 0 without a ramp
-    unit: str  # of the force: N or N*m
+    closed: bool
+    depth: float
+    force: float
+    stiffness: float
+    mass: float
+    half_period: float
+    impact_time: float
+    friction_rate: float
+    unit: str
 
 
 def contact_scales(
@@ -80,14 +92,7 @@ def contact_scales(
 
 def along(w: Scene, y: Array, e: int, instance: Instance, twists: Array) -> float:
     """g Z Z^T g^T of a gap, 1/kg."""
-
-    def rate(moving: Array) -> float:
-        poses(w, moving)
-        gaps(w, 0.0)
-        return float(w.gap[e, 1])
-
-    frames = instance.element.acts_on(instance.row)
-    return float(np.sum((twist_gradient(w, y, rate, frames) @ twists) ** 2))
+    return float(np.sum((gap_gradient(w, y, instance, e) @ twists) ** 2))
 
 
 def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float]:

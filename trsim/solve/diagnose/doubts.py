@@ -33,6 +33,7 @@ from trsim.assemble.reduce import world_rates
 from trsim.elements.bushing import TURN
 from trsim.elements.contract import STORED
 from trsim.elements.scene import PROJECTION, scene
+from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import of_drift
 from trsim.solve.diagnose.bar_scales import largest
 from trsim.solve.diagnose.chance import of_extremes
@@ -45,7 +46,7 @@ from trsim.solve.diagnose.swings import of_sections
 from trsim.solve.diagnose.unhinged import of_hinges
 from trsim.solve.march.openings import apart
 from trsim.solve.march.record import JOLTS, ROUNDED_AT, ROUNDED_BY, STEP_TURN, Record, T
-from trsim.solve.methods.rk4 import ORDER, PER_RADIAN
+from trsim.solve.methods.rk4 import PER_RADIAN
 from trsim.solve.outcome import NOTHING, Outcome, natural, whose
 from trsim.solve.start.bars import places
 from trsim.solve.start.consistent import Start
@@ -208,10 +209,10 @@ def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:
     """What a fixed step makes of the fastest turn: no tolerance holds it."""
     turn = float(outcome.record.clock[STEP_TURN]) if outcome.record is not None else 0.0
     if turn > COARSE:
-        step = scenario.solver.step
+        step, order = scenario.solver.step, METHODS[scenario.solver.method].order
         yield (
             f"solver.step: a body turns by up to {turn:.2g} rad in a step of {step:.3g} s, which "
-            f"makes RK4 err by about {turn**ORDER / PER_RADIAN:.1g} of it, step after step; take "
+            f"makes RK4 err by about {turn**order / PER_RADIAN:.1g} of it, step after step; take "
             f"at most {step * COARSE / turn:.2g} s, or a method that chooses its steps"
         )
 

@@ -48,13 +48,20 @@ HALVES = [  # polynomials of n over an element as those over its halves
 
 
 class MeshError(NamedTuple):
-    """What the mesh of a bar makes wrong of its shape."""
+    """What the mesh of a flexible bar makes wrong of its shape at the start: an estimate.
+
+    name      of the body
+    elements  how many
+    error     of the node that is farthest off, m
+    relative  of the length
+    wanted    elements for a relative error of 1e-4
+    """
 
     name: str
     elements: int
-    error: float  # m, of the node that is farthest off
-    relative: float  # of the length
-    wanted: int  # elements for an error of AIM
+    error: float
+    relative: float
+    wanted: int
 
 
 class Bends:

@@ -9,6 +9,7 @@ elsewhere they are those of the motion frozen there.
 
 from dataclasses import dataclass
 from math import pi
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -21,26 +22,39 @@ from trsim.solve.start.consistent import Start
 UNDAMPED = 1e-6  # damping ratio: a smaller one is the rounding of the differences
 PARALLEL = 1e-3  # free motions that differ by less are one
 NOTHING = 1e-9  # of a vector: what rounding moves in one of states of elements
-OSCILLATES, DECAYS, GROWS, FREE = "oscillates", "decays", "grows", "free"
+Kind = Literal["oscillates", "decays", "grows", "free"]
+OSCILLATES, DECAYS, GROWS, FREE = get_args(Kind)
 
 
 @dataclass(frozen=True)
 class Moved:
-    """What a body does in a mode, largest of all bodies 1; at the phase of the largest motion."""
+    """What a body does in a mode; the largest motion of all is 1.
 
-    body: str  # or a node of a flexible bar, `rod[3]`
+    body         its name
+    translation  x, y, z
+    rotation     about x, y, z, rad times the mechanism's size
+    """
+
+    body: str
     translation: tuple[float, float, float]
-    rotation: tuple[float, float, float]  # rad times the mechanism's size
+    rotation: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Mode:
-    """One eigenvalue, or a pair."""
+    """A small motion about the start.
 
-    kind: str
-    frequency: float  # Hz, damped; 0 where it does not oscillate
-    damping_ratio: float  # negative where it grows
-    rate: float  # 1/s, Re lambda
+    kind           oscillates, decays, grows or free
+    frequency      Hz, damped; 0 where it does not oscillate
+    damping_ratio  negative where it grows
+    rate           real part of the eigenvalue, 1/s
+    shape          the bodies that move
+    """
+
+    kind: Kind
+    frequency: float
+    damping_ratio: float
+    rate: float
     shape: tuple[Moved, ...]
 
 

@@ -18,7 +18,6 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.solve.diagnose.bar_scales import bar_scales
@@ -27,25 +26,35 @@ from trsim.solve.diagnose.linearised import linearised, rounding
 from trsim.solve.methods.rk4 import IMAGINARY, REAL
 from trsim.solve.start.consistent import Start
 
-Array = NDArray[np.float64]
-
 LARGEST = 600  # velocities of a mechanism with flexible bars that is linearised: some seconds
 
 
 @dataclass(frozen=True)
 class Scales:
-    """What is fast and what is slow."""
+    """Stiffness and time scales at the start.
 
-    eigenvalues: tuple[complex, ...]  # 1/s, largest first, zeros left out
-    zeros: int  # eigenvalues that are zero: free motions, or held by friction only
-    decay: float  # 1/s, largest -Re
-    growth: float  # 1/s, largest Re
-    frequency: float  # rad/s, largest |Im|
-    natural_time: float  # s: slowest period, or size over speed where nothing swings
+    eigenvalues    of the linearised motion, [real, imaginary] in 1/s, largest first, without zeros
+    zeros          how many of them are zero
+    decay          largest rate at which a motion fades, 1/s; 0 for none
+    growth         largest rate at which one grows, 1/s; 0 for none
+    frequency      largest, rad/s; 0 for none
+    natural_time   slowest period, or the time a motion through the mechanism's size takes, s
+    contacts       each contact
+    fastest        rate that limits explicit steps, 1/s
+    fastest_is     what it is the rate of, in words; "" for nothing
+    explicit_step  largest stable step of rk4, s; none where nothing limits it
+    """
+
+    eigenvalues: tuple[complex, ...]
+    zeros: int
+    decay: float
+    growth: float
+    frequency: float
+    natural_time: float
     contacts: tuple[ContactScale, ...]
-    fastest: float  # 1/s, of all of these
-    fastest_is: str  # in words
-    explicit_step: float  # s, largest stable step of rk4; inf where nothing is fast
+    fastest: float
+    fastest_is: str
+    explicit_step: float
 
 
 def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:

@@ -7,6 +7,7 @@ from trsim import elements
 from trsim.assemble.layout import all_names
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.sections import without_play
+from trsim.errors import some
 from trsim.fields import FunctionSpec
 from trsim.instants import peaked
 
@@ -34,8 +35,8 @@ def _rows(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
         )
     if mechanism.redundant:
         yield (
-            f"{len(mechanism.redundant)} redundant rows ({listed(mechanism.redundant)}): the other "
-            "rows hold the mechanism; their reactions are reported as zero"
+            f"{len(mechanism.redundant)} redundant rows ({some(mechanism.redundant, SHOWN)}): the "
+            "other rows hold the mechanism; their reactions are reported as zero"
         )
     if model.m == 0:
         yield "constraints: no joint or drive has a row in the solve, so nothing is factorised"
@@ -47,22 +48,24 @@ def _bars(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
         return
     twist = "" if mechanism.planar else ", and what would need it is refused"
     yield (
-        f"torsion and shear of {listed(mechanism.beams)}: elements of flexible bars stretch and "
-        f"bend, and do not twist{twist}; rotary inertia of their sections is left out too"
+        f"torsion and shear of {some(mechanism.beams, SHOWN)}: elements of flexible bars stretch "
+        f"and bend, and do not twist{twist}; rotary inertia of their sections is left out too"
     )
 
 
 def _contacts(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     """Events and friction."""
-    number, method = len(mechanism.model.contact), scenario.solver.method
+    number, solver = len(mechanism.model.contact), scenario.solver
     if number == 0:
         yield "contact events: no joint has clearance and there is no limit stop"
-    elif method == "rk4":
-        yield "location of touches: rk4 has a fixed step, a contact begins at the end of a step"
+    elif not solver.locates:
+        told = solver.locate_events is False
+        why = "`locate_events: false`" if told else f"{solver.method} has a fixed step"
+        yield f"location of touches: {why}, a contact begins at the end of a step"
     joints = [j for j in scenario.joints.values() if elements.load(j.type).ideal]
     ideal = [n for n, j in scenario.joints.items() if getattr(j, "clearance", None) == 0.0]
     if ideal:
-        yield f"play of {listed(ideal)}: clearance 0 is an ideal joint"
+        yield f"play of {some(ideal, SHOWN)}: clearance 0 is an ideal joint"
     frictions = [law.friction.law for law in scenario.contact_laws.values()]
     if joints and all(law == "none" for law in frictions):
         yield "friction: no contact law has any"
@@ -88,8 +91,8 @@ def _peaks(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     ]
     if found and scenario.solver.max_step is None:
         yield (
-            f"a search inside steps for narrow peaks of {listed(found)}: quotients and powers of "
-            "what varies have no edges as exp has; `solver: {max_step: ...}` bounds the steps"
+            f"a search inside steps for narrow peaks of {some(found, SHOWN)}: quotients and powers "
+            "of what varies have no edges as exp has; `solver: {max_step: ...}` bounds the steps"
         )
 
 
@@ -127,10 +130,3 @@ def unread(scenario: Any) -> Iterator[str]:
     given = [key for key in UNREAD if getattr(scenario, key)]
     if given:
         yield f"`{'`, `'.join(given)}`: one run takes the scenario as it stands outside of them"
-
-
-def listed(names: Any) -> str:
-    """A few names, and how many more."""
-    names = list(names)
-    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
-    return ", ".join(names[:SHOWN]) + more

@@ -55,11 +55,10 @@ def collapsed(
     for name, element, value in stretches(mechanism, y):
         if low < value < high:
             continue
-        place = scenario.place(("bodies", name))
-        where = f" ({place.show()})" if place else ""
         does = "squeezed" if value <= low else "stretched"
+        entry = scenario.entry("bodies", name)
         return (
-            f"bodies.{name}{where}: element {element} is {does} to {100.0 * value:.3g} % of its "
+            f"{entry}: element {element} is {does} to {100.0 * value:.3g} % of its "
             f"length at t = {t:.6g} s, where the law of a flexible bar has no meaning: is it too "
             "soft for its loads, or driven too far? `strain: engineering` resists more of it"
         )

@@ -33,8 +33,8 @@ from trsim.solve.march.record import (
     NOISY,
     SPEED,
     T_END,
+    TOLERANCE,
     VIBRATION,
-    WRITTEN,
 )
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
@@ -88,7 +88,7 @@ def in_units(s, r, setting, h, off, most, mean, times):
     well.
     """
     most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
-    allowed = times * setting[WRITTEN] * most
+    allowed = times * setting[TOLERANCE] * most
     error = off / allowed if allowed > 0.0 else 0.0
     return error if error <= 1.0 else off / max(allowed, rounded(s, r, sqrt(mean) * h))
 
@@ -106,14 +106,14 @@ def doubted(s, r, setting, h, off, most, w):
 
     w: rad/s, how fast what the error consists of turns, 0 where it is not known.
     """
-    if off > ALLOWED * setting[WRITTEN] * most and off > rounded(s, r, w * h):
+    if off > ALLOWED * setting[TOLERANCE] * most and off > rounded(s, r, w * h):
         r.clock[BLUR], r.clock[BLUR_W] = off, w
 
 
 @internal
 def exceeded(r, setting, h, off, most):
     """Note what accelerations are off by where it is more than their share, rounding or not."""
-    if off > share(setting, h) * setting[WRITTEN] * most:
+    if off > share(setting, h) * setting[TOLERANCE] * most:
         r.clock[EXCESS] = off
 
 

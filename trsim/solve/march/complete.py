@@ -69,10 +69,10 @@ from trsim.solve.march.record import (
     ROWS,
     SAME_TIME,
     SPEED,
+    STEP_ERROR,
     STEP_ROWS,
     STEPS,
     T_END,
-    TOLERANCE,
     WEAK,
     WORK_PROJECTION,
     WORST_PHI,
@@ -227,7 +227,7 @@ def strayed(s, r, setting, h):
     its end is far from the constraints."""
     if setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
         return False
-    far = FAR * setting[TOLERANCE]
+    far = FAR * setting[STEP_ERROR]
     return r.clock[OFF] > far * s.size or r.clock[OFF_RATE] > far * max(
         r.clock[SPEED], r.clock[MOST], s.size / setting[T_END]
     )
@@ -254,7 +254,7 @@ def leaked(s, r, b, setting, h, t1, projected):
     lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
-    return lost > LEAK * max(setting[TOLERANCE], OF_LIMITS) * max(before, after)
+    return lost > LEAK * max(setting[STEP_ERROR], OF_LIMITS) * max(before, after)
 
 
 @internal
@@ -310,7 +310,7 @@ def exact(s, r, b, setting, method, t, h, theta):
         if b.root[c] <= theta:
             gap_of = c
     h1, before = theta * h, 1e300
-    close = max(PRECISE * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
+    close = max(PRECISE * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0, 0.0, 0.0
@@ -334,7 +334,7 @@ def exact(s, r, b, setting, method, t, h, theta):
         if rate == 0.0 or not abs(gap) < NEARER * before:
             return (h1, 0.0, projected) if abs(gap) <= SETTLED * close else (0.0, 0.0, 0.0)
         late, before = gap / rate, abs(gap)
-        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[TOLERANCE]) * h1
+        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[STEP_ERROR]) * h1
         if near and gap_of < s.contact.size:
             move_end(b, last, late)
             projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])

@@ -84,10 +84,10 @@ from trsim.solve.march.record import (
     REJECTED,
     ROWS,
     SAME_TIME,
+    STEP_ERROR,
     STEP_ROWS,
     STEP_TOO_SMALL,
     T_END,
-    TOLERANCE,
     TOO_FAST,
     TORN,
     VIBRATION,
@@ -188,7 +188,7 @@ def march(s, r, b, setting, methods, most):
         r.clock[BLUR] = r.clock[EXCESS] = 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
-            error *= min(1.0, setting[TOLERANCE] / OF_LIMITS)
+            error *= min(1.0, setting[STEP_ERROR] / OF_LIMITS)
         if not (error <= 1.0):
             r.count[REJECTED] += 1
             if error < NO_STEP and to_look(r, h):

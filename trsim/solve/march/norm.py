@@ -20,7 +20,7 @@ from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.kernels import signatures as types
 from trsim.kernels.packed import A1
 from trsim.kernels.vectors import internal
-from trsim.solve.march.record import BUFFERS, LENGTH, MET, MOST, RECORD, SPEED, TOLERANCE, H
+from trsim.solve.march.record import BUFFERS, LENGTH, MET, MOST, RECORD, SPEED, STEP_ERROR, H
 
 
 @internal
@@ -32,7 +32,7 @@ def weights(s, r, b, setting, h):
     """
     if r.clock[MET] < r.clock[MOST]:
         follow(s, r, h)
-    length, tolerance = r.clock[LENGTH], setting[TOLERANCE]
+    length, tolerance = r.clock[LENGTH], setting[STEP_ERROR]
     speed = min(r.clock[SPEED], felt(s, r))
     for c in range(b.weight.size):
         b.weight[c] = weighed(s, length, speed, tolerance, c)

@@ -147,12 +147,8 @@ def held_to(tolerance: float) -> float:
 def opened(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Which redundant row is open, by how much, when and why, in words."""
     instance, axis, by = worst(mechanism, r)
-    place = scenario.place((instance.section, instance.name))
-    where = f" ({place.show()})" if place else ""
-    return (
-        f"{instance.section}.{instance.name}{where} opens: its row {axis} is off by {by}.  "
-        f"{WHY}; {REMEDY}"
-    )
+    entry = scenario.entry(instance.section, instance.name)
+    return f"{entry} opens: its row {axis} is off by {by}.  {WHY}; {REMEDY}"
 
 
 def apart(mechanism: Mechanism, r: Record) -> str:

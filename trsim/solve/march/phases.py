@@ -51,8 +51,8 @@ from trsim.solve.march.record import (
     PAST_ERROR,
     RECORD,
     SEPARATION,
+    STEP_ERROR,
     STIFF,
-    TOLERANCE,
     WORK_PROJECTION,
     H,
     T,
@@ -112,7 +112,7 @@ def change_phases(s, r, b, setting, t1):
                 r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
             speed = max(speed, 1e-12)
             h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
-                                  speed, setting[TOLERANCE]))  # fmt: skip
+                                  speed, setting[STEP_ERROR]))  # fmt: skip
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
     are_closed = closed(s, r)

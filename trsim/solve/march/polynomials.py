@@ -101,18 +101,25 @@ def factors(times, size, n):
 
 
 @internal
-def reach(b, n):
-    """What a polynomial plainly is not above, and not below, between its first two nodes.
-
-    Between places it is beyond them by an eighth of its second difference, the largest of which is
-    taken twice.
-    """
+def along(b, n):
+    """b.along <- the polynomial at the places of the lattice."""
     slope, lattice, value = b.node[2], b.lattice, b.along
     for k in range(PARTS + 1):
         value[k] = slope[0]
     for i in range(1, n):
         for k in range(PARTS + 1):
             value[k] += slope[i] * lattice[i, k]
+
+
+@internal
+def reach(b, n):
+    """What a polynomial plainly is not above, and not below, between its first two nodes.
+
+    Between places it is beyond them by an eighth of its second difference, the largest of which is
+    taken twice.
+    """
+    along(b, n)
+    lattice, value = b.lattice, b.along
     most, least, bend = -1e300, 1e300, 0.0
     last = b.doubt[0]
     for k in range(PARTS + 1):
@@ -133,13 +140,8 @@ def top(b, n, start, end, wanted):
     above them by an eighth of its second difference, the largest of which is taken twice.
     """
     place, best, bend, before, last = start, -1e300, 0.0, 0.0, 0.0
-    slope, lattice, width = b.node[2], b.lattice, (end - start) / PARTS
-    value = b.along
-    for k in range(PARTS + 1):
-        value[k] = slope[0]
-    for i in range(1, n):
-        for k in range(PARTS + 1):
-            value[k] += slope[i] * lattice[i, k]
+    along(b, n)
+    lattice, width, value = b.lattice, (end - start) / PARTS, b.along
     for k in range(PARTS + 1):
         value[k] += b.doubt[0] * abs(lattice[n - 1, k])
     for k in range(PARTS + 1):

@@ -129,7 +129,7 @@ NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
 # settings: constants of the march
 (
     T_END,
-    TOLERANCE,
+    STEP_ERROR,  # what a step may err by, made of the tolerance in `settings` of solve/outcome.py
     H_MAX,
     EVERY,  # s between output rows
     FIXED_STEP,  # s, 0 where the method controls its step
@@ -137,7 +137,7 @@ NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
     CHOOSES,  # 1: between two methods, by the fastest motion
     MISSED,  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
     HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
-    WRITTEN,  # the tolerance as it is written, which TOLERANCE is made of
+    TOLERANCE,  # as it is written
     N_SETTINGS,
 ) = range(11)
 
@@ -166,14 +166,6 @@ FOUND = 200  # places between two samples where extremes are looked for
     EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
-EVENT_NAMES = {
-    ONSET: "onset",
-    SEPARATION: "separation",
-    TO_IMPLICIT: "to implicit",
-    TO_EXPLICIT: "to explicit",
-    USER: "user",
-    JOLT: "jump",
-}
 
 
 class Record(Packed):

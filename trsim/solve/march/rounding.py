@@ -30,7 +30,7 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.packed import A1, I1, f8
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.calls import NO_STEP, call_step
 from trsim.solve.march.norm import weight_of
 from trsim.solve.march.record import (
@@ -47,8 +47,8 @@ from trsim.solve.march.record import (
     ROUNDED,
     ROUNDED_AT,
     ROUNDED_BY,
+    STEP_ERROR,
     STEPS,
-    TOLERANCE,
     T,
 )
 
@@ -92,8 +92,8 @@ def look_closer(s, r, b, setting, method, h):
 def beside(s, r, setting, y, moved, sign):
     """moved <- y with every entry moved by its last bit, or to the other side with the sign -1."""
     for c in range(y.size):
-        weight = weight_of(s, r, setting[TOLERANCE], c)
-        unit = 1.0 / (weight * setting[TOLERANCE]) if weight > 0.0 else 0.0
+        weight = weight_of(s, r, setting[STEP_ERROR], c)
+        unit = 1.0 / (weight * setting[STEP_ERROR]) if weight > 0.0 else 0.0
         d = sign * EPS * max(abs(y[c]), unit)
         # neighbours in ways of their own
         moved[c] = y[c] + (d if (c * c + c // 2) % 4 < 2 else -d)
@@ -107,9 +107,7 @@ def to_look(r, h):
     second = r.count[AFTER_REJECTION] == 1
     if steps < APART or (MANY if second else MOST) * failed < steps:
         return False
-    stuck = r.clock[LONGEST] <= STUCK * h
-    again(r)
-    return stuck
+    return stuck(r, h)
 
 
 @internal
@@ -117,15 +115,16 @@ def overdue(r, h):
     """Whether a trial that did not fail is to be looked at, and made again."""
     if r.count[STEPS] - r.count[LOOKED] < OVERDUE or r.count[AFTER_REJECTION] > 0:
         return False
-    stuck = r.clock[LONGEST] <= STUCK * h
-    again(r)
-    return stuck
+    return stuck(r, h)
 
 
 @internal
-def again(r):
-    """Begin to count steps, failures and the longest step again."""
+def stuck(r, h):
+    """Whether no step was much longer than h since it was last asked; steps, failures and the
+    longest step are counted again from here."""
+    told = r.clock[LONGEST] <= STUCK * h
     r.count[LOOKED], r.count[FAILED], r.clock[LONGEST] = r.count[STEPS], r.count[REJECTED], 0.0
+    return told
 
 
 @internal
@@ -154,7 +153,7 @@ def largest(s, r, setting):
     """The largest noise in units of the tolerance per second."""
     r.clock[NOISY] = 0.0
     for c in range(r.noise.size):
-        noisy = r.noise[c] * weight_of(s, r, setting[TOLERANCE], c)
+        noisy = r.noise[c] * weight_of(s, r, setting[STEP_ERROR], c)
         if noisy > r.clock[NOISY]:
             r.clock[NOISY], r.clock[NOISY_AT] = noisy, c
 
@@ -183,8 +182,7 @@ def remember(s, r, setting, h):
         r.clock[ROUNDED_BY] = r.noise[int(r.clock[NOISY_AT])] * h / MARGIN
     if r.clock[PASSING] > 0.0 and s.status[0] == SOUND:
         r.clock[NOISY] = r.clock[PASSING] = 0.0
-        for c in range(r.noise.size):
-            r.noise[c] = 0.0
+        clear(r.noise)
         return
     if (r.count[STEPS] - r.count[LOOKED]) % APART == 0:
         for c in range(r.noise.size):

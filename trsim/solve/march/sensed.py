@@ -69,8 +69,8 @@ from trsim.solve.march.record import (
     FIXED_STEP,
     LENGTH,
     RECORD,
+    STEP_ERROR,
     T_END,
-    TOLERANCE,
     UNPROVED,
     H,
 )
@@ -174,7 +174,7 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
             L, M = spread_of(s, r, b, kind, s.sensed[k, INSTANCE], 1.0, low, high, h)
             see(s, b, k, L, M, length)
-            depth = max(HIDDEN * setting[TOLERANCE] * r.clock[LENGTH], ROUNDING * s.size)
+            depth = max(HIDDEN * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
             if kind == ANGLE:
                 depth /= s.reach
             seen = b.seen[s.sensed[k, ENTRY]]
@@ -376,7 +376,7 @@ def chatters(s, r, b, setting, n, t1):
     for k in range(s.sensed.shape[0]):
         own = abs(s.S[s.sensed[k, ENTRY], 1])
         fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
-    allowed = setting[TOLERANCE] * r.clock[LENGTH]
+    allowed = setting[STEP_ERROR] * r.clock[LENGTH]
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
     if chatter[TIMES] > OFTEN:

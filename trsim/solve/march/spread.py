@@ -45,6 +45,7 @@ from trsim.solve.march.calls import (
     call_interpolate,
 )
 from trsim.solve.march.record import DEGREE
+from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
@@ -249,14 +250,6 @@ def from_points(s, kind, e, sign, length, bend, spin_i, round_i):
 
 
 @internal
-def place_rates(s, f):
-    """Where the velocity of a frame's place stands in y."""
-    if f < s.n_r:
-        return s.n_q + s.d * (f - 1)
-    return s.n_q + s.v_node + s.d_node * (f - s.n_r)
-
-
-@internal
 def flat(s, f):
     """Whether a frame is that of a rigid body in a plane, or the ground's there."""
     return s.d == 3 and f < s.n_r
@@ -274,7 +267,7 @@ def at_stages(s, r, b, f):
             largest = max(largest, abs(K[k, s.n_q + turn]))
         return SAFE_RATE * fastest, SAFETY * largest
     q, places, attitude = coordinates_of(s, f)
-    v, rigid = place_rates(s, f) + places, f < s.n_r
+    v, rigid = s.n_q + first_of(s, f) + places, f < s.n_r
     rates = (1 if s.d == 3 else 3) if rigid else attitude
     once = twice = 0.0
     for k in SEEN:
@@ -301,7 +294,7 @@ def point_at_stage(s, b, k, f, p):
     """
     if f == 0:
         return 0.0, 0.0, 0.0
-    K, v = b.K, place_rates(s, f)
+    K, v = b.K, s.n_q + first_of(s, f)
     if s.d == 3:
         a0, a1, a2 = K[k, v], K[k, v + 1], 0.0
     else:

@@ -20,8 +20,8 @@ from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.record import (
     EXCHANGED,
     LARGEST_ENERGY,
+    STEP_ERROR,
     T_END,
-    TOLERANCE,
     WORK_ERROR,
     WORK_TRIAL,
 )
@@ -47,7 +47,7 @@ def works(r, setting, h, worst, size):
     r.clock[WORK_TRIAL] = worst
     if abs(h) <= SHORTEST * setting[T_END]:
         return 0.0
-    allowed = WIDER * setting[TOLERANCE] * max(r.clock[EXCHANGED], size)
+    allowed = WIDER * setting[STEP_ERROR] * max(r.clock[EXCHANGED], size)
     return worst / max(allowed, ROUNDING * r.clock[LARGEST_ENERGY], 1e-300)
 
 

@@ -25,18 +25,17 @@ from trsim.solve.march.accelerations import (
     unknown,
 )
 from trsim.solve.march.calls import CONTROL, DENSE, INTERPOLATE, STEP
-from trsim.solve.march.record import DECAY, GAIN, LENGTH, MET, SPEED, TOLERANCE, VIBRATION
+from trsim.solve.march.record import DECAY, GAIN, LENGTH, MET, SPEED, STEP_ERROR, VIBRATION
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import dop853_tableau as tableau
 
-ORDER = 8
 STAGES = 16  # 12 of a step, the new point, 3 of the dense output
 LAST = 12  # K[LAST] = y' at the end of the step
 ESTIMATE = 8  # the error estimate falls with h^8
 DENSE_ROWS = 7
 DENSE_DEGREE = 7
 DEAR = 13  # rows of K with derivatives of a step; its dense output takes three more
-ADAPTIVE, IMPLICIT = True, False
+IMPLICIT = False
 
 A, C, D, E3, E5 = tableau.A, tableau.C, tableau.D, tableau.E3, tableau.E5
 
@@ -129,7 +128,7 @@ def of_accelerations(s, r, b, setting, h):
     Inside a step that holds more than FAR rad the dense output is off by more than its end.  What
     rounding makes of stages is told, and not held.
     """
-    K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
+    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
     combined(K, OF_PLACES, 0, s.n_q, K[PLACES])
     r.clock[GAIN] = most = largest(s, K[0], r.clock[GAIN])
     length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
@@ -221,7 +220,7 @@ def inside(scene, r, b, setting, t, h):
         places += (LEFT * b.P[6, c] * b.weight[c]) ** 2
     for c in range(scene.n_q, scene.n_q + scene.v_node):
         rates += (LEFT * b.P[6, c] * b.weight[c]) ** 2
-    length, speed = setting[TOLERANCE] * r.clock[LENGTH], setting[TOLERANCE] * r.clock[SPEED]
+    length, speed = setting[STEP_ERROR] * r.clock[LENGTH], setting[STEP_ERROR] * r.clock[SPEED]
     if sqrt(places) * length < ROUNDED * scene.size:
         return 0.0
     ww = stiffness(r, h)

@@ -17,7 +17,7 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, internal
+from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.accelerations import FURTHEST, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import (
@@ -34,21 +34,21 @@ from trsim.solve.march.record import (
     OLD,
     PAST_H,
     SPEED,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import hermite
 from trsim.solve.methods.dense_lu import factorise_real, solve_real
 from trsim.solve.methods.displacements import active, turn, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
+from trsim.solve.methods.newton import FAILS, GOES_ON, judged, resolution
 
-ORDER = 2
 ESTIMATE = 2  # the error estimate falls with h^2
 STAGES = 7
 LAST = 2
 DENSE_ROWS = hermite.ROWS + 2
 DENSE_DEGREE = 3
-ADAPTIVE, IMPLICIT = True, True
+IMPLICIT = True
 
 RADIUS = 0.8
 A_M = (2.0 * RADIUS - 1.0) / (RADIUS + 1.0)
@@ -73,10 +73,9 @@ HALVE = NO_STEP  # Newton failed: take about half the step
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
-    K, n = b.K, r.y.size
+    K = b.K
     if r.count[HISTORY] == 0:
-        for c in range(n):
-            r.past[FILTERED, c] = r.yd[c]
+        copy_to(r.past[FILTERED], r.yd)
     for attempt in range(2):
         if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
             jacobian(s, r, b, setting, t, K[SCRATCH], K[MOVE])
@@ -85,8 +84,7 @@ def step(s, r, b, setting, t, h):
             return HALVE
         if r.clock[FACTORED_H] != h and not factorised(s, r, h):
             return HALVE
-        for c in range(n):
-            K[B1, c] = r.past[FILTERED, c]
+        copy_to(K[B1], r.past[FILTERED])
         done = newton(s, r, b, t, h)
         if done > 0:
             break
@@ -139,14 +137,9 @@ def arrive(s, r, b, h):
 @internal
 def newton(s, r, b, t, h):
     """Solve for b_1.  1: converged, 0: not, -1: a value is not finite."""
-    K, y, weight, n_w = b.K, r.y, b.weight, active(s)
-    counted, floor = 0, 0.0
-    for c in range(y.size):
-        if weight[c] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(y[c]) + h * r.noise[c]) * weight[c])
-    kappa = max(KAPPA, floor)
-    before, rate = 0.0, 1.0
+    K, weight, n_w = b.K, b.weight, active(s)
+    counted, floor = resolution(r, weight, h)
+    kappa, before = max(KAPPA, floor), 0.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1
         arrive(s, r, b, h)
@@ -170,14 +163,10 @@ def newton(s, r, b, t, h):
         moved = sqrt(moved / max(counted, 1))
         if not isfinite(moved):
             return -1
-        if iteration > 0:
-            rate = moved / before if before > 0.0 else 0.0
-            left = MOST_ITERATIONS - 1 - iteration
-            slow = rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa
-            if slow or (rate >= 2.0 and moved > kappa):
-                return 0
-        small = iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa
-        if moved == 0.0 or small or moved < 0.1 * kappa:
+        verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
+        if verdict == FAILS:
+            return 0
+        if verdict != GOES_ON:
             r.clock[NEWTON_RATE] = rate if iteration > 0 else 0.0
             arrive(s, r, b, h)
             for c in range(first_work(s), first_work(s) + N_BOOK):
@@ -250,14 +239,14 @@ def accelerated(s, r, b, setting, h, ratio, further):
             bend = max(4.0 * abs(by - 2.0 * (K[SCRATCH, c] - r.yd[c])), UNKNOWN * abs(by))
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
-    off, strict = setting[TOLERANCE] * r.clock[SPEED] * bent / 12.0, 0.0
+    off, strict = setting[STEP_ERROR] * r.clock[SPEED] * bent / 12.0, 0.0
     if held(s):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
         units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
         strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
-    return max(strict, min(off / (setting[TOLERANCE] * turned), further)) if turned > 0.0 else 0.0
+    return max(strict, min(off / (setting[STEP_ERROR] * turned), further)) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)

@@ -199,8 +199,7 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
         b.side[0, b.rank[n_w + j]], b.side[1, b.rank[n_w + j]] = p[j], q[j]
     if c == 0.0:
         solve_sparse(b, b.real_l, b.real_u, b.real_d, b.side[0])
-        for k in range(b.side.shape[1]):
-            b.side[1, k] = 0.0
+        clear(b.side[1])
     else:
         solve_sparse_complex(b, b.complex_l, b.complex_u, b.complex_d, b.side[0], b.side[1])
     for k in range(s.n_v):

@@ -6,7 +6,7 @@ equations.py, whose constraints hold by their accelerations.
 
 from trsim.assemble.equations import evaluate
 from trsim.assemble.schur import velocity_residual
-from trsim.kernels.vectors import all_finite, internal
+from trsim.kernels.vectors import all_finite, clear, internal
 from trsim.solve.methods.displacements import twisted, w_index
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times, moving, pull
 from trsim.solve.methods.radau import F, W, Z
@@ -135,8 +135,7 @@ def transformed(x, y, z, n):
 def nothing(s, K):
     """The imaginary parts of a real system."""
     for i in range(3):
-        for k in range(K.shape[1]):
-            K[NIL + i, k] = 0.0
+        clear(K[NIL + i])
 
 
 @internal

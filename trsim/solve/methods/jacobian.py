@@ -21,7 +21,7 @@ from trsim.solve.march.record import (
     NO_JACOBIAN,
     NO_RATES,
     OLD,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.methods.displacements import active, displace, frame_of, place_of, w_index
 
@@ -41,7 +41,7 @@ def jacobian(s, r, b, setting, t, trial, rates):
     After a corner of friction only the columns of by_rate are new that belong to the bodies which
     rub there: the law has no jump, and what is left of the others is good enough.
     """
-    n_w, tolerance = active(s), setting[TOLERANCE]
+    n_w, tolerance = active(s), setting[STEP_ERROR]
     places = r.count[JACOBIAN] != NO_RATES
     for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed

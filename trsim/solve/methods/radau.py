@@ -19,7 +19,7 @@ import numpy as np
 from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, internal
+from trsim.kernels.vectors import all_finite, clear, internal
 from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import (
@@ -43,7 +43,7 @@ from trsim.solve.march.record import (
     OLD_H,
     PAST_H,
     SPEED,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.march.rounding import jitter, noted, to_look
 from trsim.solve.march.works import first_work, works
@@ -55,15 +55,15 @@ from trsim.solve.methods.dense_lu import (
 )
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
+from trsim.solve.methods.newton import FAILS, GOES_ON, NEXT_TO_NOTHING, judged, resolution
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 
-ORDER = 5
 ESTIMATE = 4  # the error estimate falls with h^4
 STAGES = 14
 LAST = 2
 DENSE_ROWS = 4
 DENSE_DEGREE = 3
-ADAPTIVE, IMPLICIT = True, True
+IMPLICIT = True
 
 Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
 # second differences over the stages: of what Z is, and of its rate times h; that rate at the end
@@ -163,8 +163,7 @@ def guess(s, r, b, h):
                 K[Z + i, c] = ahead * r.past[3, c] + polynomial(r.past, c, theta)
     else:
         for i in range(3):
-            for c in range(n):
-                K[Z + i, c] = 0.0
+            clear(K[Z + i])
     for i in range(3):
         for c in range(n):
             K[W + i, c] = (
@@ -179,16 +178,11 @@ def newton(s, r, b, t, h):
     """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite."""
     K, n, weight = b.K, r.y.size, b.weight
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
-    counted, floor = 0, 0.0
-    for k in range(n):
-        if weight[k] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
-    kappa = max(KAPPA, floor)
+    counted, floor = resolution(r, weight, h)
+    kappa, before = max(KAPPA, floor), 0.0
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
     expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8
     r.clock[CONTRACTION] = expected
-    before, rate = 0.0, 1.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1
         for i in range(3):
@@ -219,21 +213,15 @@ def newton(s, r, b, t, h):
                 K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
         if not isfinite(moved):
             return -1
+        verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
         if iteration > 0:
-            rate = moved / before if before > 0.0 else 0.0
             r.clock[CONTRACTION] = rate
-            if rate >= 2.0 and moved > kappa:
-                return 0
-            left = MOST_ITERATIONS - 1 - iteration
-            if rate < 1.0 and moved * rate**left / (1.0 - rate) > kappa:
-                return 0
         elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
             return 1
-        r.clock[NEWTON_RATE] = rate
-        if moved == 0.0 or (iteration > 0 and rate < 1.0 and moved * rate / (1.0 - rate) < kappa):
-            return 1
-        if moved < 0.1 * kappa:
-            r.clock[NEWTON_RATE] = min(rate, 1e-4)
+        if verdict == FAILS:
+            return 0
+        r.clock[NEWTON_RATE] = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
+        if verdict != GOES_ON:
             return 1
         before = moved
     return 0
@@ -315,7 +303,7 @@ def of_accelerations(s, r, b, setting, h):
     a first step, which may be of any length, the filter of the estimate may have left nothing of
     it: there what was filtered counts as well.
     """
-    K, weight, tolerance = b.K, b.weight, setting[TOLERANCE]
+    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
     r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
     for c in range(s.n_q + s.n_v):
         K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]

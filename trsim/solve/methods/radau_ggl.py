@@ -31,7 +31,7 @@ from trsim.solve.march.record import (
     OLD,
     PAST_ERROR,
     PAST_H,
-    TOLERANCE,
+    STEP_ERROR,
 )
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
 from trsim.solve.methods.ggl_jacobian import sparse_jacobian
@@ -50,6 +50,7 @@ from trsim.solve.methods.ggl_stages import (
 )
 from trsim.solve.methods.ggl_tables import SparseBuffers, SparseRecord
 from trsim.solve.methods.jacobian import missing
+from trsim.solve.methods.newton import resolution
 from trsim.solve.methods.radau import (
     HALVE,
     KAPPA,
@@ -64,8 +65,8 @@ from trsim.solve.methods.radau import (
 )
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, A, C, E
 
-ORDER, ESTIMATE, LAST = radau.ORDER, radau.ESTIMATE, radau.LAST
-ADAPTIVE, IMPLICIT = True, True
+ESTIMATE, LAST = radau.ESTIMATE, radau.LAST
+IMPLICIT = True
 STAGES = ggl_stages.STAGES
 SPARSE = ggl_tables  # its records have tables of their own
 interpolate = radau.interpolate
@@ -175,11 +176,7 @@ def newton(s, r, b, setting, t, h, stabilised):
     stabilised: on the equations of ggl_equations.py; on those of equations.py otherwise.
     """
     K, n, weight = b.K, r.y.size, b.weight
-    counted, floor = 0, 0.0
-    for k in range(n):
-        if weight[k] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(r.y[k]) + h * r.noise[k]) * weight[k])
+    counted, floor = resolution(r, weight, h)
     strict = stabilised and b.made[TURNS] > 0.0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
@@ -187,7 +184,7 @@ def newton(s, r, b, setting, t, h, stabilised):
     # small
     made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
-    wanted = max(min(KAPPA, sqrt(setting[TOLERANCE])) * made, floor) if strict else enough
+    wanted = max(min(KAPPA, sqrt(setting[STEP_ERROR])) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
         r.count[ITERATIONS] += 1

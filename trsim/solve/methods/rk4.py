@@ -21,7 +21,6 @@ from trsim.solve.march.turns import fastest
 from trsim.solve.march.works import told
 from trsim.solve.methods import hermite
 
-ORDER = 4
 STAGES = 5
 LAST = 4
 REAL, IMAGINARY = 2.785, 2.828  # where its stability region ends: h lambda on either axis
@@ -29,7 +28,7 @@ PER_RADIAN = 120.0  # a step that turns by x leaves x^5/120 of it: x^4/120 of ea
 DENSE_ROWS = hermite.ROWS
 DENSE_DEGREE = 3
 ESTIMATE = 4  # of no use: the step is fixed
-ADAPTIVE, IMPLICIT = False, False
+IMPLICIT = False
 
 
 @compiled(STEP)

@@ -18,7 +18,8 @@ from trsim.assemble.equations import derivative
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
-from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.kernels.vectors import clear, copy_to
+from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
@@ -29,7 +30,6 @@ from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, c
 from trsim.solve.march.features import next_time
 from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
-from trsim.solve.march.openings import opened
 from trsim.solve.march.peaks import finish, sample
 from trsim.solve.march.record import Buffers, Record, crowded, fresh_buffers
 from trsim.solve.march.works import ROUNDING
@@ -40,12 +40,12 @@ from trsim.solve.outcome import (
     called_by,
     emptied,
     first_step,
-    leapt,
     most_points,
     new_record,
     runaway,
     settings,
     statistics,
+    untrue,
 )
 from trsim.solve.start.consistent import start
 from trsim.statuses import Ended
@@ -60,7 +60,6 @@ LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
-IMPLICIT = ("BDF", "Radau")
 ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
@@ -74,12 +73,10 @@ def interpolate(P, y, theta, out):
     """The polynomial through the values P at the nodes, barycentric form."""
     for k in range(NODES.size):
         if theta == NODES[k]:
-            for c in range(out.size):
-                out[c] = P[k, c]
+            copy_to(out, P[k])
             return
     bottom = 0.0
-    for c in range(out.size):
-        out[c] = 0.0
+    clear(out)
     for k in range(NODES.size):
         part = SIGNS[k] / (theta - NODES[k])
         bottom += part
@@ -91,7 +88,7 @@ def interpolate(P, y, theta, out):
 
 def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     """As solve/simulate.py's, with scipy's solver making the steps."""
-    setting = settings(scenario, mechanism, True)
+    setting = settings(scenario, mechanism)
     begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
     s, left_out = begun_with(mechanism, begun)
     r = new_record(s, begun, left_out, NODES.size)
@@ -138,14 +135,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             r.clock[rec.H] = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer, float(r.clock[rec.H]))
             continue
-        if r.count[rec.OPENED]:
-            status, reason = "failed", opened(scenario, mechanism, r)
-            break
-        if r.count[rec.LOST]:
-            status, reason = "failed", lost_its_way(scenario, mechanism, r)
-            break
-        if r.count[rec.TORN]:
-            status, reason = "failed", leapt(mechanism, r)
+        if untrue(scenario, mechanism, r):
+            status = "failed"
             break
         crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
         reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
@@ -173,8 +164,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
         at = mechanism.in_stage(r.stage, r.left_out)
-        known = r.count[rec.OPENED] or r.count[rec.LOST] or r.count[rec.TORN]
-        reason = reason if known else why(scenario, at, r) or reason
+        reason = untrue(scenario, mechanism, r) or why(scenario, at, r) or reason
     bends = Bends(mechanism)
     bends.look(float(r.clock[rec.T]), r.y)
     return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak.T.copy(), r, begun,
@@ -207,7 +197,7 @@ def restarted(
     atol = allowed(scenario, s, r, b, setting, finer)
     # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
     # a body is 50 m from the origin and entries of its quaternion are zero
-    step = PART / np.where(b.weight > 0.0, b.weight * setting[rec.TOLERANCE], PART)
+    step = PART / np.where(b.weight > 0.0, b.weight * setting[rec.STEP_ERROR], PART)
 
     def jacobian(t: float, y: Array) -> Array:
         J, f = np.zeros((y.size, y.size)), right_hand_side(t, y)
@@ -217,9 +207,9 @@ def restarted(
             J[:, c] = (right_hand_side(t, x) - f) / (x[c] - y[c])
         return J
 
-    name = scenario.solver.method.split(":", 1)[1]
-    make = getattr(scipy.integrate, name)
-    more = {"jac": jacobian} if name in IMPLICIT else {}
+    method = scenario.solver.method
+    make = getattr(scipy.integrate, method.split(":", 1)[1])
+    more = {} if METHODS[method].explicit else {"jac": jacobian}
     t = float(r.clock[rec.T])
     until = next_time(s, t, setting[rec.T_END])
     first = min(float(r.clock[rec.H]), until - t)
@@ -231,7 +221,7 @@ def restarted(
 def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
     """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
     weigh(s, r, b, setting)
-    outside = 1e6 * setting[rec.TOLERANCE] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    outside = 1e6 * setting[rec.STEP_ERROR] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
     absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
     absolute[books(s)] = unit_of_works(r, setting)
@@ -252,15 +242,15 @@ def of_accelerations(
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
     length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
     r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
-    weight = b.weight * setting[rec.TOLERANCE]
+    weight = b.weight * setting[rec.STEP_ERROR]
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
     third = THIRD @ b.P[:, rates] * weight[rates]
-    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting[rec.TOLERANCE]
+    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting[rec.STEP_ERROR]
     v = h * speed * max(float(np.linalg.norm(third)) - SHOWN * allowed, 0.0)
     w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
     most = max(most, w * speed / FURTHEST)
     made = w * np.hypot(w * length, speed)
-    finest = min(1.0, RELATIVE / setting[rec.TOLERANCE])  # below it only rounding is left
+    finest = min(1.0, RELATIVE / setting[rec.STEP_ERROR])  # below it only rounding is left
     return (
         max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
     )
@@ -273,7 +263,7 @@ def books(s: Scene) -> slice:
 
 def unit_of_works(r: Record, setting: Array) -> float:
     """The error allowed to a work, J; see works.py."""
-    allowed = setting[rec.TOLERANCE] * r.clock[rec.EXCHANGED]
+    allowed = setting[rec.STEP_ERROR] * r.clock[rec.EXCHANGED]
     return max(float(allowed), ROUNDING * float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
 
 

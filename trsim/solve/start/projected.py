@@ -17,21 +17,37 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Projected:
-    """Residuals of the rows of the solve (m, rad and their rates), and what moved."""
+    """What the start changed in the drawing.
 
-    position_before: float  # largest |Phi| as drawn
-    position_after: float  # and at the start
-    position_row: str  # whose was the largest as drawn
-    velocity_before: float  # largest |J v + Phi_t| at the start, with the velocities given
+    position_before  largest residual of the constraints as drawn, m or rad
+    position_after   and at the start
+    position_row     whose was the largest, "joint.axis"; "" for none
+    velocity_before  largest residual of their rates with the velocities given, m/s or rad/s
+    velocity_after   and at the start
+    velocity_row     whose was the largest
+    shift            longest way of a centre of mass from where it is drawn, m
+    shift_body       whose
+    turn             largest turn of a body from how it is drawn, rad
+    turn_body        whose
+    slip             largest change of a velocity that was given, m/s
+    slip_body        whose
+    spin             largest change of an angular velocity that was given, rad/s
+    spin_body        whose
+    """
+
+    position_before: float
+    position_after: float
+    position_row: str
+    velocity_before: float
     velocity_after: float
     velocity_row: str
-    shift: float  # m, longest way of a centre of mass from where it is drawn
+    shift: float
     shift_body: str
-    turn: float  # rad, largest turn of a body
+    turn: float
     turn_body: str
-    slip: float  # m/s, largest change of a velocity that was given
+    slip: float
     slip_body: str
-    spin: float  # rad/s, of an angular velocity that was given
+    spin: float
     spin_body: str
 
 

@@ -11,6 +11,7 @@ from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.assemble.dense import length, product, spaces
 from trsim.assemble.equations import derivative, gaps, poses
+from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import Branches
 from trsim.assemble.projection import project_velocities
@@ -26,7 +27,7 @@ from trsim.assemble.reduce import (
 )
 from trsim.elements.bushing import ROTATIONAL, STIFFNESS
 from trsim.elements.prescribed import rates_at
-from trsim.elements.scene import Model, scene, workspace
+from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import follow
 from trsim.solve.start.bars import as_rigid, moving_as_rigid
@@ -195,16 +196,18 @@ def closed_stops(mechanism: Mechanism, y: Array) -> list[Array]:
     poses(w, y)
     gaps(w, 0.0)
     closed = [e for e in model.contact.tolist() if w.gap[e, 0] > 0.0]
+    return [gap_gradient(w, y, mechanism.instances[e], e) for e in closed]
 
-    def rate(moving: Array, e: int) -> float:
+
+def gap_gradient(w: Scene, y: Array, instance: Instance, e: int) -> Array:
+    """The rate of the gap of an instance per unit of world-axes rates."""
+
+    def rate(moving: Array) -> float:
         poses(w, moving)
         gaps(w, 0.0)
         return float(w.gap[e, 1])
 
-    acts_on = [instance.element.acts_on(instance.row) for instance in mechanism.instances]
-    return [
-        twist_gradient(model, y, lambda moving, e=e: rate(moving, e), acts_on[e]) for e in closed
-    ]
+    return twist_gradient(w, y, rate, instance.element.acts_on(instance.row))
 
 
 def with_velocities(model: Model, y: Array, v: Array) -> Array:

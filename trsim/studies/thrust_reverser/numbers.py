@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from trsim.analyse.outputs import scalar
 from trsim.errors import UsageError, known
-from trsim.store.grow import Array
 from trsim.studies.thrust_reverser.runs import Member
 
 STROKE = "stroke="
@@ -71,11 +70,6 @@ def number(member: Member, text: str, reference: Member | None = None) -> Number
 def inside(member: Member, asked: Word) -> Inside:
     """The rows in the window."""
     return (member.stroke >= asked.begin) & (member.stroke <= asked.end)
-
-
-def rows(member: Member, asked: Word) -> Array:
-    """The channel in the window."""
-    return member.channel(asked.of)[inside(member, asked)]
 
 
 # --- kinds of numbers ------------------------------------------------------------------------

@@ -12,6 +12,8 @@ In how many members a claim holds is what the chance of a single run would be.
 """
 
 import math
+from collections.abc import Callable
+from functools import partial, wraps
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -72,48 +74,44 @@ def bounded(holds: Any, surely: bool, surely_not: bool) -> str:
     return verdict(surely and bool(holds.all()), surely_not and not holds.any())
 
 
-class Rising(NamedTuple):
-    """Each case is above the one before it, by more than a margin."""
+def counted(told: str, of: str, holds: Any) -> Judged:
+    """A verdict `told`, what decided it, and holds (members)."""
+    return Judged(told, of, int(holds.sum()), holds.size)
 
-    margin: float = SEEN  # of the smaller one
+
+def of_positive(judge: Callable[[Any, Array], Judged]) -> Callable[[Any, Array], Judged]:
+    """Ratios are judged of positive numbers alone."""
+
+    @wraps(judge)
+    def judged(rule: Any, values: Array) -> Judged:
+        if not (values > 0.0).all():
+            return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
+        return judge(rule, values)
+
+    return judged
+
+
+class Trend(NamedTuple):
+    """Each case is above (side 1) or below (-1) the one before it, by more than a margin."""
+
+    side: int
+    margin: float = SEEN  # of the one before
 
     @property
     def words(self) -> str:
-        return f"each case above the one before it by more than {100.0 * self.margin:g} %"
+        way = "above" if self.side > 0 else "below"
+        return f"each case {way} the one before it by more than {100.0 * self.margin:g} %"
 
+    @of_positive
     def judge(self, values: Array) -> Judged:
-        if not (values > 0.0).all():
-            return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
         steps = np.diff(np.log(values), axis=0)
-        least = math.log1p(self.margin)
-        return _of_ratios(steps, np.all(steps > least, axis=0), least)
+        far, least = self.side * steps, self.side * math.log1p(self.side * self.margin)
+        bounds = [interval(step) for step in far]
+        surely, surely_not = all(b.low > least for b in bounds), any(b.high < least for b in bounds)
+        return counted(verdict(surely, surely_not), _ratios(steps), np.all(far > least, axis=0))
 
 
-class Falling(NamedTuple):
-    """Each case is below the one before it, by more than a margin."""
-
-    margin: float = SEEN  # of the larger one
-
-    @property
-    def words(self) -> str:
-        return f"each case below the one before it by more than {100.0 * self.margin:g} %"
-
-    def judge(self, values: Array) -> Judged:
-        if not (values > 0.0).all():
-            return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
-        steps = np.diff(np.log(values), axis=0)
-        most = math.log1p(-self.margin)
-        found = _of_ratios(-steps, np.all(steps < most, axis=0), -most)
-        return found._replace(told=_ratios(steps))
-
-
-def _of_ratios(steps: Array, holds: Any, least: float) -> Judged:
-    """steps (cases - 1, members): logarithms of ratios, which are to exceed the least one."""
-    bounds = [interval(step) for step in steps]
-    surely = all(b.low > least for b in bounds)
-    surely_not = any(b.high < least for b in bounds)
-    told = verdict(surely, surely_not)
-    return Judged(told, _ratios(steps), int(holds.sum()), holds.size)
+Rising, Falling = partial(Trend, 1), partial(Trend, -1)
 
 
 def _ratios(steps: Array) -> str:
@@ -136,15 +134,12 @@ class Ratio(NamedTuple):
     def words(self) -> str:
         return f"ratio between {self.low:g} and {self.high:g}"
 
+    @of_positive
     def judge(self, values: Array) -> Judged:
-        if not (values > 0.0).all():
-            return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
-        steps = np.log(values[1:2] / values[:1])
-        within = (steps[0] >= math.log(self.low)) & (steps[0] <= math.log(self.high))
-        b, (low, high) = interval(steps[0]), (math.log(self.low), math.log(self.high))
+        steps, low, high = np.log(values[1:2] / values[:1]), math.log(self.low), math.log(self.high)
+        within, b = (steps[0] >= low) & (steps[0] <= high), interval(steps[0])
         inside, outside = low <= b.low and b.high <= high, b.high < low or b.low > high
-        return Judged(verdict(inside, outside), _ratios(steps), int(within.sum()),
-                      within.size)  # fmt: skip
+        return counted(verdict(inside, outside), _ratios(steps), within)
 
 
 class Alike(NamedTuple):
@@ -156,14 +151,12 @@ class Alike(NamedTuple):
     def words(self) -> str:
         return f"largest and smallest within {100.0 * self.share:g} %"
 
+    @of_positive
     def judge(self, values: Array) -> Judged:
-        if not (values > 0.0).all():
-            return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
         spread = values.max(axis=0) / values.min(axis=0) - 1.0
         holds, b = spread <= self.share, interval(spread)
         told = f"spread {100.0 * b.mean:.3g} %{_bounds(100.0 * spread, ' %')}"
-        return Judged(bounded(holds, b.high <= self.share, b.low > self.share), told,
-                      int(holds.sum()), holds.size)  # fmt: skip
+        return counted(bounded(holds, b.high <= self.share, b.low > self.share), told, holds)
 
 
 class Within(NamedTuple):
@@ -184,8 +177,7 @@ class Within(NamedTuple):
         surely = values.shape[1] > 1 and all(self.low <= b.low and b.high <= self.high
                                              for b in bounds)  # fmt: skip
         surely_not = any(b.high < self.low or b.low > self.high for b in bounds)
-        return Judged(bounded(holds, surely, surely_not), f"all {self.shown}", int(holds.sum()),
-                      holds.size)  # fmt: skip
+        return counted(bounded(holds, surely, surely_not), f"all {self.shown}", holds)
 
 
 class Exact(NamedTuple):
@@ -209,9 +201,8 @@ class Steadier(NamedTuple):
 
     words: str = "largest over smallest: less in the second group than in the first"
 
+    @of_positive
     def judge(self, values: Array) -> Judged:
-        if not (values > 0.0).all():
-            return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
         half = len(values) // 2
         spread = np.array([np.log(part.max(axis=0) / part.min(axis=0))
                            for part in (values[:half], values[half:])])  # fmt: skip
@@ -219,7 +210,7 @@ class Steadier(NamedTuple):
         holds, b = less > 0.0, interval(less)
         first, second = (math.exp(float(np.mean(s))) for s in spread)
         told = f"largest over smallest {first:.3g} and {second:.3g}"
-        return Judged(verdict(b.low > 0.0, b.high < 0.0), told, int(holds.sum()), holds.size)
+        return counted(verdict(b.low > 0.0, b.high < 0.0), told, holds)
 
 
 class Open(NamedTuple):

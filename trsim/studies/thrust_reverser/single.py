@@ -4,6 +4,7 @@ Ideal joints leave no impacts that multiply a difference, so nothing is gained b
 tighter tolerance (1e-8) changes the peaks of the spatial mechanism by less than 1e-6 of themselves.
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -49,32 +50,25 @@ class Steps(NamedTuple):
         return judged(bool((self.side * steps > self.margin).all()), f"{told} {self.unit}")
 
 
-class Above(NamedTuple):
-    """The last case is above all others, by more than a share."""
+class Beyond(NamedTuple):
+    """The last case is above (side 1) or below (-1) all others, by more than a share."""
 
+    side: int
     margin: float = SEEN
 
     @property
     def words(self) -> str:
-        return f"the last above all others by more than {100.0 * self.margin:g} %"
+        way = "above" if self.side > 0 else "below"
+        return f"the last {way} all others by more than {100.0 * self.margin:g} %"
 
     def judge(self, values: Array) -> Judged:
-        others, last = float(values[:-1].max()), float(values[-1, 0])
-        return judged(last > (1.0 + self.margin) * others, f"ratio {last / others:.4g}")
+        side, last = self.side, float(values[-1, 0])
+        others = side * float((side * values[:-1]).max())
+        holds = side * last > side * (1.0 + side * self.margin) * others
+        return judged(holds, f"ratio {last / others:.4g}")
 
 
-class Below(NamedTuple):
-    """The last case is below all others, by more than a share."""
-
-    margin: float = SEEN
-
-    @property
-    def words(self) -> str:
-        return f"the last below all others by more than {100.0 * self.margin:g} %"
-
-    def judge(self, values: Array) -> Judged:
-        others, last = float(values[:-1].min()), float(values[-1, 0])
-        return judged(last < (1.0 - self.margin) * others, f"ratio {last / others:.4g}")
+Above, Below = partial(Beyond, 1), partial(Beyond, -1)
 
 
 class Near(NamedTuple):

@@ -4,10 +4,12 @@ from typing import Any
 
 from trsim.report.style import panels
 from trsim.studies.thrust_reverser.figures.drawing import (
+    Cases,
     Drawn,
     curves,
     forces,
     journal,
+    names,
     section,
     those,
     timed,
@@ -16,10 +18,10 @@ from trsim.studies.thrust_reverser.figures.drawing import (
 from trsim.studies.thrust_reverser.runs import Runs
 
 CASES = (("0.1 mm", "ab_01"), ("0.3 mm", "ab_03"), ("0.5 mm", "ab_05"))
-NAMES = tuple(case for _, case in CASES)
+NAMES = names(CASES)
 
 
-def variant(name: str) -> tuple[tuple[str, str], ...]:
+def variant(name: str) -> Cases:
     """The same clearances in a variant of the mechanism."""
     return tuple((label, f"{case}_{name}") for label, case in CASES)
 
@@ -38,7 +40,7 @@ def figure_9(runs: Runs) -> Any:
     return overview(runs, CASES)
 
 
-def overview(runs: Runs, cases: tuple[tuple[str, str], ...]) -> Any:
+def overview(runs: Runs, cases: Cases) -> Any:
     """The six panels of the study over time."""
     shown = those(runs, *cases)
     figure, axes = panels(3, 2, height=2.1, width=7.2, sharex=True)

@@ -22,6 +22,7 @@ QUANTITIES = {
     "air.magnitude": "load",
 }
 MOST = 100_000  # points of a path
+Cases = tuple[tuple[str, str], ...]  # (label, case)
 KILO = {"deg/s\u00b2": (1e-3, "10\u00b3 deg/s\u00b2")}  # of numbers too long for an axis
 
 
@@ -38,6 +39,10 @@ class Drawn(NamedTuple):
     def anchor(self) -> str:
         """Its name as a file and as a place on the page."""
         return f"figure_{self.number.replace(' ', '_')}"
+
+
+def names(cases: Cases) -> tuple[str, ...]:
+    return tuple(case for _, case in cases)
 
 
 def those(runs: Runs, *cases: tuple[str, str]) -> list[Shown]:

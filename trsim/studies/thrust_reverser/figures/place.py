@@ -6,12 +6,14 @@ from trsim.report.style import panels
 from trsim.studies.thrust_reverser.figures.drawing import (
     ACCELERATION,
     VELOCITY,
+    Cases,
     Drawn,
     alike,
     curves,
     framed,
     journal,
     lettered,
+    names,
     orbit,
     plane,
     those,
@@ -21,7 +23,7 @@ from trsim.studies.thrust_reverser.figures.drawing import (
 from trsim.studies.thrust_reverser.runs import Runs
 
 CASES = (("0.3 mm at A", "a_03"), ("0.3 mm at B", "b_03"))
-NAMES = tuple(case for _, case in CASES)
+NAMES = names(CASES)
 
 
 def figure_11(runs: Runs) -> Any:
@@ -55,7 +57,7 @@ def figure_13(runs: Runs) -> Any:
     return door(runs, CASES, "ab")
 
 
-def door(runs: Runs, cases: tuple[tuple[str, str], ...], letters: str) -> Any:
+def door(runs: Runs, cases: Cases, letters: str) -> Any:
     """Velocity over angle, and below acceleration over velocity, side by side on one scale."""
     shown = those(runs, *cases)
     figure, axes = panels(2, len(shown), height=2.3, width=7.2, sharex="row", sharey="row")

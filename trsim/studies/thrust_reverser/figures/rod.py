@@ -4,10 +4,12 @@ from typing import Any
 
 from trsim.report.style import panels
 from trsim.studies.thrust_reverser.figures.drawing import (
+    Cases,
     Drawn,
     curves,
     forces,
     framed,
+    names,
     orbit,
     section,
     those,
@@ -23,11 +25,6 @@ UNDAMPED = ("flexible, 3.454 kg, undamped", "b_03_flexible_undamped")
 TABLES = (LIGHT[0], UNDAMPED)
 ALL = (*LIGHT, *HEAVY, UNDAMPED)
 ENLARGED = 0.295, 0.365  # s
-Cases = tuple[tuple[str, str], ...]
-
-
-def names(cases: Cases) -> tuple[str, ...]:
-    return tuple(case for _, case in cases)
 
 
 def overview(runs: Runs, cases: Cases) -> Any:

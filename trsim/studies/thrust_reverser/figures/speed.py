@@ -4,12 +4,14 @@ from typing import Any
 
 from trsim.report.style import panels
 from trsim.studies.thrust_reverser.figures.drawing import (
+    Cases,
     Drawn,
     alike,
     curves,
     forces,
     framed,
     journal,
+    names,
     orbit,
     section,
     those,
@@ -21,11 +23,7 @@ B = (("0.5 m/s", "b_05"), ("1.0 m/s", "b_05_fast"))
 AB = (("0.5 m/s", "ab_05"), ("1.0 m/s", "ab_05_fast"))
 
 
-def names(cases: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
-    return tuple(case for _, case in cases)
-
-
-def side_by_side(runs: Runs, cases: tuple[tuple[str, str], ...], joints: str) -> Any:
+def side_by_side(runs: Runs, cases: Cases, joints: str) -> Any:
     """Velocity, acceleration, contact forces and driving force; a column for each speed."""
     shown = those(runs, *cases)
     figure, axes = panels(3 + len(joints), 2, height=1.8, width=7.2)
