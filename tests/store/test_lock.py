@@ -149,7 +149,7 @@ from pathlib import Path
 from trsim.store import recover
 original = recover.sys.executable
 Path("slow").write_text("#!/bin/sh\\nexec " + sys.executable + " -c '"
-    "import os, time; from trsim.store.disk import end_with_parent; end_with_parent();"
+    "import os, time; from trsim.system import end_with_parent; end_with_parent();"
     "open(\\"pid\\", \\"w\\").write(str(os.getpid())); time.sleep(60)'\\n")
 os.chmod("slow", 0o755)
 recover.sys.executable = os.path.abspath("slow")

@@ -17,14 +17,12 @@ UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Py
 
 def inner(python: Callable) -> Any:
     """numba's of a function that only compiled code calls."""
-    import trsim.kernels.numba_quick  # noqa: F401 - before numba
+    from trsim.kernels.way import way
 
     # isort: split
     from numba import njit
 
-    from trsim.kernels.pipeline import Pipeline
-
-    return njit(pipeline_class=Pipeline, **COMPILED, **UNWRAPPED)(python)
+    return njit(**way.OPTIONS, **COMPILED, **UNWRAPPED)(python)
 
 
 class Lazy:
