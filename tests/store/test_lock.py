@@ -121,11 +121,11 @@ def test_a_name_that_was_removed_is_taken_again(tmp_path, monkeypatch):
 
     final, original, calls = tmp_path / "x.h5", lock._lock, []
 
-    def removed(handle, how, name):
+    def removed(handle, name):
         if not calls:
             (tmp_path / "x.h5.lock").unlink()
         calls.append(handle)
-        original(handle, how, name)
+        original(handle, name)
 
     with monkeypatch.context() as patch:
         patch.setattr(lock, "_lock", removed)
