@@ -18,7 +18,7 @@ from trsim.kernels.plain import LEAST, address, run, whole
 from trsim.kernels.signatures import float64, int64
 
 from .. import small
-from ..runs import run as simulated
+from ..runs import short_run
 
 ROOT = Path(__file__).parents[2]
 PENDULUM = load("revolute").example
@@ -48,8 +48,8 @@ SCENES = {
 IN_PYTHON = """
 import sys
 import numpy as np
-from tests.kernels.test_plain import SCENES, simulated
-np.savez(sys.argv[1], **{name: simulated(*scene).rows for name, scene in SCENES.items()})
+from tests.kernels.test_plain import SCENES, short_run
+np.savez(sys.argv[1], **{name: short_run(*scene).rows for name, scene in SCENES.items()})
 print(*sorted({"numba", "llvmlite"} & {*sys.modules}))
 """
 
@@ -71,7 +71,7 @@ def in_python(tmp_path_factory):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_a_run_gives_the_same_numbers(name, in_python):
-    rows = simulated(*SCENES[name]).rows
+    rows = short_run(*SCENES[name]).rows
     scale = np.max(np.abs(rows), axis=0)
     assert in_python[name].shape == rows.shape
     assert np.all(np.abs(in_python[name] - rows) <= 1e-9 * scale + 1e-12)
