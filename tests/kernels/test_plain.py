@@ -14,11 +14,12 @@ from trsim.elements.contract import compiled
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import law
 from trsim.kernels.packed import A1, T3, Packed, f8, i8
-from trsim.kernels.plain import LEAST, address, run, whole
+from trsim.kernels.plain import LEAST, SAME, address, run, whole
 from trsim.kernels.signatures import float64, int64
 
 from .. import small
 from ..runs import short_run
+from .test_fingerprint import kernels, reached, read
 
 ROOT = Path(__file__).parents[2]
 PENDULUM = load("revolute").example
@@ -135,6 +136,13 @@ def test_whole_numbers(x):
     assert whole(np.float64(x)) == (int(x) if abs(x) < 2**63 else LEAST)
     if abs(x) < 2**63:
         assert integer(x) == whole(np.float64(x))
+
+
+def test_each_function_of_math_has_one_that_refuses_no_number():
+    everything = set().union(*(reached(kernel.python) for kernel in kernels()))
+    called = {scope[name] for python in everything for scope, name in read(python)
+              if getattr(scope[name], "__module__", "") == "math"}  # fmt: skip
+    assert called and called <= set(SAME)
 
 
 def test_a_debugger_sees_the_lines():
