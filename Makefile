@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper tolerances test release-check portable lint bench stress truth clean
+.PHONY: demo paper tolerances test release-check coverage portable lint bench stress truth clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -30,6 +30,12 @@ test: .venv/developer lint
 # ten times the mutants, kills, faults and rows: hours
 release-check: .venv/developer lint
 	TRSIM_SIZE=release $(PYTEST)
+
+# lines of elements and laws that quick tests reach, compiled functions as plain Python: minutes
+coverage: .venv/developer
+	TRSIM_PYTHON=1 $(BIN)/python -m coverage run -m pytest tests/elements tests/laws \
+	  --ignore tests/laws/test_cable_beams.py
+	$(BIN)/python -m coverage report
 
 # the numerical part under other arithmetics than the machine's own; goes on where it was ended
 portable: .venv/developer

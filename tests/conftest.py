@@ -6,8 +6,10 @@ from pathlib import Path
 
 from hypothesis import settings
 
+from trsim.kernels.lazy import PYTHON
+
 # the first example of a law compiles it: a time says nothing about the law
-settings.register_profile("trsim", deadline=None)
+settings.register_profile("trsim", deadline=None, max_examples=10 if PYTHON else 100)
 settings.load_profile("trsim")
 # each worker rewrites the assertions of all tests, five seconds; pytest keeps them where it may
 sys.dont_write_bytecode = False

@@ -5,9 +5,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pytest
 
 from trsim.assemble.assemble import assemble
 from trsim.assemble.mechanism import Mechanism
+from trsim.kernels.lazy import PYTHON
 from trsim.scenario.load import loads
 from trsim.solve.outcome import Outcome
 from trsim.solve.simulate import simulate
@@ -66,7 +68,17 @@ def built(text: str, *sets: str) -> Mechanism:
 
 
 def run(text: Any, *sets: str, fails: bool | None = False) -> Run:
-    """Run to the end; `fails` says whether the run is expected to end early, None that it may."""
+    """Run to the end; `fails` says whether the run is expected to end early, None that it may.
+
+    Without machine code most runs take minutes: their tests are skipped then.
+    """
+    if PYTHON:
+        pytest.skip("a run of many steps as plain Python")
+    return short_run(text, *sets, fails=fails)
+
+
+def short_run(text: Any, *sets: str, fails: bool | None = False) -> Run:
+    """`run`, as plain Python too."""
     read = scenario(text, *sets)
     mechanism = assemble(read)
     march = simulate(read, mechanism)

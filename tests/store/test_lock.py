@@ -121,11 +121,11 @@ def test_a_name_that_was_removed_is_taken_again(tmp_path, monkeypatch):
 
     final, original, calls = tmp_path / "x.h5", lock._lock, []
 
-    def removed(handle, how, name):
+    def removed(handle, name):
         if not calls:
             (tmp_path / "x.h5.lock").unlink()
         calls.append(handle)
-        original(handle, how, name)
+        original(handle, name)
 
     with monkeypatch.context() as patch:
         patch.setattr(lock, "_lock", removed)
@@ -149,7 +149,7 @@ from pathlib import Path
 from trsim.store import recover
 original = recover.sys.executable
 Path("slow").write_text("#!/bin/sh\\nexec " + sys.executable + " -c '"
-    "import os, time; from trsim.store.disk import end_with_parent; end_with_parent();"
+    "import os, time; from trsim.system import end_with_parent; end_with_parent();"
     "open(\\"pid\\", \\"w\\").write(str(os.getpid())); time.sleep(60)'\\n")
 os.chmod("slow", 0o755)
 recover.sys.executable = os.path.abspath("slow")

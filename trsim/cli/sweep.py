@@ -11,6 +11,7 @@ from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.progress import Cases, Doing
 from trsim.cli.resume import Seconds
 from trsim.errors import CasesFailed, Problems, TrsimError, some
+from trsim.system import LIMITS_MEMORY, processors
 
 SHOWN = 10  # cases that are told one by one
 BYTES = {
@@ -33,6 +34,8 @@ class Bytes(click.ParamType):
     def convert(self, value: Any, param: Any, ctx: Any) -> int:
         if isinstance(value, int):
             return value
+        if not LIMITS_MEMORY:
+            self.fail("this system holds no process to an amount of memory.", param, ctx)
         match = re.fullmatch(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([kmg]?i?b?)\s*", value.lower())
         if not match or match[2] not in BYTES or not float(match[1]) > 0.0:
             self.fail(f"{value} is no amount of memory: write 2 GB, or 500 MB.", param, ctx)
@@ -185,7 +188,7 @@ def ran(
     from trsim.sweep.go import differing, go
     from trsim.sweep.ledger import counts, in_a_line
 
-    count = jobs or local.processors()
+    count = jobs or processors()
 
     def run(tasks: Any) -> Any:
         if address:

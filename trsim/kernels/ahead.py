@@ -13,7 +13,8 @@ from contextlib import suppress
 from importlib import import_module
 from threading import Thread
 
-from trsim import child
+from trsim import child, system
+from trsim.kernels.lazy import PYTHON
 from trsim.kernels.machine import Compiled
 
 _at_work: list[subprocess.Popen] = []  # kept: the other end of their standard input
@@ -21,7 +22,7 @@ _at_work: list[subprocess.Popen] = []  # kept: the other end of their standard i
 
 def begin(*modules: str) -> None:
     """Start compiling modules, where there is a second processor for it."""
-    if len(os.sched_getaffinity(0)) < 2:
+    if PYTHON or system.processors() < 2:
         return
     command = child.command("trsim.kernels.ahead", *modules)
     quiet = subprocess.DEVNULL

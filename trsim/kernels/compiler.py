@@ -25,8 +25,8 @@ from numba.np.arrayobj import populate_array
 
 from trsim.kernels.lazy import inner
 from trsim.kernels.packed import WORDS
-from trsim.kernels.pipeline import made_of, quick, refresh, translated
 from trsim.kernels.signatures import Kind, Signature
+from trsim.kernels.way import way
 
 NUMBERS = {"float64": types.float64, "int64": types.int64}
 
@@ -66,19 +66,19 @@ def dispatcher(python: Any, key: str) -> Any:
 def machine_code(compiled: Any, signature: Signature) -> Code:
     """Compile a dispatcher, and all it calls, for a signature."""
     wanted = numba_signature(signature)
-    with quick():
+    with way.quick():
         compiled.compile(wanted)
         result = compiled.overloads[wanted.args]
         symbol = result.fndesc.llvm_func_name
-        module, objects = translated(result.library, symbol)
+        module, objects = way.translated(result.library, symbol)
     functions = module.functions
     needs = [f.name for f in functions if f.is_declaration and not f.name.startswith("llvm.")]
-    return Code(symbol, objects, tuple(needs), made_of(result.library))
+    return Code(symbol, objects, tuple(needs), way.made_of(result.library))
 
 
 def type_of(value: Any) -> Any:
     """What numba takes a global of a function for."""
-    refresh()  # it may be new
+    way.refresh()  # it may be new
     return cpu_target.typing_context.resolve_value_type(value)
 
 

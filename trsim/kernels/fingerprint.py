@@ -30,8 +30,9 @@ LOAD_METHOD = opmap.get("LOAD_METHOD", LOAD_ATTR)  # until Python 3.11
 ATTRIBUTE_SHIFT = 0 if "LOAD_METHOD" in opmap else 1  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
 COMPILER = (
-    "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py", "kernels/numba_quick.py",
-    "kernels/packed.py", "kernels/pipeline.py", "kernels/signatures.py",
+    "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py", "kernels/numba_own.py",
+    "kernels/numba_quick.py", "kernels/packed.py", "kernels/pipeline.py", "kernels/plain.py",
+    "kernels/signatures.py", "kernels/way.py",
 )  # fmt: skip
 # told by their names: they belong to Python, numpy or numba, whose versions are in every key
 OF_OTHERS = frozenset({"builtins", "cmath", "math", "operator", "numpy", "numba"})

@@ -23,6 +23,8 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 
+from trsim import system
+
 PLACE = ("trsim", "code")
 ONLY_MINE = 0o700
 OTHERS = stat.S_IWGRP | stat.S_IWOTH
@@ -73,7 +75,7 @@ def fault(home: Path) -> str:
     if not home.exists():
         return ""
     found = home.stat()
-    if found.st_uid not in (os.geteuid(), 0):
+    if found.st_uid not in (system.user(), 0):
         return _of_another(home, found)
     if found.st_mode & stat.S_IWOTH and not found.st_mode & stat.S_ISVTX:
         return _open_to_others(home, found)
@@ -83,7 +85,7 @@ def fault(home: Path) -> str:
         found = inner.lstat()
         if stat.S_ISLNK(found.st_mode):
             return f"{inner} is a link"
-        if found.st_uid != os.geteuid():
+        if found.st_uid != system.user():
             return _of_another(inner, found)
         if found.st_mode & OTHERS:
             return _open_to_others(inner, found)
@@ -109,7 +111,9 @@ def make(path: Path) -> None:
 def content(path: Path) -> bytes:
     """A file of ours.  Raises OSError where there is none, or one that others may have written."""
     with _opened(path.parent) as place:
-        handle = os.open(path.name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK, dir_fd=place)
+        handle = os.open(
+            path.name, os.O_RDONLY | system.O_NOFOLLOW | system.O_NONBLOCK, dir_fd=place
+        )
         with open(handle, "rb") as file:
             if not (_mine(handle) and stat.S_ISREG(os.fstat(handle).st_mode)):
                 raise PermissionError(f"{path} may have been written by others")
@@ -121,7 +125,7 @@ def store(path: Path, parts: list[bytes]) -> None:
     make(path.parent)
     part = f"{path.name}.{os.getpid()}-{os.urandom(4).hex()}"
     with _opened(path.parent) as place:
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW
+        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | system.O_NOFOLLOW
         handle = os.open(part, flags, 0o600, dir_fd=place)
         try:
             with open(handle, "wb") as file:
@@ -136,7 +140,7 @@ def store(path: Path, parts: list[bytes]) -> None:
 @contextmanager
 def _opened(path: Path) -> Iterator[int]:
     """A folder that only the user can write in.  Raises OSError where it is another's."""
-    handle = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    handle = os.open(path, os.O_RDONLY | system.O_DIRECTORY | system.O_NOFOLLOW)
     try:
         if not _mine(handle):
             raise PermissionError(f"others may write in {path}")
@@ -148,4 +152,4 @@ def _opened(path: Path) -> Iterator[int]:
 def _mine(handle: int) -> bool:
     """Whether something belongs to the user, and nobody else can write it."""
     found = os.fstat(handle)
-    return found.st_uid == os.geteuid() and not found.st_mode & OTHERS
+    return found.st_uid == system.user() and not found.st_mode & OTHERS

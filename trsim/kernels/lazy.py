@@ -1,12 +1,15 @@
 """Functions that numba compiles the first time they are called or compiled code needs them.
 
 Numba is imported when the first of them is: a scenario is read and checked without it.
+With TRSIM_PYTHON=1 in the environment it never is: they run as they are written (plain.py).
 """
 
+import os
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
+PYTHON = os.environ.get("TRSIM_PYTHON") == "1"
 # as in numpy x / 0 is inf; no reference counts: nothing compiled allocates
 COMPILED = {"error_model": "numpy", "_nrt": False}
 UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Python to call
@@ -14,14 +17,12 @@ UNWRAPPED = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}  # not for Py
 
 def inner(python: Callable) -> Any:
     """numba's of a function that only compiled code calls."""
-    import trsim.kernels.numba_quick  # noqa: F401 - before numba
+    from trsim.kernels.way import way
 
     # isort: split
     from numba import njit
 
-    from trsim.kernels.pipeline import Pipeline
-
-    return njit(pipeline_class=Pipeline, **COMPILED, **UNWRAPPED)(python)
+    return njit(**way.OPTIONS, **COMPILED, **UNWRAPPED)(python)
 
 
 class Lazy:
@@ -35,6 +36,10 @@ class Lazy:
     @cached_property
     def dispatcher(self) -> Any:
         """For Python to call."""
+        if PYTHON:
+            from trsim.kernels.plain import run
+
+            return partial(run, self.python)
         import trsim.kernels.numba_quick  # noqa: F401 - before numba
 
         # isort: split

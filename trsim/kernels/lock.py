@@ -1,11 +1,11 @@
 """Who compiles what: one function by one process, told by locks on bytes of a file."""
 
-import fcntl
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from trsim import system
 from trsim.kernels import kept
 
 
@@ -18,7 +18,7 @@ def turn(lock: Path, key: str, wait: bool = True) -> Iterator[bool]:
     """
     try:
         kept.make(lock.parent)
-        handle = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+        handle = os.open(lock, os.O_RDWR | os.O_CREAT | system.O_NOFOLLOW, 0o600)
     except OSError:
         yield True
         return
@@ -31,7 +31,7 @@ def turn(lock: Path, key: str, wait: bool = True) -> Iterator[bool]:
 def _locked(handle: int, place: int, wait: bool) -> bool:
     """Whether one byte of a file is ours, or cannot be anybody's."""
     try:
-        fcntl.lockf(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB), 1, place)
+        system.lock_byte(handle, place, wait)
     except (BlockingIOError, PermissionError):
         return False
     except OSError:

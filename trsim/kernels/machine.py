@@ -24,7 +24,7 @@ from typing import Any
 from trsim.errors import FileError
 from trsim.kernels import fingerprint, kept
 from trsim.kernels.kept import folder
-from trsim.kernels.lazy import Lazy
+from trsim.kernels.lazy import PYTHON, Lazy
 from trsim.kernels.lock import turn
 from trsim.kernels.signatures import Kind, Signature
 
@@ -70,8 +70,8 @@ class Compiled(Lazy):
 
     @property
     def known(self) -> bool:
-        """Whether its machine code is kept, and whole."""
-        return _read(self.file) is not None
+        """Whether its machine code is kept, and whole, or none is needed."""
+        return PYTHON or _read(self.file) is not None
 
     @cached_property
     def entry(self) -> int:
@@ -107,6 +107,10 @@ class Compiled(Lazy):
 
     def address(self) -> int:
         """Where the machine code starts."""
+        if PYTHON:
+            from trsim.kernels.plain import address
+
+            return address(self.python)
         return self.entry
 
     @cached_property
@@ -116,9 +120,12 @@ class Compiled(Lazy):
         return prototype(self.entry)
 
     def __call__(self, *arguments: Any) -> Any:
-        wanted = self.signature.arguments
+        returns, wanted = self.signature
         if len(arguments) != len(wanted):
             raise TypeError(f"{self.__name__} takes {len(wanted)} arguments")
+        if PYTHON:
+            value = super().__call__(*arguments)
+            return None if value is None else int(value) if _is_int(returns) else float(value)
         flat: list[Any] = []
         for value, kind in zip(arguments, wanted, strict=True):
             if kind.fields:
@@ -127,19 +134,24 @@ class Compiled(Lazy):
                 flat += _array(value, kind)
             else:
                 flat.append(value)
-        result = (ctypes.c_int64 if _is_int(self.signature.returns) else ctypes.c_double)()
+        result = (ctypes.c_int64 if _is_int(returns) else ctypes.c_double)()
         exception = ctypes.c_void_p()
         status = self._call(ctypes.byref(result), ctypes.byref(exception), *flat)
         if status in ERRORS or status > 0:
             raise RuntimeError(f"{self.__name__} failed with status {status}")
-        return None if self.signature.returns is None else result.value
+        return None if returns is None else result.value
 
 
 class Caller:
-    """call(address, *arguments) for compiled functions of one signature; known to compiled code."""
+    """call(address, *arguments) for compiled functions of one signature, in compiled code."""
 
     def __init__(self, signature: Signature) -> None:
         self.signature = signature
+
+    def __call__(self, address: int, *arguments: Any) -> Any:
+        from trsim.kernels.plain import BY_ADDRESS
+
+        return BY_ADDRESS[address](*arguments)
 
     @cached_property
     def _numba_type_(self) -> Any:

@@ -16,6 +16,7 @@ import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
+from trsim.kernels.lazy import PYTHON
 from trsim.kernels.signatures import KINDS, Kind
 
 if TYPE_CHECKING:  # what the annotations mean to Python
@@ -113,7 +114,9 @@ class Packed:
             self._check(name, value.shape)
             words[word : word + 1 + value.ndim] = (value.ctypes.data, *value.shape)
         elif kind.dtype == "float64":
-            words[word] = int(np.float64(value).view(np.int64))
+            number = np.float64(value)
+            words[word] = int(number.view(np.int64))
+            value = number if PYTHON else value
         else:
             words[word] = value
         vars(self)[name] = value

@@ -23,6 +23,7 @@ from types import CodeType
 from typing import Any
 
 import llvmlite.binding as llvm
+import numba
 from numba.core import base, cgutils, ir, transforms, types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
@@ -47,6 +48,10 @@ from numba.core.untyped_passes import (
     TranslateByteCode,
 )
 from numba.np import arrayobj
+
+KNOWN = range(62, 69)  # versions 0.62 to 0.68
+if numba.version_info[:2] not in {(0, minor) for minor in KNOWN}:
+    raise ImportError(f"numba {numba.__version__} is not among the versions known here")
 
 # the only way to say it, for all of the process
 llvm.set_option("trsim", "-unroll-runtime=false")
@@ -137,6 +142,9 @@ class Pipeline(CompilerBase):
             manager.add_pass(step, step.__name__)
         manager.finalize()
         return [manager]
+
+
+OPTIONS = {"pipeline_class": Pipeline}  # of njit
 
 
 def made_of(library: Library) -> frozenset[CodeType]:

@@ -14,13 +14,16 @@ __all__ = ["Figure", "FigureCanvasAgg", "matplotlib"]
 @contextmanager
 def _elsewhere() -> Iterator[None]:
     """In the root folder, and back by a handle: the folder may have lost its name meanwhile."""
-    here = os.open(".", getattr(os, "O_PATH", os.O_RDONLY))
+    here: int | str = os.getcwd()
+    if os.chdir in os.supports_fd:
+        here = os.open(".", getattr(os, "O_PATH", os.O_RDONLY))
     try:
         os.chdir(os.sep)
         yield
     finally:
-        os.fchdir(here)
-        os.close(here)
+        os.chdir(here)
+        if isinstance(here, int):
+            os.close(here)
 
 
 with _elsewhere():

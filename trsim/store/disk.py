@@ -1,18 +1,15 @@
 """What the system is asked for around HDF5: room to begin, data on the disk, ways out."""
 
 import contextlib
-import ctypes
 import os
-import signal
-import sys
 from pathlib import Path
 from tempfile import TemporaryFile
 
 import h5py
 
+from trsim import system
 from trsim.errors import FileError
 
-PR_SET_PDEATHSIG = 1  # of prctl(2)
 MORE = 1 << 22  # bytes, more than HDF5 writes at once
 BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
 
@@ -32,7 +29,7 @@ def see_room(part: Path) -> None:
 def see_more(path: Path) -> None:
     """See that a file can grow; raises OSError."""
     with path.open("ab") as file:
-        os.posix_fallocate(file.fileno(), file.tell(), MORE)
+        system.lengthen(file.fileno(), file.tell(), MORE)
 
 
 def let_go(file: h5py.File) -> None:
@@ -48,15 +45,6 @@ def let_go(file: h5py.File) -> None:
         os.dup2(nowhere, file.id.get_vfd_handle())
         os.close(nowhere)
         file.close()
-
-
-def end_with_parent() -> None:
-    """Have the system end this process with the one that began it; Linux alone can."""
-    if sys.platform == "linux":
-        parent = os.getppid()
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-        if os.getppid() != parent:
-            os._exit(1)
 
 
 def synced(path: Path) -> None:

@@ -4,7 +4,6 @@ The system gives the lock (flock) back when a process ends, however it ends: a f
 behind locks nothing.  Where files cannot be locked at all, nothing is.
 """
 
-import fcntl
 import os
 import time
 from collections.abc import Callable, Iterator
@@ -13,6 +12,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
+from trsim import system
 from trsim.errors import FileError
 from trsim.store.own import ASIDE, see_open
 from trsim.store.target import HEADER, LOCK, make, told
@@ -57,11 +57,11 @@ def writing(final: Path) -> Iterator[None]:
 def refuse_if_written(final: Path) -> None:
     """Raise FileError if a process is writing a result file."""
     try:
-        handle = os.open(_beside(final), os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW)
+        handle = os.open(_beside(final), os.O_RDONLY | system.O_NONBLOCK | system.O_NOFOLLOW)
     except OSError:
         return
     try:
-        _lock(handle, fcntl.LOCK_SH, final)
+        _lock(handle, final, shared=True)
     finally:
         os.close(handle)
 
@@ -72,10 +72,10 @@ def _held(path: Path, final: Path) -> int:
         if path.is_symlink() or path.is_dir():
             why = "it is a link" if path.is_symlink() else "it is a folder"
             raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path))
-        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+        handle = os.open(path, os.O_RDWR | os.O_CREAT | system.O_NOFOLLOW, 0o666)
         try:
             _see_ours(handle, path)
-            _lock(handle, fcntl.LOCK_EX, final)
+            _lock(handle, final)
             if os.path.samestat(os.fstat(handle), os.stat(path)):
                 return handle
         except FileNotFoundError:
@@ -90,21 +90,21 @@ def _see_ours(handle: int, path: Path) -> None:
     """Raise FileError where something else has the name of a lock; what is removed is a lock."""
     if os.fstat(handle).st_nlink:  # its last owner may just have removed it
         see_open(handle, path)
-    if not LOCK.fits(os.pread(handle, HEADER, 0)):
+    if not LOCK.fits(system.beginning(handle, HEADER)):
         raise FileError(f"{path} exists and is not a {LOCK.name}", ASIDE, file=str(path))
 
 
-def _lock(handle: int, how: int, final: Path) -> None:
+def _lock(handle: int, final: Path, shared: bool = False) -> None:
     """Take a lock; who looks whether there is one holds it for a moment, hence the attempts."""
     for _ in range(ATTEMPTS):
         try:
-            fcntl.flock(handle, how | fcntl.LOCK_NB)
+            system.lock(handle, shared)
             return
         except BlockingIOError:
             time.sleep(PAUSE)
         except OSError:
             return
-    number = os.pread(handle, 20, 0).decode(errors="replace").strip()
+    number = system.beginning(handle, 20).decode(errors="replace").strip()
     who = f"process {number}" if number.isdigit() else "another process"
     hint = "Wait for it, or name another file with -o."
     raise FileError(f"{final} is being written by {who}", hint, file=str(final))

@@ -9,6 +9,7 @@ import os
 import stat
 from pathlib import Path
 
+from trsim import system
 from trsim.errors import FileError, what_it_is
 from trsim.store.target import BEGINNING, Kind
 
@@ -18,7 +19,7 @@ ASIDE = "Move it away, or name another file with -o."
 def see(path: Path, kind: Kind) -> bool:
     """Whether there is a file of ours.  Raises FileError where there is anything else."""
     try:
-        handle = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        handle = os.open(path, os.O_RDONLY | system.O_NOFOLLOW | system.O_NONBLOCK)
     except FileNotFoundError:
         return False
     except OSError as error:
@@ -26,7 +27,7 @@ def see(path: Path, kind: Kind) -> bool:
         raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path)) from None
     try:
         see_open(handle, path)
-        start = os.pread(handle, BEGINNING, 0)
+        start = system.beginning(handle, BEGINNING)
     finally:
         os.close(handle)
     if not kind.fits(start):
@@ -54,4 +55,4 @@ def remove(path: Path, kind: Kind) -> None:
 def made(path: Path, kind: Kind) -> int:
     """The handle of a new file, in place of one of ours.  Raises FileError, OSError."""
     remove(path, kind)
-    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666)
+    return os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | system.O_NOFOLLOW, 0o666)

@@ -22,11 +22,12 @@ from trsim import child
 from trsim.errors import FileError, unreadable
 from trsim.store import describe, points
 from trsim.store.content import content_hash
-from trsim.store.disk import end_with_parent, let_go, see_more, see_room, synced
+from trsim.store.disk import let_go, see_more, see_room, synced
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.salvage import Salvage
 from trsim.store.target import RESULT, fresh, replaceable, told
+from trsim.system import end_with_parent
 from trsim.version import __version__
 
 PATIENCE = 30.0  # s for any file

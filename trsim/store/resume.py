@@ -23,10 +23,10 @@ from trsim.errors import FileError
 from trsim.store.checkpoint import ANEW, Checkpoint, see_like
 from trsim.store.checkpoint import beside as checkpoint_of
 from trsim.store.describe import cause
-from trsim.store.disk import end_with_parent
 from trsim.store.grow import Growing
 from trsim.store.plain import Plain
 from trsim.store.recover import PACE, PATIENCE
+from trsim.system import end_with_parent
 
 ROWS = 1 << 14  # rows handled together, whole chunks
 

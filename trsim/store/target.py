@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import NamedTuple
 
+from trsim import system
 from trsim.errors import FileError, UsageError, what_it_is
 from trsim.store.plain import SIGNATURE, SIZE
 
@@ -152,7 +153,7 @@ def _empty(final: Path) -> Path:
     for k in count():
         path = final.with_name(f"{final.name}.{os.getpid()}{f'-{k}' if k else ''}")
         with suppress(FileExistsError):
-            os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666))
+            os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | system.O_NOFOLLOW, 0o666))
             return path
     raise AssertionError
 

@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from trsim import system
 from trsim.errors import FileError
 
 DIGEST = "case_sha256"  # attribute of /provenance in a result file
@@ -54,7 +55,7 @@ class Ledger:
 
     def __init__(self, folder: Path, shard: str = "") -> None:
         self.path = folder / f"ledger{f'-{shard}' if shard else ''}.jsonl"
-        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW | os.O_NONBLOCK
+        flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | system.O_NOFOLLOW | system.O_NONBLOCK
         self.file = open(os.open(self.path, flags, 0o666), "ab")  # noqa: SIM115 - see close
         if self.file.tell() and not _ends_a_line(self.path):
             self.file.write(b"\n")

@@ -1,6 +1,5 @@
 """Cases side by side on this machine, each slot with a process of its own."""
 
-import os
 import queue
 import threading
 from collections.abc import Iterable, Iterator
@@ -11,11 +10,6 @@ from trsim.sweep.worker import JOB
 
 LOOK = 0.2  # s between two looks for a signal
 Task = dict[str, Any]
-
-
-def processors() -> int:
-    """How many this process may use."""
-    return len(os.sched_getaffinity(0))
 
 
 def run(

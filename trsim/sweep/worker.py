@@ -13,19 +13,10 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from trsim.store.disk import end_with_parent
+from trsim.system import end_with_parent, limit_memory
 
 JOB = "trsim.sweep.job:run"
 MEMORY = "the memory allowed for a case may have been used up"
-
-
-def limited(more: int) -> None:
-    """Allow the process so many bytes of memory more than it has now."""
-    import resource
-
-    with open("/proc/self/statm", encoding="ascii") as file:
-        has = int(file.read().split()[0]) * resource.getpagesize()
-    resource.setrlimit(resource.RLIMIT_AS, (has + more, has + more))
 
 
 def main(memory: int, job: str) -> None:
@@ -39,7 +30,7 @@ def main(memory: int, job: str) -> None:
     run: Callable[..., dict[str, Any]] = getattr(loaded, name)
     getattr(loaded, "prepare", lambda: None)()
     if memory:
-        limited(memory)
+        limit_memory(memory)
 
     def reply(told: dict[str, Any]) -> None:
         replies.write(json.dumps(told) + "\n")

@@ -1,0 +1,88 @@
+"""Without what only some systems have, everything but locks and limits of memory works."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from trsim import system
+
+from . import small
+
+ROOT = Path(__file__).parents[1]
+# `os` and its neighbours as a system without POSIX has them, in this process and in its children
+BARE = """
+import os, sys
+sys.modules.update(fcntl=None, resource=None)
+for name in ("O_DIRECTORY", "O_NOFOLLOW", "O_NONBLOCK", "O_PATH", "fchdir", "geteuid",
+             "posix_fallocate", "pread", "sched_getaffinity"):
+    if hasattr(os, name):
+        delattr(os, name)
+os.supports_fd.clear()
+"""
+NAMES = """
+import trsim, sys
+from trsim import system
+from pathlib import Path
+with open("file", "w+b") as file:
+    file.write(b"begin")
+    file.flush()
+    system.lock(file.fileno())
+    system.lock_byte(file.fileno(), 5, wait=False)
+    system.lengthen(file.fileno(), 5, 1000)
+    print(system.beginning(file.fileno(), 3), system.LIMITS_MEMORY, system.processors() > 0)
+print(Path("file").stat().st_size, system.O_NOFOLLOW, system.user())
+"""
+
+
+@pytest.fixture
+def bare(tmp_path):
+    """Runs Python on such a system."""
+    (tmp_path / "sitecustomize.py").write_text(BARE)
+    (tmp_path / "s.yaml").write_text(small.SLIDER_CRANK)
+    path = os.pathsep.join([str(tmp_path), str(ROOT)])
+    environment = {**os.environ, "PYTHONPATH": path, "TRSIM_PYTHON": "1"}  # nothing to compile
+
+    def started(*arguments):
+        return subprocess.run(  # noqa: S603
+            [sys.executable, *arguments],
+            cwd=tmp_path, env=environment, capture_output=True, text=True,
+        )  # fmt: skip
+
+    return started
+
+
+def test_each_name_has_something_in_its_place(bare):
+    done = bare("-c", NAMES)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["b'beg' False True", "1005 0 0"]
+
+
+SHORT = ("--set", "solver.end=0.2 ms", "--set", "output.every=0.1 ms")
+
+
+def test_runs_and_reports(bare, tmp_path):
+    done = bare("-m", "trsim", "run", "s.yaml", "-o", "x.h5", *SHORT)
+    assert done.returncode == 0, done.stderr
+    done = bare("-m", "trsim", "report", "x.h5", "-o", "figures")
+    assert done.returncode == 0, done.stderr
+    assert any((tmp_path / "figures").iterdir())
+
+
+def test_sweeps(bare, tmp_path):
+    text = small.SLIDER_CRANK + "sweep: {drives.motor.velocity: [1000 rpm, 2000 rpm]}\n"
+    (tmp_path / "sweep.yaml").write_text(text)
+    done = bare("-m", "trsim", "sweep", "sweep.yaml", "-o", "cases", *SHORT)
+    assert done.returncode == 0, done.stderr
+    done = bare("-m", "trsim", "sweep", "sweep.yaml", "-o", "others", "--memory", "1 GB")
+    assert done.returncode == 2 and "holds no process to an amount of memory" in done.stderr
+
+
+def test_names_of_the_system_stand_in_one_file():
+    only = ("fcntl", "import resource", "sched_getaffinity", "posix_fallocate", "geteuid",
+            "os.O_NOFOLLOW", "os.O_NONBLOCK", "os.O_DIRECTORY", "os.pread")  # fmt: skip
+    for path in Path(system.__file__).parent.rglob("*.py"):
+        text = path.read_text()
+        assert path == Path(system.__file__) or not [name for name in only if name in text], path
