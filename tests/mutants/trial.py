@@ -28,9 +28,12 @@ KEPT = ("trsim", "tests", "scenarios", "benchmarks", "docs")
 SAID = re.compile(rb"^(\S+::.*?) (PASSED|FAILED|ERROR|SKIPPED|XFAIL|XPASS)", re.MULTILINE)
 COLLECTED = re.compile(rb"^ERROR (tests/\S+)", re.MULTILINE)
 SILENT = 300.0  # s without a test that ends: it hangs
-# a mutation may fill memory or disk: bytes a process may have, and a file
+# a mutation may fill memory or disk: bytes a process may have, and a file; tests end with us
 LIMITED = """
-import os, resource, sys
+import ctypes, os, resource, signal, sys
+PDEATHSIG = 1
+if sys.platform == "linux":
+    ctypes.CDLL(None).prctl(PDEATHSIG, signal.SIGKILL)
 resource.setrlimit(resource.RLIMIT_DATA, (8 << 30, 8 << 30))
 resource.setrlimit(resource.RLIMIT_FSIZE, (4 << 30, 4 << 30))
 os.execv(sys.executable, [sys.executable, *sys.argv[1:]])
@@ -165,16 +168,17 @@ def tried(tree: Tree, one: Mutation, number: int, seconds: float) -> dict[str, A
         for stage in stages(ROOT, one.file):
             while True:
                 left = seconds - (time.monotonic() - begun)
-                found = tested(tree.mutated, tree.cache, stage, tree.broken | doubtful, left)
+                less = tree.broken | doubtful
+                found = tested(tree.mutated, tree.cache, stage, less, left)
                 if not found.noticed:
                     break
                 again = repeated(found, stage)
                 if confirmed(tree, again):
                     by = found.failed or f"a test behind {found.ended[-1:]} does not end"
                     return line(one, "killed", by, seen + len(found.ended), True, begun)
-                if set(again) <= tree.broken | doubtful or found.failed is None:
-                    break  # nothing to leave out: on to other tests
-                doubtful |= set(again) - tree.broken
+                if set(again) <= less:
+                    break  # there is nothing more to leave out
+                doubtful |= set(again)
             seen += len(found.ended)
             if found.late:
                 return line(one, "survived", "", seen, False, begun)
@@ -197,6 +201,7 @@ def confirmed(tree: Tree, again: list[str]) -> bool:
         found = tested(tree.whole, tree.cache, again, set(), 4 * SILENT)
         if found.noticed or found.late:
             tree.broken |= set(again)
+            print(f"no test: {', '.join(again)} on the sources as they are", flush=True)
             return False
         tree.sound |= set(again)
     return tested(tree.mutated, tree.cache, again, set(), 4 * SILENT).noticed

@@ -11,7 +11,7 @@ from trsim.assemble.equations import derivative
 from trsim.elements.scene import scene
 from trsim.scenario.load import loads
 from trsim.solve.march import record as rec
-from trsim.solve.methods import radau
+from trsim.solve.methods import ggl_tables, radau, radau_ggl
 from trsim.solve.methods.radau_tableau import GAMMA, A, E
 from trsim.solve.outcome import settings
 
@@ -26,24 +26,28 @@ forces:
 solver: {end: 1e-9, method: radau, tolerance: 1e-4, first_step: 1e-9}
 """
 RATE = -1000.0  # 1/s, of the decay
+METHODS = {"index1": radau, "ggl": radau_ggl}
 
 
-def tried(h, weight, again):
+def tried(formulation, h, weight, again):
     """Error of the speed that a step of this length estimates, and the speed it begins with.
 
     weight: of the speed in the error norm, which sees nothing else; again: 1 after a rejection.
     """
-    scenario = loads(DAMPED)
+    method = METHODS[formulation]
+    scenario = loads(DAMPED, [f"solver.formulation={formulation}"])
     ended = run(scenario)
-    r, s = ended.outcome.record, scene(ended.mechanism.model)
-    setting = settings(scenario, ended.mechanism, True)
-    b = rec.fresh_buffers(s, r.y.size, radau.STAGES, radau.DENSE_ROWS, 16)
+    mechanism, r = ended.mechanism, ended.outcome.record
+    s, setting = scene(mechanism.model), settings(scenario, mechanism, True)
+    b = rec.fresh_buffers(s, r.y.size, method.STAGES, method.DENSE_ROWS, 16)
+    if method is radau_ggl:
+        b = ggl_tables.buffers(b, scenario, mechanism, mechanism.model)
     b.weight[:] = 0.0
     b.weight[s.n_q] = weight
     derivative(s, r.clock[rec.T], r.y, r.yd)
     r.count[rec.JACOBIAN], r.count[rec.HISTORY] = rec.NO_JACOBIAN, rec.NO_HISTORY
     r.count[rec.AFTER_REJECTION] = again
-    assert radau.step(s, r, b, setting, r.clock[rec.T], h) != radau.HALVE
+    assert method.step(s, r, b, setting, r.clock[rec.T], h) != radau.HALVE
     return b.K[radau.F, s.n_q], r.y[s.n_q]
 
 
@@ -54,13 +58,14 @@ def estimates(h, v):
     return once, (RATE * (v + once) + E @ Z / h) / (GAMMA / h - RATE)
 
 
+@pytest.mark.parametrize("formulation", METHODS)
 @pytest.mark.parametrize("again", [0, 1])
 @pytest.mark.parametrize("h", [1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0])
-def test_estimate_of_a_decay(h, again):
-    small, v = tried(h, 1e-6, again)
+def test_estimate_of_a_decay(h, again, formulation):
+    small, v = tried(formulation, h, 1e-6, again)
     once, twice = estimates(h, v)
     assert small == pytest.approx(once, rel=1e-5)
-    large, _ = tried(h, 2.0 / abs(once), again)
+    large, _ = tried(formulation, h, 2.0 / abs(once), again)
     assert large == pytest.approx(twice, rel=1e-4)
     if h >= 0.1:  # over hundreds of decays the first is all the speed there was
         assert abs(once) > 0.8 * v > 20.0 * abs(twice)
