@@ -19,7 +19,7 @@ from typing import Any
 from .drawn import ROOT, digest, drawn
 from .equivalent import EQUIVALENT
 from .operators import Mutation
-from .trial import Tree, fresh, tried
+from .trial import Times, Tree, fresh, tried
 
 FOLDER = ROOT / "runs" / "mutants"
 COUNT = 300
@@ -57,8 +57,9 @@ def left(wanted: list[Mutation], file: Path, again: bool) -> list[tuple[int, Mut
 def run(todo: list[tuple[int, Mutation]], file: Path, workers: int, seconds: float) -> None:
     """Try mutations side by side, each worker in copies of its own."""
     trees: SimpleQueue[Tree] = SimpleQueue()
+    times = Times(FOLDER / "seconds.json")
     for k in range(min(workers, len(todo))):
-        trees.put(fresh(FOLDER, k))
+        trees.put(fresh(FOLDER, k, times))
     writing = threading.Lock()
 
     def one_of(number: int, one: Mutation) -> dict[str, Any]:

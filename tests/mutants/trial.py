@@ -5,6 +5,7 @@ the others go on.  Every failure must come twice, since a busy machine makes som
 must the end of a process, and tests that do not end.
 """
 
+import json
 import os
 import re
 import select
@@ -12,6 +13,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -25,8 +27,9 @@ from .nearest import stages
 from .operators import Mutation
 
 KEPT = ("trsim", "tests", "scenarios", "benchmarks", "docs")
-SAID = re.compile(rb"^(\S+::.*?) (PASSED|FAILED|ERROR|SKIPPED|XFAIL|XPASS)", re.MULTILINE)
-COLLECTED = re.compile(rb"^ERROR (tests/\S+)", re.MULTILINE)
+SAID = re.compile(rb"(\S+::.*?) (PASSED|FAILED|ERROR|SKIPPED|XFAIL|XPASS)")
+COLLECTED = re.compile(rb"ERROR (tests/\S+)")
+DIED = "the process"  # of the tests
 SILENT = 300.0  # s without a test that ends: it hangs
 # a mutation may fill memory or disk: bytes a process may have, and a file; tests end with us
 LIMITED = """
@@ -40,6 +43,26 @@ os.execv(sys.executable, [sys.executable, *sys.argv[1:]])
 """
 
 
+class Times:
+    """How long test files took: those soon done are tried first, unknown ones before them."""
+
+    def __init__(self, file: Path) -> None:
+        self.file, self.writing = file, threading.Lock()
+        self.seconds: dict[str, float] = {}
+        with suppress(OSError, ValueError):
+            self.seconds = json.loads(file.read_text())
+
+    def note(self, seconds: dict[str, float]) -> None:
+        """Files of which tests were run to a failure took less than they do."""
+        with self.writing:
+            for file, took in seconds.items():
+                self.seconds[file] = max(took, self.seconds.get(file, 0.0))
+            self.file.write_text(json.dumps(self.seconds, indent=1))
+
+    def sorted(self, tests: list[str]) -> list[str]:
+        return sorted(tests, key=lambda test: self.seconds.get(test, 0.0))
+
+
 @dataclass
 class Tree:
     """A copy of the project that is mutated, one that is not, and machine code for both."""
@@ -47,6 +70,7 @@ class Tree:
     mutated: Path
     whole: Path
     cache: Path  # each piece is kept under a key of what it was made of
+    times: "Times"  # of test files
     sound: set[str] = field(default_factory=set)  # tests that pass on the sources as they are
     broken: set[str] = field(default_factory=set)  # and those that fail there
 
@@ -59,15 +83,16 @@ class Found:
     failed: str | None  # the first test, or file, that failed
     silent: bool  # no test ended for long
     late: bool  # the time given was over
+    seconds: dict[str, float]  # of each file
 
     @property
     def noticed(self) -> bool:
         return self.failed is not None or self.silent
 
 
-def fresh(folder: Path, k: int) -> Tree:
+def fresh(folder: Path, k: int, times: Times) -> Tree:
     """The k-th pair of copies, with the machine code that is at hand."""
-    tree = Tree(folder / f"mutated_{k}", folder / f"whole_{k}", folder / f"cache_{k}")
+    tree = Tree(folder / f"mutated_{k}", folder / f"whole_{k}", folder / f"cache_{k}", times)
     for target in (tree.mutated, tree.whole):
         copied(target)
     warm = kept.folder()
@@ -127,21 +152,37 @@ def tested(at: Path, cache: Path, tests: list[str], less: set[str], seconds: flo
 def followed(process: subprocess.Popen, end: float) -> Found:
     """Read what the tests say, to their end or that of their time."""
     assert process.stdout is not None
-    said, last, silent, late = b"", time.monotonic(), False, False
-    while not (silent or late):
-        now = time.monotonic()
+    found = Found([], None, False, False, {})
+    said, last = b"", time.monotonic()
+    while not (found.silent or found.late):
         if select.select([process.stdout], [], [], 1.0)[0]:
             part = os.read(process.stdout.fileno(), 1 << 16)
             if not part:
                 break
-            said, last = said + part, now
-        silent, late = now - last > SILENT, now > end
-    words = SAID.findall(said)
-    failed = [name.decode() for name, word in words if word in (b"FAILED", b"ERROR")]
-    failed += [name.decode() for name in COLLECTED.findall(said)]
-    if not (silent or late or failed) and status(process) not in (0, 5):  # 5: nothing to do
-        failed = ["the process"]  # of the tests: it died
-    return Found([name.decode() for name, _ in words], next(iter(failed), None), silent, late)
+            *lines, said = (said + part).split(b"\n")
+            for text in lines:
+                if noted(found, text, time.monotonic() - last):
+                    last = time.monotonic()
+        found.silent, found.late = time.monotonic() - last > SILENT, time.monotonic() > end
+    whole = not (found.silent or found.late)
+    if whole and found.failed is None and status(process) not in (0, 5):  # 5: nothing to do
+        found.failed = DIED
+    return found
+
+
+def noted(found: Found, text: bytes, took: float) -> bool:
+    """Note the test that a line is about, and whether it failed; False for any other line."""
+    if name := COLLECTED.match(text):
+        found.failed = found.failed or name[1].decode()
+    if not (said := SAID.match(text)):
+        return False
+    test, word = said[1].decode(), said[2]
+    found.ended.append(test)
+    file = test.split("::")[0]
+    found.seconds[file] = found.seconds.get(file, 0.0) + took
+    if word in (b"FAILED", b"ERROR"):
+        found.failed = found.failed or test
+    return True
 
 
 def status(process: subprocess.Popen) -> int:
@@ -165,11 +206,12 @@ def tried(tree: Tree, one: Mutation, number: int, seconds: float) -> dict[str, A
     begun, seen, doubtful = time.monotonic(), 0, set[str]()
     put(tree, one, number)
     try:
-        for stage in stages(ROOT, one.file):
+        for stage in map(tree.times.sorted, stages(ROOT, one.file)):
             while True:
                 left = seconds - (time.monotonic() - begun)
                 less = tree.broken | doubtful
                 found = tested(tree.mutated, tree.cache, stage, less, left)
+                tree.times.note(found.seconds)
                 if not found.noticed:
                     break
                 again = repeated(found, stage)
@@ -189,7 +231,7 @@ def tried(tree: Tree, one: Mutation, number: int, seconds: float) -> dict[str, A
 
 def repeated(found: Found, stage: list[str]) -> list[str]:
     """The tests to run again: the one that failed, or those it died or hung in."""
-    if found.failed and found.failed != "the process":
+    if found.failed and found.failed != DIED:
         return [found.failed]
     at = stage.index(found.ended[-1].split("::")[0]) if found.ended else 0
     return stage[at : at + 2]
