@@ -5,7 +5,7 @@ SOURCES := trsim tests benchmarks
 # one process for each processor; whoever is done takes tests from the others
 PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-.PHONY: demo paper tolerances test release-check coverage portable lint bench stress truth clean
+.PHONY: demo paper tolerances test release-check coverage portable lint bench stress truth mutants clean
 
 demo: .venv/installed
 	$(BIN)/trsim run scenarios/thrust_reverser/clearance_ab_0.3mm.yaml -o runs/demo.h5
@@ -69,6 +69,10 @@ stress: .venv/developer
 truth: .venv/developer
 	$(BIN)/python -m tests.truth
 	$(BIN)/python -m tests.truth --table
+
+# faults put into the sources, and those that no test notices; goes on where it was ended
+mutants: .venv/developer
+	$(BIN)/python -m tests.mutants
 
 clean:
 	rm -rf .venv build dist *.egg-info

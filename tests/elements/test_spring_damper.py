@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ..runs import run
 from .bench import bench, check_action_is_reaction, check_gradient, check_power
 
 SPRING = """
@@ -45,3 +46,24 @@ def test_no_direction_no_force():
               np.random.default_rng(0))  # fmt: skip
     b.r[2] = b.r[1]
     assert not b.wrenches().any()
+
+
+DRAWN_OUT = """
+bodies: {block: {mass: 2, inertia: 0.01}}
+joints: {slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}
+drives: {pull: {joint: slide, velocity: 0.5}}
+forces:
+  spring: {type: spring_damper, bodies: [ground, block], points: [[-0.3, 0.4], [0, 0]],
+           stiffness: 500, damping: 20, preload: 10, free_length: 0.45}
+solver: {end: 1, tolerance: 1e-9}
+output: {every: 0.1}
+"""
+
+
+def test_channels_are_tension_and_length():
+    r = run(DRAWN_OUT)
+    x = 0.3 + 0.5 * r.t
+    length = np.hypot(x, 0.4)
+    tension = 10.0 + 500.0 * (length - 0.45) + 20.0 * 0.5 * x / length
+    np.testing.assert_allclose(r["spring.length"], length, rtol=1e-8)
+    np.testing.assert_allclose(r["spring.force"], tension, rtol=1e-7)

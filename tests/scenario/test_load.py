@@ -221,6 +221,14 @@ solver: {end: 1}
             "  All names share one name space.",
         ),
         (
+            "{ratio: 2}",
+            "{rod: 2}",
+            "a.yaml:4:3: bodies.rod: the name 'rod' is taken by parameters.rod\n"
+            "      rod: {mass: 1, inertia: 1}\n"
+            "      ^\n"
+            "  All names share one name space.",
+        ),
+        (
             "title: broken",
             "title: broken\nsolvr: {end: 1}",
             "a.yaml:2:1: unknown key 'solvr'\n"
@@ -323,6 +331,37 @@ def test_all_problems_at_once_in_order():
         "joints.wrist",
         "solver.end",
     ]
+
+
+def test_problems_are_in_the_order_of_the_text_whatever_finds_them():
+    """Sections upside down, and a name, which is looked at before all values."""
+    text = """\
+solver: {end: 1 m}
+joints:
+  wrist: {type: revolute, bodies: [ground, rod], at: [0, 0], axs: [1, 0]}
+bodies:
+  rod: {mass: -1, inertia: 1}
+  sin: {mass: 1, inertia: 1}
+parameters: {ratio: 2*d}
+"""
+    lines = [line for line in shown(text).splitlines() if line.startswith("a.yaml")]
+    assert [line.split(": ")[0] for line in lines] == [
+        f"a.yaml:{place}" for place in ("1:15", "3:62", "5:15", "6:3", "7:21")
+    ]
+
+
+def test_problems_are_file_by_file(project):
+    """Those of the file that was asked for first, then those of what it extends."""
+    (project / "case.yaml").write_text(CASE.replace("end: 1 s", "end: 1 m"))
+    wrong = MECHANISM.replace("mass: ", "mass: -")
+    assert wrong != MECHANISM
+    (project / "mechanism.yaml").write_text(wrong)
+    with pytest.raises(Problems) as caught:
+        load("case.yaml")
+    files = [problem.place.file for problem in caught.value.problems]
+    assert files == sorted(files) and set(files) == {"case.yaml", "mechanism.yaml"}
+    lines = [problem.place.line for problem in caught.value.problems[1:]]
+    assert lines == sorted(lines) and len(lines) > 1
 
 
 def test_a_faulty_parameter_is_reported_once():

@@ -170,3 +170,35 @@ def test_slider_crank_with_clearance_against_the_reference(friction):
     assert errors[2] < 1e-6
     force = np.abs(r["C.normal_force"] - reference[:, 2]).max()
     assert force < 1e-4 * reference[:, 2].max()
+
+
+STICKING = """
+bodies: {{ball: {{mass: 1, inertia: 1e-3, at: [0, 0], velocity: [0.1, 0.03],
+         angular_velocity: [0, 0, 5]}}}}
+joints:
+  pin: {{type: revolute, bodies: [ground, ball], at: [0, 0], clearance: 0.3 mm, contact: steel}}
+contact_laws:
+  steel: {{normal: lankarani_nikravesh, stiffness: internal, bearing_radius: 10 mm,
+    youngs_modulus: 207 GPa, poisson: 0.3, restitution: 0.9, friction: {{law: sticking,
+    coefficient: 0.3, stribeck_speed: 0.01, bristle_stiffness: 1e4}}}}
+solver: {{method: {method}, end: {end!r}, tolerance: 1e-6}}
+output: {{every: 10 ms}}
+"""
+
+
+@pytest.mark.parametrize("method", ["dop853", "radau"])
+def test_bristles_begin_undeflected_at_every_touch(method):
+    """What the touch before left of them stays as it is in flight, and is gone at the next."""
+
+    def deflection(end):
+        r = run(STICKING.format(method=method, end=end))
+        model = r.mechanism.model
+        return r.outcome.record.y[model.n_q + model.n_v + model.contact_state[0]]
+
+    r = run(STICKING.format(method=method, end=0.02))
+    touches = r.events[r.events[:, EVENT_KIND] == ONSET][:, EVENT_TIME]
+    assert len(touches) >= 2
+    left = abs(deflection(float(touches[1]) - 1e-7))
+    assert left > 1e-6
+    # it grows with the sliding speed, which is below 1 m/s
+    assert abs(deflection(float(touches[1]) + 1e-9)) < 1e-8

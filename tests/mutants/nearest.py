@@ -1,0 +1,45 @@
+"""In which order tests are tried on a mutation: those likely to notice it first."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+OF_PROGRAM = re.compile(r"from (trsim(?:\.\w+)*) import (?:\(([^)]*)\)|(.*))|import (trsim[\w.]*)")
+
+
+@cache
+def test_files(root: Path) -> list[str]:
+    """All test files, as they are called from the root."""
+    found = (root / "tests").rglob("test_*.py")
+    return sorted(path.relative_to(root).as_posix() for path in found)
+
+
+@cache
+def named(root: Path, test: str) -> frozenset[str]:
+    """Modules of the program that a test file imports, and what it imports of them."""
+    found = set()
+    for module, several, one, whole in OF_PROGRAM.findall((root / test).read_text()):
+        found.add(module or whole)
+        names = re.findall(r"\w+", several or one)
+        found |= {f"{module}.{name}" for name in names}
+    return frozenset(found)
+
+
+def stages(root: Path, file: str) -> list[list[str]]:
+    """Test files for a source file: its own, those that import it, those of its room, all others.
+
+    A stage is one process of tests: what is not reached is not even imported.
+    """
+    module = file.removesuffix(".py").replace("/", ".")
+    _, room, *_, last = module.split(".")
+    found: list[list[str]] = [[], [], [], []]
+    for test in test_files(root):
+        path = Path(test)
+        if path.stem == f"test_{last}":
+            stage = 0
+        elif module in named(root, test):
+            stage = 1
+        else:
+            stage = 2 if path.parts[1] == room else 3
+        found[stage].append(test)
+    return [stage for stage in found if stage]
