@@ -18,8 +18,8 @@ class Method(NamedTuple):
               events, and nobody looks at its trial steps
     adaptive  chooses its steps by the tolerance, and locates touches unless told otherwise;
               else steps are fixed, and touches located only if told
-    explicit  begins with explicit steps: no Jacobian, and where it chooses them they are held to what
-              the feedback of Baumgarte's stabilisation allows
+    explicit  begins with explicit steps: no Jacobian, and where it chooses them they are held to
+              what the feedback of Baumgarte's stabilisation allows
     twin      the method that a run is certified by: another family, other errors
     """
 
