@@ -25,8 +25,13 @@ def named(root: Path, test: str) -> frozenset[str]:
     return frozenset(found)
 
 
+def words(name: str) -> set[str]:
+    return set(name.split("_"))
+
+
 def stages(root: Path, file: str) -> list[list[str]]:
-    """Test files for a source file: its own, those that import it, those of its room, all others.
+    """Test files for a source file: its own; those that import it or share a word of its name;
+    those of its room; all others.
 
     A stage is one process of tests: what is not reached is not even imported.
     """
@@ -37,7 +42,7 @@ def stages(root: Path, file: str) -> list[list[str]]:
         path = Path(test)
         if path.stem == f"test_{last}":
             stage = 0
-        elif module in named(root, test):
+        elif module in named(root, test) or words(last) & words(path.stem) - {"test"}:
             stage = 1
         else:
             stage = 2 if path.parts[1] == room else 3
