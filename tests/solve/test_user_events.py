@@ -598,3 +598,26 @@ def test_what_is_unlocked_at_the_value_is_on_neither_side_of_it(tolerance, metho
     held = r["bend"][(r.t > first[EVENT_TIME]) & (r.t < 9.0)]
     assert held == pytest.approx(0.1, abs=rounded(first))
     assert r["bend"][-1] == pytest.approx(0.1, abs=rounded(second))
+
+
+# a slider that flies on while another one, at rest, is locked, or is told to be somewhere
+TWO = """
+bodies:
+  flying: {{mass: 3, inertia: 1, velocity: [2, 0]}}
+  resting: {{mass: 3, inertia: 1, at: [0, 1]}}
+joints:
+  slide: {{type: prismatic, bodies: [ground, flying], axis: [1, 0, 0]}}
+  rest: {{type: prismatic, bodies: [ground, resting], at: [0, 1], axis: [1, 0, 0]}}
+solver: {{end: 1, tolerance: 1e-6, method: dop853, first_step: 1e-6, max_step: 0.2}}
+output: {{every: 0.5}}
+events:
+  middle: {{when: t, value: 0.3, do: {{{do}}}}}
+"""
+
+
+def test_other_equations_begin_with_a_first_step_and_the_same_ones_do_not():
+    """Free flight takes the longest steps there may be, but after a start."""
+    same, other = (run(TWO.format(do=do)).outcome.statistics["steps"]
+                   for do in ("record: true", "lock: [rest]"))  # fmt: skip
+    assert other >= same + 4  # steps grow tenfold at most, from 1e-6 s to 0.2 s
+    assert same <= 14
