@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from trsim.assemble.reduce import jacobian, moves
+from trsim.assemble.reduce import jacobian, moves, roots, weights
 from trsim.assemble.redundant import SAMPLES, nearby
 from trsim.errors import ModelError
 from trsim.scenario.load import load
 
+from ..elements.bench import bench, matrix
 from ..linkages import DOOR, REVERSER, flat_parallelogram, four_bar, slider_crank
 from ..runs import assemble, built, run
 
@@ -189,3 +190,19 @@ def test_a_parallelogram_of_three_cranks_moves(length, angle, off, drive):
     m = built(text)
     assert (m.mobility, m.mobility_by_count) == ((0, -1) if drive else (1, 0))
     assert len(m.redundant) == 1 and not m.singular
+
+
+def test_units_and_roots_of_masses_against_world_axes_rates():
+    """C C^T is the inverse of the mass matrix; turns count by a body's radius of gyration."""
+    b = bench("", np.random.default_rng(3))
+    model, y = b.mechanism.model, b.state()
+    own = model.inertia[1:].reshape(-1, 3, 3)
+    C, units = roots(model, y, False), weights(model).reshape(-1, 6)
+    for k, (mass, trace) in enumerate(((2.0, 0.09), (3.0, 0.12))):
+        R = matrix(b.p[1 + k])
+        inverse = np.zeros((6, 6))
+        inverse[:3, :3] = np.eye(3) / mass
+        inverse[3:, 3:] = R @ np.linalg.inv(own[k]) @ R.T
+        assert C[k] @ C[k].T == pytest.approx(inverse, abs=1e-10 * np.abs(inverse).max())
+        arm = np.sqrt(trace / mass)
+        assert units[k] == pytest.approx([1.0, 1.0, 1.0, 1 / arm, 1 / arm, 1 / arm])

@@ -137,6 +137,7 @@ def tested(at: Path, cache: Path, tests: list[str], less: set[str], seconds: flo
         environment.pop(name, None)
     command = [sys.executable, "-c", LIMITED, "-u", "-m", "pytest", "-p", "no:xdist",
                "-p", "no:cacheprovider", "-o", "addopts=", "-v", "-x", "--tb=no", "--color=no",
+               f"--rootdir={at}",
                *(f"--deselect={test}" for test in sorted(less)), *tests]  # fmt: skip
     process = subprocess.Popen(  # noqa: S603
         command, cwd=at, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
