@@ -38,10 +38,10 @@ def tried(formulation, h, weight, again):
     scenario = loads(DAMPED, [f"solver.formulation={formulation}"])
     ended = run(scenario)
     mechanism, r = ended.mechanism, ended.outcome.record
-    s, setting = scene(mechanism.model), settings(scenario, mechanism, True)
+    s, setting = scene(mechanism.model), settings(scenario, mechanism)
     b = rec.fresh_buffers(s, r.y.size, method.STAGES, method.DENSE_ROWS, 16)
     if method is radau_ggl:
-        b = ggl_tables.buffers(b, scenario, mechanism, mechanism.model)
+        b = ggl_tables.buffers(b, mechanism, mechanism.model)
     b.weight[:] = 0.0
     b.weight[s.n_q] = weight
     derivative(s, r.clock[rec.T], r.y, r.yd)
