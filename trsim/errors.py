@@ -55,7 +55,7 @@ class TrsimError(Exception):
         return (self,)
 
     def at(self, *path: str | int) -> "TrsimError":
-        """The same error, with its path seen from further out."""
+        """This error, with its path seen from further out."""
         return type(self)(self.what, self.hint, path + self.path, self.place)
 
     def show(self) -> str:
@@ -228,7 +228,7 @@ def shown(text: str) -> str:
 
 
 def one_line(text: str) -> str:
-    """The same, without ends of lines: nothing in it looks like a line of its own."""
+    """`shown` without ends of lines: nothing in it looks like a line of its own."""
     return shown(text).replace("\n", "?")
 
 

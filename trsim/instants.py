@@ -64,7 +64,7 @@ def corners(node: Node) -> Iterator[tuple[Node, tuple[float, ...]]]:
 
 
 def of_call(word: str, a: tuple[Node, ...]) -> Iterator[tuple[Node, tuple[float, ...]]]:
-    """The same of a function."""
+    """The corners of a function of these arguments."""
     if word in ("min", "max"):
         for k in range(1, len(a)):
             before = a[0] if k == 1 else ("call", word, a[:k])

@@ -246,7 +246,7 @@ def inside(units: tuple[str, ...]) -> str:
 
 
 def told(units: tuple[str, ...]) -> str:
-    """The same as a hint."""
+    """These units as a hint."""
     return f"T{inside(units)[1:]}." if units != ("-",) else ""
 
 

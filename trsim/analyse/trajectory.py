@@ -1,4 +1,4 @@
-"""The same scenario by other methods: its motion at the output times, and the CPU time it takes.
+"""A scenario by other methods: its motion at the output times, and the CPU time it takes.
 
 A `Problem` is assembled twice: `full` with every channel, whose rows are compared; `lean` with one
 row at the end and no channels but those of contacts, whose time is taken.
@@ -144,7 +144,7 @@ def marched(
 
 
 def ended(scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched) -> tuple[Array, Any]:
-    """The same of a run that reached its end; raises SolverError where it did not."""
+    """Rows and outcome of a run that reached its end; raises SolverError where it did not."""
     try:
         rows, outcome = marched(scenario, mechanism, look)
     except ScenarioError as error:  # of a step and rows that do not go together

@@ -92,7 +92,7 @@ def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) 
 
 
 def near_rows(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) -> float:
-    """The same of what is measured; 0 in open chains.
+    """The pivot of S below which what is measured is compared with limits; 0 in open chains.
 
     What is measured inside a step is brought to the rows, to rounding: off the branch by eps/delta,
     with a rate of eps/delta^2 and so an acceleration of eps/delta^3.

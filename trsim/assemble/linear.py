@@ -66,8 +66,8 @@ def diagonal(s):
 
 @internal
 def hub_diagonal(s, k):
-    """The same of a hub whose first unknown is eliminated k-th: its mass with all that hangs on it,
-    of which what is held in common cancels."""
+    """first <- the diagonal of a hub whose first unknown is eliminated k-th: its mass and all that
+    hangs on it, of which what is held in common cancels."""
     if (s.row[s.column_start[k]] - s.m) % s.d == 0:
         for c in range(s.d):
             s.first[k + c] = -s.value[s.column_start[k + c]]

@@ -46,7 +46,7 @@ def rows(s, x, out, pair):
 
 @compiled(ON_BEAMS)
 def plain(s, x, out, pair):
-    """The same of J J^T."""
+    """What their slots add to J J^T from `pair` on."""
     node_plain_rows(s, pair, 1.0 / (s.size * s.size))
 
 

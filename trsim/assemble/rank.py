@@ -52,7 +52,7 @@ def plainly_independent(rows: Array) -> bool:
 
 
 def sparse_proof(rows: Array) -> bool:
-    """The same by L D L^T of rows rows^T along its zeros."""
+    """That proof by L D L^T of rows rows^T along its zeros."""
     m = len(rows)
     near = neighbours_of(rows)
     order = minimum_degree(near)
@@ -78,7 +78,7 @@ def sparse_proof(rows: Array) -> bool:
 
 
 def dense_proof(rows: Array) -> bool:
-    """The same, where it is cheaper not to look for zeros."""
+    """That proof by dense factors, where it is cheaper not to look for zeros."""
     try:
         inverse = np.linalg.inv(np.linalg.cholesky(rows @ rows.T))
     except np.linalg.LinAlgError:

@@ -207,7 +207,7 @@ def closest(model: Model, t: float, y: Array) -> tuple[Array, float]:
 def closed(
     model: Model, y: Array, rows: NDArray[np.int64], free: NDArray[np.bool_]
 ) -> tuple[Array, float]:
-    """The same onto some rows by motions along the rates `free`, the nearest in the units of
+    """A place brought onto some rows by motions along the rates `free`, the nearest in the units of
     `weights`: for rows that are judged, whatever the inertias."""
     scale = weights(model)[free]
 

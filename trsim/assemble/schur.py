@@ -134,7 +134,7 @@ def plain_rows(s):
 
 @equation
 def plain_hub(s, f, pair, turn):
-    """The same of a hub: as if it had the mass 1 and the inertia 1 / turn; `pair` moves on."""
+    """J J^T of a hub, as if it had the mass 1 and the inertia 1 / turn; `pair` moves on."""
     B, value, entry = s.B, s.value, s.entry
     for p in range(s.frame_start[f], s.frame_start[f + 1]):
         for c in range(s.d):

@@ -169,7 +169,7 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
 
 
 def lines(found: dict[str, Any]) -> list[str]:
-    """The same for a reader."""
+    """What was found, line by line for a reader."""
 
     def typed(key: str) -> str:
         return words(f"{name} ({kind})" for name, kind in found[key].items())

@@ -118,7 +118,7 @@ class Doing:
 def watched(
     blocks: Generator[Any, None, Any], answer: Answer, name: str, end: float
 ) -> Generator[Any, None, Any]:
-    """The same blocks and the same outcome, with progress shown in passing.
+    """The blocks and the outcome of a run, with progress shown in passing.
 
     Also the place where a run stops when a signal asked for it.
     """

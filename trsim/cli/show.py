@@ -74,7 +74,7 @@ def see_same(run: Any) -> None:
 
 
 def lines(run: Any, data: dict[str, Any]) -> list[str]:
-    """The same for a reader."""
+    """What a file holds, line by line for a reader."""
     a = run.attributes
     out = [f"{run.path}: {a['title']}" if a["title"] else str(run.path)]
     out.append(f"  status    {a['status']}" + (f": {a['reason']}" if a["reason"] else ""))

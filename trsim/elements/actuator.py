@@ -89,7 +89,7 @@ class Actuator(Spec):
         return self
 
     def at_rest(self):
-        """The same as one spring without damper, which would push a body at rest along with it."""
+        """One spring without the damper, which would push a body at rest along with it."""
         k = self.stiffness
         if self.supply is not None:
             k = k * self.supply.stiffness / (k + self.supply.stiffness)

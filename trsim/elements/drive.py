@@ -82,7 +82,7 @@ class Drive(Spec):
         return self
 
     def at_rest(self):
-        """The same without damper, which would push a joint at rest along with the motion."""
+        """The drive without its damper, which would push a joint at rest along with the motion."""
         if self.compliance is None:
             return self
         without = {"damping": None, "damping_ratio": None}

@@ -90,7 +90,7 @@ def centripetal(V, i, p):
 
 @helper
 def inward(V, i, p):
-    """The same where nothing leaves the plane."""
+    """omega x (omega x p) where nothing leaves the plane."""
     o2 = V[i, 5] * V[i, 5]
     return (-p[0] * o2, -p[1] * o2, 0.0)
 

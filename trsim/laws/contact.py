@@ -128,7 +128,7 @@ def ramped_damping(pen, pen_dot, k, c, ramp):
 
 @law
 def uncut(pen, pen_dot, k, c, ramp):
-    """The same before it is cut at zero, N or N*m; below zero penetration the spring alone."""
+    """Force of a stop or seat before it is cut at zero, N or N*m; where pen < 0 of the spring."""
     return k * pen + c * smoothstep(pen / ramp) * pen_dot
 
 

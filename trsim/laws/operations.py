@@ -77,7 +77,7 @@ def branch_ends(code, held):
 
 @law
 def edges_of(held):
-    """The same of exp."""
+    """Between which u a branch of exp lies."""
     if held == BELOW:
         return -inf, -NOTHING
     if held == INSIDE:

@@ -48,7 +48,7 @@ def figure(runs: list[Shown], found: list[tuple[Shown, Interpolated]]) -> Any:
 
 
 def points(shown: Shown, found: Interpolated) -> Points:
-    """The same as a section that was declared."""
+    """Interpolated points in the form of a section that was declared."""
     definition = {**found.definition, "method": INTERPOLATED}
     units = [shown.run.unit(definition[axis]) for axis in "xy"]
     return Points(definition, found.time, found.x, found.y, *units)

@@ -96,7 +96,7 @@ class Actions(Spec):
         return self
 
     def said(self) -> str:
-        """The same in words, for the table of events."""
+        """The event in words, for the table of events."""
         told = [f"set {name}" for name in self.set]
         for key in ("release", "lock", "unlock"):
             told += [f"{key} {name}" for name in getattr(self, key)]

@@ -109,7 +109,7 @@ def _typed(entry: dict[str, Any], word: str, section: str) -> None:
 
 
 def _part(value: Any) -> Any:
-    """The same with nothing required and null allowed for every key."""
+    """This schema with nothing required and null allowed for every key."""
     if isinstance(value, list):
         return [_part(item) for item in value]
     if not isinstance(value, dict):

@@ -83,7 +83,7 @@ def _copied(part: Path, unfinished: Path, final: Path, patience: float) -> dict[
 
 
 def copy(part: Path, unfinished: Path) -> dict[str, Any]:
-    """The same, in this process."""
+    """Find and copy, in this process."""
     with h5py.File(Plain(part), "r") as source, _made(unfinished) as file:
         salvage = Salvage(source, file)
         salvage.copy()

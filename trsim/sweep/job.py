@@ -91,7 +91,7 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
 def _told(
     blocks: Generator[Any, None, Any], begun: Callable[[], None]
 ) -> Generator[Any, None, Any]:
-    """The same blocks; the first is told."""
+    """The blocks of a run; that the first is there is told."""
     run = Blocks(blocks)
     for k, block in enumerate(run):
         if k == 0:

@@ -57,7 +57,7 @@ def of_matrices(R: Array) -> Array:
 
 
 def steady(q: Array) -> Array:
-    """The same turns (n, 4), each with the sign that is nearer to the one before."""
+    """These turns (n, 4), each with the sign that is nearer to the one before."""
     away = np.sum(q[1:] * q[:-1], axis=1) < 0.0
     signs = np.cumprod(np.concatenate([[1.0], np.where(away, -1.0, 1.0)]))
     return q * signs[:, None]

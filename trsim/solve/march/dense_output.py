@@ -102,7 +102,7 @@ def measure_in(s, r, b, interpolate, step, at, theta):
 
 @internal
 def measure_at(s, r, b, interpolate, step, at, theta):
-    """The same of the place itself."""
+    """All channels at the place itself, wherever the polynomial through others would be taken."""
     y, P, _, work, projected = step
     call_interpolate(interpolate, P, y, theta, b.y2)
     evaluate_inside(s, r, at, b.y2, b.rough[0], b.rough[1])

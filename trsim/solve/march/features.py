@@ -75,7 +75,7 @@ def next_instant(s, t, end):
 
 @compiled(types.float64(SCENE, f8, f8))
 def next_time(s, t, end):
-    """The same, for Python."""
+    """`next_instant`, for Python."""
     return next_instant(s, t, end)
 
 

@@ -264,7 +264,7 @@ def too_fast(s, r):
 
 @internal
 def full(s, r, b):
-    """Hardly room for what the next step may add."""
+    """Whether the next step may overflow a buffer."""
     contacts, watched = s.contact.size, s.watch.shape[0]
     return (
         r.count[ROWS] > b.rows.shape[0] // 2

@@ -68,13 +68,13 @@ def follow(s, r, h):
 
 @internal
 def weight_of(s, r, tolerance, c):
-    """The same of one entry."""
+    """1 / (tolerance times unit) of one entry of y."""
     return weighed(s, r.clock[LENGTH], r.clock[SPEED], tolerance, c)
 
 
 @internal
 def weighed(s, length, speed, tolerance, c):
-    """The same, with these units."""
+    """1 / (tolerance times unit) of one entry, with these units of length and speed."""
     kind, scale = s.scale_kind[c], s.scale[c]
     if kind == LENGTH_SCALE:
         return 1.0 / (tolerance * length)

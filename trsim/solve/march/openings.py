@@ -152,7 +152,7 @@ def opened(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 
 def apart(mechanism: Mechanism, r: Record) -> str:
-    """The same of a row that is open by more than is told; empty where none is."""
+    """`opened` of a row that is open by more than is told; empty where none is."""
     if r.clock[APART] == 0.0:
         return ""
     instance, axis, by = worst(mechanism, r)

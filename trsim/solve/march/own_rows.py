@@ -124,7 +124,7 @@ def planar_part(s, B, w, d):
 
 @internal
 def spatial_part(s, B, w, d):
-    """The same of the velocity and the body-axes angular velocity."""
+    """d <- w^T B of the velocity and the body-axes angular velocity."""
     for f in range(1, s.n_r):
         d0 = d1 = d2 = d3 = d4 = d5 = 0.0
         if s.hub[f] < 0 or moves(s, w, f):

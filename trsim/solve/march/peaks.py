@@ -172,7 +172,7 @@ def reached(s, r, b, ahead, c, enough, rises, falls):
 
 @internal
 def guessed(s, r, b, ahead, c, rises, falls):
-    """The same with a guess of the middle: plainly not, or it is to be looked at."""
+    """`reached` with a guess of the middle: plainly not, or it is to be looked at."""
     n = through(r, b, ahead, c, 1.0)
     if one_way(b, n):
         return False, False

@@ -197,7 +197,7 @@ def spread(s, r, b, c, sign, low, high, h):
 
 @internal
 def spread_of(s, r, b, kind, e, sign, low, high, h):
-    """The same of a quantity of a kind, between the frames and points of instance e."""
+    """`spread` of a quantity of a kind, between the frames and points of instance e."""
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:
@@ -372,7 +372,7 @@ def spread_at_stages(s, r, b, c, sign, h):
 
 @internal
 def spread_of_stages(s, r, b, kind, e, sign, h):
-    """The same of a quantity of a kind, between the frames and points of instance e."""
+    """`spread_at_stages` of a quantity of a kind, between frames and points of instance e."""
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:

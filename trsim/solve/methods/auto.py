@@ -88,7 +88,7 @@ def choose(s, r, b, h, event):
 
 @internal
 def calm(s, r, b, h, event):
-    """The same of DOP853 alone: it keeps its steps stable."""
+    """Keep the steps of DOP853 stable where it runs alone."""
     if event:
         forget(r)
     else:

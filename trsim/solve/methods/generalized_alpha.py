@@ -219,8 +219,8 @@ def halved(s, r, b, t, h):
 
 @internal
 def accelerated(s, r, b, setting, h, ratio, further):
-    """The same of accelerations, a 12th of the second difference of the derivative, in units of the
-    tolerance times the largest one met; at most `further` where a step does not resolve them.
+    """The error of accelerations, a 12th of the second difference of the derivative, in units of
+    the tolerance times the largest one met; at most `further` where a step does not resolve them.
 
     A fast vibration beside a slow motion may have the larger accelerations and forces with speeds
     that are small beside it: errors that are nothing of the speed are then much of these.  What is

@@ -70,7 +70,7 @@ def some(x):
 
 @internal
 def some_of(table):
-    """The same of a table."""
+    """Whether an entry of a table is not zero."""
     for k in range(table.shape[0]):  # noqa: SIM110 - a generator does not compile
         if some(table[k]):
             return True

@@ -68,7 +68,10 @@ def left_over(s, r, b, h, forces):
 
 @internal
 def residuals_index1(s, r, b, t, h):
-    """The same of the equations of motion with their own multipliers.  False: not finite."""
+    """What stages leave of the equations of motion with multipliers of their own.
+
+    False: not finite.
+    """
     K, n = b.K, r.y.size
     for i in range(3):
         for k in range(n):

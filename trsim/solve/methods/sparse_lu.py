@@ -70,7 +70,7 @@ def solve_sparse(p, lower, upper, inverse, x):
 
 @internal
 def factorise_sparse_complex(p, value, lower, upper, inverse, work):
-    """The same of value[0] + i value[1]; every table has a row for each part."""
+    """`factorise_sparse` of value[0] + i value[1]; every table has a row for each part."""
     small = 0
     start, column, lower_start, below = p.start, p.column, p.lower_start, p.lower
     for i in range(start.size - 1):

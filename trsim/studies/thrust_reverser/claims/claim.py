@@ -50,7 +50,7 @@ class Claim(NamedTuple):
 
 
 def over(word: str, *cases: tuple[str, str]) -> tuple[Series, ...]:
-    """The same number of several cases, (label, case)."""
+    """One number of several cases, (label, case)."""
     return tuple(Series(label, case, word) for label, case in cases)
 
 

@@ -22,7 +22,7 @@ NAMES = names(CASES)
 
 
 def variant(name: str) -> Cases:
-    """The same clearances in a variant of the mechanism."""
+    """These clearances in a variant of the mechanism."""
     return tuple((label, f"{case}_{name}") for label, case in CASES)
 
 

@@ -197,7 +197,7 @@ def told(figure: Any, axes: Any, runs: Sequence[Shown], most: int = 3) -> Any:
 
 
 def alike(rows: Sequence[Sequence[Any]], x: bool = True) -> None:
-    """The same scales along each row of panels."""
+    """One scale along each row of panels."""
     for row in rows:
         for axis in ("x", "y") if x else ("y",):
             limits = [getattr(a, f"get_{axis}lim")() for a in row]
