@@ -153,11 +153,12 @@ class FunctionSpec:
     units: tuple[str, str] = ("", "")  # of x and y as written; of a constant the second
 
     @property
-    def names(self) -> set[str]:
-        """What it depends on: t, sensors."""
-        if self.kind == "table":
-            return {self.of}
-        return expressions.names(self.node) if self.kind == "expression" else set()
+    def sensors(self) -> frozenset[str]:
+        """The sensors it depends on."""
+        found = {self.of} if self.kind == "table" else set()
+        if self.kind == "expression":
+            found = expressions.names(self.node)
+        return frozenset(found - {"t", "pi"})
 
 
 ENDS = ("hold", "extrapolate", "refuse")

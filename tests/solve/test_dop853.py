@@ -1,20 +1,44 @@
 """The parts of DOP853 that are written for speed, against the same written plainly."""
 
-from math import comb
+from math import comb, exp
 
 import numpy as np
 import pytest
 
-from trsim.elements.contract import compiled
+from trsim.assemble.equations import derivative
+from trsim.elements.contract import SCENE, compiled
+from trsim.elements.scene import scene
 from trsim.kernels import signatures as types
 from trsim.kernels.packed import A1, A2, f8, i8
+from trsim.solve.march import record as rec
+from trsim.solve.march.accelerations import share
 from trsim.solve.march.calls import FIELDS, INTERPOLATE_AT, SAMPLE_AT, method_row
+from trsim.solve.march.norm import weights
 from trsim.solve.methods import dop853
+from trsim.solve.outcome import settings
+
+from ..runs import run
+
+# along x a vibration of w, at the slow end of its period; along y a decay of RATE that carries v
+APART = """
+gravity: [0, 0]
+bodies: {{block: {{mass: 1, inertia: 1, velocity: [1, {v}]}}}}
+forces:
+  slow: {{type: bushing, bodies: [ground, block], at: [0, 0], stiffness: [{k}, 0, 0],
+         damping: [0, {rate}, 0]}}
+solver: {{end: 1, method: dop853, tolerance: 1e-6}}
+"""
+RATE, SLOW = 1000.0, 300.0
 
 
 @compiled(types.void(A2, A1, f8, i8, A1))
 def stage(K, y, h, s, out):
     dop853.stage(K, y, h, s, out)
+
+
+@compiled(types.void(SCENE, rec.RECORD, rec.BUFFERS, A1, f8))
+def weigh(s, r, b, setting, h):
+    weights(s, r, b, setting, h)
 
 
 @pytest.mark.parametrize("s", range(1, 16))
@@ -44,3 +68,28 @@ def test_a_row_of_methods_is_made_by_name():
     assert (row.size, row[INTERPOLATE_AT], row[SAMPLE_AT], row.sum()) == (len(FIELDS), 7, 3, 10)
     with pytest.raises(TypeError, match="no field"):
         method_row(interpolated=7)
+
+
+@pytest.mark.parametrize("v", [1e-3, 1e-2])
+@pytest.mark.parametrize("z", [5.0, 5.3, 5.5, 5.65, 5.8])
+def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z, v):
+    """A decay that carries little, in a step of z = RATE h beside a vibration that carries much.
+
+    The estimates of both orders see different motions there; each shrinks the other, and of the
+    true error of the decay's acceleration one part in a hundred was left.
+    """
+    ended = run(APART.format(v=v, k=SLOW**2, rate=RATE))
+    s, r = scene(ended.mechanism.model), ended.outcome.record
+    setting, h = settings(ended.scenario, ended.mechanism), z / RATE
+    b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
+    r.y[:] = ended.outcome.start.y
+    r.clock[rec.T], r.clock[rec.GAIN] = 0.0, SLOW
+    r.clock[rec.VIBRATION], r.clock[rec.DECAY] = SLOW**2, RATE
+    derivative(s, 0.0, r.y, r.yd)
+    weigh(s, r, b, setting, h)
+    b.K[0] = r.yd
+    estimate = dop853.step(s, r, b, setting, 0.0, h)
+    missed = RATE * abs(b.y1[s.n_q + 1] - v * exp(-z))
+    allowed = setting[rec.TOLERANCE] * SLOW * share.python(setting, h)
+    assert missed > 10.0 * allowed  # so it must be refused
+    assert estimate > 0.2 * missed / allowed

@@ -4,7 +4,9 @@ or whatever else its forces do work along."""
 import numpy as np
 import pytest
 
-from trsim.assemble.equations import evaluate, kinetic, stored_energy
+from trsim.assemble.equations import derivative, evaluate, kinetic, stored_energy
+from trsim.assemble.projection import project_velocities
+from trsim.assemble.reduce import jacobian
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import scene
 from trsim.kernels.packed import A1, f8
@@ -57,3 +59,23 @@ def test_what_projection_gives_is_the_change_of_energy(planar, joint, z):
         # its forces, some 30 N, work along a micrometre; what is left out is of second order
         assert given == pytest.approx(after - before, abs=1e-9)
     assert np.abs(changes).max() > 1e-5
+
+
+@pytest.mark.parametrize("torn", [1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("planar, joint, z", [("true", "revolute", 0), ("false", "spherical", 0.3)])
+def test_places_and_velocities_keep_to_the_rows(planar, joint, z, torn):
+    """Whether the last Newton step was a large one, or so small that it is not factorised again:
+    its square is left of places, and the velocities are those of the rows there."""
+    ended = run(PENDULUM.format(planar=planar, joint=joint, z=z))
+    model, r = ended.mechanism.model, ended.outcome.record
+    s, rng = scene(model), np.random.default_rng(2)
+    s.mem[:], s.branch[:] = r.mem, r.branch
+    b = rec.fresh_buffers(model, r.y.size, 16, 16, 16)
+    for _ in range(5):
+        y, yd, out = r.y.copy(), np.empty(r.y.size), np.empty(3)
+        y[: model.n_q] += torn * rng.normal(size=model.n_q)
+        landed(s, r, b, r.clock[rec.T], y, yd, out)
+        derivative(s, r.clock[rec.T], y, yd)
+        assert np.abs(s.V).max() > 0.5
+        assert project_velocities(s, y.copy()) < 1e-13 * np.abs(s.V).max()
+        assert np.abs(jacobian(model, r.clock[rec.T], y)[0]).max() < 1e-12 * model.size

@@ -281,7 +281,7 @@ class Addresses:
             code = functions.table(spec.x, spec.y, variable, spec.ends)
         else:
             self.timed = self.timed or "t" in names(spec.node)
-            used = names(spec.node) - {"t", "pi"}
+            used = spec.sensors
             # what is a polynomial between its corners has nothing short there
             self.sensed = self.sensed or (bool(used) and degree(spec.node) > LOW)
             indices = {name: self.known_sensor(name, time_only, path) for name in used}

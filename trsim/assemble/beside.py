@@ -86,7 +86,7 @@ def near(solver: Any, rows: Sequence[RowName], bars: Iterable[tuple[int, int]]) 
     A pivot is delta^2, and eps/delta^2 of an acceleration is rounding: further away it is below the
     tolerance.  bars: first frame and number of nodes of each.
     """
-    if not METHODS[solver.method].files or not closes_a_loop(rows, bars):
+    if not METHODS[solver.method].marches or not closes_a_loop(rows, bars):
         return 0.0
     return min(SMALL, NOISE / solver.tolerance)
 

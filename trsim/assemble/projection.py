@@ -101,6 +101,18 @@ def close_positions(s, t, y, near, steps):
 
 
 @equation
+def brought_back(s, y, first):
+    """y[first:] -= M^-1 J^T S^-1 x of rigid bodies, with the factors at hand; x, and then S^-1 x,
+    is in s.x."""
+    solve(s, s.x)
+    clear_table(s.free)
+    for f in range(1, s.n_r):
+        pull(s, f, s.x)
+        for a in range(s.d):
+            y[first + s.d * (f - 1) + a] += s.free[f, a]
+
+
+@equation
 def onto_rows(s, w):
     """w -= M^-1 J^T S^-1 J w: what the rows allow of rates of bodies, nearest in the metric of M.
 
@@ -113,12 +125,7 @@ def onto_rows(s, w):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for a in range(s.d):
                 s.x[s.slot_row[p]] += s.B[p, a] * w[s.d * (f - 1) + a]
-    solve(s, s.x)
-    clear_table(s.free)
-    for f in range(1, s.n_r):
-        pull(s, f, s.x)
-        for a in range(s.d):
-            w[s.d * (f - 1) + a] += s.free[f, a]
+    brought_back(s, w, 0)
 
 
 @compiled(void(SCENE, f8, A1))
@@ -150,13 +157,7 @@ def project_velocities(s, y):
     for k in range(s.m):
         s.x[k] = velocity_residual(s, k)
         worst = max(worst, abs(s.x[k]))
-    solve(s, s.x)
-    clear_table(s.free)
-    for f in range(1, s.n_r):
-        pull(s, f, s.x)
-        v = s.n_q + s.d * (f - 1)
-        for a in range(s.d):
-            y[v + a] += s.free[f, a]
+    brought_back(s, y, s.n_q)
     if s.n_r < s.n:
         call_beams(s.on_beams[PULL], s, s.x, s.x, 0)
         for k in range(s.n_v - s.v_node):

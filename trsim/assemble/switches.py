@@ -109,9 +109,9 @@ def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switche
     if not scenario.events and not limited:
         return Switches()
     method = scenario.solver.method
-    if not METHODS[method].files:
+    if not METHODS[method].marches:
         what = f"{method} knows no events: it keeps a state of its own"
-        hint = f"take one of {', '.join(name for name in METHODS if METHODS[name].files)}"
+        hint = f"take one of {', '.join(name for name in METHODS if METHODS[name].marches)}"
         raise ScenarioError(what, hint, ("solver", "method"))
     of = _Packing(scenario, at, instances)
     events = tuple(of.event(name, spec) for name, spec in scenario.events.items())

@@ -26,7 +26,7 @@ class Seconds(click.FloatRange):
 def interval(answer: Answer, source: str, scenario: Any, asked: float | None) -> float:
     """Seconds between two checkpoints, 0 for none; `asked` is what the command line says."""
     method = scenario.solver.method
-    if METHODS[method].files:
+    if METHODS[method].marches:
         return EVERY if asked is None else asked
     if asked:
         answer.say(f"{source}: no checkpoints: {method} keeps a state of its own")

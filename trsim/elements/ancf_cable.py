@@ -17,15 +17,7 @@ from typing import ClassVar
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
-from trsim.elements.contract import (
-    DAMPERS,
-    GRAVITY,
-    SPRINGS,
-    Channel,
-    Element,
-    Row,
-    kernel,
-)
+from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
 from trsim.elements.frames import cross, dot, helper
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector

@@ -54,7 +54,7 @@ def pack(name, spec, at):
     load = spec.torque if is_torque else spec.force
     f = at.function(load, "torque" if is_torque else "force")
     con, par = (i, frame, f, int(is_torque)), (*at.local(i, place), *n)
-    return Row(con, par, turns=is_torque, reads=frozenset(load.names - {"t", "pi"}))
+    return Row(con, par, turns=is_torque, reads=load.sensors)
 
 
 @kernel

@@ -183,7 +183,7 @@ class Turning(NamedTuple):
     held: tuple[int, ...] = ()  # frames whose turns it resists
 
 
-class Change(NamedTuple):
+class Looser(NamedTuple):
     """Rows of a joint that can go together, and what it is without them; see release.py."""
 
     rows: tuple[str, ...]
@@ -216,7 +216,7 @@ class Element:
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
-    changes: Callable[[Row], tuple[Change, ...]] = lambda _: ()  # what may be let go of a joint
+    changes: Callable[[Row], tuple[Looser, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
     meets: bool = False  # its bodies meet at the point `at`

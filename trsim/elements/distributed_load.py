@@ -57,7 +57,7 @@ def pack(name, spec, at):
     frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame")
     n = at.axes(frame, direction(spec.direction))
     f = at.function(spec.force_per_length, "force_per_length")
-    reads = frozenset(spec.force_per_length.names - {"t", "pi"})
+    reads = spec.force_per_length.sensors
     if beam is None:  # stiff for a start: all of it at the centre
         return Row((i, 1, frame, f), (bar.length, *n), reads=reads)
     return Row((beam.first, beam.nodes, frame, f), (beam.length, *n), reads=reads)

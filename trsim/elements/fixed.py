@@ -8,7 +8,7 @@ reaction and reaction_moment act on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Change, Element, Row, kernel
+from trsim.elements.contract import Element, Looser, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
 from trsim.elements.joint import TILTS, Joint, perpendicular, triads
 
@@ -49,7 +49,7 @@ def constraint(t, scene, a, b):
 
 def changes(_):
     ball = (*TILTS, "turn")
-    return Change(("turn",), "revolute", "revolute"), Change(ball, "spherical", "spherical")
+    return Looser(("turn",), "revolute", "revolute"), Looser(ball, "spherical", "spherical")
 
 
 ELEMENT = Element(

@@ -6,7 +6,7 @@ par[15:18], [18:21]             u and a in the axes of body j
 par[21]                         joint angle as drawn
 """
 
-from trsim.elements.contract import Change
+from trsim.elements.contract import Looser
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
@@ -36,15 +36,15 @@ def axial_row(row):
 def of_a_hinge(axial, ball, cross):
     """What a hinge becomes without some of its rows; ball, cross: types that hold what is left."""
     changes = (
-        Change(TILTS, ball or "free to tilt", ball),
-        *(Change((tilt,), "universal", cross) for tilt in TILTS),
+        Looser(TILTS, ball or "free to tilt", ball),
+        *(Looser((tilt,), "universal", cross) for tilt in TILTS),
     )
     if not axial:
         return changes
     return (
         *changes,
-        Change((axial,), "cylindrical"),
-        Change((axial, *TILTS), "a ball in a sleeve"),
+        Looser((axial,), "cylindrical"),
+        Looser((axial, *TILTS), "a ball in a sleeve"),
     )
 
 

@@ -9,7 +9,7 @@ The stroke is a_i . d, zero as drawn.  reaction acts on body j at its point.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Change, Element, Reach, Row, kernel
+from trsim.elements.contract import Element, Looser, Reach, Row, kernel
 from trsim.elements.frames import (
     along_row,
     arm,
@@ -83,8 +83,8 @@ ELEMENT = Element(
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
     changes=lambda _: (
-        Change(("turn",), "cylindrical"),
-        Change((*TILTS, "turn"), "a ball in a sleeve"),
+        Looser(("turn",), "cylindrical"),
+        Looser((*TILTS, "turn"), "a ball in a sleeve"),
     ),
     picture="slide",
     kernels={"constraint": constraint, "coordinate": coordinate},

@@ -9,7 +9,7 @@ mass.  reaction is the force on body j at the point, world axes; reaction_moment
 
 from typing import ClassVar
 
-from trsim.elements.contract import Change, Element, Reach, Row, kernel
+from trsim.elements.contract import Element, Looser, Reach, Row, kernel
 from trsim.elements.frames import arm, perpendicular_row, point_rows
 from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
@@ -75,7 +75,7 @@ ELEMENT = Element(
     reach=lambda _: Reach(tilts=True),
     rows=("x", "y", "z", "tilt"),
     meets=True,
-    changes=lambda _: (Change(("tilt",), "spherical", "spherical"),),
+    changes=lambda _: (Looser(("tilt",), "spherical", "spherical"),),
     picture="cross",
     kernels={"constraint": constraint},
     example="""

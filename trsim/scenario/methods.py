@@ -14,8 +14,8 @@ class Method(NamedTuple):
 
     order     of its steps, the highest: errors fall with step^order
     files     formulation -> modules of solve/methods, the explicit one first.  Without any an
-              integrator of scipy makes the steps, with a state of its own: no checkpoints, no user
-              events, and nobody looks at its trial steps
+              integrator of scipy makes the steps (`marches` is False), with a state of its own: no
+              checkpoints, no user events, and nobody looks at its trial steps
     adaptive  chooses its steps by the tolerance, and locates touches unless told otherwise;
               else steps are fixed, and touches located only if told
     explicit  begins with explicit steps: no Jacobian, and where it chooses them they are held to
@@ -33,6 +33,11 @@ class Method(NamedTuple):
     def control(self) -> str:
         """The key of `solver` that decides how exact it is."""
         return "tolerance" if self.adaptive else "step"
+
+    @property
+    def marches(self) -> bool:
+        """Whether its steps are made here, and not by scipy."""
+        return bool(self.files)
 
     @property
     def chooses(self) -> bool:

@@ -191,7 +191,7 @@ def most_points(mechanism: Mechanism, setting: Array) -> int:
 
 
 def first_step(scenario: Any, record: Record) -> float:
-    """A first step from the size of the derivative, a third of the natural time scale."""
+    """The first step of a run, s: as given, or from the units of the error norm."""
     if scenario.solver.first_step:
         return float(scenario.solver.first_step)
     length, speed = record.clock[rec.LENGTH], max(record.clock[rec.SPEED], record.clock[rec.MOST])
@@ -199,7 +199,8 @@ def first_step(scenario: Any, record: Record) -> float:
 
 
 def step_of(length: float, speed: float, tolerance: float, end: float) -> float:
-    """A first step (s) in a run of `end`, by the units of the error norm (m, m/s)."""
+    """A first step in a run of `end`, s: 0.3 l / v tolerance^(1/8), by the units of the error norm
+    l (m) and v (m/s); steps of smooth motion become ten times as long and more."""
     return float(min(0.3 * (length / max(speed, 1e-300)) * tolerance ** (1 / 8), end))
 
 

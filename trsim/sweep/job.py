@@ -84,7 +84,7 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
         return {}
 
     blocks = _told(simulate(scenario, mechanism, kept.state if kept else None), begun)
-    every = CHECKPOINT if METHODS[scenario.solver.method].files else 0.0
+    every = CHECKPOINT if METHODS[scenario.solver.method].marches else 0.0
     return write(target, scenario, mechanism, blocks, task["command"], every, kept, closing)
 
 

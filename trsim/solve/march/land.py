@@ -1,6 +1,6 @@
 """The end of a trial step: brought to the constraints, evaluated, its work booked."""
 
-from math import inf, nan
+from math import nan
 
 from trsim.assemble.equations import constraints, corners, evaluate, gaps, kinetic, poses
 from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
@@ -51,7 +51,8 @@ def land(s, r, b, t, y, yd):
                 first = worst
             if not worst > (PHI_SMALL if s.status[0] == SOUND else CLOSED) * s.size:
                 break
-            if worst <= PHI_SQUARED * s.size and s.status[0] == SOUND:
+            near = worst <= PHI_SQUARED * s.size and s.status[0] == SOUND
+            if near and smallest_pivot(s) > DOUBTFUL:  # velocities feel little of the factors
                 worst = still_open(s, t, y)
                 at_hand = worst <= PHI_BELOW * s.size
                 if at_hand:
@@ -97,12 +98,7 @@ def land(s, r, b, t, y, yd):
 
 @internal
 def still_open(s, t, y):
-    """The largest |Phi| at y, whose rows replace those of the last Newton step; its factors stay.
-
-    inf where pivots are so small that velocities feel by what factors are off.
-    """
-    if smallest_pivot(s) <= DOUBTFUL:
-        return inf
+    """The largest |Phi| at y, whose rows take the place of the last ones; the factors stay."""
     poses(s, y)
     constraints(s, t)
     worst = 0.0

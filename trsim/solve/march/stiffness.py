@@ -10,6 +10,10 @@ accelerations,
 times as much.  d and u are those of two vector iterations, d <- a(q + d, v) - a(q, v), which go on
 along the run: FIRST evaluations for each before the first step, then one for one or the other after
 OFTEN steps, twice as many, and so on up to SELDOM; after OFTEN again where it has risen.
+
+Where projection holds the rows, d and u are kept to what they allow (of rigid bodies): near places
+where rows depend on each other, velocities off the rows change accelerations by any amount, and
+that is no damping.
 """
 
 from math import sqrt
