@@ -8,6 +8,7 @@ bushings   turned to half a turn, beyond which theirs is the one from the other 
 shafts     that moved too slowly for the friction of their gears to be whole
 meshes     of bars bent further than their elements follow                           mesh_error.py
 turns      too fast for a fixed step
+sizes      of bodies so far apart that the smallest may turn as it likes                sizes.py
 waves      of bars that steps were too long to follow: no fault, but to be known
 rounding   steps were judged by what rounding lets be seen                       march/rounding.py
 vibrations are too small for the tolerance, but not their accelerations                   faint.py
@@ -40,6 +41,7 @@ from trsim.solve.diagnose.chance import of_extremes
 from trsim.solve.diagnose.crossed import of_branches
 from trsim.solve.diagnose.faint import of_vibrations
 from trsim.solve.diagnose.mesh_error import of_meshes
+from trsim.solve.diagnose.sizes import of_sizes
 from trsim.solve.diagnose.skipped import unread
 from trsim.solve.diagnose.strained import of_bars
 from trsim.solve.diagnose.swings import of_sections
@@ -82,6 +84,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_meshes(scenario, mechanism, outcome.bent),
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_turns(scenario, outcome),
+        *of_sizes(scenario, mechanism, outcome),
         *of_waves(mechanism, outcome),
         *of_rounding(scenario, mechanism, outcome),
         *of_vibrations(scenario, mechanism, outcome),

@@ -28,6 +28,8 @@ PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position
 NEWTON = 8
 CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
 ASTRAY = 0.1  # of the fastest rate: by as much velocities of another branch are others
+INTERPOLATED = 10.0  # tolerances: what a state inside a step is off by
+UNKNOWN = 1e-15  # of the diagonal: rounding of a pivot
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
@@ -136,13 +138,33 @@ def evaluate_inside(s, r, t, y, yd, kept):
 
 
 @internal
+def evaluate_stage(s, t, y, yd):
+    """y' at a stage of the dense output alone, on the rows where these nearly depend on each other.
+
+    No error estimate sees such a stage, and what it is off the rows by, less than the tolerance, is
+    felt 1/d^2 times in accelerations.
+    """
+    evaluate(s, t, y, yd)
+    if s.near_rows > 0.0 and s.stabilisation != NONE and smallest_pivot(s) < DOUBTFUL:
+        close_positions(s, t, y, CLOSED * s.size, NEWTON)
+        poses_and_rows(s, t, y)
+        project_velocities(s, y)
+        evaluate_to_measure(s, t, y, yd)
+
+
+@internal
 def elsewhere(s, y, kept):
-    """Whether velocities were changed by what no interpolation is off by."""
+    """Whether velocities were changed by what no interpolation is off by.
+
+    Of a pivot no more is left than rounding: where that is felt more than interpolation, what it is
+    off by is what velocities may change by.
+    """
+    felt = INTERPOLATED * s.tolerance * smallest_pivot(s) < UNKNOWN
     most, change = 0.0, 0.0
     for k in range(s.n_q, s.n_q + s.n_v):
         by = s.size if (k - s.n_q) % s.d < s.d // 2 + s.d % 2 and k - s.n_q < s.v_node else 1.0
         most, change = max(most, abs(kept[k]) / by), max(change, abs(y[k] - kept[k]) / by)
-    return change > ASTRAY * most
+    return change > (INTERPOLATED * s.tolerance if felt else ASTRAY) * most
 
 
 @internal

@@ -25,6 +25,7 @@ from trsim.solve.march.accelerations import (
     unknown,
 )
 from trsim.solve.march.calls import CONTROL, DENSE, INTERPOLATE, STEP
+from trsim.solve.march.land import evaluate_stage
 from trsim.solve.march.record import DECAY, GAIN, LENGTH, MET, SPEED, STEP_ERROR, VIBRATION
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import dop853_tableau as tableau
@@ -195,7 +196,7 @@ def dense(scene, K, t, y, h, y1, P):
     scratch = P[0]
     for s in range(13, 16):
         stage(K, y, h, s, scratch)
-        evaluate(scene, t + C[s] * h, scratch, K[s])
+        evaluate_stage(scene, t + C[s] * h, scratch, K[s])
     for c in range(y.size):
         delta = y1[c] - y[c]
         P[0, c] = delta

@@ -340,8 +340,9 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     force = float(np.max(np.abs(w.F[:, :3]), initial=0.0))
     force = max(force, largest_reaction(w))
     end = max(scenario.solver.end, 1e-300)
-    moving = max(of_frames(w.V, reach), CREEP * reach / end)
-    speed = max(of_frames(w.V, reach), np.sqrt(of_frames(w.A, reach) * reach), reach / end)
+    fastest, hardest = (fastest_of(model, x) for x in (y, yd))
+    moving = max(fastest, CREEP * reach / end)
+    speed = max(fastest, np.sqrt(hardest * reach), reach / end)
     depth = []
     for K, n, mass, c, slowest, arm, _ in model.contact_par:
         approach = min(max(slowest, 1e-3), speed) / arm
@@ -350,7 +351,8 @@ def units(model: Model, y: Array, mem: Array, scenario: Any) -> tuple[float, flo
     return reach, min(moving, speed), speed, np.array(depth)
 
 
-def of_frames(rates: Array, reach: float) -> float:
-    """The largest of velocities (or accelerations), of turns at this arm."""
-    along = float(np.linalg.norm(rates[:, :3], axis=1).max(initial=0.0))
-    return max(along, float(np.abs(rates[:, 3:]).max(initial=0.0)) * reach)
+def fastest_of(model: Model, y: Array) -> float:
+    """The largest of the rates in y, or in y', of turns at the arm of what turns: that of another
+    body is no measure of it."""
+    rates = slice(model.n_q, model.n_q + model.n_v)
+    return float(np.max(model.scale[rates] * np.abs(y[rates]), initial=0.0))
