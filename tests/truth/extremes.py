@@ -22,7 +22,7 @@ PLACES = 33
 UNSURE = 3.0  # times the difference of both polynomials
 PLAIN = 0.1  # of what is allowed: so much beyond an end of a step needs no polynomial
 KNOWN = 1e-5  # of the range: how well polynomials know what no end of a step shows
-CLOSE = 0.01  # of the range: lower tops are no extremes
+CLOSE = 0.3  # of the range: between ends a fiftieth of a turn apart no top is higher by more
 CHANCE = "are chance"
 
 

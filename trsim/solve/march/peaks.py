@@ -120,7 +120,8 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
     b.found[0], b.laid[0] = 0.0, NOT_LAID
     inner = max(ENDS - r.count[SAMPLES], 1)
     last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
-    if (r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t) or (ahead == 0 and last_one):
+    turns = ahead == 0 or h * r.count[STEPS] >= TINY * t  # an event cuts steps of any length
+    if (r.count[SAMPLES] <= YOUNG and turns) or (ahead == 0 and last_one):
         if ready == 0 and not last_one:
             guess(s, r, b, method, h, inner, projected, earlier)
         else:
