@@ -8,7 +8,7 @@ import numpy as np
 
 from trsim.assemble.cornered import Cornered, cornered
 from trsim.assemble.dense import product
-from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
+from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
 from trsim.elements.joint import perpendicular
@@ -16,6 +16,7 @@ from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
 from trsim.frame import Frame
 from trsim.laws import functions
+from trsim.scenario.slender import ends
 from trsim.units import fits
 
 
@@ -59,7 +60,7 @@ class Addresses:
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
-        rigid = {n: spec for n, spec in self.members.items() if spec.type != "ancf_cable"}
+        rigid = {n: spec for n, spec in self.members.items() if spec.flexible is None}
         self.frames = {"ground": 0} | {name: f for f, name in enumerate(rigid, start=1)}
         self.n_rigid = len(self.frames)
         self.beams: dict[str, Beam] = beams(self.members, self.n_rigid)
@@ -109,9 +110,9 @@ class Addresses:
     def bar(self, name: str) -> Any:
         """The spec of a flexible bar, also where it is stiff for a start; None of others."""
         spec = self.scenario.bodies.get(name)
-        if spec is None or (spec.type == "rigid_body" and spec.flexible is None):
+        if spec is None or spec.flexible is None:
             return None
-        return spec if spec.type == "ancf_cable" else cable(name, spec, self.scenario)
+        return spec.bar(*ends(self.scenario, name))
 
     def is_node(self, i: int) -> bool:
         """Whether a frame is a node of a flexible bar."""
@@ -159,8 +160,7 @@ class Addresses:
     def mass(self, i: int) -> float:
         if i == 0:
             return float("inf")
-        spec = self.members[self.owners[i]]
-        return float(spec.per_length * spec.length if self.is_node(i) else spec.mass)
+        return float(self.members[self.owners[i]].whole_mass)
 
     def inertia_about(self, i: int, axis: tuple[float, ...], through: tuple[float, ...]) -> float:
         """Moment of inertia of one body about an axis (world, as drawn): a . I a + m d^2.
@@ -168,18 +168,16 @@ class Addresses:
         through: a point of the axis, in the axes of frame i from its origin; d is the distance of
         the body's centre of mass from the axis.
         """
-        from trsim.elements.rigid_body import tensor
-
-        a, bar = np.array(axis), self.members[self.owners[i]]
+        a, body = np.array(axis), self.members[self.owners[i]]
         place = self.at_start[i] + product(self.rotation[i], np.array(through))
         if self.is_node(i):  # a slender bar
             across = np.linalg.norm(np.cross(self.rotation[i][:, 0], a))
-            own = bar.per_length * bar.length**3 / 12.0 * across**2
+            own = body.per_length * body.length**3 / 12.0 * across**2
             ends = self.beams[self.owners[i]].places
             centre = 0.5 * (ends[0] + ends[-1])
         else:
             inside, centre = np.array(self.axes(i, axis)), self.at_start[i]
-            own = inside @ np.array(tensor(bar.inertia)[0]).reshape(3, 3) @ inside
+            own = inside @ np.array(body.tensor[0]).reshape(3, 3) @ inside
         away = np.cross(place - centre, a)
         return float(own + self.mass(i) * (away @ away))
 

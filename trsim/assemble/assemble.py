@@ -196,12 +196,10 @@ def pack(  # type: ignore[no-untyped-def]
             if other and (spec.clearance == 0.0 or name in ideal):
                 key = other
             wanted.append((key, section, name, spec))
-    if any(scenario.gravity):
-        gravity = elements.load("gravity")
-        for name, spec in bodies.items():
-            if spec.type == "rigid_body" and spec.mass > 0.0:  # a flexible bar has its own
-                field = gravity.spec(body=name, field=scenario.gravity)
-                wanted.append(("gravity", "", name, field))
+    for key, section in elements.ELEMENTS.items():
+        if not section:  # made from a key of the scenario
+            made = elements.load(key).of_scenario(scenario, bodies)
+            wanted += [(key, section, name, spec) for name, spec in made]
     order = list(elements.ELEMENTS)
     wanted.sort(key=lambda item: order.index(item[0]))
     kinds = {key: elements.load(key) for key, *_ in wanted}

@@ -18,6 +18,7 @@ class Column(NamedTuple):
     wanted: bool
     for_points: bool = False  # measured only because a section or a portrait shows it
     least: float = -inf  # what its definition alone keeps it above, or at
+    turn: bool = False  # one about any axis, whose largest angle every run is judged by
 
 
 class Section(NamedTuple):

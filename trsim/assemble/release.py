@@ -40,6 +40,7 @@ class Change(NamedTuple):
     rows: tuple[int, ...]
     becomes: str  # in words
     type: str | None  # the joint type of a scenario, where there is one
+    dear: bool = False  # taken only where nothing else is as good
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,7 @@ def changes(instance: Instance, stress: Stress, used: Any) -> Iterator[Change]:
     for change in instance.element.changes(instance.row):
         if all(axis in own for axis in change.rows) and len(change.rows) < len(own):
             gone = tuple(own[axis] for axis in change.rows)
-            yield Change(instance.name, gone, change.becomes, change.type)
+            yield Change(instance.name, gone, change.becomes, change.type, change.dear)
 
 
 def choices(options: list[list[Change]], k: int) -> Iterator[tuple[Change, ...]]:
@@ -143,7 +144,7 @@ def price(
         sum(not rows[row].rotation for row in gone),
         sum(change.type is None for change in chosen),
         len(chosen),
-        sum(change.becomes == "universal" for change in chosen),
+        sum(change.dear for change in chosen),
         sum(0 in rows[change.rows[0]].frames for change in chosen),
     )
 

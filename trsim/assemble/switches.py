@@ -87,14 +87,18 @@ def lock_name(joint: str) -> str:
 
 def locks(scenario: Any) -> list[tuple[str, Any]]:
     """A drive for every joint that some event locks."""
-    drive: Any = elements.load("drive").spec
     found = {}
     for name, event in scenario.events.items():
         for k, joint in enumerate(event.do.lock):
             check(joint, scenario.joints, "joint", (SECTION, name, "do", "lock", k))
-            still = {"joint": joint, "velocity": 0.0}
-            found[lock_name(joint)] = drive.model_validate(still, context={"parameters": {}})
+            found[lock_name(joint)] = hold(joint)
     return list(found.items())
+
+
+def hold(joint: str) -> Any:
+    """The spec of a drive that keeps a joint where it is."""
+    spec: Any = elements.load(elements.DEFAULT["drives"]).spec
+    return spec.model_validate({"joint": joint, "velocity": 0.0}, context={"parameters": {}})
 
 
 def check(name: str, there: Any, kind: str, path: tuple) -> None:

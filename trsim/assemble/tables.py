@@ -86,8 +86,6 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
 
     Of a node of a beam its share of them, lumped: for what is judged, not solved, by them.
     """
-    from trsim.elements.rigid_body import tensor
-
     n = len(at.frames)
     mass, inertia = np.zeros(n), np.zeros((n, 9))
     mass_inverse, inertia_inverse = np.zeros(n), np.zeros((n, 9))
@@ -100,7 +98,7 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
     for f, name in enumerate(at.owners[1 : at.n_rigid], start=1):
         spec = at.members[name]
         mass[f] = spec.mass
-        inertia[f], complete = tensor(spec.inertia)
+        inertia[f], complete = spec.tensor
         known = inertia[f].reshape(3, 3)
         if spec.mass == 0.0:
             raise ModelError("a body without mass cannot be solved for", "give it a mass",

@@ -32,6 +32,11 @@ ELEMENTS = {
     "sync_shaft": "forces",
 }
 
+# word -> the key that makes it another element, and which
+BECOMES = {"revolute": ("clearance", "clearance_joint")}
+# section -> what an entry is that names no type
+DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}
+
 
 def load(word: str) -> "Element":
     """Import one element.  Raises ScenarioError for a word that is none."""

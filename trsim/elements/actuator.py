@@ -253,7 +253,7 @@ def measure(t, scene, a, b):
 
 
 CHANNELS = (
-    Channel("force", "N", "sign times the thrust along its line"),
+    Channel("force", "N", "sign times the thrust along its line", load="force"),
     Channel("reaction", "N", "force on the second body, world axes", 3),
     Channel("stroke", "m", "how much longer it is than drawn"),
     Channel("stroke_rate", "m/s", "its rate"),

@@ -14,11 +14,13 @@ body are those of its chord, from the first node to the last.
 from math import sqrt
 from typing import ClassVar
 
+import numpy as np
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
 from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
 from trsim.elements.frames import cross, dot, helper
+from trsim.elements.rigid_body import RigidBody
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
 from trsim.kernels.vectors import clear_table
@@ -26,6 +28,8 @@ from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
 from trsim.laws.cable_stretch import STRAINS, STRETCHINGS
 from trsim.laws.cable_tangent import add_damping, add_stiffness
+
+SLENDER = 1e-6  # of its inertia across: what a bar without width has about its own line
 
 
 class AncfCable(Cable):
@@ -64,6 +68,43 @@ class AncfCable(Cable):
         assert self.density is not None  # noqa: S101
         return self.density * self.numbers[0]
 
+    @property
+    def flexible(self):
+        return self
+
+    @property
+    def whole_mass(self):
+        return self.per_length * self.length
+
+    @property
+    def centre(self):
+        return tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True))
+
+    @property
+    def inertia_z(self):
+        return self.whole_mass * self.length**2 / 12.0
+
+    @property
+    def tangent(self):
+        """Unit vector from start to end."""
+        return (np.array(self.end) - np.array(self.start)) / self.length
+
+    def bar(self, start, end):
+        return self
+
+    def as_rigid(self):
+        """A rigid body of the same mass, slender; its axes are the world's."""
+        t = self.tangent
+        across = self.per_length * self.length**3 / 12.0
+        I = across * ((1.0 + SLENDER) * np.eye(3) - np.outer(t, t))
+        return RigidBody.model_construct(
+            mass=self.whole_mass,
+            inertia=(I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]),
+            at=self.centre,
+            velocity=self.velocity,
+            angular_velocity=self.angular_velocity,
+        )
+
 
 # con: where; par: how much
 FIRST, NODES, STRAIN, CURVATURE, STRETCHING, ELEMENT_0 = 0, 1, 2, 3, 4, 5
@@ -88,6 +129,11 @@ def pack(name, spec, at):
         (beam.length, E * area, E * moment, spec.damping, spec.per_length, *field),
         channels=channels(beam.nodes),
     )
+
+
+def own_nodes(row):
+    """The frames of its nodes."""
+    return frozenset(range(row.con[FIRST], row.con[FIRST] + row.con[NODES]))
 
 
 def channels(nodes):
@@ -288,6 +334,9 @@ ELEMENT = Element(
     spec=AncfCable,
     pack=pack,
     channels=channels(5),
+    acts_on=own_nodes,
+    elastic=(STIFFNESS, BENDING),
+    viscous=(BETA,),
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:

@@ -111,7 +111,7 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     channels=(
-        Channel("magnitude", "drive", "the force or torque along its direction"),
+        Channel("magnitude", "drive", "the force or torque along its direction", load="load"),
         Channel("load", "drive", "its components, world axes", 3),
     ),
     turning=turning,

@@ -13,6 +13,7 @@ from the other side, and the run says so (doubts.py).  A rail is a bushing witho
 damping along it.
 """
 
+from math import degrees, pi
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
@@ -22,6 +23,7 @@ from trsim.elements.contract import (
     SPRINGS,
     Channel,
     Element,
+    Held,
     Reach,
     Row,
     Turning,
@@ -46,6 +48,7 @@ Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
 NONE = (0.0, 0.0, 0.0)
 TURN = "rotation_vector"
+NEXT_TO_HALF = 0.1  # rad: so near to half a turn it is told
 STIFFNESS, DAMPING, ROTATIONAL = 24, 27, 30  # par, after the arms and the axes in both bodies
 
 
@@ -72,24 +75,24 @@ class Bushing(Spec):
     rotational_stiffness: Annotated[Three, Unit("N*m/rad")] = NONE
     rotational_damping: Annotated[Three, Unit("N*m*s/rad")] = NONE
 
-
-def axes(spec):
-    """The three unit vectors along which stiffnesses are meant, world axes as drawn."""
-    for key in ("x_axis", "y_axis"):
-        if not any(getattr(spec, key)):
-            raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
-    x, y = direction(spec.x_axis), direction(spec.y_axis)
-    z = across(x, y)
-    if max(map(abs, z)) < 1e-6:
-        what = "`y_axis` has the direction of `x_axis`"
-        raise ScenarioError(what, "give the one across it, for example [0, 0, 1]", ("y_axis",))
-    z = direction(z)
-    return x, across(z, x), z
+    @property
+    def axes(self):
+        """The three unit vectors along which stiffnesses are meant, world axes as drawn."""
+        for key in ("x_axis", "y_axis"):
+            if not any(getattr(self, key)):
+                raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
+        x, y = direction(self.x_axis), direction(self.y_axis)
+        z = across(x, y)
+        if max(map(abs, z)) < 1e-6:
+            what = "`y_axis` has the direction of `x_axis`"
+            raise ScenarioError(what, "give the one across it, for example [0, 0, 1]", ("y_axis",))
+        z = direction(z)
+        return x, across(z, x), z
 
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    own = axes(spec)
+    own = spec.axes
     turning = any((*spec.rotational_stiffness, *spec.rotational_damping))
     return Row(
         (i, j, -1, int(turning)),
@@ -192,6 +195,24 @@ def turns_against(row):
     return any(row.par[ROTATIONAL : ROTATIONAL + 3])
 
 
+def doubts(name, spec, largest):
+    """A moment that jumps, or is about to: turns in space cannot be counted."""
+    if not any(spec.rotational_stiffness):
+        return
+    angle, when = largest(f"{name}.{TURN}")
+    if angle > pi - NEXT_TO_HALF:
+        yield (
+            f"forces.{name}: turned by {degrees(angle):.4g} deg at {when:.4g} s; from "
+            "half a turn on its moment is that of the turn from the other side, since turns "
+            "about any axis cannot be counted: a torsion_spring on a hinge counts them"
+        )
+
+
+def holds(row):
+    stiff = (row.par[n : n + 3] for n in (STIFFNESS, ROTATIONAL))
+    return Held(row.par[6:15], row.par[3:6], *stiff)
+
+
 def reach(row):
     """Its matrices of stiffness and damping; each acts in the plane where it couples no z to it."""
     i, j = row.con[:2]
@@ -222,11 +243,13 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     judged=turns_against,
+    doubts=doubts,
+    holds=holds,
     channels=(
         Channel("force", "N", "on the second body at its point, world axes", 3),
         Channel("moment", "N*m", "on the second body, world axes", 3),
         Channel("displacement", "m", "of the second body's point, in the axes of the first", 3),
-        Channel(TURN, "rad", "of the second body, in the same axes", 3),
+        Channel(TURN, "rad", "of the second body, in the same axes", 3, turn=True),
     ),
     turning=turning,
     picture="block",

@@ -53,17 +53,12 @@ from trsim.elements.revolute import Revolute, coordinate
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
 from trsim.laws.contact import (
-    cylinder_stiffness,
-    damping_factor,
     elastic,
-    hertz_stiffness,
     normal_force,
     stored,
 )
 from trsim.laws.friction import (
     CODES,
-    N_PARAMETERS,
-    PARAMETERS,
     beyond,
     branch_of,
     friction_force,
@@ -92,37 +87,6 @@ MU, V0, V1 = FRICTION_PAR, FRICTION_PAR + 1, FRICTION_PAR + 2  # of modified_cou
 CORNERED = CODES["modified_coulomb"]
 
 
-def normal_numbers(law, c):
-    """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch."""
-    E_j = law.journal_youngs_modulus or law.youngs_modulus
-    nu_j = law.poisson if law.journal_poisson is None else law.journal_poisson
-    chi = damping_factor(law.normal, law.restitution)
-    if isinstance(law.stiffness, float):
-        return law.stiffness, law.exponent, 0, chi, law.stiffness
-    if law.stiffness == "cylinder":
-        K = cylinder_stiffness(law.width, law.youngs_modulus, law.poisson, E_j, nu_j)
-        return K, 1.5, 1, chi, K / c**0.5
-    R_i = law.bearing_radius
-    K = hertz_stiffness(R_i, R_i - c, law.youngs_modulus, law.poisson, E_j, nu_j, law.stiffness)
-    return K, law.exponent, 0, chi, K
-
-
-def friction_numbers(friction):
-    """Code of the friction law and its N_PARAMETERS numbers."""
-    words = {
-        "mu": friction.coefficient,
-        "mu_k": friction.coefficient,
-        "mu_s": friction.static_coefficient or friction.coefficient,
-        "v0": friction.v0,
-        "v1": friction.v1,
-        "v_s": friction.stribeck_speed,
-        "sigma0": friction.bristle_stiffness,
-        "sigma1": friction.bristle_damping,
-    }
-    numbers = [float(words[name]) for name in PARAMETERS[friction.law]]
-    return CODES[friction.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
-
-
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     law = at.contact_law(spec.contact)
@@ -139,8 +103,8 @@ def pack(name, spec, at):
             "the usual size is some tenths of a millimetre",
             ("clearance",),
         )
-    K, exponent, form, chi, light = normal_numbers(law, spec.clearance)
-    code, friction = friction_numbers(law.friction)
+    K, exponent, form, chi, light = law.normal_numbers(spec.clearance)
+    code, friction = law.friction.numbers
     sticks = law.friction.law == "sticking"
     # w settles at +-mu / sigma0: that is its size in the error norm
     state = at.state(friction[1] / friction[3]) if sticks else -1
@@ -160,7 +124,10 @@ def pack(name, spec, at):
     ramp = law.friction.law == "modified_coulomb"
     slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
     jump = FRICTION_PAR if law.friction.law == "coulomb" else -1
-    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump)
+    contact = Contact(
+        light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump,
+        law.bearing_radius,
+    )  # fmt: skip
     return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
 
 
@@ -359,7 +326,13 @@ ELEMENT = Element(
     channels=(
         Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
         Channel("friction_force", "N", "on the journal, along axis x normal"),
-        Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
+        Channel(
+            "contact_force",
+            "N",
+            "resultant of normal force and friction",
+            least=0.0,
+            load="contact force",
+        ),
         Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
         Channel("penetration_rate", "m/s", "positive while approaching"),
         Channel(

@@ -26,14 +26,27 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
     measure     out[wanted[e] + c] = channel c; wanted[e] < 0 when nobody asked.  May also read
                 the accelerations A = V' and the multipliers lam
 
+A spec of the section `bodies` says of itself
+
+    flexible          how it bends, a Cable; None where it is rigid
+    whole_mass        kg
+    centre            of mass, as drawn
+    inertia_z         about the z axis through it, kg*m^2; of a bar as if it lay across
+    bar(start, end)   where it is flexible: the bar that is solved, which lies between these places
+                      unless it has its own; `as_rigid()` is that bar as a rigid body
+    tensor            where it is rigid: its inertia, row by row, and whether all of it is known
+
+and one of a force that pushes back from a limit, `pressed(joints)`: the two bodies it does so with,
+and the joint along whose coordinate.
+
 The fields are listed in scene.py.  Body 0 is the ground: X[0] the identity, V[0] zero.  No kernel
 has a branch for it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
@@ -85,6 +98,8 @@ class Channel(NamedTuple):
     meaning: str
     size: int = 1
     least: float = -inf  # what its definition alone keeps it above, or at
+    load: str = ""  # what it is called in tables of loads
+    turn: bool = False  # one about any axis, whose largest angle every run is judged by
 
     def unit_on(self, own: str) -> str:
         """The unit where it depends on what it acts along, a coordinate in `own`: rad or m."""
@@ -110,6 +125,7 @@ class Contact(NamedTuple):
     state: int = -1  # entry of z that a touch sets to zero
     slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
+    radius: float = 0.0  # m, of the bearing of a journal
 
 
 class Limit(NamedTuple):
@@ -189,6 +205,16 @@ class Looser(NamedTuple):
     rows: tuple[str, ...]
     becomes: str  # in words
     type: str | None = None  # the joint type of a scenario, where there is one
+    dear: bool = False  # taken only where nothing else is as good
+
+
+class Held(NamedTuple):
+    """Directions in which springs hold two bodies, though not rigidly."""
+
+    axes: tuple[float, ...]  # three, in the axes of the first body
+    place: tuple[float, ...]  # in the axes of the second one
+    along: tuple[float, ...]  # stiffness along each of the three there
+    about: tuple[float, ...]  # and about each
 
 
 def between_points(row: Row) -> Turning:
@@ -210,6 +236,8 @@ class Element:
     section: str  # where it stands in the scenario
     spec: type
     pack: Callable  # (name, spec, at) -> Row
+    # (scenario, bodies) -> (name, spec) of each that a key of the scenario makes; of no section
+    of_scenario: Callable[[Any, dict], Iterable[tuple[str, Any]]] = lambda *_: ()
     rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
     coordinate: str = ""  # what a joint, or a sensor without one, has: angle, stroke
     channels: tuple[Channel, ...] = ()
@@ -219,6 +247,13 @@ class Element:
     changes: Callable[[Row], tuple[Looser, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
+    # (name, spec, largest) -> what speaks against believing a run, in sentences; see doubts.py
+    doubts: Callable[[str, Any, Callable], Iterable[str]] = lambda *_: ()
+    holds: Callable[[Row], Held] | None = (
+        None  # what is at rest at the start, unless told otherwise
+    )
+    elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
+    viscous: tuple[int, ...] = ()  # and those of its material's damping
     meets: bool = False  # its bodies meet at the point `at`
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else

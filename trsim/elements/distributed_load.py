@@ -125,7 +125,7 @@ ELEMENT = Element(
     reach=reach,
     acts_on=acts_on,
     channels=(
-        Channel("magnitude", "N/m", "force per length along its direction"),
+        Channel("magnitude", "N/m", "force per length along its direction", load="load"),
         Channel("load", "N", "of the whole bar, world axes", 3),
     ),
     turning=lambda row: Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),)),

@@ -225,7 +225,9 @@ ELEMENT = Element(
     pack=pack,
     rows=("motion",),
     channels=(
-        Channel("force", "drive", "sign times the force or torque on the second body"),
+        Channel(
+            "force", "drive", "sign times the force or torque on the second body", load="force"
+        ),
         Channel(
             "position", "coordinate", "prescribed coordinate of the joint; its own once released"
         ),

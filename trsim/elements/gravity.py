@@ -18,6 +18,14 @@ class Gravity(Spec):
     field: tuple[float, float, float]
 
 
+def of_scenario(scenario, bodies):
+    """One for each body with mass where there is gravity; flexible bars have their own."""
+    if any(scenario.gravity):
+        for name, spec in bodies.items():
+            if spec.flexible is None and spec.mass > 0.0:
+                yield name, Gravity(body=name, field=scenario.gravity)
+
+
 def pack(name, spec, at):
     i = at.body(spec.body)
     return Row((i,), tuple(at.mass(i) * c for c in spec.field))
@@ -50,6 +58,7 @@ ELEMENT = Element(
     section="",
     spec=Gravity,
     pack=pack,
+    of_scenario=of_scenario,
     reach=reach,
     kernels={"force": force, "energy": energy},
     example="""

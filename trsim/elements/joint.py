@@ -37,7 +37,7 @@ def of_a_hinge(axial, ball, cross):
     """What a hinge becomes without some of its rows; ball, cross: types that hold what is left."""
     changes = (
         Looser(TILTS, ball or "free to tilt", ball),
-        *(Looser((tilt,), "universal", cross) for tilt in TILTS),
+        *(Looser((tilt,), "universal", cross, dear=True) for tilt in TILTS),
     )
     if not axial:
         return changes

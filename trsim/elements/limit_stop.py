@@ -113,6 +113,13 @@ class LimitStop(Spec):
             raise ValueError("`normal` must not be zero")
         return self
 
+    def pressed(self, joints):
+        """The two bodies it pushes apart, and the joint along whose coordinate it does."""
+        if self.joint is None:
+            return (self.point.body, self.wall.body), None
+        joint = joints.get(self.joint)
+        return (joint.bodies if joint else ()), joint
+
 
 UNITS = (
     ("lower", "rad", "m"),
@@ -284,7 +291,13 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     channels=(
-        Channel("normal_force", "drive", "contact force or torque; never negative", least=0.0),
+        Channel(
+            "normal_force",
+            "drive",
+            "contact force or torque; never negative",
+            least=0.0,
+            load="contact force",
+        ),
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),

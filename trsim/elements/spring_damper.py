@@ -102,7 +102,7 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     channels=(
-        Channel("force", "N", "tension"),
+        Channel("force", "N", "tension", load="force"),
         Channel("length", "m", "distance of the two points"),
     ),
     turning=between_points,

@@ -80,6 +80,7 @@ K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST, TURNING = range(7)  # par
 MASSES = 7  # and on: of the pistons
 COUNT, STATIONS = 2, 3  # con: how many pistons, then of each its place and its slip in z, or -1
 LOCKED = 0.01  # eta_b of a self-locking gear
+WHOLE = 10.0  # turning speeds: from here on friction is whole to half a per cent
 
 
 def pack(name, spec, at):
@@ -235,6 +236,17 @@ def measure(t, scene, a, b):
         out[o + 2 * n - 1] = difference
 
 
+def doubts(name, spec, largest):
+    """Pistons that are slow beside the speed over which the friction of their gears turns round."""
+    fastest = max(largest(f"{one}.velocity")[0] for one in spec.actuators)
+    if spec.efficiency < 1.0 and 0.0 < fastest < WHOLE * spec.turning_speed:
+        yield (
+            f"forces.{name}.turning_speed: its actuators move with at most {fastest:.3g} m/s, "
+            f"and friction of its gears turns round over {spec.turning_speed:g} m/s: it is "
+            f"not whole below {WHOLE:g} times that; give a smaller one"
+        )
+
+
 def no_frames(row):
     """It acts on pistons only, which are states."""
     return frozenset()
@@ -247,6 +259,7 @@ ELEMENT = Element(
     pack=pack,
     channels=channels(2),  # and so on for more actuators
     acts_on=no_frames,
+    doubts=doubts,
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
     example="""
 bodies:

@@ -81,7 +81,9 @@ ELEMENT = Element(
     section="forces",
     spec=TorsionSpring,
     pack=pack,
-    channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
+    channels=(
+        Channel("torque", "N*m", "on the second body of the joint, about its axis", load="torque"),
+    ),
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

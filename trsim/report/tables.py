@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim import elements
 from trsim.report.display import Shown, short
 from trsim.report.style import WIDTH, look, panels, save, titled
 from trsim.store.target import fresh, headed, told
@@ -98,13 +99,9 @@ def load_name(shown: Shown, element: str, channel: str, extreme: str) -> str:
         loose = any(row.startswith(f"{element}.") for row in shown.run.text("mechanism/not_unique"))
         name = {"reaction": "reaction", "reaction_moment": "moment"}.get(channel, "")
         return f"{name} (not unique)" if name and loose else name
-    names = {"contact_force": "contact force", "torque": "torque", "magnitude": "load"}
-    names["lock.force"] = "lock"
-    if part.section == "drives" or part.type == "spring_damper":
-        names["force"] = "force"
-    if part.type == "limit_stop":
-        names["normal_force"] = "contact force"
-    return names.get(channel, "")
+    if channel == "lock.force":
+        return "lock"
+    return next((c.load for c in elements.load(part.type).channels if c.name == channel), "")
 
 
 def stroke_unit(shown: Shown) -> tuple[float, str]:

@@ -13,6 +13,8 @@ from pydantic import model_validator
 
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
+from trsim.laws.contact import cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.friction import CODES, N_PARAMETERS, PARAMETERS
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
@@ -73,6 +75,22 @@ class Friction(Spec):
             raise ScenarioError(f"v0 must be < v1, got {self.v0:g} and {self.v1:g} m/s")
         return self
 
+    @property
+    def numbers(self) -> tuple[int, tuple[float, ...]]:
+        """Code of the law and its N_PARAMETERS numbers."""
+        words: dict[str, Any] = {
+            "mu": self.coefficient,
+            "mu_k": self.coefficient,
+            "mu_s": self.static_coefficient or self.coefficient,
+            "v0": self.v0,
+            "v1": self.v1,
+            "v_s": self.stribeck_speed,
+            "sigma0": self.bristle_stiffness,
+            "sigma1": self.bristle_damping,
+        }
+        numbers = [float(words[name]) for name in PARAMETERS[self.law]]
+        return CODES[self.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
+
 
 class ContactLaw(Spec):
     """The law of a contact between two bodies of given material and size.
@@ -111,3 +129,21 @@ class ContactLaw(Spec):
     def complete(self) -> "ContactLaw":
         _needs(self, f"stiffness {self.stiffness}", STIFFNESS_NEEDS.get(str(self.stiffness), ()))
         return self
+
+    def normal_numbers(self, c: float) -> tuple[float, float, int, float, float]:
+        """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch.
+
+        c: radial clearance, m.
+        """
+        E_i, nu_i = self.youngs_modulus, self.poisson
+        E_j = self.journal_youngs_modulus or E_i
+        nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
+        chi = damping_factor(self.normal, self.restitution)
+        if isinstance(self.stiffness, float):
+            return self.stiffness, self.exponent, 0, chi, self.stiffness
+        if self.stiffness == "cylinder":
+            K = cylinder_stiffness(self.width, E_i, nu_i, E_j, nu_j)
+            return K, 1.5, 1, chi, K / c**0.5
+        R_i: Any = self.bearing_radius
+        K = hertz_stiffness(R_i, R_i - c, E_i, nu_i, E_j, nu_j, self.stiffness)
+        return K, self.exponent, 0, chi, K

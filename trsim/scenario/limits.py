@@ -81,8 +81,7 @@ def sizes(scenario: Any) -> Iterator[ScenarioError]:
     entries = sum(len(getattr(scenario, section)) for section in SECTIONS)
     if entries > limits.entries:
         yield over("entries", entries, limits.entries)
-    bars = {name: spec.flexible if spec.type == "rigid_body" else spec
-            for name, spec in scenario.bodies.items()}  # fmt: skip
+    bars = {name: spec.flexible for name, spec in scenario.bodies.items()}
     nodes = {name: bar.elements + 1 for name, bar in bars.items() if bar is not None}
     if sum(nodes.values()) > limits.nodes:
         most = max(nodes, key=lambda name: nodes[name])

@@ -9,7 +9,6 @@ from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
 from trsim import elements
-from trsim.elements.clearance_joint import normal_numbers
 from trsim.laws.contact import (
     damping_factor,
     delivered_restitution,
@@ -193,15 +192,9 @@ def _reduced(scenario: Any, bodies: Any, hinge: Any = None) -> float:
         body = scenario.bodies.get(name)
         if body is None:
             continue  # the ground
-        if body.type == "ancf_cable":
-            mass = body.per_length * body.length
-            inertia = mass * body.length**2 / 12.0
-            centre = tuple(0.5 * (a + b) for a, b in zip(body.start, body.end, strict=True))
-        else:
-            mass, centre = body.mass, body.at
-            inertia = body.inertia if isinstance(body.inertia, float) else body.inertia[2]
+        mass, inertia = body.whole_mass, body.inertia_z
         if hinge is not None:
-            about = inertia + mass * _away(centre, hinge) ** 2
+            about = inertia + mass * _away(body.centre, hinge) ** 2
         inverse += 1.0 / (mass if hinge is None else about) if (inertia and mass) else inf
     return 1.0 / inverse if inverse else inf
 
@@ -216,22 +209,15 @@ def _away(place: Any, hinge: Any) -> float:
     return hypot(*(a - along * b / size for a, b in zip(r, hinge.axis, strict=True)))
 
 
-def _stop_mass(scenario: Any, stop: Any) -> float:
-    if stop.joint is None:
-        return _reduced(scenario, (stop.point.body, stop.wall.body))
-    joint = scenario.joints.get(stop.joint)
-    if joint is None:
-        return inf
-    slides = elements.load(joint.type).coordinate == "stroke"
-    return _reduced(scenario, joint.bodies, None if slides else joint)
-
-
 def _all_stops(scenario: Any) -> Iterator[tuple[str, Any, float]]:
     for name, stop in scenario.forces.items():
-        if stop.type == "limit_stop":
-            mass = _stop_mass(scenario, stop)
-            if 0.0 < mass < inf:
-                yield name, stop, mass
+        if not hasattr(stop, "pressed"):
+            continue
+        bodies, joint = stop.pressed(scenario.joints)
+        slides = joint is None or elements.load(joint.type).coordinate == "stroke"
+        mass = _reduced(scenario, bodies, None if slides else joint)
+        if 0.0 < mass < inf:
+            yield name, stop, mass
 
 
 def _stops(scenario: Any) -> Iterator[str]:
@@ -267,7 +253,7 @@ def _fixed_step(scenario: Any) -> Iterator[str]:
         mass, v = _reduced(scenario, joint.bodies), law.slowest_impact
         if not 0.0 < mass < inf:
             continue
-        _, exponent, _, _, K = normal_numbers(law, joint.clearance)
+        _, exponent, _, _, K = law.normal_numbers(joint.clearance)
         yield from _unresolved(f"joints.{name}", h, hertz_contact_time(mass, K, exponent, v))
         friction = law.friction
         if friction.law == "modified_coulomb" and friction.coefficient:

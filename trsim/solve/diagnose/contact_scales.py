@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,6 @@ from trsim.assemble.equations import gaps, poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import against_rates
-from trsim.elements.clearance_joint import R_B, C
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
 from trsim.solve.diagnose.linearised import Linearised
@@ -69,7 +69,7 @@ def contact_scales(
         d, slope = float(begun.depth[c]), instance.row.contact.slope
         if clearance < np.inf:
             poses(w, begun.y)
-            inverse, sliding = journal(w, e, linear.twists, bool(closed[e]))
+            inverse, sliding = journal(w, e, instance, linear.twists, bool(closed[e]))
         else:
             inverse, sliding = along(w, begun.y, e, instance, linear.twists), 0.0
         free = inverse * alone > IMMOVABLE
@@ -95,7 +95,9 @@ def along(w: Scene, y: Array, e: int, instance: Instance, twists: Array) -> floa
     return float(np.sum((gap_gradient(w, y, instance, e) @ twists) ** 2))
 
 
-def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float]:
+def journal(
+    w: Scene, e: int, instance: Instance, twists: Array, closed: bool
+) -> tuple[float, float]:
     """Inverse masses of a journal in its bearing, along the normal and along the tangent, 1/kg.
 
     The largest over the directions in which it may touch; where it touches, that one.
@@ -108,7 +110,8 @@ def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float
     angles = pi * np.arange(DIRECTIONS) / DIRECTIONS
     if closed:
         angles = np.array([np.arctan2(v @ d, u @ d)])
-    reach = w.par[e, R_B] - w.par[e, C]
+    contact: Any = instance.row.contact
+    reach = contact.radius - contact.clearance
     normal = tangent = 0.0
     for angle in angles:
         for sign in (1.0,) if closed else (1.0, -1.0):

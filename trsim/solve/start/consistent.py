@@ -17,7 +17,7 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian, largest_reaction
-from trsim.assemble.switches import LIMITS
+from trsim.assemble.switches import LIMITS, hold
 from trsim.elements.contract import (
     BRANCH,
     CONTACT,
@@ -244,15 +244,9 @@ def by_ideal_joints(
 
 def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     """The scenario's drives at rest, those of the joints of `initial` replaced by rigid holds."""
-    from trsim.elements.drive import Drive
-
     moved = {n for n, d in scenario.drives.items() if getattr(d, "joint", "") in initial.values}
     drives = {n: d.at_rest() for n, d in scenario.drives.items() if n not in moved}
-    context: dict[str, Any] = {"parameters": {}}
-    for name in initial.values:
-        hold = {"joint": name, "velocity": 0.0}
-        drives[f"hold {name}"] = Drive.model_validate(hold, context=context)
-    return drives
+    return drives | {f"hold {name}": hold(name) for name in initial.values}
 
 
 def approach(

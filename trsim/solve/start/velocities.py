@@ -25,7 +25,6 @@ from trsim.assemble.reduce import (
     weights,
     world_rates,
 )
-from trsim.elements.bushing import ROTATIONAL, STIFFNESS
 from trsim.elements.prescribed import rates_at
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
@@ -90,7 +89,7 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
     wishes = compliant_drives(ideal, y_ideal)
-    wishes += [(gradient, 0.0) for gradient in (bushings(ideal, y_ideal) if held else ())]
+    wishes += [(gradient, 0.0) for gradient in (of_springs(ideal, y_ideal) if held else ())]
     if named:
         wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
         moving = [ideal.coordinates[n] for n in named if n in ideal.coordinates]
@@ -156,22 +155,22 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
     return found
 
 
-def bushings(mechanism: Mechanism, y: Array) -> list[Array]:
-    """Gradients of the rates of what bushings hold: along and about their stiff directions."""
+def of_springs(mechanism: Mechanism, y: Array) -> list[Array]:
+    """Gradients of the rates of what springs hold: along and about their stiff directions."""
     w = workspace(mechanism.model)
     poses(w, y)
     found = []
     for instance in mechanism.instances:
-        if instance.element.key != "bushing":
+        if instance.element.holds is None:
             continue
         i, j = instance.row.con[:2]
-        par = np.array(instance.row.par)
+        axes, place, along, about = map(np.array, instance.element.holds(instance.row))
         R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-        place = w.X[j, :3] + product(R_j, par[3:6])
-        for k, a in enumerate(product(par[6:15].reshape(3, 3), R_i.T)):
-            if par[STIFFNESS + k] > 0.0:
+        place = w.X[j, :3] + product(R_j, place)
+        for k, a in enumerate(product(axes.reshape(3, 3), R_i.T)):
+            if along[k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a, [place - w.X[f, :3] for f in (i, j)]))
-            if par[ROTATIONAL + k] > 0.0:
+            if about[k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a))
     return found
 
