@@ -161,6 +161,6 @@ def period(x: Array, y: Array, x_range: float, y_range: float) -> int:
     return 0
 
 
-def told(period: int) -> str:
+def period_in_words(period: int) -> str:
     """A period in words."""
     return {-1: "too few points", 0: "scattered"}.get(period, f"period {period}")

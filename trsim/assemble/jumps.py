@@ -109,7 +109,7 @@ def find_jumps(at: Any, instances: list[Any], size: float) -> dict[int, Array]:
                 ("drives", instance.name, "position"),
             )
         if not drive.switched:  # its time may be another
-            at.notes += told(at, instance, times, jumps, f"{unit}/s")
+            at.notes += notes(at, instance, times, jumps, f"{unit}/s")
     return found
 
 
@@ -126,7 +126,7 @@ def steep(at: Any, instances: list[Any]) -> int:
     return count
 
 
-def told(at: Any, instance: Any, times: list[float], jumps: Array, unit: str) -> Iterator[str]:
+def notes(at: Any, instance: Any, times: list[float], jumps: Array, unit: str) -> Iterator[str]:
     """What is said of the velocity jumps of a motion."""
     when = np.flatnonzero(jumps[:, 1])
     if len(when) == 0 or instance.row.is_force:

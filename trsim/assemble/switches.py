@@ -60,7 +60,7 @@ class UserEvent:
         own = UNITS.get(self.kind, self.unit)
         return f"{own}/s" if own != "s" else "-"
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         """When it happens and what it does, in words."""
         if self.kind == "limit":
             return f"{self.when} {self.said} ({self.value:g} {self.unit}): the run is {self.status}"

@@ -89,7 +89,7 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "drives": list(scenario.drives),
         "forces": {name: spec.type for name, spec in scenario.forces.items()},
         "contacts": [mechanism.instances[e].name for e in model.contact],
-        "events": {e.name: e.told() for e in mechanism.stages.switches.events},
+        "events": {e.name: e.in_words() for e in mechanism.stages.switches.events},
         "planar": mechanism.planar,
         "planar_assumed": mechanism.planar_assumed,
         "spatial_because": list(mechanism.spatial_because),

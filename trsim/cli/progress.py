@@ -76,10 +76,10 @@ def see_own(answer: Answer) -> None:
 def see_kept(answer: Answer) -> None:
     """Say so where what is compiled cannot be kept for the next run."""
     from trsim.kernels.kept import folder, make
-    from trsim.store.target import see_writable, told
+    from trsim.store.target import file_errors, see_writable
 
     try:
-        with told(folder()):
+        with file_errors(folder()):
             make(folder())
         see_writable(folder())
     except FileError as error:
@@ -128,7 +128,7 @@ def watched(
         for block in run:
             Stop.patient = True
             percent = f"{100 * block.time / end:.0f} %, "
-            show.update(block.time, told(block), percent + told(block))
+            show.update(block.time, summary(block), percent + summary(block))
             yield block
             if Stop.number:
                 raise KeyboardInterrupt
@@ -145,7 +145,8 @@ def left(elapsed: float, share: float, first: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
 
 
-def told(block: Any) -> str:
+def summary(block: Any) -> str:
+    """How far a run is."""
     return f"t = {block.time:.4g} s, step {block.step:.1e} s, {block.n_events} contact events"
 
 

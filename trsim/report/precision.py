@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trsim.scenario.methods import METHODS
-from trsim.store.target import FIGURE, fresh, headed, replaceable, see_writable, told
+from trsim.store.target import FIGURE, file_errors, fresh, headed, replaceable, see_writable
 
 if TYPE_CHECKING:
     from trsim.analyse.precision import Point, Study
@@ -41,7 +41,7 @@ def see_room(folder: Path) -> None:
 def write(study: "Study", path: Path) -> Path:
     """The table as CSV, SI units, numbers in full."""
     with (
-        told(path),
+        file_errors(path),
         fresh(path, TABLE) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):

@@ -10,7 +10,7 @@ import numpy as np
 from trsim import elements
 from trsim.report.display import Shown, short
 from trsim.report.style import WIDTH, look, panels, save, titled
-from trsim.store.target import fresh, headed, told
+from trsim.store.target import file_errors, fresh, headed
 
 NOISE = 1e-9  # of the largest load of the same unit: rounding
 EVENTS = ("run", "event", "did", "time", "work")  # columns
@@ -56,7 +56,7 @@ def user_events(runs: list[Shown], path: Path) -> list[Path]:
     if not lines:
         return []
     with (
-        told(path),
+        file_errors(path),
         fresh(path, headed(*EVENTS)) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
@@ -113,7 +113,7 @@ def stroke_unit(shown: Shown) -> tuple[float, str]:
 def write(loads: list[Load], path: Path) -> Path:
     """The table as CSV, numbers in full."""
     with (
-        told(path),
+        file_errors(path),
         fresh(path, headed(*Load._fields)) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):

@@ -111,7 +111,7 @@ class Running:
         self.closing = closing
         self.command = ""  # line that began the run
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
-        with self.told():
+        with self.file_errors():
             final.parent.mkdir(parents=True, exist_ok=True)
             if not os.access(final.parent, os.W_OK) or final.is_dir():
                 raise OSError("not a file in a folder that can be written to")
@@ -124,7 +124,7 @@ class Running:
                 own.see(path, kind)
 
     @contextlib.contextmanager
-    def told(self) -> Iterator[None]:
+    def file_errors(self) -> Iterator[None]:
         """Errors of the file system in our words."""
         try:
             yield
@@ -145,10 +145,10 @@ class Running:
         """Store all blocks; the outcome."""
         run = Blocks(blocks)
         for block in run:
-            with self.told():
+            with self.file_errors():
                 self.open()
                 self.take(block)
-        with self.told():
+        with self.file_errors():
             self.open()
         return run.outcome
 
@@ -183,7 +183,7 @@ class Running:
             return
         checkpoints.see_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
         self.time = self.kept = kept.time
-        with self.told():
+        with self.file_errors():
             file = self.begun(self.fresh, kept)
             file.flush()
             synced(self.fresh)
@@ -267,14 +267,14 @@ class Running:
     def save_last(self, status: str) -> None:
         """A checkpoint before an interrupt ends the run, if there is time for it."""
         if status == INTERRUPTED and self.every and self.state is not None and self.took < HASTE:
-            with contextlib.suppress(FileError), self.told():
+            with contextlib.suppress(FileError), self.file_errors():
                 self.save()
 
     # --- at the end --------------------------------------------------------------------------
 
     def finish(self, status: Status, reason: str, outcome: Any, provenance: dict) -> dict[str, Any]:
         """Add what is known only now, and give the file its name; the summary."""
-        with self.told():
+        with self.file_errors():
             assert self.file is not None  # noqa: S101
             self.flush()
             self.file.close()

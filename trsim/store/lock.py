@@ -15,7 +15,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 from trsim import system
 from trsim.errors import FileError
 from trsim.store.own import ASIDE, see_open
-from trsim.store.target import HEADER, LOCK, make, told
+from trsim.store.target import HEADER, LOCK, file_errors, make
 
 ENDING = ".lock"
 ATTEMPTS, PAUSE = 3, 0.03  # s
@@ -40,7 +40,7 @@ def alone(
 def writing(final: Path) -> Iterator[None]:
     """Hold the lock of a result file.  Raises FileError where another process does."""
     path = _beside(final)
-    with told(final):
+    with file_errors(final):
         make(final.parent)
         handle = _held(path, final)
     try:

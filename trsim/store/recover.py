@@ -26,7 +26,7 @@ from trsim.store.disk import let_go, see_more, see_room, synced
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.salvage import Salvage
-from trsim.store.target import RESULT, fresh, replaceable, told
+from trsim.store.target import RESULT, file_errors, fresh, replaceable
 from trsim.system import end_with_parent
 from trsim.version import __version__
 
@@ -72,7 +72,7 @@ def _copied(part: Path, unfinished: Path, final: Path, patience: float) -> dict[
     reason = (done.stderr.strip().splitlines() or ["unknown"])[-1][:200]
     if done.returncode == NOT_WRITTEN:
         raise FileError(f"{final}: cannot be written: {reason}", file=str(final))
-    with told(final):  # where it cannot write HDF5 may end the process, too
+    with file_errors(final):  # where it cannot write HDF5 may end the process, too
         see_more(unfinished)
     if done.returncode < 0:
         name = signal.Signals(-done.returncode).name

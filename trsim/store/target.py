@@ -97,7 +97,7 @@ def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = (
     given: what the command reads.  Raises UsageError where the target is one of these or anything
     but a file of its kind, FileError where it may not be written or cannot be looked at.
     """
-    with told(target):
+    with file_errors(target):
         try:
             found = target.stat()
         except FileNotFoundError:
@@ -121,7 +121,7 @@ def _followed(target: Path) -> Path:
 
 
 @contextmanager
-def told(target: Path) -> Iterator[None]:
+def file_errors(target: Path) -> Iterator[None]:
     """Errors of the file system, told of the file that is written."""
     try:
         yield
@@ -134,14 +134,14 @@ def told(target: Path) -> Iterator[None]:
 def fresh(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Iterator[Path]:
     """An empty file to write; it takes the name of the target at the end, and is gone after an
     error."""
-    with told(target):
+    with file_errors(target):
         make(target.parent)
     final = replaceable(target, kind, given)
-    with told(target):
+    with file_errors(target):
         unfinished = _empty(final)
     try:
         yield unfinished
-        with told(target):
+        with file_errors(target):
             os.replace(unfinished, final)
     finally:
         with suppress(OSError):
@@ -168,7 +168,7 @@ def make(folder: Path) -> None:
 
 def see_writable(folder: Path) -> None:
     """See that files can be made in a folder, which is made where it is not there."""
-    with told(folder):
+    with file_errors(folder):
         make(folder)
         with TemporaryFile(dir=folder) as trial:
             trial.write(b"trial")

@@ -53,7 +53,7 @@ def refuse_no_number(mechanism: Mechanism, y: Array, mem: Array) -> None:
     )
 
 
-def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on, where the law of an element ends just ahead; else empty."""
     if not np.all(np.isfinite(r.y)):
         return ""
@@ -91,7 +91,7 @@ def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     t = float(r.clock[rec.T])
     return (
         collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
-        or told(scenario, mechanism, r)
+        or end_of_law(scenario, mechanism, r)
         or drawn_in(scenario, mechanism, r.y)
         or locked(mechanism, t, r.y)
     )

@@ -56,7 +56,7 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> A
         try:
             work, line[rec.EVENT_WORK] = turned(mechanism, work, r, b, setting, event)
         except ModelError as error:
-            ended = "failed", told(event, error)
+            ended = "failed", failure(event, error)
             break
         if event.end and ended is None:
             ended = event.status, why_ended(mechanism, b, event, t)
@@ -78,7 +78,7 @@ def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
     return f"{said}: {', '.join(forces)}" if forces else said
 
 
-def told(event: UserEvent, error: ModelError) -> str:
+def failure(event: UserEvent, error: ModelError) -> str:
     """Why an event could not be carried out."""
     section, name = error.path if len(error.path) == 2 else ("", "")
     if section == "drives":
