@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trsim.scenario.methods import METHODS
-from trsim.store.target import FIGURE, file_errors, fresh, headed, replaceable, see_writable
+from trsim.store.target import FIGURE, check_writable, file_errors, fresh, headed, replaceable
 
 if TYPE_CHECKING:
     from trsim.analyse.precision import Point, Study
@@ -31,9 +31,9 @@ def draw(study: "Study", folder: Path) -> list[Path]:
     return [picture, write(study, folder / f"{NAME}.csv")]
 
 
-def see_room(folder: Path) -> None:
-    """See that both can be written, before anything is measured; raises FileError, UsageError."""
-    see_writable(folder)
+def check_room(folder: Path) -> None:
+    """Check that both can be written, before anything is measured; raises FileError, UsageError."""
+    check_writable(folder)
     replaceable(folder / f"{NAME}.png", FIGURE)
     replaceable(folder / f"{NAME}.csv", TABLE)
 

@@ -21,7 +21,7 @@ from trsim.store import checkpoint as checkpoints
 from trsim.store import describe, own, peaks, points, tables
 from trsim.store.checkpoint import Checkpoint
 from trsim.store.content import content_hash
-from trsim.store.disk import let_go, see_room, synced
+from trsim.store.disk import check_room, let_go, synced
 from trsim.store.grow import Field, Growing, scales
 from trsim.store.lock import alone
 from trsim.store.read import Run, read
@@ -121,7 +121,7 @@ class Running:
                 (self.fresh, PART),
                 (self.checkpoint, CHECKPOINT),
             ):
-                own.see(path, kind)
+                own.exists(path, kind)
 
     @contextlib.contextmanager
     def file_errors(self) -> Iterator[None]:
@@ -163,7 +163,7 @@ class Running:
 
     def begun(self, path: Path, kept: Checkpoint | None = None) -> h5py.File:
         """A file with all that has a name, and the rows of a checkpoint; readers may come."""
-        see_room(path)
+        check_room(path)
         os.close(own.made(path, PART))  # HDF5 would follow a link
         file = h5py.File(path, "w", libver=LIBVER, rdcc_nbytes=CACHE)
         try:
@@ -181,7 +181,7 @@ class Running:
         """Be where a run was at a checkpoint, with a fresh part file in place of the old one."""
         if kept is None:
             return
-        checkpoints.see_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
+        checkpoints.check_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
         self.time = self.kept = kept.time
         with self.file_errors():
             file = self.begun(self.fresh, kept)

@@ -68,7 +68,7 @@ class Group(dict[str, Any]):
             raise Unsound(f"the tables in {self.path} differ in length")
 
 
-def see_sound(file: h5py.File) -> None:
+def check_sound(file: h5py.File) -> None:
     """Raises Unsound, or what h5py raises for a file that cannot be read."""
     root = _Walk().group(file.id, "/", 0)
     for name in GROUPS:

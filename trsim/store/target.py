@@ -166,8 +166,8 @@ def make(folder: Path) -> None:
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR)) from None
 
 
-def see_writable(folder: Path) -> None:
-    """See that files can be made in a folder, which is made where it is not there."""
+def check_writable(folder: Path) -> None:
+    """Check that files can be made in a folder, which is made where it is not there."""
     with file_errors(folder):
         make(folder)
         with TemporaryFile(dir=folder) as trial:
