@@ -11,9 +11,10 @@ from typing import ClassVar
 from pydantic import model_validator
 
 from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
-from trsim.elements.frames import arm, helper
+from trsim.elements.frames import arm
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
+from trsim.kernels.lazy import internal
 from trsim.laws.cable_section import uniform_shares
 from trsim.laws.functions import value
 
@@ -69,7 +70,7 @@ def acts_on(row):
     return frozenset({frame, *range(first, first + nodes)} if frame else ())
 
 
-@helper
+@internal
 def load(t, scene, e):
     """Force per length, world axes."""
     par = scene.par

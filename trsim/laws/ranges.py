@@ -8,7 +8,7 @@ change, its rate is without bounds.  Every result is widened by rounding.       
 
 from math import ceil, cos, exp, floor, inf, isfinite, log, pi, sqrt
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.operations import (
     ABOVE,
     ABS,
@@ -41,7 +41,7 @@ ROUNDING = 1e-15  # of each operation
 WHOLE = 64.0  # the largest whole power taken as a product
 
 
-@law
+@internal
 def widened(l, h):
     """An interval made larger by rounding; without bounds where it is no number."""
     if not (l <= h):
@@ -49,29 +49,29 @@ def widened(l, h):
     return l - ROUNDING * abs(l), h + ROUNDING * abs(h)
 
 
-@law
+@internal
 def plus(a, b, c, d):
     return widened(a + c, b + d)
 
 
-@law
+@internal
 def minus(a, b, c, d):
     return widened(a - d, b - c)
 
 
-@law
+@internal
 def product(x, y):
     """0 times anything is 0: a bound may be infinite."""
     return 0.0 if x == 0.0 or y == 0.0 else x * y
 
 
-@law
+@internal
 def times(a, b, c, d):
     p, q, r, s = product(a, c), product(a, d), product(b, c), product(b, d)
     return widened(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
 
 
-@law
+@internal
 def over(a, b, c, d):
     """Without bounds where the divisor may be zero."""
     if c <= 0.0 <= d:
@@ -79,7 +79,7 @@ def over(a, b, c, d):
     return times(a, b, 1.0 / d, 1.0 / c)
 
 
-@law
+@internal
 def whole_power(a, b, n):
     """Of a whole number n >= 0."""
     l, h = a**n, b**n
@@ -92,7 +92,7 @@ def whole_power(a, b, n):
     return widened(l, h)
 
 
-@law
+@internal
 def powered(a, b, n):
     """Of any whole number."""
     if n >= 0.0:
@@ -101,7 +101,7 @@ def powered(a, b, n):
     return over(1.0, 1.0, l, h)
 
 
-@law
+@internal
 def cosine(a, b):
     """-1 or 1 where a whole multiple of pi may lie inside."""
     if not (isfinite(a) and isfinite(b)):
@@ -115,12 +115,12 @@ def cosine(a, b):
     return max(l, -1.0), min(h, 1.0)
 
 
-@law
+@internal
 def sine(a, b):
     return cosine(a - 0.5 * pi, b - 0.5 * pi)
 
 
-@law
+@internal
 def quotient(a0, a1, r0, r1, b0, b1, q0, q1):
     """(a/b)' = (a' - (a/b) b') / b."""
     l, h = over(a0, a1, b0, b1)
@@ -130,7 +130,7 @@ def quotient(a0, a1, r0, r1, b0, b1, q0, q1):
     return l, h, rl, rh
 
 
-@law
+@internal
 def smooth_step(code, a, b, r0, r1, held):
     """A smooth step on a branch: the cubic or quintic is drawn on where it is held inside."""
     if held == BELOW or (held == FREE and b <= 0.0):
@@ -159,7 +159,7 @@ def smooth_step(code, a, b, r0, r1, held):
     return l, h, rl, rh
 
 
-@law
+@internal
 def one(code, a, b, r0, r1, held):
     """An operation on one number."""
     if code == NEG:
@@ -201,7 +201,7 @@ def one(code, a, b, r0, r1, held):
     return l, h, m, n
 
 
-@law
+@internal
 def raised(a, b, r0, r1, c, d, q0, q1):
     """a**b: whole powers as products, others as exp(b log a) where a is surely positive."""
     if c == d and c == floor(c) and abs(c) <= WHOLE:
@@ -218,7 +218,7 @@ def raised(a, b, r0, r1, c, d, q0, q1):
     return one(EXP, u, v, x, y, FREE)
 
 
-@law
+@internal
 def angle(a, b, r0, r1, c, d, q0, q1, held):
     """atan2(a, b): of a box that does not hold the origin, from its corners."""
     if (a <= 0.0 <= b and c <= 0.0 <= d) or (held == FREE and a <= 0.0 <= b and c < 0.0):
@@ -236,7 +236,7 @@ def angle(a, b, r0, r1, c, d, q0, q1, held):
     return l, h, m, n
 
 
-@law
+@internal
 def ranged(code, a, b, r0, r1, c, d, q0, q1, held):
     """An operation on (a, b, r0, r1) and (c, d, q0, q1), on the branch it is held on."""
     if code == ADD:
