@@ -233,7 +233,7 @@ class _Search:
         return high
 
     def sign(self, t: Array) -> Array:
-        """Of u - value."""
+        """The sign of u - value."""
         return np.sign(values(self.u, t) - self.value)
 
 

@@ -119,7 +119,7 @@ class Addresses:
         return i >= self.n_rigid
 
     def tangent(self, i: int) -> tuple[float, ...]:
-        """Of a node of a flexible bar as drawn; of other frames none."""
+        """The tangent of a node of a flexible bar as drawn; empty for other frames."""
         return tuple(self.rotation[i][:, 0].tolist()) if self.is_node(i) else ()
 
     def centre(self, i: int) -> tuple[float, ...]:

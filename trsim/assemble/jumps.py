@@ -28,7 +28,7 @@ SHOWN = 3  # jumps of one motion in a note
 
 
 class Driven(NamedTuple):
-    """Whose motion a function is."""
+    """The drive whose motion a function is."""
 
     e: int
     by_velocity: bool

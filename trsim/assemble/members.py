@@ -37,7 +37,7 @@ class Beam(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Of one element, m."""
+        """The length of one element, m."""
         return self.whole / (self.nodes - 1)
 
 

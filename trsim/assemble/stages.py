@@ -51,7 +51,7 @@ class Choice(NamedTuple):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the rows in the solve."""
+        """The names of the rows in the solve."""
         return tuple(f"{row.element}.{row.axis}" for row in self.kept)
 
 

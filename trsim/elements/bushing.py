@@ -231,7 +231,7 @@ def reach(row):
 
 
 def turning(row):
-    """Of its three axes two at least point across a bar."""
+    """All turns are felt: two at least of its three axes point across a bar."""
     i, j, _, turns = row.con
     return Turning((i, j), axes=((i, (0.0, 0.0, 0.0)),), held=(j,) if turns else ())
 

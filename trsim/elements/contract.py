@@ -59,7 +59,7 @@ KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stif
 # con: the first columns of every element that joins two frames
 I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
-# mem: its first N_MEM columns, the march's own; an element's own follow.  Of elements with a gap
+# mem: the first N_MEM columns are the march's, those of the element follow.  Of elements with a gap
 PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
 FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
 WHOLE = 9.0  # BRANCH: the law with all its branches
@@ -97,7 +97,7 @@ class Channel(NamedTuple):
     unit: str
     meaning: str
     size: int = 1
-    least: float = -inf  # what its definition alone keeps it above, or at
+    least: float = -inf  # a lower bound by its definition alone
     load: str = ""  # what it is called in tables of loads
     turn: bool = False  # one about any axis, whose largest angle every run is judged by
 
@@ -218,7 +218,7 @@ class Held(NamedTuple):
 
 
 def between_points(row: Row) -> Turning:
-    """Of what acts between a point of either body and does nothing else to them."""
+    """The turning of what acts between a point of either body and does nothing else to them."""
     (i, j), par = row.con[:2], row.par
     return Turning(points=((i, par[:3]), (j, par[3:6])))
 

@@ -120,7 +120,7 @@ def pack(name, spec, at):
 
 
 def channels(n):
-    """Of a shaft between n actuators."""
+    """The channels of a shaft between n actuators."""
     return (
         *(
             Channel(
@@ -145,7 +145,7 @@ def place(scene, e, k):
 
 @internal
 def torque(scene, e, k):
-    """In segment k between pistons k and k + 1; zero beyond the ends."""
+    """Torque in segment k between pistons k and k + 1; zero beyond the ends."""
     if k < 0 or k >= scene.con[e, COUNT] - 1:
         return 0.0
     u, u_dot = place(scene, e, k)
@@ -188,7 +188,7 @@ def force(t, scene, a, b):
 
 @internal
 def largest_difference(scene, e):
-    """Of the strokes of neighbours, and its rate."""
+    """The largest difference of the strokes of neighbours, and its rate."""
     largest, rate = -1.0, 0.0
     for k in range(scene.con[e, COUNT] - 1):
         u, u_dot = place(scene, e, k)
@@ -248,7 +248,7 @@ def doubts(name, spec, largest):
 
 
 def no_frames(row):
-    """It acts on pistons only, which are states."""
+    """None: it acts on pistons only, which are states."""
     return frozenset()
 
 

@@ -124,7 +124,7 @@ class _Code:
         return self.steps.setdefault((code, a, b), ("step", len(self.steps)))
 
     def watched(self):
-        """Of every operation whether it has corners, and what decides when they are met."""
+        """Whether each operation has corners, and what decides when they are met."""
         sensed = set(self.inputs.values())
         out = []
         for (code, a, b), slot in self.steps.items():

@@ -44,7 +44,7 @@ def shown(study: Any) -> Shown:
 
 
 def units(study: Any) -> Units:
-    """Of what was swept."""
+    """The units of what was swept."""
     return Units(study.units, study.written)
 
 

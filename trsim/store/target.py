@@ -36,7 +36,8 @@ def _is_result(start: bytes) -> bool:
 
 
 def _is_part(start: bytes) -> bool:
-    """Also one that was killed early: empty, zeros, or a superblock with no object behind it."""
+    """Whether it begins like a part file, which may have been killed early: empty, zeros, or a
+    superblock with no object behind it."""
     first = start.startswith(SIGNATURE) and not any(start[SIZE:])
     return _is_result(start) or first or not any(start)
 
@@ -73,7 +74,7 @@ def headed(*titles: str) -> Kind:
 
 
 def _is_checkpoint(start: bytes) -> bool:
-    """Also one whose first line is damaged: an archive behind a line with a hash."""
+    """Whether it begins like a checkpoint: an archive behind a line, which may be damaged."""
     return start.startswith(b"trsim checkpoint ") or start[84:88] == b"PK\3\4" or not start
 
 

@@ -55,7 +55,7 @@ def spanned(joint: Joint, look: Look) -> tuple[float, Array]:
 
 
 def middle(joint: Joint, look: Look) -> Array:
-    """Of the layers of the two bodies, from the point of the joint."""
+    """The middle of the layers of the two bodies, from the point of the joint."""
     if look.normal is None or joint.picture in SPATIAL:
         return np.zeros(3)
     return 0.5 * (look.height(joint.i) + look.height(joint.j)) * look.normal

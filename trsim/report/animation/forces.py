@@ -97,7 +97,7 @@ def contact(moved: Motion, joint: Joint, look: Look, magnified: float) -> Array:
 
 
 def largest(vectors: Array, rows: NDArray[np.int64]) -> Array:
-    """Of the rows since the frame before, the vector that is longest; (frames, 3)."""
+    """The longest vector of the rows since the frame before; (frames, 3)."""
     sizes = np.sum(vectors**2, axis=1)
     first = np.concatenate([[0], rows[:-1] + 1])
     return np.stack([vectors[a + int(sizes[a : b + 1].argmax())]

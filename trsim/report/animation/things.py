@@ -46,7 +46,7 @@ class Look:
         return 1.2 * self.thick
 
     def height(self, body: str) -> float:
-        """Of the layer of a body above the plane."""
+        """The height of the layer of a body above the plane."""
         return self.layers.get(body, 0) * self.pitch
 
     def front(self, one: str, other: str) -> float:
@@ -81,7 +81,7 @@ def ends(drawn: Drawing, body: str) -> list[Array]:
 
 
 def points(drawn: Drawing, body: str) -> list[Array]:
-    """Those, and where lines act on the body."""
+    """The places of `ends`, and where lines act on the body."""
     pairs = [(line.i, line.ends[0]) for line in drawn.lines]
     pairs += [(line.j, line.ends[1]) for line in drawn.lines]
     return different(drawn, [*ends(drawn, body), *(at for name, at in pairs if name == body)])
