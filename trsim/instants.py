@@ -239,7 +239,7 @@ class _Search:
 
 def too_many() -> ScenarioError:
     return ScenarioError(
-        f"changes its course more than {MOST} times within the run, or cannot be told when",
+        f"changes its course more than {MOST} times within the run, or at times nobody can find",
         "a step would end at each of these instants: make the run shorter, or write the mean of "
         "what is so fast",
     )

@@ -249,9 +249,7 @@ class Element:
     judged: Callable[[Row], bool] = lambda _: False
     # (name, spec, largest) -> what speaks against believing a run, in sentences; see doubts.py
     doubts: Callable[[str, Any, Callable], Iterable[str]] = lambda *_: ()
-    holds: Callable[[Row], Held] | None = (
-        None  # what is at rest at the start, unless told otherwise
-    )
+    holds: Callable[[Row], Held] | None = None  # so that it is at rest at the start
     elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
     viscous: tuple[int, ...] = ()  # and those of its material's damping
     meets: bool = False  # its bodies meet at the point `at`

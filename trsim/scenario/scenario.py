@@ -142,7 +142,7 @@ class SolverSpec(Spec):
     @model_validator(mode="after")
     def consistent(self) -> "SolverSpec":
         if self.end is not None and self.end < SHORTEST:
-            what = f"a run of {self.end:.3g} s is shorter than any motion that can be told"
+            what = f"a run of {self.end:.3g} s is shorter than any motion that can be resolved"
             hint = (
                 "What is below 1e-60 m, m/s or J counts as nothing, and in so short a time a body "
                 f"may move by less: give at least {SHORTEST:g} s, and check the unit."
