@@ -160,7 +160,8 @@ class Addresses:
     def mass(self, i: int) -> float:
         if i == 0:
             return float("inf")
-        return float(self.members[self.owners[i]].whole_mass)
+        spec = self.members[self.owners[i]]
+        return float(spec.whole_mass if self.is_node(i) else spec.mass)
 
     def inertia_about(self, i: int, axis: tuple[float, ...], through: tuple[float, ...]) -> float:
         """Moment of inertia of one body about an axis (world, as drawn): a . I a + m d^2.

@@ -59,7 +59,7 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
 
     def add(name: str, channel: Channel, extra: bool = False) -> None:
         nonlocal width
-        _, unit, meaning, size, least, _, turn = channel
+        _, unit, meaning, size, least, turn = channel
         columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least, turn))
         width += size
 

@@ -254,7 +254,7 @@ def measure(t, scene, a, b):
 
 
 CHANNELS = (
-    Channel("force", "N", "sign times the thrust along its line", load="force"),
+    Channel("force", "N", "sign times the thrust along its line"),
     Channel("reaction", "N", "force on the second body, world axes", 3),
     Channel("stroke", "m", "how much longer it is than drawn"),
     Channel("stroke_rate", "m/s", "its rate"),
@@ -284,6 +284,7 @@ ELEMENT = Element(
     channels=CHANNELS,
     turning=between_points,
     picture="cylinder",
+    loads={"force": "force"},
     kernels={
         "coordinate": coordinate,
         "constraint": constraint,

@@ -78,14 +78,6 @@ class AncfCable(Cable):
         return self.per_length * self.length
 
     @property
-    def centre(self):
-        return tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True))
-
-    @property
-    def inertia_z(self):
-        return self.whole_mass * self.length**2 / 12.0
-
-    @property
     def tangent(self):
         """Unit vector from start to end."""
         return (np.array(self.end) - np.array(self.start)) / self.length
@@ -101,7 +93,7 @@ class AncfCable(Cable):
         return RigidBody.model_construct(
             mass=self.whole_mass,
             inertia=(I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]),
-            at=self.centre,
+            at=tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True)),
             velocity=self.velocity,
             angular_velocity=self.angular_velocity,
         )

@@ -111,10 +111,11 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     channels=(
-        Channel("magnitude", "drive", "the force or torque along its direction", load="load"),
+        Channel("magnitude", "drive", "the force or torque along its direction"),
         Channel("load", "drive", "its components, world axes", 3),
     ),
     turning=turning,
+    loads={"magnitude": "load"},
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

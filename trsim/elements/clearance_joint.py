@@ -326,13 +326,7 @@ ELEMENT = Element(
     channels=(
         Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
         Channel("friction_force", "N", "on the journal, along axis x normal"),
-        Channel(
-            "contact_force",
-            "N",
-            "resultant of normal force and friction",
-            least=0.0,
-            load="contact force",
-        ),
+        Channel("contact_force", "N", "resultant of normal force and friction", least=0.0),
         Channel("penetration", "m", "positive in contact, minus the free gap otherwise"),
         Channel("penetration_rate", "m/s", "positive while approaching"),
         Channel(
@@ -348,6 +342,7 @@ ELEMENT = Element(
     ideal="revolute",
     changes=lambda _: of_a_hinge("axial", None, None),
     picture="journal",
+    loads={"contact_force": "contact force"},
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,

@@ -29,12 +29,10 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
 A spec of the section `bodies` says of itself
 
     flexible          how it bends, a Cable; None where it is rigid
-    whole_mass        kg
-    centre            of mass, as drawn
-    inertia_z         about the z axis through it, kg*m^2; of a bar as if it lay across
     bar(start, end)   where it is flexible: the bar that is solved, which lies between these places
-                      unless it has its own; `as_rigid()` is that bar as a rigid body
-    tensor            where it is rigid: its inertia, row by row, and whether all of it is known
+                      unless it has its own
+    as_rigid()        a rigid body, with
+    tensor            its inertia, row by row, and whether all of it is known
 
 and one of a force that pushes back from a limit, `pressed(joints)`: the two bodies it does so with,
 and the joint along whose coordinate.
@@ -98,7 +96,6 @@ class Channel(NamedTuple):
     meaning: str
     size: int = 1
     least: float = -inf  # a lower bound by its definition alone
-    load: str = ""  # what it is called in tables of loads
     turn: bool = False  # one about any axis, whose largest angle every run is judged by
 
     def unit_on(self, own: str) -> str:
@@ -241,6 +238,7 @@ class Element:
     rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
     coordinate: str = ""  # what a joint, or a sensor without one, has: angle, stroke
     channels: tuple[Channel, ...] = ()
+    loads: dict[str, str] = field(default_factory=dict)  # channels -> names in tables of loads
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on

@@ -126,10 +126,11 @@ ELEMENT = Element(
     reach=reach,
     acts_on=acts_on,
     channels=(
-        Channel("magnitude", "N/m", "force per length along its direction", load="load"),
+        Channel("magnitude", "N/m", "force per length along its direction"),
         Channel("load", "N", "of the whole bar, world axes", 3),
     ),
     turning=lambda row: Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),)),
+    loads={"magnitude": "load"},
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

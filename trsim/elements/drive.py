@@ -225,15 +225,14 @@ ELEMENT = Element(
     pack=pack,
     rows=("motion",),
     channels=(
-        Channel(
-            "force", "drive", "sign times the force or torque on the second body", load="force"
-        ),
+        Channel("force", "drive", "sign times the force or torque on the second body"),
         Channel(
             "position", "coordinate", "prescribed coordinate of the joint; its own once released"
         ),
         Channel("velocity", "coordinate/s", "its rate"),
         Channel("power", "W", "given to the mechanism"),
     ),
+    loads={"force": "force"},
     kernels={
         "constraint": constraint,
         "force": force,

@@ -291,18 +291,13 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     channels=(
-        Channel(
-            "normal_force",
-            "drive",
-            "contact force or torque; never negative",
-            least=0.0,
-            load="contact force",
-        ),
+        Channel("normal_force", "drive", "contact force or torque; never negative", least=0.0),
         Channel("penetration", "coordinate", "positive in contact, minus the free gap otherwise"),
         Channel("force", "drive", "force (on an angle: torque) on the second body, world axes", 3),
     ),
     turning=turning,
     picture="stop",
+    loads={"normal_force": "contact force"},
     kernels={
         "force": force,
         "gaps": gap,

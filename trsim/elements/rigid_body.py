@@ -70,18 +70,6 @@ class RigidBody(Spec):
     flexible: Annotated[Cable | None, SWITCH] = None
 
     @property
-    def whole_mass(self):
-        return self.mass
-
-    @property
-    def centre(self):
-        return self.at
-
-    @property
-    def inertia_z(self):
-        return self.tensor[0][8]
-
-    @property
     def tensor(self):
         """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
         if isinstance(self.inertia, float):
@@ -113,13 +101,11 @@ class RigidBody(Spec):
                 ("flexible",),
             )
         words = {**dict(self.flexible), **({} if own else {"mass": self.mass})}
-        return elements.load("ancf_cable").spec.model_construct(
-            **words,
-            start=start,
-            end=end,
-            velocity=self.velocity,
-            angular_velocity=self.angular_velocity,
-        )
+        words |= {"velocity": self.velocity, "angular_velocity": self.angular_velocity}
+        return elements.load("ancf_cable").spec.model_construct(**words, start=start, end=end)
+
+    def as_rigid(self):
+        return self
 
 
 def pack(name, spec, at):

@@ -102,11 +102,12 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     channels=(
-        Channel("force", "N", "tension", load="force"),
+        Channel("force", "N", "tension"),
         Channel("length", "m", "distance of the two points"),
     ),
     turning=between_points,
     picture="coil",
+    loads={"force": "force"},
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

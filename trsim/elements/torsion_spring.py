@@ -81,9 +81,8 @@ ELEMENT = Element(
     section="forces",
     spec=TorsionSpring,
     pack=pack,
-    channels=(
-        Channel("torque", "N*m", "on the second body of the joint, about its axis", load="torque"),
-    ),
+    channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
+    loads={"torque": "torque"},
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

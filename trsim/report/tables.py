@@ -101,7 +101,7 @@ def load_name(shown: Shown, element: str, channel: str, extreme: str) -> str:
         return f"{name} (not unique)" if name and loose else name
     if channel == "lock.force":
         return "lock"
-    return next((c.load for c in elements.load(part.type).channels if c.name == channel), "")
+    return elements.load(part.type).loads.get(channel, "")
 
 
 def stroke_unit(shown: Shown) -> tuple[float, str]:

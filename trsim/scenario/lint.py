@@ -192,9 +192,10 @@ def _reduced(scenario: Any, bodies: Any, hinge: Any = None) -> float:
         body = scenario.bodies.get(name)
         if body is None:
             continue  # the ground
-        mass, inertia = body.whole_mass, body.inertia_z
+        rigid = body.as_rigid()
+        mass, inertia = rigid.mass, rigid.tensor[0][8]
         if hinge is not None:
-            about = inertia + mass * _away(body.centre, hinge) ** 2
+            about = inertia + mass * _away(rigid.at, hinge) ** 2
         inverse += 1.0 / (mass if hinge is None else about) if (inertia and mass) else inf
     return 1.0 / inverse if inverse else inf
 

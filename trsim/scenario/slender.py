@@ -162,7 +162,7 @@ def _rigid_numbers(scenario: Any, bar: Bar) -> Iterator[str]:
             "bar's counts: correct section or density, or fix a rigid body with the rest to it"
         )
         return
-    even = bar.spec.inertia_z
+    even = mass * bar.length**2 / 12.0
     if not body.tensor[1] and abs(body.inertia / even - 1.0) > DIFFERENT:
         yield (
             f"{bar.where}: an even bar has an inertia of {even:.3g} kg*m^2 where `inertia` says "
