@@ -79,20 +79,14 @@ class RigidBody(Spec):
 
     def bar(self, start, end):
         if start == end:
-            raise ScenarioError(
-                "a flexible bar lies between two of its joints, and this one has fewer",
-                "give it joints at both ends, or make it an ancf_cable with `start` and `end`",
-                ("flexible",),
-            )
+            what = "a flexible bar lies between two of its joints, and this one has fewer"
+            hint = "give it joints at both ends, or make it an ancf_cable with `start` and `end`"
+            raise ScenarioError(what, hint, ("flexible",))
         own = self.flexible.density is not None or self.flexible.mass is not None
         if self.mass == 0.0 and not own:
-            raise ScenarioError(
-                "a flexible bar needs a mass",
-                "give the body a `mass`, or `flexible` a `density`",
-                ("mass",),
-            )
-        middle = tuple(0.5 * (a + b) for a, b in zip(start, end, strict=True))
-        away = dist(middle, self.at)
+            hint = "give the body a `mass`, or `flexible` a `density`"
+            raise ScenarioError("a flexible bar needs a mass", hint, ("mass",))
+        away = dist((0.5 * (a + b) for a, b in zip(start, end, strict=True)), self.at)
         if away > ON_LINE * dist(start, end):
             raise ScenarioError(
                 f"its centre of mass is {away:.3g} m away from the middle between its joints",
