@@ -66,7 +66,7 @@ def test_told_exponents():
     grows = exponents.Exponent(0.9, 0.1, "grows", "", np.arange(9.0), np.zeros(9), None, 3, 0.1,
                                1.0, 50)  # fmt: skip
     assert exponents.in_words(grows) == "0.9 +- 0.1 1/s, 3 dimensions, delay 0.1 s, 50 pairs"
-    assert exponents.told_short(grows) == "0.9 \u00b1 0.1 1/s"
+    assert exponents.in_short(grows) == "0.9 \u00b1 0.1 1/s"
 
 
 def test_the_legend_of_exponents_fits_and_a_line_is_told_where_there_is_one(paths):
