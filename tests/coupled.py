@@ -20,12 +20,12 @@ from trsim.elements.frames import (
     centripetal,
     cross,
     dot,
+    helper,
     separation,
     spin,
     velocity,
 )
 from trsim.fields import Spec, Unit
-from trsim.kernels.lazy import internal
 
 CONSTANT, FIRST = 6, 7  # par: in front the point of a joint, which these do not have
 TERM = 10  # numbers of a term: coefficient, points on i and j, axis
@@ -75,7 +75,7 @@ def pack_gear(name, spec, at):
     return row
 
 
-@internal
+@helper
 def line_of(scene, k, f):
     """The line of J in which row k has the frame f."""
     line = scene.row_start[k]
@@ -84,7 +84,7 @@ def line_of(scene, k, f):
     return line
 
 
-@internal
+@helper
 def add(J, line, c, f, m):
     """A line of J += the force c f and the moment c m."""
     for a in range(3):
@@ -92,7 +92,7 @@ def add(J, line, c, f, m):
         J[line, 3 + a] += c * m[a]
 
 
-@internal
+@helper
 def term(scene, e, k, q):
     """What the q-th coordinate of instance e adds to row k."""
     X, V, con, par, J, gamma = scene.X, scene.V, scene.con, scene.par, scene.J, scene.gamma

@@ -18,7 +18,7 @@ import pytest
 
 import trsim
 from trsim.kernels import fingerprint, machine
-from trsim.kernels.lazy import Lazy, internal
+from trsim.kernels.lazy import Lazy, law
 from trsim.kernels.machine import Caller, Compiled
 from trsim.kernels.signatures import f8, float64
 from trsim.sweep.slot import ONE_THREAD
@@ -44,7 +44,7 @@ def kernels():
 
 def test_no_other_package_has_kernels():
     package = Path(trsim.__file__).parent
-    decorated = re.compile(r"^@(compiled|kernel|internal)\b", re.MULTILINE)
+    decorated = re.compile(r"^@(compiled|kernel|equation|helper|internal|law)\b", re.MULTILINE)
     having = [path for path in package.rglob("*.py") if decorated.search(path.read_text())]
     assert {path.relative_to(package).parts[0] for path in having} == set(ROOMS)
 
@@ -274,16 +274,15 @@ def closed(value):
 
 
 PLAIN = "def f(x): return g(x)"
-INNER = "def f(x): return m.inner.g(x)"
 HELD = "def f(x):\n  h = m.inner.g\n  return h(x)"
 NAMES = [f"name_{k}" for k in range(300)]  # more than a byte can count
 MANY = f"def f(x):\n  y = {'+'.join(NAMES)}\n  return m.inner.g(x)"
 WAYS = {
     "by name": lambda g: function(PLAIN, g=g),
-    "internal": lambda g: function(PLAIN, g=internal(g)),
+    "law": lambda g: function(PLAIN, g=law(g)),
     "kernel": lambda g: function(PLAIN, g=Compiled(g, float64(f8))),
-    "module": lambda g: function(INNER, m=modules(g)),
-    "internal of a module": lambda g: function(INNER, m=modules(internal(g))),
+    "module": lambda g: function("def f(x): return m.inner.g(x)", m=modules(g)),
+    "a law of a module": lambda g: function("def f(x): return m.inner.g(x)", m=modules(law(g))),
     "module, as a value": lambda g: function(HELD, m=modules(g)),
     "many names": lambda g: function(MANY, m=modules(g), **dict.fromkeys(NAMES, 1)),
     "closure": closed,
@@ -425,7 +424,7 @@ def test_what_python_and_numpy_have_is_told_by_name(g):
 
 def test_machine_code_that_the_key_does_not_cover_is_not_kept(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    inside = internal(FunctionType(two.__code__, {"__name__": __name__}, "inside"))
+    inside = law(FunctionType(two.__code__, {"__name__": __name__}, "inside"))
     outside = Compiled(function(PLAIN, g=inside, __name__=__name__), float64(f8))
     assert outside.key
     assert fingerprint.covered(outside.python) == {outside.python.__code__, two.__code__}

@@ -13,10 +13,11 @@ from numba.core.types.functions import BaseFunction
 
 from trsim.elements.contract import compiled
 from trsim.kernels import fingerprint, machine
-from trsim.kernels.lazy import internal
+from trsim.kernels.lazy import law
 from trsim.kernels.machine import Compiled, folder
 from trsim.kernels.packed import Packed
 from trsim.kernels.signatures import A1, A2, T3, Kind, f8, float64, i8, int64, void
+from trsim.kernels.vectors import internal
 
 FACTOR = 2.0
 
@@ -108,11 +109,11 @@ def test_what_another_process_compiled_meanwhile_is_taken(cache, monkeypatch):
 
 @pytest.mark.parametrize("first", ["Python", "compiled code"])
 def test_a_law_called_from_both_sides(first, cache):
-    @internal
+    @law
     def inside(x):
         return min(x, 2.0) + 1.0
 
-    @internal
+    @law
     def outside(x):
         return 2.0 * inside(x)
 
@@ -244,6 +245,6 @@ def compiled_by(function):
     """Whether a function is compiled: one of our decorators stands above it."""
     import ast
 
-    names = {"compiled", "internal", "kernel"}
+    names = {"compiled", "internal", "equation", "kernel", "helper", "law"}
     return any(names & {n.id for n in ast.walk(d) if isinstance(n, ast.Name)}
                for d in function.decorator_list)  # fmt: skip

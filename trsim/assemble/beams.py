@@ -14,16 +14,16 @@ entries of M^-1 between their nodes (`across`).
 
 from math import sqrt
 
-from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import internal as equation
 
 
-@internal
+@equation
 def components(s):
     """Directions a node moves in: two in a plane, three in space."""
     return s.d_node // 2
 
 
-@internal
+@equation
 def node_poses(s, y):
     """X, V and the slopes G of all nodes."""
     X, V, G, width = s.X, s.V, s.G, components(s)
@@ -48,7 +48,7 @@ def node_poses(s, y):
             cross_section(X, s.axes, f, t0, t1, t2)
 
 
-@internal
+@equation
 def cross_section(X, axes, f, t0, t1, t2):
     """Axes of a node in space: those as drawn, turned along the shortest way to the tangent.
 
@@ -78,7 +78,7 @@ def cross_section(X, axes, f, t0, t1, t2):
         X[f, 5 + 3 * r] = -u * c - v * bc + w * (1.0 - cc)
 
 
-@internal
+@equation
 def slope_force(s, f, c):
     """What acts along component c of the slope of node f: the elastic force and the moments."""
     G, F = s.G, s.F
@@ -87,7 +87,7 @@ def slope_force(s, f, c):
     return s.Q[f, c] + (F[f, 3 + a] * G[f, b] - F[f, 3 + b] * G[f, a]) / square
 
 
-@internal
+@equation
 def node_accelerations(s):
     """free = M^-1 F of all nodes."""
     width = components(s)
@@ -98,7 +98,7 @@ def node_accelerations(s):
     divide_by_mass(s, s.free)
 
 
-@internal
+@equation
 def divide_by_mass(s, u):
     """u <- M^-1 u on the rows of all nodes: one pass along every beam and one back.
 
@@ -128,7 +128,7 @@ def divide_by_mass(s, u):
                 u[f, c], u[f, width + c] = place - L[k, 1] * slope, slope
 
 
-@internal
+@equation
 def node_rows(s):
     """B of the slots on nodes."""
     J, B, G, width = s.J, s.B, s.G, components(s)
@@ -142,7 +142,7 @@ def node_rows(s):
                 B[p, width + c] = (J[l, 3 + x] * G[f, y] - J[l, 3 + y] * G[f, x]) / square
 
 
-@internal
+@equation
 def node_products(s, B, pair):
     """What the slots on nodes add to S, with their rows in B; pair: of `entry`, the first."""
     value, entry, across, width = s.value, s.entry, s.across, components(s)
@@ -164,7 +164,7 @@ def node_products(s, B, pair):
                 pair += 1
 
 
-@internal
+@equation
 def node_plain_rows(s, pair, turn):
     """J J^T of the slots on nodes; slopes are weighed by `turn`."""
     B, value, width = s.B, s.value, components(s)
@@ -180,7 +180,7 @@ def node_plain_rows(s, pair, turn):
                     pair += 1
 
 
-@internal
+@equation
 def node_right_hand_side(s, x):
     """x += J M^-1 F + 2 sigma J_omega omega of the slots on nodes."""
     B, G, V, free = s.B, s.G, s.V, s.free
@@ -198,7 +198,7 @@ def node_right_hand_side(s, x):
             x[s.slot_row[p]] += total
 
 
-@internal
+@equation
 def gathered(s, u, x):
     """u = J^T x on the rows of all nodes."""
     for f in range(s.n_r, s.n):
@@ -209,7 +209,7 @@ def gathered(s, u, x):
                 u[f, c] += s.B[p, c] * x[s.slot_row[p]]
 
 
-@internal
+@equation
 def pull_nodes(s, x):
     """free -= M^-1 J^T x of all nodes."""
     u = s.moved
@@ -220,7 +220,7 @@ def pull_nodes(s, x):
             s.free[f, c] -= u[f, c]
 
 
-@internal
+@equation
 def node_rates(s, y, yd):
     """q' and V' of all nodes into yd, and V' as twists into A."""
     A, G, V, width = s.A, s.G, s.V, components(s)
@@ -240,7 +240,7 @@ def node_rates(s, y, yd):
         A[f, 5] = (G[f, 0] * w1 - G[f, 1] * w0) / square - 2.0 * sigma * V[f, 5]
 
 
-@internal
+@equation
 def times_mass(s, v, x, o, out):
     """out <- M x of all nodes; their entries begin at x[v] and at out[o]."""
     M, width, step = s.consistent, components(s), s.d_node
@@ -263,7 +263,7 @@ def times_mass(s, v, x, o, out):
                 out[o + i + c], out[o + i + width + c] = place, slope
 
 
-@internal
+@equation
 def node_kinetic(s, y):
     """Kinetic energy of all beams, J: 1/2 v^T M v with M as it was before it was factorised."""
     T, width = 0.0, components(s)

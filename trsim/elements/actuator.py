@@ -32,11 +32,10 @@ from trsim.elements.contract import (
     between_points,
     kernel,
 )
-from trsim.elements.frames import distance_row, line, push
+from trsim.elements.frames import distance_row, helper, line, push
 from trsim.elements.prescribed import MOTION, SIGN, STATE, C, K, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
-from trsim.kernels.lazy import internal
 
 
 class Supply(Spec):
@@ -155,7 +154,7 @@ def constraint(t, scene, a, b):
         scene.gamma[k] += f_ddot
 
 
-@internal
+@helper
 def state_of(t, scene, e):
     """Thrust, force of the supply on the piston, piston u and u', f, f' and f'' of instance e.
 

@@ -19,11 +19,10 @@ from pydantic import model_validator
 
 from trsim.elements.cable import Cable
 from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
-from trsim.elements.frames import cross, dot
+from trsim.elements.frames import cross, dot, helper
 from trsim.elements.rigid_body import RigidBody
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
-from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear_table
 from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
@@ -153,7 +152,7 @@ def at_node(k):
     )
 
 
-@internal
+@helper
 def gathered(scene, i):
     """Coordinates and rates of the element between nodes i and i + 1, into scene.element."""
     X, V, G, element = scene.X, scene.V, scene.G, scene.element
@@ -190,7 +189,7 @@ def force(t, scene, a, b):
                 scene.zd[DAMPERS] += damping_power(scene, par, con, e)
 
 
-@internal
+@helper
 def damping_power(scene, par, con, e):
     """Power of the damping forces of the element last gathered, W; never positive."""
     element = scene.element
@@ -245,7 +244,7 @@ def energy(t, scene, a, b):
                 E[GRAVITY] -= mass * par[e, FIELD + c] * moment(element[E_NOW], l, c)
 
 
-@internal
+@helper
 def moment(x, l, c):
     """int x_c dx over an element: its length times the place of its centre."""
     s1, s2, s3, s4 = uniform_shares(l)
@@ -300,7 +299,7 @@ def measure(t, scene, a, b):
                 out[o + BAR + AT_NODE * k + c] = X[first + k, c]
 
 
-@internal
+@helper
 def chord_spin(X, V, first, last, out, o):
     """Angular velocity of the line from one frame to another, without spin about it."""
     d = (X[last, 0] - X[first, 0], X[last, 1] - X[first, 1], X[last, 2] - X[first, 2])
@@ -310,7 +309,7 @@ def chord_spin(X, V, first, last, out, o):
         out[o + c] = n[c] / square if square > 0.0 else 0.0
 
 
-@internal
+@helper
 def deflection(X, first, last):
     """Largest distance of a frame between two from the line through them, m."""
     d = (X[last, 0] - X[first, 0], X[last, 1] - X[first, 1], X[last, 2] - X[first, 2])

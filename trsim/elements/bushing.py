@@ -31,6 +31,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.frames import (
     dot,
+    helper,
     push,
     separation,
     spin,
@@ -42,7 +43,6 @@ from trsim.elements.rotations import gradient, into, out_of, rotation_vector, tr
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.frame import across
-from trsim.kernels.lazy import internal
 
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
@@ -107,19 +107,19 @@ def pack(name, spec, at):
     )
 
 
-@internal
+@helper
 def diagonal(par, e, k, v):
     """Three numbers of par from k on times those of v."""
     return (par[e, k] * v[0], par[e, k + 1] * v[1], par[e, k + 2] * v[2])
 
 
-@internal
+@helper
 def half_square(par, e, k, v):
     """(v^T K v)/2 with three numbers K of par from k on."""
     return 0.5 * dot(v, diagonal(par, e, k, v))
 
 
-@internal
+@helper
 def slide(X, con, par, e):
     """The axes A_i, the arm to P_j on body i and on body j, and d."""
     i, p_i, j, p_j = two_points(X, con, par, e)
@@ -128,13 +128,13 @@ def slide(X, con, par, e):
     return A, (p_i[0] + D[0], p_i[1] + D[1], p_i[2] + D[2]), p_j, into(A, D)
 
 
-@internal
+@helper
 def turn(X, A, con, par, e):
     """theta."""
     return rotation_vector(A, triad(X, con[e, 1], par, e, 15))
 
 
-@internal
+@helper
 def loads(X, V, con, par, e):
     """Arms on both bodies, force and moment on body j in world axes, the power lost."""
     i, j = con[e, 0], con[e, 1]

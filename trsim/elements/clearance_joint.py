@@ -41,6 +41,7 @@ from trsim.elements.frames import (
     arm,
     cross,
     dot,
+    helper,
     perpendicular_row,
     push,
     separation,
@@ -51,7 +52,6 @@ from trsim.elements.joint import of_a_hinge, triads
 from trsim.elements.revolute import Revolute, coordinate
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
-from trsim.kernels.lazy import internal
 from trsim.laws.contact import (
     elastic,
     normal_force,
@@ -148,7 +148,7 @@ def constraint(t, scene, a, b):
         perpendicular_row(scene, i, w, j, a_j, k5)
 
 
-@internal
+@helper
 def play(X, V, con, par, e):
     """Arms, separation, unit normal and tangent, penetration and its rate."""
     i, p_i, j, p_j = two_points(X, con, par, e)
@@ -168,7 +168,7 @@ def play(X, V, con, par, e):
     return p_i, p_j, d, n, cross(axis, n), size - par[e, C], rate
 
 
-@internal
+@helper
 def touching(p_i, p_j, d, n, reach):
     """The contact point seen from both centres of mass.
 
@@ -184,14 +184,14 @@ def touching(p_i, p_j, d, n, reach):
     return c_i, c_j
 
 
-@internal
+@helper
 def slip(V, i, c_i, j, c_j, tangent):
     """Sliding speed of the journal against the bearing at the contact point, m/s."""
     v_i, v_j = velocity(V, i, c_i), velocity(V, j, c_j)
     return dot(tangent, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
 
 
-@internal
+@helper
 def sliding(X, V, con, par, e):
     """The sliding speed of instance e, m/s."""
     p_i, p_j, d, n, tangent, _, _ = play(X, V, con, par, e)
@@ -199,7 +199,7 @@ def sliding(X, V, con, par, e):
     return slip(V, con[e, 0], c_i, con[e, 1], c_j, tangent)
 
 
-@internal
+@helper
 def contact_forces(scene, e):
     """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
     X, V, z, con, par, mem = scene.X, scene.V, scene.z, scene.con, scene.par, scene.mem

@@ -11,10 +11,9 @@ from typing import ClassVar
 from pydantic import model_validator
 
 from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
-from trsim.elements.frames import arm
+from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
-from trsim.kernels.lazy import internal
 from trsim.laws.cable_section import uniform_shares
 from trsim.laws.functions import value
 
@@ -70,7 +69,7 @@ def acts_on(row):
     return frozenset({frame, *range(first, first + nodes)} if frame else ())
 
 
-@internal
+@helper
 def load(t, scene, e):
     """Force per length, world axes."""
     par = scene.par

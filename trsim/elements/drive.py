@@ -28,6 +28,7 @@ from trsim.elements.frames import (
     arm,
     cross,
     dot,
+    helper,
     push,
     separation,
     spin,
@@ -37,7 +38,6 @@ from trsim.elements.frames import (
 )
 from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, holds, prescribed
 from trsim.fields import Function, Spec, Unit
-from trsim.kernels.lazy import internal
 
 
 class Compliance(Spec):
@@ -169,7 +169,7 @@ def force(t, scene, a, b):
             act(scene, e, pull)
 
 
-@internal
+@helper
 def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
     X, con, par, F = scene.X, scene.con, scene.par, scene.F

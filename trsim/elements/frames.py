@@ -21,10 +21,10 @@ The multiplier of a row is minus the generalised force it puts on body j along i
 
 from math import sqrt
 
-from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import internal as helper
 
 
-@internal
+@helper
 def arm(X, i, s0, s1, s2):
     """R_i s, world axes."""
     return (
@@ -34,7 +34,7 @@ def arm(X, i, s0, s1, s2):
     )
 
 
-@internal
+@helper
 def cross(a, b):
     return (
         a[1] * b[2] - a[2] * b[1],
@@ -43,12 +43,12 @@ def cross(a, b):
     )
 
 
-@internal
+@helper
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@internal
+@helper
 def two_points(X, con, par, e):
     """Both bodies of instance e with the arms of its points, the first six columns of par."""
     i, j = con[e, 0], con[e, 1]
@@ -56,19 +56,19 @@ def two_points(X, con, par, e):
     return i, p_i, j, arm(X, j, par[e, 3], par[e, 4], par[e, 5])
 
 
-@internal
+@helper
 def spin(V, i):
     """omega_i."""
     return (V[i, 3], V[i, 4], V[i, 5])
 
 
-@internal
+@helper
 def point(X, i, p):
     """World position of the end of the arm p."""
     return (X[i, 0] + p[0], X[i, 1] + p[1], X[i, 2] + p[2])
 
 
-@internal
+@helper
 def velocity(V, i, p):
     """World velocity of the end of the arm p."""
     o0, o1, o2 = V[i, 3], V[i, 4], V[i, 5]
@@ -79,7 +79,7 @@ def velocity(V, i, p):
     )
 
 
-@internal
+@helper
 def centripetal(V, i, p):
     """omega x (omega x p)."""
     o = (V[i, 3], V[i, 4], V[i, 5])
@@ -88,14 +88,14 @@ def centripetal(V, i, p):
     return (o[0] * w - p[0] * o2, o[1] * w - p[1] * o2, o[2] * w - p[2] * o2)
 
 
-@internal
+@helper
 def inward(V, i, p):
     """omega x (omega x p) where nothing leaves the plane."""
     o2 = V[i, 5] * V[i, 5]
     return (-p[0] * o2, -p[1] * o2, 0.0)
 
 
-@internal
+@helper
 def push(F, i, p, f):
     """Apply the force f to body i at the end of the arm p."""
     F[i, 0] += f[0]
@@ -106,7 +106,7 @@ def push(F, i, p, f):
     F[i, 5] += p[0] * f[1] - p[1] * f[0]
 
 
-@internal
+@helper
 def twist(F, i, m):
     """Apply the moment m to body i."""
     F[i, 3] += m[0]
@@ -114,7 +114,7 @@ def twist(F, i, m):
     F[i, 5] += m[2]
 
 
-@internal
+@helper
 def separation(X, i, p_i, j, p_j):
     """From the point on i to the point on j, world axes."""
     return (
@@ -124,20 +124,20 @@ def separation(X, i, p_i, j, p_j):
     )
 
 
-@internal
+@helper
 def _fill(J, line, sign, f, p):
     """A line of J: the force direction f at the arm p, times sign."""
     _put(J, line, sign, f, cross(p, f))
 
 
-@internal
+@helper
 def _put(J, line, sign, f, m):
     """A line of J: the force f and the moment m, times sign."""
     J[line, 0], J[line, 1], J[line, 2] = sign * f[0], sign * f[1], sign * f[2]
     J[line, 3], J[line, 4], J[line, 5] = sign * m[0], sign * m[1], sign * m[2]
 
 
-@internal
+@helper
 def turn_lines(scene, k, n):
     """J of row k between two frames, where Phi' = n . (omega_j - omega_i)."""
     J, l = scene.J, scene.row_start[k]
@@ -148,7 +148,7 @@ def turn_lines(scene, k, n):
         J[l + 1, 3 + c] = n[c]
 
 
-@internal
+@helper
 def point_rows(scene, e):
     """The points of instance e coincide along the world axes whose row, the first three of its own,
     is not negative.  Returns its bodies."""
@@ -179,7 +179,7 @@ def point_rows(scene, e):
     return i, j
 
 
-@internal
+@helper
 def along_row(scene, i, p_i, u, j, p_j, k):
     """u . d with u an arm of body i (world axes) and d the separation of the two points."""
     if k < 0:
@@ -212,7 +212,7 @@ def along_row(scene, i, p_i, u, j, p_j, k):
     gamma[k] = dot(u, c_i) - dot(u, c_j) - 2.0 * dot(u_dot, d_dot) - dot(centripetal(V, i, u), d)
 
 
-@internal
+@helper
 def perpendicular_row(scene, i, u, j, w, k):
     """u . w with u an arm of body i and w an arm of body j, both in world axes."""
     if k < 0:
@@ -229,7 +229,7 @@ def perpendicular_row(scene, i, u, j, w, k):
     turn_lines(scene, k, (-n[0], -n[1], -n[2]))
 
 
-@internal
+@helper
 def line(X, V, con, par, e):
     """Arms, unit vector from i to j, length and its rate of a line between two points.
 
@@ -247,7 +247,7 @@ def line(X, V, con, par, e):
     return p_i, p_j, n, length, rate
 
 
-@internal
+@helper
 def distance_row(scene, e, k):
     """The length of the line of instance e, as row k; phi is the length itself."""
     X, V, con, par = scene.X, scene.V, scene.con, scene.par
@@ -264,14 +264,14 @@ def distance_row(scene, e, k):
     _fill(scene.J, l + 1, 1.0, n, p_j)
 
 
-@internal
+@helper
 def nearest_branch(angle, guess):
     """The value of an angle known up to full turns that lies nearest to the guess."""
     turns = (guess - angle) / 6.283185307179586
     return angle + 6.283185307179586 * round(turns)
 
 
-@internal
+@helper
 def turn_acceleration(V, A, i, j, axis):
     """Second rate of the angle of body j against body i about an axis of body i."""
     o_i, o_j = spin(V, i), spin(V, j)
@@ -281,7 +281,7 @@ def turn_acceleration(V, A, i, j, axis):
     )
 
 
-@internal
+@helper
 def stroke(X, V, con, par, e, axis):
     """axis . d and its rate, with the axis fixed in body i and d the separation."""
     i, p_i, j, p_j = two_points(X, con, par, e)
@@ -291,7 +291,7 @@ def stroke(X, V, con, par, e, axis):
     return dot(axis, d), dot(axis, d_dot) + dot(cross(spin(V, i), axis), d)
 
 
-@internal
+@helper
 def stroke_acceleration(X, V, A, con, par, e, axis):
     """Second rate of the same."""
     i, p_i, j, p_j = two_points(X, con, par, e)

@@ -34,6 +34,7 @@ from trsim.elements.contract import (
 from trsim.elements.frames import (
     arm,
     dot,
+    helper,
     push,
     separation,
     twist,
@@ -42,7 +43,6 @@ from trsim.elements.frames import (
 )
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
-from trsim.kernels.lazy import internal
 from trsim.laws.contact import (
     ramped_beyond,
     ramped_branch_of,
@@ -161,7 +161,7 @@ def pack(name, spec, at):
     return Row(con, par, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 
 
-@internal
+@helper
 def touch(X, V, S, con, par, e):
     """Penetration, its rate, and the direction of the force on body j (world, or + - axis)."""
     i, j = con[e, 0], con[e, 1]

@@ -14,7 +14,7 @@ the motion began; f is the velocity then.
 from typing import Any
 
 from trsim.elements.contract import compiled
-from trsim.kernels.lazy import internal
+from trsim.elements.frames import helper
 from trsim.kernels.signatures import A1, f8, i8, void
 from trsim.laws.functions import motion
 
@@ -39,13 +39,13 @@ def rates_at(tab: Any, offset: int, t: float) -> tuple[float, float, float]:
     return f, f_dot, f_ddot
 
 
-@internal
+@helper
 def holds(con, par, e):
     """Whether a drive acts on its joint: it has not let go."""
     return con[e, ROW] >= 0 or par[e, K] > 0.0
 
 
-@internal
+@helper
 def prescribed(t, z, tab, state, offset):
     """Prescribed place, its rate and second rate at the time t since the motion began."""
     f, f_dot, f_ddot = motion(tab, offset, t)

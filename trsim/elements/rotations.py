@@ -13,13 +13,12 @@ A triad is three unit vectors in world axes.
 
 from math import atan2, sqrt, tan
 
-from trsim.elements.frames import arm, cross, dot
-from trsim.kernels.lazy import internal
+from trsim.elements.frames import arm, cross, dot, helper
 
 SMALL = 0.1  # rad: below, h is its series; the first term left out is 5e-15 of it
 
 
-@internal
+@helper
 def triad(X, i, par, e, k):
     """The three axes that par[e, k:k + 9] tells in the axes of body i."""
     return (
@@ -29,13 +28,13 @@ def triad(X, i, par, e, k):
     )
 
 
-@internal
+@helper
 def into(A, v):
     """A^T v: a vector in world axes, in the axes of the triad."""
     return (dot(A[0], v), dot(A[1], v), dot(A[2], v))
 
 
-@internal
+@helper
 def out_of(A, v):
     """A v: a vector in the axes of the triad, in world axes."""
     return (
@@ -45,7 +44,7 @@ def out_of(A, v):
     )
 
 
-@internal
+@helper
 def rotation_vector(A_i, A_j):
     """theta, rad, by the quaternion of Q, taken from its largest component [Shepperd1978]."""
     x, y, z = into(A_i, A_j[0]), into(A_i, A_j[1]), into(A_i, A_j[2])  # columns of Q
@@ -66,7 +65,7 @@ def rotation_vector(A_i, A_j):
     return (factor * v[0], factor * v[1], factor * v[2])
 
 
-@internal
+@helper
 def gradient(theta, g):
     """H^T g: the moment that does the work of g along theta."""
     angle = sqrt(dot(theta, theta))

@@ -36,9 +36,9 @@ from trsim.elements.contract import (
     Row,
     kernel,
 )
+from trsim.elements.frames import helper
 from trsim.errors import ScenarioError
 from trsim.fields import Flag, Spec, Unit
-from trsim.kernels.lazy import internal
 
 
 class SyncShaft(Spec):
@@ -136,14 +136,14 @@ def channels(n):
     )
 
 
-@internal
+@helper
 def place(scene, e, k):
     """Stroke of piston k and its rate, which its actuator left in zd."""
     s = scene.con[e, STATIONS + 2 * k]
     return scene.z[s], scene.zd[s]
 
 
-@internal
+@helper
 def torque(scene, e, k):
     """Torque in segment k between pistons k and k + 1; zero beyond the ends."""
     if k < 0 or k >= scene.con[e, COUNT] - 1:
@@ -154,7 +154,7 @@ def torque(scene, e, k):
     return par[e, RATIO] * (par[e, K] * (v - u) + par[e, DAMPING] * (v_dot - u_dot))
 
 
-@internal
+@helper
 def gear(scene, e, k):
     """Ideal and real force on piston k, and its speed."""
     par = scene.par
@@ -186,7 +186,7 @@ def force(t, scene, a, b):
                 zd[DRIVES] -= G * speed  # whoever prescribes the motion takes the force
 
 
-@internal
+@helper
 def largest_difference(scene, e):
     """The largest difference of the strokes of neighbours, and its rate."""
     largest, rate = -1.0, 0.0

@@ -61,6 +61,6 @@ class Lazy:
         return self.dispatcher(*arguments, **named)
 
 
-def internal(python: Callable) -> Lazy:
-    """Decorator of functions that are compiled into those that call them."""
+def law(python: Callable) -> Lazy:
+    """Decorator of laws."""
     return Lazy(python)

@@ -17,13 +17,13 @@ so the delivered restitution e depends on chi alone, not on mass, speed, K or n.
 
 from math import asinh, exp, gamma, inf, pi, sqrt
 
-from trsim.kernels.lazy import internal
+from trsim.kernels.lazy import law
 from trsim.laws.tables import smoothstep
 
 HERTZ, CYLINDER = 0, 1  # form
 
 
-@internal
+@law
 def elastic(d, K, n, c, form):
     """Elastic part of the contact force.
 
@@ -54,7 +54,7 @@ def elastic(d, K, n, c, form):
     return K * d**n
 
 
-@internal
+@law
 def stored(d, K, n, c, form):
     """Elastic energy, the integral of F_e from 0 to d, J.  Parameters as in `elastic`.
 
@@ -80,7 +80,7 @@ def stored(d, K, n, c, form):
     return K * c * c * z * z * s * total
 
 
-@internal
+@law
 def normal_force(d, d_dot, d_dot0, K, n, c, form, chi):
     """Normal force of a dissipative contact, F = max(0, F_e (1 + chi d'/d0')).
 
@@ -104,7 +104,7 @@ def normal_force(d, d_dot, d_dot0, K, n, c, form, chi):
     return max(0.0, elastic(d, K, n, c, form) * (1.0 + chi * d_dot / d_dot0))
 
 
-@internal
+@law
 def ramped_damping(pen, pen_dot, k, c, ramp):
     """Force of a stop or seat: a linear spring whose damper fades in over the first ramp metres.
 
@@ -126,13 +126,13 @@ def ramped_damping(pen, pen_dot, k, c, ramp):
     return max(0.0, uncut(pen, pen_dot, k, c, ramp))
 
 
-@internal
+@law
 def uncut(pen, pen_dot, k, c, ramp):
     """Force of a stop or seat before it is cut at zero, N or N*m; where pen < 0 of the spring."""
     return k * pen + c * smoothstep(pen / ramp) * pen_dot
 
 
-@internal
+@law
 def ramped_branch_of(pen, pen_dot, k, c, ramp):
     """The branch of `ramped_damping` that a penetration and its rate are on.
 
@@ -143,7 +143,7 @@ def ramped_branch_of(pen, pen_dot, k, c, ramp):
     return 0.0 if pen < ramp else 1.0
 
 
-@internal
+@law
 def ramped_on_branch(branch, pen, pen_dot, k, c, ramp):
     """`ramped_damping` with one branch drawn on beyond its ends, so that it has no corner, N."""
     if branch == 2.0:
@@ -154,7 +154,7 @@ def ramped_on_branch(branch, pen, pen_dot, k, c, ramp):
     return k * pen + (c * x * x * (3.0 - 2.0 * x) * pen_dot if x > 0.0 else 0.0)
 
 
-@internal
+@law
 def pulling(pen_dot, k, c, ramp):
     """Between which penetrations, of the ramp, the force of `ramped_damping` would pull.
 
@@ -168,7 +168,7 @@ def pulling(pen_dot, k, c, ramp):
     return 0.25 * (3.0 - root), 1.0 / a if a <= 1.0 else 0.25 * (3.0 + root), 0.0
 
 
-@internal
+@law
 def ramped_beyond(branch, pen, pen_dot, k, c, ramp):
     """How far a branch has been left, of the ramp: negative inside, zero at a corner."""
     if branch == 2.0:
@@ -181,7 +181,7 @@ def ramped_beyond(branch, pen, pen_dot, k, c, ramp):
     return max(pull, along if branch == 0.0 else -along)
 
 
-@internal
+@law
 def ramped_neighbour(branch, pen, pen_dot, k, c, ramp):
     """The branch on the other side of the nearest corner."""
     along = pen / ramp - 1.0

@@ -15,7 +15,7 @@ normal force.  w, m, is the mean deflection of the bristles, positive in the dir
 
 from math import exp
 
-from trsim.kernels.lazy import internal
+from trsim.kernels.lazy import law
 
 # the word of a scenario -> the code of `friction_force`
 CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}
@@ -30,7 +30,7 @@ PARAMETERS = {
 N_PARAMETERS = 6
 
 
-@internal
+@law
 def coulomb(F_n, v_t, mu):
     """Dry friction with a jump at rest, for reference.
 
@@ -49,7 +49,7 @@ def coulomb(F_n, v_t, mu):
     return -mu * F_n if v_t > 0.0 else mu * F_n
 
 
-@internal
+@law
 def modified_coulomb(F_n, v_t, mu, v0, v1):
     """Dry friction with a dead band and a linear ramp.                    [Ambrosio2003]
 
@@ -79,7 +79,7 @@ def modified_coulomb(F_n, v_t, mu, v0, v1):
     return -F if v_t > 0.0 else F
 
 
-@internal
+@law
 def branch_of(v_t, v0, v1):
     """The branch of `modified_coulomb` at a speed: 0 dead band, 1 ramp, 2 full; with its sign."""
     s = abs(v_t)
@@ -89,7 +89,7 @@ def branch_of(v_t, v0, v1):
     return size if v_t > 0.0 else -size
 
 
-@internal
+@law
 def on_branch(branch, F_n, v_t, mu, v0, v1):
     """`modified_coulomb` with one branch drawn on beyond its ends, so that it has no corner.
 
@@ -103,7 +103,7 @@ def on_branch(branch, F_n, v_t, mu, v0, v1):
     return -mu * F_n if branch > 0.0 else mu * F_n
 
 
-@internal
+@law
 def beyond(branch, v_t, v0, v1):
     """How far a speed has left its branch, m/s: negative inside, zero at a corner."""
     size = abs(branch)
@@ -113,7 +113,7 @@ def beyond(branch, v_t, v0, v1):
     return max(v0 - s, s - v1) if size == 1.0 else v1 - s
 
 
-@internal
+@law
 def neighbour(branch, v_t, v0, v1):
     """The branch on the other side of the nearest corner."""
     size = abs(branch)
@@ -125,7 +125,7 @@ def neighbour(branch, v_t, v0, v1):
     return 2.0 * sign if sign * v_t - v0 > v1 - sign * v_t else 0.0
 
 
-@internal
+@law
 def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     """Load-proportional bristle friction, which sticks.                   [CanudasDeWit1995]
 
@@ -166,7 +166,7 @@ def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     return F, v_t - sigma0 * s * w / g
 
 
-@internal
+@law
 def friction_force(code, F_n, v_t, w, par, o):
     """Friction by code: 0 none, 1 coulomb, 2 modified_coulomb, 3 sticking (bristle).
 

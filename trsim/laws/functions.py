@@ -25,7 +25,7 @@ per call: `tab` must be writable, and two threads must not evaluate the same arr
 
 import math
 
-from trsim.kernels.lazy import internal
+from trsim.kernels.lazy import law
 from trsim.laws.operations import (
     ABOVE,
     ADD,
@@ -225,7 +225,7 @@ def expression(node, sensors):
     return [float(x) for x in out]
 
 
-@internal
+@law
 def run(tab, o):
     """Value of an expression whose inputs are in their slots."""
     n_in, n_op = int(tab[o + 1]), int(tab[o + 2])
@@ -239,7 +239,7 @@ def run(tab, o):
     return tab[o + int(tab[o + 4])]
 
 
-@internal
+@law
 def run_rates(tab, o):
     """Value and two derivatives of an expression whose inputs are in their slots."""
     n_in, n_op = int(tab[o + 1]), int(tab[o + 2])
@@ -257,7 +257,7 @@ def run_rates(tab, o):
     return tab[out], tab[out + 1], tab[out + 2]
 
 
-@internal
+@law
 def looked_up(tab, o, x):
     """Value and two derivatives of a table at x, on the piece it is held on."""
     held, n = tab[o + HELD_OF_TABLE], int(tab[o + 2])
@@ -266,7 +266,7 @@ def looked_up(tab, o, x):
     return held_cubic(tab, o + OF_TABLE, n, x, held)
 
 
-@internal
+@law
 def inputs(tab, o, t, S):
     """Put t and the sensors into their slots, as values."""
     slot = o + int(tab[o + 3])
@@ -275,7 +275,7 @@ def inputs(tab, o, t, S):
         tab[slot + 3 * (i + 1)] = S[int(tab[o + HEAD + i]), 0]
 
 
-@internal
+@law
 def hold(tab, o, t, S, which):
     """Hold a function on the pieces it is on at t: those met by time, or those met by sensors.
 
@@ -306,7 +306,7 @@ def hold(tab, o, t, S, which):
 # --- corners: each is known by its place in tab, of what is held there -----------------------
 
 
-@internal
+@law
 def sensed(tab, o, place):
     """Whether sensors meet a corner."""
     if tab[o] == TABLE:
@@ -314,7 +314,7 @@ def sensed(tab, o, place):
     return tab[place - HELD + WATCHED] == BY_SENSORS
 
 
-@internal
+@law
 def corner(tab, o, place, S):
     """u of a corner that sensors meet, its rate, and the size of what u is the difference of.
 
@@ -330,14 +330,14 @@ def corner(tab, o, place, S):
     return tab[a] - tab[b], tab[a + 1] - tab[b + 1], abs(tab[a]) + abs(tab[b])
 
 
-@internal
+@law
 def located(tab, o, t, S):
     """Fill the slots of an expression with values and rates at t."""
     if tab[o] == EXPRESSION:
         value_and_rate(tab, o, t, S)
 
 
-@internal
+@law
 def ends_of(tab, o, place):
     """Between which u the piece lies that is held."""
     held = tab[place]
@@ -348,7 +348,7 @@ def ends_of(tab, o, place):
     return interval_ends(tab, o + OF_TABLE, int(tab[o + 2]), held)
 
 
-@internal
+@law
 def piece_at(tab, o, place, u):
     """The piece that u is on; at a corner the one above."""
     if tab[o] == TABLE:
@@ -356,7 +356,7 @@ def piece_at(tab, o, place, u):
     return branch_at(int(tab[place - HELD]), u)
 
 
-@internal
+@law
 def neighbour(tab, o, place, above):
     """The piece next to the one that is held."""
     held = tab[place]
@@ -367,7 +367,7 @@ def neighbour(tab, o, place, above):
     return beside(int(tab[place - HELD]), held, above)
 
 
-@internal
+@law
 def brief(tab, o, place):
     """Whether the piece that is held may be a short event: exp between its outer edges."""
     held = tab[place]
@@ -379,7 +379,7 @@ def brief(tab, o, place):
 CLEAR, MEETS, UNSURE = 0, 1, 2
 
 
-@internal
+@law
 def judged(u, l, h, m, n, low, high):
     """Whether u stays between low and high: it is in l..h, its rate in m..n, and it ends at u."""
     if low < l and h < high:
@@ -389,7 +389,7 @@ def judged(u, l, h, m, n, low, high):
     return MEETS if u < low or u > high else CLEAR
 
 
-@internal
+@law
 def enclosed(tab, o, t0, t1, S, seen, box):
     """Whether a function stays on its pieces from t0 to t1, where its sensors show S.
 
@@ -450,7 +450,7 @@ def waves(code):
     return any(code[p] in (SIN, COS, TAN) for p in range(first, int(code[3]), WIDTH))
 
 
-@internal
+@law
 def swing(tab, o, t, length, S0, rate0, S1, rate1):
     """How fast an expression may swing from t on, in rad/s of the fastest wave in it.
 
@@ -485,7 +485,7 @@ def swing(tab, o, t, length, S0, rate0, S1, rate1):
     return w if w < math.inf else 0.0
 
 
-@internal
+@law
 def value(tab, o, t, S):
     """The number at time t.
 
@@ -510,7 +510,7 @@ def value(tab, o, t, S):
     return run(tab, o)
 
 
-@internal
+@law
 def value_and_rate(tab, o, t, S):
     """The number at time t and its total rate in time, through the rates of the sensors.
 
@@ -539,7 +539,7 @@ def value_and_rate(tab, o, t, S):
     return f, f1
 
 
-@internal
+@law
 def motion(tab, o, t):
     """A prescribed motion and its first and second derivative in time.
 

@@ -8,7 +8,7 @@ change, its rate is without bounds.  Every result is widened by rounding.       
 
 from math import ceil, cos, exp, floor, inf, isfinite, log, pi, sqrt
 
-from trsim.kernels.lazy import internal
+from trsim.kernels.lazy import law
 from trsim.laws.operations import (
     ABOVE,
     ABS,
@@ -41,7 +41,7 @@ ROUNDING = 1e-15  # of each operation
 WHOLE = 64.0  # the largest whole power taken as a product
 
 
-@internal
+@law
 def widened(l, h):
     """An interval made larger by rounding; without bounds where it is no number."""
     if not (l <= h):
@@ -49,29 +49,29 @@ def widened(l, h):
     return l - ROUNDING * abs(l), h + ROUNDING * abs(h)
 
 
-@internal
+@law
 def plus(a, b, c, d):
     return widened(a + c, b + d)
 
 
-@internal
+@law
 def minus(a, b, c, d):
     return widened(a - d, b - c)
 
 
-@internal
+@law
 def product(x, y):
     """0 times anything is 0: a bound may be infinite."""
     return 0.0 if x == 0.0 or y == 0.0 else x * y
 
 
-@internal
+@law
 def times(a, b, c, d):
     p, q, r, s = product(a, c), product(a, d), product(b, c), product(b, d)
     return widened(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
 
 
-@internal
+@law
 def over(a, b, c, d):
     """Without bounds where the divisor may be zero."""
     if c <= 0.0 <= d:
@@ -79,7 +79,7 @@ def over(a, b, c, d):
     return times(a, b, 1.0 / d, 1.0 / c)
 
 
-@internal
+@law
 def whole_power(a, b, n):
     """Between which numbers x^n lies for a <= x <= b, n >= 0 a whole number."""
     l, h = a**n, b**n
@@ -92,7 +92,7 @@ def whole_power(a, b, n):
     return widened(l, h)
 
 
-@internal
+@law
 def powered(a, b, n):
     """Between which numbers x^n lies for a <= x <= b, n any whole number."""
     if n >= 0.0:
@@ -101,7 +101,7 @@ def powered(a, b, n):
     return over(1.0, 1.0, l, h)
 
 
-@internal
+@law
 def cosine(a, b):
     """-1 or 1 where a whole multiple of pi may lie inside."""
     if not (isfinite(a) and isfinite(b)):
@@ -115,12 +115,12 @@ def cosine(a, b):
     return max(l, -1.0), min(h, 1.0)
 
 
-@internal
+@law
 def sine(a, b):
     return cosine(a - 0.5 * pi, b - 0.5 * pi)
 
 
-@internal
+@law
 def quotient(a0, a1, r0, r1, b0, b1, q0, q1):
     """(a/b)' = (a' - (a/b) b') / b."""
     l, h = over(a0, a1, b0, b1)
@@ -130,7 +130,7 @@ def quotient(a0, a1, r0, r1, b0, b1, q0, q1):
     return l, h, rl, rh
 
 
-@internal
+@law
 def smooth_step(code, a, b, r0, r1, held):
     """A smooth step on a branch: the cubic or quintic is drawn on where it is held inside."""
     if held == BELOW or (held == FREE and b <= 0.0):
@@ -159,7 +159,7 @@ def smooth_step(code, a, b, r0, r1, held):
     return l, h, rl, rh
 
 
-@internal
+@law
 def one(code, a, b, r0, r1, held):
     """An operation on one number."""
     if code == NEG:
@@ -201,7 +201,7 @@ def one(code, a, b, r0, r1, held):
     return l, h, m, n
 
 
-@internal
+@law
 def raised(a, b, r0, r1, c, d, q0, q1):
     """a**b: whole powers as products, others as exp(b log a) where a is surely positive."""
     if c == d and c == floor(c) and abs(c) <= WHOLE:
@@ -218,7 +218,7 @@ def raised(a, b, r0, r1, c, d, q0, q1):
     return one(EXP, u, v, x, y, FREE)
 
 
-@internal
+@law
 def angle(a, b, r0, r1, c, d, q0, q1, held):
     """atan2(a, b): of a box that does not hold the origin, from its corners."""
     if (a <= 0.0 <= b and c <= 0.0 <= d) or (held == FREE and a <= 0.0 <= b and c < 0.0):
@@ -236,7 +236,7 @@ def angle(a, b, r0, r1, c, d, q0, q1, held):
     return l, h, m, n
 
 
-@internal
+@law
 def ranged(code, a, b, r0, r1, c, d, q0, q1, held):
     """An operation on (a, b, r0, r1) and (c, d, q0, q1), on the branch it is held on."""
     if code == ADD:

@@ -8,7 +8,7 @@ from math import comb, sqrt
 
 import numpy as np
 
-from trsim.assemble.equations import evaluate
+from trsim.assemble.equations import equation, evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import internal
 from trsim.solve.march.accelerations import (
@@ -70,7 +70,7 @@ SLOWER = 2.0  # times the frequency known from the steps before: by as much that
 IN_DENSE = np.flatnonzero(np.any(D != 0.0, axis=0))  # and those that the dense output does
 
 
-@internal
+@equation
 def stage(K, y, h, s, out):
     """out = y + h sum_j A[s, j] K[j]."""
     combined(K, s, 0, y.size, out)
@@ -78,7 +78,7 @@ def stage(K, y, h, s, out):
         out[c] = y[c] + h * out[c]
 
 
-@internal
+@equation
 def combined(K, s, first, beyond, out):
     """out = sum_j (row s of the sums)[j] K[j] of these entries.
 
