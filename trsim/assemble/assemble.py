@@ -53,9 +53,8 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
-from trsim.elements.contract import (
-    N_BOOK,
-)
+from trsim.elements.contract import COORDINATE_INDEX, FIRST_ROW, N_BOOK
+from trsim.elements.coordinates import of_joint
 from trsim.elements.prescribed import ENTRY
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
@@ -151,7 +150,7 @@ def stages(
         own = hubs(full, y6, rows, kept, planar, spans(at))
         return build(scenario, at, instances, kept, d, own, left)
 
-    angles = {} if planar else {x.entry: n for n, x in at.coordinates.items() if x.kind == "angle"}
+    angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
     turning = {
         (i.section, i.name): angles[i.row.con[ENTRY]]
         for i in instances
@@ -227,16 +226,15 @@ def pack(  # type: ignore[no-untyped-def]
     if at.jumped and at.switches.jumps < 0:
         at.switches = replace(at.switches, jumps=at.state(0.0))
     for name in coordinates:
-        if at.elements["joints", name].coordinate:
-            at.coordinate(name)
+        for own in of_joint(name, scenario.joints):
+            at.coordinate(own)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
-        if instance.section == "joints" and instance.name in at.coordinates:
-            row = instance.row
-            index = at.coordinates[instance.name].entry
-            con = (*row.con[:2], index, *row.con[3:])
-            row = replace(row, con=con)
-            instances[n] = Instance(instance.section, instance.name, instance.element, row)
+        if instance.section == "joints" and instance.element.coordinates:
+            names, con = of_joint(instance.name, scenario.joints), instance.row.con
+            entries = [at.coordinates[x].entry if x in at.coordinates else -1 for x in names]
+            con = (*con[:COORDINATE_INDEX], entries[0], *con[FIRST_ROW:], *entries[1:])
+            instances[n] = replace(instance, row=replace(instance.row, con=con))
     return at, instances
 
 

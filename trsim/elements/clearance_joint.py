@@ -37,19 +37,18 @@ from trsim.elements.contract import (
     kernel,
 )
 from trsim.elements.frames import (
-    along_row,
     arm,
     cross,
     dot,
     helper,
-    perpendicular_row,
     push,
     separation,
     two_points,
     velocity,
 )
-from trsim.elements.joint import of_a_hinge, triads
-from trsim.elements.revolute import Revolute, coordinate
+from trsim.elements.joint import triads
+from trsim.elements.revolute import Revolute
+from trsim.elements.rows import TILTS, along, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
 from trsim.laws.contact import (
@@ -87,7 +86,8 @@ class ClearanceJoint(Revolute):
 
 # par, after the 22 of joint.py
 R_B, C, STIFFNESS, EXPONENT, FORM, CHI, SLOWEST, FRICTION_PAR = 22, 23, 24, 25, 26, 27, 28, 29
-AXIAL, TILT_1, TILT_2, STATE, FRICTION_LAW = 3, 4, 5, 6, 7  # con
+STATE, FRICTION_LAW = 6, 7  # con
+ROWS = (along("a", "axial"), *TILTS)
 MU, V0, V1 = FRICTION_PAR, FRICTION_PAR + 1, FRICTION_PAR + 2  # of modified_coulomb
 CORNERED = CODES["modified_coulomb"]
 
@@ -162,23 +162,6 @@ def pack(name, spec, at):
     jump = FRICTION_PAR if law.friction.law == "coulomb" else -1
     contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump)
     return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
-
-
-@kernel
-def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
-    for e in range(a, b):
-        k3, k4, k5 = con[e, AXIAL], con[e, TILT_1], con[e, TILT_2]
-        if k3 < 0 and k4 < 0 and k5 < 0:
-            continue
-        i, p_i, j, p_j = two_points(X, con, par, e)
-        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
-        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
-        along_row(scene, i, p_i, axis, j, p_j, k3)
-        perpendicular_row(scene, i, u, j, a_j, k4)
-        perpendicular_row(scene, i, w, j, a_j, k5)
 
 
 @helper
@@ -354,8 +337,9 @@ ELEMENT = Element(
     spec=ClearanceJoint,
     pack=pack,
     reach=reach,
-    rows=("axial", "tilt 1", "tilt 2"),
-    coordinate="angle",
+    rows=tuple(row.name for row in ROWS),
+    holds=tuple(row.holds for row in ROWS),
+    coordinates=("angle",),
     channels=(
         Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
         Channel("friction_force", "N", "on the journal, along axis x normal"),
@@ -373,11 +357,10 @@ ELEMENT = Element(
     ),
     meets=True,
     ideal="revolute",
-    changes=lambda _: of_a_hinge("axial", None, None),
     picture="journal",
     kernels={
-        "constraint": constraint,
-        "coordinate": coordinate,
+        "constraint": constraint_of(ROWS),
+        "coordinate": coordinate_of(("angle",), len(ROWS)),
         "force": force,
         "gaps": gap,
         "corners": corners,

@@ -3,7 +3,8 @@
 The user's words end in `pack`; from there on an element is rows of numbers.  Every instance of
 every element owns one row e of the three tables of a model,
 
-    con (N, n_con) int64     where: frames, joint coordinate, constraint rows, further indices
+    con (N, n_con) int64     where: frames, joint coordinate, constraint rows, further indices,
+                             further joint coordinates
     par (N, n_par) float64   how much: constants of the instance, SI
     mem (N, n_mem) float64   what it remembers; frozen while a step is being tried
 
@@ -183,14 +184,6 @@ class Turning(NamedTuple):
     held: tuple[int, ...] = ()  # frames whose turns it resists
 
 
-class Looser(NamedTuple):
-    """Rows of a joint that can go together, and what it is without them; see release.py."""
-
-    rows: tuple[str, ...]
-    becomes: str  # in words
-    type: str | None = None  # the joint type of a scenario, where there is one
-
-
 def between_points(row: Row) -> Turning:
     """Of what acts between a point of either body and does nothing else to them."""
     (i, j), par = row.con[:2], row.par
@@ -211,12 +204,12 @@ class Element:
     spec: type
     pack: Callable  # (name, spec, at) -> Row
     rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
-    coordinate: str = ""  # what a joint, or a sensor without one, has: angle, stroke
+    holds: tuple[str, ...] = ()  # of a joint, what each row holds; see rows.py
+    coordinates: tuple[str, ...] = ()  # what a joint, or a sensor without one, has: angle, stroke
     channels: tuple[Channel, ...] = ()
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
-    changes: Callable[[Row], tuple[Looser, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
     meets: bool = False  # its bodies meet at the point `at`

@@ -74,7 +74,7 @@ ELEMENT = Element(
     spec=Displacement,
     pack=pack,
     reach=lambda row: Reach(shown=((row.con[0], row.par[6:9]),)),
-    coordinate="stroke",
+    coordinates=("stroke",),
     channels=(
         Channel("", "m", "displacement along the axis"),
         Channel("rate", "m/s", "its rate"),

@@ -6,10 +6,13 @@ par[15:18], [18:21]             u and a in the axes of body j
 par[21]                         joint angle as drawn
 """
 
-from trsim.elements.contract import Looser
+from trsim.elements.contract import Element, Reach, Row, Turning, between_points
+from trsim.elements.rows import POINT, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
+
+Z = (0.0, 0.0, 1.0)
 
 
 class Joint(Spec):
@@ -23,28 +26,70 @@ class Joint(Spec):
     at: point("m")
 
 
-TILTS = ("tilt 1", "tilt 2")
-ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
+def pack(name, spec, at):
+    """A joint about its axis, or z; without a place at the second body's centre of mass."""
+    i, j = at.bodies(spec.bodies, spec.at)
+    place = at.centre(j) if spec.at is None else spec.at
+    axes = triads(i, j, getattr(spec, "axis", Z), at, spec.drawn_in)
+    return Row((i, j, -1), (*at.local(i, place), *at.local(j, place), *axes))
 
 
-def axial_row(row):
-    """The row that holds a joint along its axis, where one row does."""
-    largest = max(range(3), key=lambda c: abs(row.par[12 + c]))
-    return "xyz"[largest] if abs(row.par[12 + largest]) > ALONG else ""
+def on_line(row):
+    """Of rows that hold a point of body j where it may slide along directions of body i."""
+    i, j = row.con[:2]
+    return Turning(points=((j, row.par[3:6]),), axes=((i, row.par[12:15]),))
 
 
-def of_a_hinge(axial, ball, cross):
-    """What a hinge becomes without some of its rows; ball, cross: types that hold what is left."""
-    changes = (
-        Looser(TILTS, ball or "free to tilt", ball),
-        *(Looser((tilt,), "universal", cross) for tilt in TILTS),
+def reach(row, coordinates):
+    """Bodies turn about the axis of an angle, and slide along that of a stroke."""
+    axis = ((row.con[0], row.par[12:15]),)
+    return Reach(
+        hinges=axis if "angle" in coordinates else (),
+        slides=axis if "stroke" in coordinates else (),
     )
-    if not axial:
-        return changes
-    return (
-        *changes,
-        Looser((axial,), "cylindrical"),
-        Looser((axial, *TILTS), "a ball in a sleeve"),
+
+
+# by how many displacements and turns a joint holds: its picture, see report/animation/drawing.py
+PICTURES = {
+    (3, 0): "ball",
+    (3, 1): "cross",
+    (3, 2): "pin",
+    (3, 3): "weld",
+    (2, 0): "bead",
+    (2, 2): "sleeve",
+    (2, 3): "slide",
+}
+
+
+def joint(key, spec, rows, coordinates=(), **other):
+    """The element that a list of rows makes (rows.py), with the coordinates these leave free.
+
+    other: fields of Element, also those that follow from the rows where they are to differ.
+    """
+    places = sum(not row.of_j for row in rows)
+    turns, ball = len(rows) - places, rows == POINT
+    kernels = {"constraint": constraint_of(rows)}
+    if coordinates:
+        kernels["coordinate"] = coordinate_of(coordinates, len(rows))
+        other.setdefault("reach", lambda row: reach(row, coordinates))
+    follows = {
+        "pack": pack,
+        "meets": places == 3,
+        "welds": (places, turns) == (3, 3),
+        "pin": (2, 3) if ball else (2,) if places == 3 and "angle" in coordinates else (),
+        "holds_twist": turns > 0,
+        "turning": between_points if ball else None if turns else on_line,
+        "picture": PICTURES.get((places, turns), ""),
+    }
+    return Element(
+        key=key,
+        section="joints",
+        spec=spec,
+        rows=tuple(row.name for row in rows),
+        holds=tuple(row.holds for row in rows),
+        coordinates=coordinates,
+        kernels=kernels,
+        **(follows | other),
     )
 
 
@@ -68,14 +113,12 @@ def perpendicular(axis, frame=None):
     return u, across(a, u), a
 
 
+def held(i, j, u, w, a, at):
+    """par[6:21] of a joint between bodies i and j: u, w, a as drawn in i, u and a in j."""
+    return (*at.axes(i, u), *at.axes(i, w), *at.axes(i, a), *at.axes(j, u), *at.axes(j, a))
+
+
 def triads(i, j, axis, at, frame=None):
     """par[6:22] of a joint between bodies i and j about a world axis, as drawn in a frame."""
     u, w, a = perpendicular(axis, frame)
-    return (
-        *at.axes(i, u),
-        *at.axes(i, w),
-        *at.axes(i, a),
-        *at.axes(j, u),
-        *at.axes(j, a),
-        at.drawn_angle(i, j, a, frame),
-    )
+    return (*held(i, j, u, w, a, at), at.drawn_angle(i, j, a, frame))

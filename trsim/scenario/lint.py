@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
-from trsim import elements
 from trsim.elements.clearance_joint import normal_numbers
+from trsim.elements.coordinates import called, of_joint, split
 from trsim.laws.contact import (
     damping_factor,
     delivered_restitution,
@@ -219,10 +219,11 @@ def _away(place: Any, hinge: Any) -> float:
 def _stop_mass(scenario: Any, stop: Any) -> float:
     if stop.joint is None:
         return _reduced(scenario, (stop.point.body, stop.wall.body))
-    joint = scenario.joints.get(stop.joint)
-    if joint is None:
+    name, _ = split(stop.joint, scenario.joints)
+    if name not in scenario.joints:
         return inf
-    slides = elements.load(joint.type).coordinate == "stroke"
+    joint, own = scenario.joints[name], called(stop.joint, scenario.joints)
+    slides = of_joint(name, scenario.joints).get(own) == "stroke"
     return _reduced(scenario, joint.bodies, None if slides else joint)
 
 

@@ -26,6 +26,7 @@ from trsim.assemble.reduce import (
     world_rates,
 )
 from trsim.elements.bushing import ROTATIONAL, STIFFNESS
+from trsim.elements.coordinates import of_joint
 from trsim.elements.prescribed import rates_at
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
@@ -73,8 +74,8 @@ def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) ->
     """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
     joints = scenario.joints.items() if not given(scenario) else ()
     playing = frozenset(n for n, s in joints if elements.load(s.type).ideal)
-    with_coordinate = [n for n in named if elements.load(scenario.joints[n].type).coordinate]
-    if not playing and not mechanism.beams and {*with_coordinate} <= {*mechanism.coordinates}:
+    wanted = {own for n in named for own in of_joint(n, scenario.joints)}
+    if not playing and not mechanism.beams and wanted <= {*mechanism.coordinates}:
         return mechanism
     return assemble(scenario, playing, coordinates=named, stiff=True, planar=mechanism.planar)
 
@@ -93,7 +94,7 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     wishes += [(gradient, 0.0) for gradient in (bushings(ideal, y_ideal) if held else ())]
     if named:
         wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
-        moving = [ideal.coordinates[n] for n in named if n in ideal.coordinates]
+        moving = [x for n in named for x in ideal.coordinates.values() if x.joint == n]
         wishes += [(rate_of_entry(model, y_ideal, x.entry, (x.i, x.j)), 0.0) for x in moving]
     scale = weights(model)
     kept = independent(J * scale, [gradient * scale for gradient, _ in wishes])
