@@ -9,7 +9,7 @@ forces, joint types trsim has before others, few joints, pins between moving bod
 bearings, then the order of the file.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, product
 from typing import Any, NamedTuple
@@ -73,7 +73,9 @@ def release(scenario: Any, mechanism: Mechanism) -> Release | None:
     stress = self_stress(scenario, mechanism, at, instances)
     k = len(mechanism.redundant)
     options = [
-        list(changes(instances[n], stress, at))
+        sorted(
+            changes(instances[n], stress, at), key=lambda change: forces(change.rows, stress.rows)
+        )
         for n in sorted({stress.rows[r].instance for r in stress.inside})
         if instances[n].section == "joints"
     ]
@@ -179,12 +181,17 @@ def price(
     """Forces let go; joints of a type trsim lacks; joints changed; bearings opened."""
     gone = [row for change in chosen for row in change.rows]
     return (
-        sum(not rows[row].rotation for row in gone),
+        forces(gone, rows),
         sum(change.type is None for change in chosen),
         len(chosen),
         sum(change.becomes == "universal" for change in chosen),
         sum(0 in rows[change.rows[0]].frames for change in chosen),
     )
+
+
+def forces(gone: Iterable[int], rows: list[RowName]) -> int:
+    """How many of the rows let go of are forces."""
+    return sum(not rows[row].rotation for row in gone)
 
 
 def removable(gone: list[int], stress: Stress) -> bool:
