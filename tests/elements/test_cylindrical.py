@@ -206,6 +206,23 @@ def test_a_hinge_may_be_named_by_its_angle_too():
     assert list(built(text).coordinates) == ["shaft"]
 
 
+def test_in_a_template():
+    """A part of it, and what it names, have the names of the instance."""
+    m = built("""
+planar: false
+templates:
+  post:
+    bodies: {ring: {mass: 1, inertia: [1, 1, 1]}}
+    joints: {shaft: {type: cylindrical, bodies: [ground, ring], at: [0, 0], axis: [0, 0, 1]}}
+    sensors: {height: {joint: shaft.stroke}}
+    drives: {turn: {joint: shaft.angle, velocity: 1}}
+    events: {held: {when: height, value: -1, do: {lock: [shaft.stroke]}}}
+instances: {a: {template: post}, b: {template: post, frame: {at: [1, 0], y_axis: [0, 0, 1]}}}
+""")
+    assert {*m.coordinates} == {f"{one}_shaft.{x}" for one in "ab" for x in ("angle", "stroke")}
+    assert m.coordinates["b_shaft.stroke"].axis == pytest.approx((0, -1, 0))
+
+
 def test_two_bearings_on_one_shaft():
     """Four rows too many; points on the axis hold what is left, and the ring slides and turns."""
     again = "  more: {type: cylindrical, bodies: [ground, ring], at: [2, 1, 2], axis: [2, 1, 2]}\n"
