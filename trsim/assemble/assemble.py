@@ -53,10 +53,7 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
-from trsim.elements.contract import (
-    N_BOOK,
-)
-from trsim.elements.prescribed import ENTRY
+from trsim.elements.contract import N_BOOK, Pair
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
@@ -152,11 +149,9 @@ def stages(
         return build(scenario, at, instances, kept, d, own, left)
 
     angles = {} if planar else {x.entry: n for n, x in at.coordinates.items() if x.kind == "angle"}
-    turning = {
-        (i.section, i.name): angles[i.row.con[ENTRY]]
-        for i in instances
-        if i.section in ("drives", SECTION) and not i.row.is_force and i.row.con[ENTRY] in angles
-    }
+    rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
+    entries = [(i.section, i.name, Pair.of(i.row).coordinate) for i in rigid]
+    turning = {(of, name): angles[x] for of, name, x in entries if x in angles}
     return Stages(at.switches, instances, first, built, rebuilt, turning)
 
 
@@ -232,10 +227,7 @@ def pack(  # type: ignore[no-untyped-def]
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
         if instance.section == "joints" and instance.name in at.coordinates:
-            row = instance.row
-            index = at.coordinates[instance.name].entry
-            con = (*row.con[:2], index, *row.con[3:])
-            row = replace(row, con=con)
+            row = Pair.changed(instance.row, coordinate=at.coordinates[instance.name].entry)
             instances[n] = Instance(instance.section, instance.name, instance.element, row)
     return at, instances
 

@@ -1,15 +1,22 @@
-"""What all joints share: two bodies, a point, an axis, and the layout of their constants.
-
-par[0:3], par[3:6]              the point in the axes of body i, of body j
-par[6:9], [9:12], [12:15]       triad u, w, a in the axes of body i (a = u x w, the axis)
-par[15:18], [18:21]             u and a in the axes of body j
-par[21]                         joint angle as drawn
-"""
+"""What all joints share: two bodies, a point, an axis, and the names of their constants."""
 
 from trsim.elements.contract import Looser
+from trsim.elements.frames import TwoPoints
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
+from trsim.kernels.columns import V3, f8
+
+
+class Axes(TwoPoints):
+    """Of a joint with an axis."""
+
+    u_i: V3  # triad u, w, a in the axes of body i: a = u x w, the axis
+    w_i: V3
+    a_i: V3
+    u_j: V3  # u and a in the axes of body j
+    a_j: V3
+    drawn: f8  # rad: joint angle as drawn
 
 
 class Joint(Spec):
@@ -29,8 +36,9 @@ ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
 
 def axial_row(row):
     """The row that holds a joint along its axis, where one row does."""
-    largest = max(range(3), key=lambda c: abs(row.par[12 + c]))
-    return "xyz"[largest] if abs(row.par[12 + largest]) > ALONG else ""
+    axis = Axes.of(row).a_i
+    largest = max(range(3), key=lambda c: abs(axis[c]))
+    return "xyz"[largest] if abs(axis[largest]) > ALONG else ""
 
 
 def of_a_hinge(axial, ball, cross):
@@ -69,13 +77,13 @@ def perpendicular(axis, frame=None):
 
 
 def triads(i, j, axis, at, frame=None):
-    """par[6:22] of a joint between bodies i and j about a world axis, as drawn in a frame."""
+    """The axes of a joint between bodies i and j about a world axis, as drawn in a frame."""
     u, w, a = perpendicular(axis, frame)
-    return (
-        *at.axes(i, u),
-        *at.axes(i, w),
-        *at.axes(i, a),
-        *at.axes(j, u),
-        *at.axes(j, a),
-        at.drawn_angle(i, j, a, frame),
-    )
+    return {
+        "u_i": at.axes(i, u),
+        "w_i": at.axes(i, w),
+        "a_i": at.axes(i, a),
+        "u_j": at.axes(j, u),
+        "a_j": at.axes(j, a),
+        "drawn": at.drawn_angle(i, j, a, frame),
+    }

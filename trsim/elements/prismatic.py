@@ -14,11 +14,13 @@ from trsim.elements.frames import (
     along_row,
     arm,
     perpendicular_row,
+    points,
     stroke,
     two_points,
 )
-from trsim.elements.joint import TILTS, triads
+from trsim.elements.joint import TILTS, Axes, triads
 from trsim.fields import Spec, point, vector
+from trsim.kernels.columns import constraint_row
 
 
 class Prismatic(Spec):
@@ -35,43 +37,50 @@ class Prismatic(Spec):
     at: point("m") | None = None
 
 
+class Own(Axes):
+    """Of one instance."""
+
+    across_1: constraint_row
+    across_2: constraint_row
+    tilt_1: constraint_row
+    tilt_2: constraint_row
+    turn: constraint_row
+
+
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     place = at.centre(j) if spec.at is None else spec.at
-    return Row(
-        (i, j, -1),
-        (*at.local(i, place), *at.local(j, place), *triads(i, j, spec.axis, at, spec.drawn_in)),
-    )
+    places = points(at, i, j, place, place)
+    return Row(*Own.packed(**places, **triads(i, j, spec.axis, at, spec.drawn_in)))
 
 
 @kernel
 def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
+    X = scene.X
     for e in range(a, b):
-        i, p_i, j, p_j = two_points(X, con, par, e)
-        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
-        k3, k4, k5, k6, k7 = con[e, 3], con[e, 4], con[e, 5], con[e, 6], con[e, 7]
-        if k3 >= 0 or k5 >= 0:
-            u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-            along_row(scene, i, p_i, u, j, p_j, k3)
-            perpendicular_row(scene, i, u, j, a_j, k5)
-        if k4 >= 0 or k6 >= 0 or k7 >= 0:
-            w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-            u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
-            along_row(scene, i, p_i, w, j, p_j, k4)
-            perpendicular_row(scene, i, w, j, a_j, k6)
-            perpendicular_row(scene, i, w, j, u_j, k7)
+        own = Own(scene, e)
+        i, p_i, j, p_j = two_points(scene, e)
+        a_j = arm(X, j, own.a_j)
+        if own.across_1 >= 0 or own.tilt_1 >= 0:
+            u = arm(X, i, own.u_i)
+            along_row(scene, i, p_i, u, j, p_j, own.across_1)
+            perpendicular_row(scene, i, u, j, a_j, own.tilt_1)
+        if own.across_2 >= 0 or own.tilt_2 >= 0 or own.turn >= 0:
+            w, u_j = arm(X, i, own.w_i), arm(X, j, own.u_j)
+            along_row(scene, i, p_i, w, j, p_j, own.across_2)
+            perpendicular_row(scene, i, w, j, a_j, own.tilt_2)
+            perpendicular_row(scene, i, w, j, u_j, own.turn)
 
 
 @kernel
 def coordinate(t, scene, a, b):
-    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    S = scene.S
     for e in range(a, b):
-        s = con[e, 2]
+        own = Own(scene, e)
+        s = own.coordinate
         if s < 0:
             continue
-        axis = arm(X, con[e, 0], par[e, 12], par[e, 13], par[e, 14])
-        S[s, 0], S[s, 1] = stroke(X, V, con, par, e, axis)
+        S[s, 0], S[s, 1] = stroke(scene, e, arm(scene.X, own.i, own.a_i))
 
 
 ELEMENT = Element(
@@ -79,7 +88,7 @@ ELEMENT = Element(
     section="joints",
     spec=Prismatic,
     pack=pack,
-    reach=lambda row: Reach(slides=((row.con[0], row.par[12:15]),)),
+    reach=lambda row: Reach(slides=((row.con[0], Own.of(row).a_i),)),
     rows=("across 1", "across 2", "tilt 1", "tilt 2", "turn"),
     coordinate="stroke",
     changes=lambda _: (

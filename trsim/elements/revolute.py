@@ -18,10 +18,12 @@ from trsim.elements.frames import (
     nearest_branch,
     perpendicular_row,
     point_rows,
+    points,
     spin,
 )
-from trsim.elements.joint import Joint, axial_row, of_a_hinge, triads
+from trsim.elements.joint import Axes, Joint, axial_row, of_a_hinge, triads
 from trsim.fields import vector
+from trsim.kernels.columns import constraint_row
 
 
 class Revolute(Joint):
@@ -34,44 +36,48 @@ class Revolute(Joint):
     axis: vector("-") = (0.0, 0.0, 1.0)
 
 
+class Own(Axes):
+    """Of one instance."""
+
+    x: constraint_row
+    y: constraint_row
+    z: constraint_row
+    tilt_1: constraint_row
+    tilt_2: constraint_row
+
+
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    return Row(
-        (i, j, -1),
-        (*at.local(i, spec.at), *at.local(j, spec.at), *triads(i, j, spec.axis, at, spec.drawn_in)),
-    )
+    places = points(at, i, j, spec.at, spec.at)
+    return Row(*Own.packed(**places, **triads(i, j, spec.axis, at, spec.drawn_in)))
 
 
 @kernel
 def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
+    X = scene.X
     for e in range(a, b):
         i, j = point_rows(scene, e)
-        k4, k5 = con[e, 6], con[e, 7]
-        if k4 >= 0 or k5 >= 0:
-            u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-            w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-            axis = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
-            perpendicular_row(scene, i, u, j, axis, k4)
-            perpendicular_row(scene, i, w, j, axis, k5)
+        own = Own(scene, e)
+        if own.tilt_1 >= 0 or own.tilt_2 >= 0:
+            axis = arm(X, j, own.a_j)
+            perpendicular_row(scene, i, arm(X, i, own.u_i), j, axis, own.tilt_1)
+            perpendicular_row(scene, i, arm(X, i, own.w_i), j, axis, own.tilt_2)
 
 
 @kernel
 def coordinate(t, scene, a, b):
-    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    X, V, S = scene.X, scene.V, scene.S
     for e in range(a, b):
-        s = con[e, 2]
+        own = Axes(scene, e)
+        i, j, s = own.i, own.j, own.coordinate
         if s < 0:
             continue
-        i, j = con[e, 0], con[e, 1]
-        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
+        axis = arm(X, i, own.a_i)
         o_i, o_j = spin(V, i), spin(V, j)
         # of rigid bodies in a plane what comes in is the angle itself
         if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
-            u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-            w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-            u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
-            angle = atan2(dot(w, u_j), dot(u, u_j)) + par[e, 21]
+            u, w, u_j = arm(X, i, own.u_i), arm(X, i, own.w_i), arm(X, j, own.u_j)
+            angle = atan2(dot(w, u_j), dot(u, u_j)) + own.drawn
             S[s, 0] = nearest_branch(angle, S[s, 0])
         S[s, 1] = dot(axis, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
 
@@ -81,7 +87,7 @@ ELEMENT = Element(
     section="joints",
     spec=Revolute,
     pack=pack,
-    reach=lambda row: Reach(hinges=((row.con[0], row.par[12:15]),)),
+    reach=lambda row: Reach(hinges=((row.con[0], Own.of(row).a_i),)),
     rows=("x", "y", "z", "tilt 1", "tilt 2"),
     coordinate="angle",
     meets=True,

@@ -7,8 +7,8 @@ reaction is the force on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, between_points, kernel
-from trsim.elements.frames import point_rows
+from trsim.elements.contract import Element, Row, kernel
+from trsim.elements.frames import Coincident, between_points, point_rows, points
 from trsim.elements.joint import Joint
 
 
@@ -20,7 +20,7 @@ class Spherical(Joint):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at)))
+    return Row(*Coincident.packed(**points(at, i, j, spec.at, spec.at)))
 
 
 @kernel

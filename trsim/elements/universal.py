@@ -10,10 +10,11 @@ mass.  reaction is the force on body j at the point, world axes; reaction_moment
 from typing import ClassVar
 
 from trsim.elements.contract import Element, Looser, Reach, Row, kernel
-from trsim.elements.frames import arm, perpendicular_row, point_rows
+from trsim.elements.frames import Coincident, arm, perpendicular_row, point_rows, points
 from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
 from trsim.fields import direction, vector
+from trsim.kernels.columns import V3, constraint_row
 
 SQUARE = 1e-6  # cosine of the angle between the axes as drawn
 
@@ -49,22 +50,28 @@ def axes(spec):
     return a, direction(across)
 
 
+class Own(Coincident):
+    """Of one instance."""
+
+    tilt: constraint_row
+    a_i: V3
+    b_j: V3
+
+
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     a, b = axes(spec)
-    return Row(
-        (i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *at.axes(i, a), *at.axes(j, b))
-    )
+    places = points(at, i, j, spec.at, spec.at)
+    return Row(*Own.packed(**places, a_i=at.axes(i, a), b_j=at.axes(j, b)))
 
 
 @kernel
 def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
+    X = scene.X
     for e in range(a, b):
         i, j = point_rows(scene, e)
-        a_i = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        b_j = arm(X, j, par[e, 9], par[e, 10], par[e, 11])
-        perpendicular_row(scene, i, a_i, j, b_j, con[e, 6])
+        own = Own(scene, e)
+        perpendicular_row(scene, i, arm(X, i, own.a_i), j, arm(X, j, own.b_j), own.tilt)
 
 
 ELEMENT = Element(
