@@ -53,9 +53,9 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
-from trsim.elements.contract import COORDINATE_INDEX, FIRST_ROW, N_BOOK
+from trsim.elements.contract import N_BOOK, Pair
 from trsim.elements.coordinates import of_joint
-from trsim.elements.prescribed import ENTRY
+from trsim.elements.rows import column_of
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
@@ -151,11 +151,9 @@ def stages(
         return build(scenario, at, instances, kept, d, own, left)
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
-    turning = {
-        (i.section, i.name): angles[i.row.con[ENTRY]]
-        for i in instances
-        if i.section in ("drives", SECTION) and not i.row.is_force and i.row.con[ENTRY] in angles
-    }
+    rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
+    entries = [(i.section, i.name, Pair.of(i.row).coordinate) for i in rigid]
+    turning = {(of, name): angles[x] for of, name, x in entries if x in angles}
     return Stages(at.switches, instances, first, built, rebuilt, turning)
 
 
@@ -230,11 +228,12 @@ def pack(  # type: ignore[no-untyped-def]
             at.coordinate(own)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
-        if instance.section == "joints" and instance.element.coordinates:
-            names, con = of_joint(instance.name, scenario.joints), instance.row.con
-            entries = [at.coordinates[x].entry if x in at.coordinates else -1 for x in names]
-            con = (*con[:COORDINATE_INDEX], entries[0], *con[FIRST_ROW:], *entries[1:])
-            instances[n] = replace(instance, row=replace(instance.row, con=con))
+        if instance.section == "joints":
+            con = [*instance.row.con]
+            for k, name in enumerate(of_joint(instance.name, scenario.joints)):
+                if name in at.coordinates:
+                    con[column_of(k, len(instance.element.rows))] = at.coordinates[name].entry
+            instances[n] = replace(instance, row=replace(instance.row, con=tuple(con)))
     return at, instances
 
 

@@ -27,7 +27,7 @@ from trsim.assemble.reduce import jacobian, moves, weights
 from trsim.assemble.redundant import nearby
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
-from trsim.elements.rows import A_I
+from trsim.elements.rows import Axes
 from trsim.elements.scene import scene
 
 Array = NDArray[np.float64]
@@ -145,7 +145,7 @@ def held(instance: Instance, at: Addresses) -> tuple[str, ...]:
     """What the rows of a joint hold; of a hinge along x, y or z one of its point is along it."""
     element, row = instance.element, instance.row
     if "angle" in element.coordinates:
-        axis = np.abs(at.rotation[row.con[0]] @ np.array(row.par[A_I : A_I + 3]))
+        axis = np.abs(at.rotation[row.con[0]] @ np.array(Axes.of(row).a_i))
         if axis.max() > ALONG:
             axial = "xyz"[int(axis.argmax())]
             return tuple("a" if one == axial else one for one in element.holds)

@@ -21,7 +21,7 @@ from trsim.assemble.better import better
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, MOST, Switches, lock_name
-from trsim.elements.prescribed import OWN_MOTION, OWN_STATE, C, K
+from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import Model, Scene
 
 Array = NDArray[np.float64]
@@ -165,12 +165,10 @@ def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switc
     to = at.get((instance.section, instance.name), AS_DRAWN)
     if instance.section != "drives" or to == AS_DRAWN:
         return instance
-    con, par = list(instance.row.con), list(instance.row.par)
     if to == LOOSE:
-        par[K] = par[C] = 0.0
-    else:
-        con[OWN_STATE], con[OWN_MOTION] = switches.motions[instance.name][to - 1]
-    return replace(instance, row=replace(instance.row, con=tuple(con), par=tuple(par)))
+        return replace(instance, row=AnyDrive.changed(instance.row, stiffness=0.0, damping=0.0))
+    state, motion = switches.motions[instance.name][to - 1]
+    return replace(instance, row=AnyDrive.changed(instance.row, state=state, motion=motion))
 
 
 def in_force(

@@ -18,7 +18,7 @@ from trsim import elements
 from trsim.assemble.addresses import UNITS, Addresses
 from trsim.assemble.instances import Instance
 from trsim.elements.coordinates import called, named
-from trsim.elements.prescribed import ENTRY, OWN_STATE
+from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
 from trsim.scenario.methods import METHODS
@@ -194,7 +194,7 @@ class _Packing:
                     "set a velocity where it has a velocity, a position where it has a position",
                     path,
                 )
-            kind, entry = "stroke", self.instances["drives", drive].row.con[ENTRY]
+            kind, entry = "stroke", AnyDrive.of(self.instances["drives", drive].row).coordinate
         else:
             x = self.at.coordinate(spec.joint)
             kind, entry = x.kind, x.entry
@@ -217,7 +217,7 @@ class _Packing:
 
     def state(self, drive: str, kind: str, entry: int) -> int:
         """The entry of z that holds the place of a drive with a velocity."""
-        own = self.instances["drives", drive].row.con[OWN_STATE]
+        own: int = AnyDrive.of(self.instances["drives", drive].row).state
         if own >= 0:
             return own
         if drive not in self.states:

@@ -8,9 +8,10 @@ every element owns one row e of the three tables of a model,
     par (N, n_par) float64   how much: constants of the instance, SI
     mem (N, n_mem) float64   what it remembers; frozen while a step is being tried
 
-and the instances of one element are neighbours: a kernel is called once, as kernel(t, scene, a, b),
-for its rows a <= e < b.  It reads poses and twists of the scene in world axes (X, V), joint
-coordinates and sensors (S, angles unwrapped), the states z, and writes what its kind may write:
+whose columns have names (kernels/columns.py), and the instances of one element are neighbours: a
+kernel is called once, as kernel(t, scene, a, b), for its rows a <= e < b.  It reads poses and
+twists of the scene in world axes (X, V), joint coordinates and sensors (S, angles unwrapped), the
+states z, and writes what its kind may write:
 
     force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
     constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma; J of row k
@@ -19,7 +20,7 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
                 the angle itself in a planar scene
     gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s); or how far a limit of
                 the element is exceeded, and its rate
-    corners     corner[e] = how far the element has left the branch in mem[e, BRANCH] of a law with
+    corners     corner[e] = how far the element has left the branch it remembers of a law with
                 corners (< 0: inside), and the branch to go on with; `force` keeps the largest
                 such value it meets in left[e]
     energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
@@ -38,21 +39,37 @@ from typing import NamedTuple
 
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
+from trsim.kernels.columns import Columns, i8, memory
 from trsim.kernels.machine import Compiled
-from trsim.kernels.signatures import Signature, f8, i8, void
+from trsim.kernels.signatures import Signature, f8, void
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
 
-# con: the first columns of every element that joins two frames
-I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
-# mem: its first N_MEM columns, the march's own; an element's own follow.  Of elements with a gap
-PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
-FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
-WHOLE = 9.0  # BRANCH: the law with all its branches
-# and of every drive
-SINCE = 3  # s: when its prescribed motion began, see scenario/event.py
+class Memory(Columns):
+    """The first N_MEM columns of mem, the march's own; an element's own follow."""
+
+    phase: memory  # of elements with a gap
+    impact_speed: memory  # m/s
+    branch: memory
+    since: memory  # s: when the prescribed motion of a drive began, see scenario/event.py
+
+
+PHASE, IMPACT_SPEED, BRANCH, SINCE = (column.at for column in Memory.columns.values())
+FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # phases; UNLOCATED: the integrator finds no events
+WHOLE = 9.0  # branch: the law with all its branches
+
+
+class Pair(Memory):
+    """Of every element between two frames."""
+
+    i: i8
+    j: i8
+    coordinate: i8  # in S, or -1
+
+
+FIRST_ROW = Pair.columns["coordinate"].at + 1  # of con: constraint rows come behind
 
 # z: the energy book, power flowing into the mechanism (W), in front of the elements' own states
 DRIVES, LOADS, DAMPERS, IMPACTS, FRICTION, N_BOOK = 0, 1, 2, 3, 4, 5
@@ -182,12 +199,6 @@ class Turning(NamedTuple):
     axes: tuple = ()  # directions that turn with a frame; zero: several
     torques: tuple = ()  # (frame it turns, frame of its direction, direction)
     held: tuple[int, ...] = ()  # frames whose turns it resists
-
-
-def between_points(row: Row) -> Turning:
-    """Of what acts between a point of either body and does nothing else to them."""
-    (i, j), par = row.con[:2], row.par
-    return Turning(points=((i, par[:3]), (j, par[3:6])))
 
 
 def ends(row: Row) -> frozenset[int]:

@@ -9,8 +9,9 @@ reaction and reaction_moment act on body j at the point, world axes.
 from typing import ClassVar
 
 from trsim.elements.contract import Row
+from trsim.elements.frames import points
 from trsim.elements.joint import Joint, Z, joint, perpendicular, triads
-from trsim.elements.rows import POINT, TILTS, TURN
+from trsim.elements.rows import POINT, TILTS, TURN, Axes
 
 
 class Fixed(Joint):
@@ -21,16 +22,16 @@ class Fixed(Joint):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    places = (*at.local(i, spec.at), *at.local(j, spec.at))
+    places = points(at, i, j, spec.at, spec.at)
     if at.tangent(i) and not at.tangent(j):
         # t . u = t . w = 0 with the tangent t of bar i and u, w fixed in body j: rows tilt 1, turn
         t = at.axes(i, at.tangent(i))
         u, w, _ = perpendicular(at.tangent(i))
-        par = (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0)
-        return Row((i, j, -1), par, unheld="tilt 2")
+        axes = {"u_i": t, "w_i": t, "a_i": t, "u_j": at.axes(j, w), "a_j": at.axes(j, u)}
+        return Row(*Axes.packed(**places, **axes, drawn=0.0), unheld="tilt 2")
     # a bar has no torsion, so about its tangent the weld holds nothing: of bar j the row `turn`
     axes = triads(i, j, at.tangent(j) or Z, at)
-    return Row((i, j, -1), (*places, *axes), unheld="turn" if at.tangent(j) else "")
+    return Row(*Axes.packed(**places, **axes), unheld="turn" if at.tangent(j) else "")
 
 
 ELEMENT = joint(

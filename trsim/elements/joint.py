@@ -1,13 +1,10 @@
-"""What all joints share: two bodies, a point, an axis, and the layout of their constants.
+"""What all joints share: two bodies, a point, an axis, and what follows from a list of rows."""
 
-par[0:3], par[3:6]              the point in the axes of body i, of body j
-par[6:9], [9:12], [12:15]       triad u, w, a in the axes of body i (a = u x w, the axis)
-par[15:18], [18:21]             u and a in the axes of body j
-par[21]                         joint angle as drawn
-"""
+from dataclasses import replace
 
-from trsim.elements.contract import Element, Reach, Row, Turning, between_points
-from trsim.elements.rows import POINT, constraint_of, coordinate_of
+from trsim.elements.contract import Element, Reach, Row, Turning
+from trsim.elements.frames import between_points, points
+from trsim.elements.rows import POINT, Axes, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
@@ -31,18 +28,18 @@ def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     place = at.centre(j) if spec.at is None else spec.at
     axes = triads(i, j, getattr(spec, "axis", Z), at, spec.drawn_in)
-    return Row((i, j, -1), (*at.local(i, place), *at.local(j, place), *axes))
+    return Row(*Axes.packed(**points(at, i, j, place, place), **axes))
 
 
 def on_line(row):
     """Of rows that hold a point of body j where it may slide along directions of body i."""
-    i, j = row.con[:2]
-    return Turning(points=((j, row.par[3:6]),), axes=((i, row.par[12:15]),))
+    own = Axes.of(row)
+    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.a_i),))
 
 
 def reach(row, coordinates):
     """Bodies turn about the axis of an angle, and slide along that of a stroke."""
-    axis = ((row.con[0], row.par[12:15]),)
+    axis = ((Axes.of(row).i, Axes.of(row).a_i),)
     return Reach(
         hinges=axis if "angle" in coordinates else (),
         slides=axis if "stroke" in coordinates else (),
@@ -61,19 +58,24 @@ PICTURES = {
 }
 
 
-def joint(key, spec, rows, coordinates=(), **other):
+def joint(key, spec, rows, coordinates=(), pack=pack, **other):
     """The element that a list of rows makes (rows.py), with the coordinates these leave free.
 
     other: fields of Element, also those that follow from the rows where they are to differ.
     """
+    room = (-1,) * (len(rows) + len(coordinates[1:]))  # of con, for what assembly knows
     places = sum(not row.of_j for row in rows)
     turns, ball = len(rows) - places, rows == POINT
     kernels = {"constraint": constraint_of(rows)}
     if coordinates:
         kernels["coordinate"] = coordinate_of(coordinates, len(rows))
         other.setdefault("reach", lambda row: reach(row, coordinates))
+
+    def packed(name, spec, at):
+        row = pack(name, spec, at)
+        return replace(row, con=(*row.con, *room))
+
     follows = {
-        "pack": pack,
         "meets": places == 3,
         "welds": (places, turns) == (3, 3),
         "pin": (2, 3) if ball else (2,) if places == 3 and "angle" in coordinates else (),
@@ -85,6 +87,7 @@ def joint(key, spec, rows, coordinates=(), **other):
         key=key,
         section="joints",
         spec=spec,
+        pack=packed,
         rows=tuple(row.name for row in rows),
         holds=tuple(row.holds for row in rows),
         coordinates=coordinates,
@@ -114,11 +117,17 @@ def perpendicular(axis, frame=None):
 
 
 def held(i, j, u, w, a, at):
-    """par[6:21] of a joint between bodies i and j: u, w, a as drawn in i, u and a in j."""
-    return (*at.axes(i, u), *at.axes(i, w), *at.axes(i, a), *at.axes(j, u), *at.axes(j, a))
+    """The axes of a joint, of a triad in world axes as drawn."""
+    return {
+        "u_i": at.axes(i, u),
+        "w_i": at.axes(i, w),
+        "a_i": at.axes(i, a),
+        "u_j": at.axes(j, u),
+        "a_j": at.axes(j, a),
+    }
 
 
 def triads(i, j, axis, at, frame=None):
-    """par[6:22] of a joint between bodies i and j about a world axis, as drawn in a frame."""
+    """The columns of a joint between bodies i and j about a world axis, as drawn in a frame."""
     u, w, a = perpendicular(axis, frame)
-    return (*held(i, j, u, w, a, at), at.drawn_angle(i, j, a, frame))
+    return held(i, j, u, w, a, at) | {"drawn": at.drawn_angle(i, j, a, frame)}

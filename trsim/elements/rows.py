@@ -22,8 +22,9 @@ from functools import cache
 from math import atan2
 from typing import NamedTuple
 
-from trsim.elements.contract import COORDINATE_INDEX, FIRST_ROW, kernel
+from trsim.elements.contract import FIRST_ROW, Pair, kernel
 from trsim.elements.frames import (
+    TwoPoints,
     along_row,
     arm,
     dot,
@@ -35,11 +36,20 @@ from trsim.elements.frames import (
     stroke,
     two_points,
 )
+from trsim.kernels.columns import V3, f8
 
-# par: where the triads of both bodies begin, and the angle as drawn
-ON_I, ON_J, DRAWN = {"u": 6, "w": 9, "a": 12}, {"u": 15, "a": 18}, 21
-U_I, W_I, A_I, U_J = ON_I["u"], ON_I["w"], ON_I["a"], ON_J["u"]
 MOST = 6  # rows of a joint
+
+
+class Axes(TwoPoints):
+    """Of one instance of a joint."""
+
+    u_i: V3  # triad u, w, a in the axes of body i: a = u x w, the axis
+    w_i: V3
+    a_i: V3
+    u_j: V3  # u and a in the axes of body j
+    a_j: V3
+    drawn: f8  # rad: joint angle as drawn
 
 
 class JointRow(NamedTuple):
@@ -47,7 +57,7 @@ class JointRow(NamedTuple):
 
     name: str
     holds: str  # u, w, a: a displacement along it; U, W, A: a turn about it; x, y, z: of a point
-    of_i: str = ""  # axis of body i; none of a point's
+    of_i: str = ""  # axis of body i; of a point none
     of_j: str = ""  # axis of body j; of a turn
 
 
@@ -58,7 +68,7 @@ def along(axis: str, name: str) -> JointRow:
 
 def perpendicular(of_i: str, of_j: str, name: str) -> JointRow:
     """An axis of i and an axis of j stay perpendicular: no turn about the third one."""
-    [third] = {*ON_I} - {of_i, of_j}
+    [third] = {*"uwa"} - {of_i, of_j}
     return JointRow(name, third.upper(), of_i, of_j)
 
 
@@ -73,80 +83,88 @@ def constraint_of(rows):
     """The kernel that fills a list of rows."""
     turning = tuple(row for row in rows if row.of_j)
     points, n, before = rows[:3] == POINT, len(turning), len(rows) - len(turning)
-    none = (-1,) * MOST
-    slides = (*(ON_I[row.of_i] for row in rows[:before] if row.of_i), *none)
-    of_i = (*(ON_I[row.of_i] for row in turning), *none)
-    of_j = (*(ON_J[row.of_j] for row in turning), *none)
+    sliding = padded(f"{row.of_i}_i" for row in rows[:before] if row.of_i)
+    of_i, of_j = (
+        padded(f"{row.of_i}_i" for row in turning),
+        padded(f"{row.of_j}_j" for row in turning),
+    )
 
     @kernel
     def constraint(t, scene, a, b):
-        X, con, par = scene.X, scene.con, scene.par
+        X, con = scene.X, scene.con
         for e in range(a, b):
             if points:
                 i, j = point_rows(scene, e)
             else:
-                i, p_i, j, p_j = two_points(X, con, par, e)
+                i, p_i, j, p_j = two_points(scene, e)
                 for r in range(before):
-                    k, c = con[e, FIRST_ROW + r], slides[r]
+                    k = con[e, FIRST_ROW + r]
                     if k >= 0:
-                        u = arm(X, i, par[e, c], par[e, c + 1], par[e, c + 2])
+                        u = arm(X, i, axis(scene, e, sliding[r]))
                         along_row(scene, i, p_i, u, j, p_j, k)
             for r in range(n):
-                k, c, o = con[e, FIRST_ROW + before + r], of_i[r], of_j[r]
+                k = con[e, FIRST_ROW + before + r]
                 if k >= 0:
-                    u = arm(X, i, par[e, c], par[e, c + 1], par[e, c + 2])
-                    w = arm(X, j, par[e, o], par[e, o + 1], par[e, o + 2])
+                    u, w = arm(X, i, axis(scene, e, of_i[r])), arm(X, j, axis(scene, e, of_j[r]))
                     perpendicular_row(scene, i, u, j, w, k)
 
     return constraint
 
 
+def padded(axes):
+    """Columns of par where these axes begin, as many for every joint."""
+    return (*(Axes.columns[axis].at for axis in axes), *(0,) * MOST)[:MOST]
+
+
 @helper
-def on_i(scene, e, c):
-    """The axis of body i at column c of par, world axes."""
-    par = scene.par
-    return arm(scene.X, scene.con[e, 0], par[e, c], par[e, c + 1], par[e, c + 2])
+def axis(scene, e, c):
+    """What stands in the columns of par from c on."""
+    return scene.par[e, c], scene.par[e, c + 1], scene.par[e, c + 2]
 
 
 @helper
 def write_angle(scene, e, s):
     """The angle of instance e and its rate, as entry s of S."""
-    V, S, con, par = scene.V, scene.S, scene.con, scene.par
-    i, j = con[e, 0], con[e, 1]
+    X, V, S, own = scene.X, scene.V, scene.S, Axes(scene, e)
+    i, j = own.i, own.j
     o_i, o_j = spin(V, i), spin(V, j)
     # of rigid bodies in a plane what comes in is the angle itself
     if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
-        u, w = on_i(scene, e, U_I), on_i(scene, e, W_I)
-        u_j = arm(scene.X, j, par[e, U_J], par[e, U_J + 1], par[e, U_J + 2])
-        angle = atan2(dot(w, u_j), dot(u, u_j)) + par[e, DRAWN]
+        u, w, u_j = arm(X, i, own.u_i), arm(X, i, own.w_i), arm(X, j, own.u_j)
+        angle = atan2(dot(w, u_j), dot(u, u_j)) + own.drawn
         S[s, 0] = nearest_branch(angle, S[s, 0])
     turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-    S[s, 1] = dot(on_i(scene, e, A_I), turn)
+    S[s, 1] = dot(arm(X, i, own.a_i), turn)
+
+
+@helper
+def write_stroke(scene, e, s):
+    """The stroke of instance e and its rate, as entry s of S."""
+    own = Axes(scene, e)
+    scene.S[s, 0], scene.S[s, 1] = stroke(scene, e, arm(scene.X, own.i, own.a_i))
+
+
+WRITERS = {"angle": write_angle, "stroke": write_stroke}
 
 
 @cache
 def coordinate_of(coordinates, n_rows):
     """The kernel of the coordinates of a joint with so many rows."""
-    column = {name: column_of(k, n_rows) for k, name in enumerate(coordinates)}
-    angle, sliding = column.get("angle", -1), column.get("stroke", -1)
+    first, last = WRITERS[coordinates[0]], WRITERS[coordinates[-1]]
+    c, o = column_of(0, n_rows), column_of(len(coordinates) - 1, n_rows)
 
     @kernel
     def coordinate(t, scene, a, b):
-        S, con = scene.S, scene.con
+        con = scene.con
         for e in range(a, b):
-            if angle >= 0:
-                s = con[e, angle]
-                if s >= 0:
-                    write_angle(scene, e, s)
-            if sliding >= 0:
-                s = con[e, sliding]
-                if s >= 0:
-                    axis = on_i(scene, e, A_I)
-                    S[s, 0], S[s, 1] = stroke(scene.X, scene.V, con, scene.par, e, axis)
+            if con[e, c] >= 0:
+                first(scene, e, con[e, c])
+            if o != c and con[e, o] >= 0:
+                last(scene, e, con[e, o])
 
     return coordinate
 
 
 def column_of(k: int, n_rows: int) -> int:
     """Column of con with the k-th coordinate of a joint; behind its rows but for the first."""
-    return COORDINATE_INDEX if k == 0 else FIRST_ROW + n_rows + k - 1
+    return Pair.columns["coordinate"].at if k == 0 else FIRST_ROW + n_rows + k - 1

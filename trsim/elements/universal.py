@@ -11,8 +11,9 @@ reaction_moment is along a x b.
 from typing import ClassVar
 
 from trsim.elements.contract import Reach, Row
+from trsim.elements.frames import points
 from trsim.elements.joint import Joint, held, joint
-from trsim.elements.rows import POINT, perpendicular
+from trsim.elements.rows import POINT, Axes, perpendicular
 from trsim.errors import ScenarioError
 from trsim.fields import direction, vector
 from trsim.frame import across
@@ -54,8 +55,8 @@ def axes(spec):
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     a, b = axes(spec)
-    triad = held(i, j, a, across(b, a), b, at)
-    return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *triad, 0.0))
+    places, triad = points(at, i, j, spec.at, spec.at), held(i, j, a, across(b, a), b, at)
+    return Row(*Axes.packed(**places, **triad, drawn=0.0))
 
 
 ELEMENT = joint(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses, stiffnesses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import moves
-from trsim.elements.ancf_cable import BENDING, BETA, STIFFNESS
+from trsim.elements.ancf_cable import Own as Bar
 from trsim.elements.scene import Scene, carried
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 def softened_bars(mechanism: Mechanism, work: Scene, s: float) -> Scene:
     """The scene with bars of 1 / s of their stiffness."""
     par = work.par.copy()
-    par[np.ix_(bars(mechanism), [STIFFNESS, BENDING])] /= s
+    par[np.ix_(bars(mechanism), [Bar.columns[name].at for name in ("EA", "EI")])] /= s
     return carried(work, work.replaced(par=par))
 
 
@@ -28,7 +28,7 @@ def bars_alone(mechanism: Mechanism, work: Scene) -> Scene:
     own = work.stiffness[:, 1:].tolist()
     rows = [row for row in work.force.tolist() if row[1:] in own]
     par = work.par.copy()
-    par[bars(mechanism), BETA] = 0.0
+    par[bars(mechanism), Bar.columns["beta"].at] = 0.0
     return carried(work, work.replaced(force=np.array(rows, np.int64).reshape(-1, 3), par=par))
 
 
@@ -69,9 +69,9 @@ def acted_on(mechanism: Mechanism, at_rest: bool = False) -> NDArray[np.int64]:
             frames |= instance.element.acts_on(instance.row)
         elif at_rest:
             continue
-        elif instance.element.key == "ancf_cable" and instance.row.par[BETA] > 0.0:
-            first, nodes = instance.row.con[:2]
-            frames |= set(range(first, first + nodes))
+        elif instance.element.key == "ancf_cable":
+            bar = Bar.of(instance.row)
+            frames |= set(range(bar.first, bar.first + bar.nodes) if bar.beta > 0.0 else ())
     acted = np.zeros((model.n - 1, 6), bool)
     acted[[f - 1 for f in {*range(1, model.n_r), *frames} - {0}]] = True
     return np.flatnonzero(acted.ravel() & moves(model, model.d == 3))

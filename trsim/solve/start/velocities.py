@@ -25,9 +25,9 @@ from trsim.assemble.reduce import (
     weights,
     world_rates,
 )
-from trsim.elements.bushing import ROTATIONAL, STIFFNESS
+from trsim.elements.bushing import Own as Bushing
 from trsim.elements.coordinates import of_joint
-from trsim.elements.prescribed import rates_at
+from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import follow
@@ -150,10 +150,10 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
     for instance in mechanism.instances:
         if instance.section != "drives" or not instance.row.is_force:
             continue
-        i, j, entry, state, _, offset = instance.row.con[:6]
-        f, f_dot, _ = rates_at(mechanism.model.tab, offset, 0.0)
-        gradient = rate_of_entry(mechanism.model, y, entry, (i, j))
-        found.append((gradient, f if state >= 0 else f_dot))
+        own = AnyDrive.of(instance.row)
+        f, f_dot, _ = rates_at(mechanism.model.tab, own.motion, 0.0)
+        gradient = rate_of_entry(mechanism.model, y, own.coordinate, (own.i, own.j))
+        found.append((gradient, f if own.state >= 0 else f_dot))
     return found
 
 
@@ -165,14 +165,14 @@ def bushings(mechanism: Mechanism, y: Array) -> list[Array]:
     for instance in mechanism.instances:
         if instance.element.key != "bushing":
             continue
-        i, j = instance.row.con[:2]
-        par = np.array(instance.row.par)
+        own = Bushing.of(instance.row)
+        i, j = own.i, own.j
         R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-        place = w.X[j, :3] + product(R_j, par[3:6])
-        for k, a in enumerate(product(par[6:15].reshape(3, 3), R_i.T)):
-            if par[STIFFNESS + k] > 0.0:
+        place = w.X[j, :3] + product(R_j, np.array(own.p_j))
+        for k, a in enumerate(product(np.array([own.x_i, own.y_i, own.z_i]), R_i.T)):
+            if own.stiffness[k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a, [place - w.X[f, :3] for f in (i, j)]))
-            if par[ROTATIONAL + k] > 0.0:
+            if own.rotational_stiffness[k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a))
     return found
 
