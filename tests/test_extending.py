@@ -61,7 +61,7 @@ def trsim(copy, *arguments):
 def simulated(copy, text):
     """The channels of a run of the changed package."""
     (copy / "scene.yaml").write_text(text)
-    trsim(copy, "run", "scene.yaml", "-o", "scene.h5", "--force")
+    trsim(copy, "run", "scene.yaml", "-o", "scene.h5")
     with h5py.File(copy / "scene.h5") as file:
         return {name: np.array(data) for name, data in file.items() if hasattr(data, "shape")}
 
@@ -129,8 +129,8 @@ def test_the_method(copy):
         found = simulated(copy, f"""
 bodies: {{mass: {{mass: 1, inertia: 1, at: [1, 0]}}}}
 joints: {{slide: {{type: prismatic, bodies: [ground, mass], axis: [1, 0]}}}}
-forces: {{spring: {{type: spring_damper, bodies: [ground, mass], points: [[-1, 0], [1, 0]],
-          stiffness: 100, free_length: 1}}}}
+forces: {{spring: {{type: spring_damper, bodies: [ground, mass], points: [[-9, 0], [1, 0]],
+          stiffness: 100, free_length: 9}}}}
 solver: {{end: 1, method: heun, step: {step}}}
 """)  # fmt: skip
         errors.append(np.abs(found["mass.position"][:, 0] - np.cos(10 * found["time"])).max())

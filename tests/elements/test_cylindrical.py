@@ -133,7 +133,7 @@ def test_a_spring_on_the_angle_and_stops_on_both():
 
 EVENTS = """
 events:
-  stop: {when: stroke, value: -1, do: {lock: [shaft.stroke]}}
+  stop: {when: stroke, value: -1, crosses: down, do: {lock: [shaft.stroke]}}
   go: {when: t, value: 0.6, do: {unlock: [shaft.stroke], lock: [shaft.angle]}}
   off: {when: t, value: 1.0, do: {release: [shaft]}}
 """
@@ -216,7 +216,7 @@ templates:
     joints: {shaft: {type: cylindrical, bodies: [ground, ring], at: [0, 0], axis: [0, 0, 1]}}
     sensors: {height: {joint: shaft.stroke}}
     drives: {turn: {joint: shaft.angle, velocity: 1}}
-    events: {held: {when: height, value: -1, do: {lock: [shaft.stroke]}}}
+    events: {held: {when: height, value: -1, crosses: down, do: {lock: [shaft.stroke]}}}
 instances: {a: {template: post}, b: {template: post, frame: {at: [1, 0], y_axis: [0, 0, 1]}}}
 """)
     assert {*m.coordinates} == {f"{one}_shaft.{x}" for one in "ab" for x in ("angle", "stroke")}
