@@ -232,14 +232,14 @@ def test_functions():
     assert example(force="2*speed").force == FunctionSpec("constant", 4.0)
     varying = example(force="speed*t + B.angle").force
     assert varying.kind == "expression"
-    assert varying.names == {"t", "B.angle"}
+    assert varying.sensors == {"B.angle"}
     assert varying.node[2] == ("binary", "*", ("number", 2.0), ("name", "t"))
 
 
 def test_table():
     table = example(force={"table": [[0, "1 kN"], ["20 mm", 2]], "of": "stroke"}).force
     assert (table.x, table.y) == ((0.0, 0.02), (1000.0, 2.0))
-    assert (table.of, table.ends, table.names) == ("stroke", "hold", {"stroke"})
+    assert (table.of, table.ends, table.sensors) == ("stroke", "hold", {"stroke"})
     table = example(force={"table": [[0, 1], [20, 2]], "units": ["mm", "kN"], "ends": "refuse"})
     assert (table.force.x, table.force.y) == ((0.0, 0.02), (1000.0, 2000.0))
     assert table.force.of == "t"

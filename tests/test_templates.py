@@ -68,7 +68,7 @@ def test_names_of_the_template_are_those_of_the_instance():
     assert s.joints["left_B"].bodies == ("frame", "left_door")
     assert s.sensors["right_opening"].joint == "right_B"
     assert s.forces["left_air"].frame == "left_door"
-    assert s.forces["left_air"].force.names == {"left_opening", "stroke"}
+    assert s.forces["left_air"].force.sensors == {"left_opening", "stroke"}
 
 
 def test_parameters_are_local():

@@ -129,11 +129,11 @@ def test_dispatch_reads_its_parameters_in_the_stated_order():
     w, v, F_n = 1e-6, 5e-4, 40.0
     laws = {"none": lambda F, v: 0.0, "coulomb": coulomb, "modified_coulomb": modified_coulomb}
     for name, code in CODES.items():
-        par = np.full(2 + N_PARAMETERS, np.nan)
+        par = np.full(N_PARAMETERS, np.nan)
         values = [numbers[word] for word in PARAMETERS[name]]
-        par[2 : 2 + len(values)] = values
+        par[: len(values)] = values
         if name == "sticking":
             expected = bristle(F_n, v, w, **BRISTLE)
         else:
             expected = (laws[name](F_n, v, *values), 0.0)
-        assert friction_force(code, F_n, v, w, par, 2) == expected
+        assert friction_force(code, F_n, v, w, par) == expected

@@ -47,7 +47,7 @@ def test_load(project):
     assert s.drives["actuator"].velocity.value == 0.5
     assert s.drives["actuator"].compliance.stiffness == 1e7
     assert s.sensors["door_angle"].at_start == pytest.approx(0.0523598776)
-    assert s.forces["air"].force.names == {"stroke"}
+    assert s.forces["air"].force.sensors == {"stroke"}
     assert s.contact_laws["pin"].friction.v1 == 1e-3
     assert s.contact_laws["pin"].stiffness == "internal"
     assert s.contact_laws["pin"].slowest_impact == 0.01

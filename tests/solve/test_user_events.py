@@ -592,9 +592,10 @@ def test_what_is_unlocked_at_the_value_is_on_neither_side_of_it(tolerance, metho
     """
     free = "go: {when: t, value: 9, do: {unlock: [elbow]}}"
     scene = SHAKEN.replace("{catch:", "{" + free + ", catch:")
+    tolerance *= 1.0 if method != "generalized_alpha" else 1e3  # of second order
     r = run(scene, f"solver.tolerance={tolerance}", f"solver.method={method}")
     first, _, second = r.events
-    assert second[EVENT_TIME] == pytest.approx(9.08796, abs=1e-5)
+    assert second[EVENT_TIME] == pytest.approx(9.08796, abs=1e4 * tolerance)
     held = r["bend"][(r.t > first[EVENT_TIME]) & (r.t < 9.0)]
     assert held == pytest.approx(0.1, abs=rounded(first))
     assert r["bend"][-1] == pytest.approx(0.1, abs=rounded(second))

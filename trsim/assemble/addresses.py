@@ -11,6 +11,7 @@ from trsim.assemble.dense import product
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
+from trsim.elements.coordinates import named
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
@@ -23,6 +24,8 @@ from trsim.units import fits
 class JointCoordinate(NamedTuple):
     """An angle or a stroke of a joint, ready for those who act along it."""
 
+    name: str  # what it is called
+    joint: str
     entry: int  # in S
     kind: str  # angle, stroke
     i: int
@@ -182,45 +185,20 @@ class Addresses:
         away = np.cross(place - centre, a)
         return float(own + self.mass(i) * (away @ away))
 
-    def coordinate(self, joint: str, kind: str = "") -> JointCoordinate:
-        """The coordinate of a joint; entering it in S is what makes it computed."""
-        if joint not in self.scenario.joints:
-            raise ScenarioError(
-                f"no joint named '{joint}'", known(joint, self.scenario.joints), ("joint",)
-            )
-        element = self.elements["joints", joint]
-        if not element.coordinate:
-            raise ScenarioError(
-                f"joint '{joint}' ({element.key}) has no coordinate",
-                "name a revolute or a prismatic joint",
-                ("joint",),
-            )
-        if kind and element.coordinate != kind:
-            raise ScenarioError(
-                f"joint '{joint}' has a {element.coordinate}, not an {kind}",
-                "name a revolute joint" if kind == "angle" else "name a prismatic joint",
-                ("joint",),
-            )
-        if joint not in self.coordinates:
+    def coordinate(self, reference: str, kind: str = "") -> JointCoordinate:
+        """A coordinate of a joint; entering it in S is what makes it computed."""
+        name, joint, kind = named(reference, self.scenario.joints, kind)
+        if name not in self.coordinates:
             spec = self.scenario.joints[joint]
             i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
             axis = perpendicular(spec.axis, spec.drawn_in)[2]
-            self.coordinates[joint] = JointCoordinate(
-                self.n_s,
-                element.coordinate,
-                i,
-                j,
-                self.local(i, place),
-                self.local(j, place),
-                self.axes(i, axis),
-                axis,
-                self.drawn_angle(i, j, axis, spec.drawn_in)
-                if element.coordinate == "angle"
-                else 0.0,
+            drawn = self.drawn_angle(i, j, axis, spec.drawn_in) if kind == "angle" else 0.0
+            points, s = (self.local(i, place), self.local(j, place)), self.entry()
+            self.coordinates[name] = JointCoordinate(
+                name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn
             )
-            self.n_s += 1
-        return self.coordinates[joint]
+        return self.coordinates[name]
 
     def sensor(self, name: str) -> int:
         """Index of a sensor in S."""
@@ -242,8 +220,8 @@ class Addresses:
 
     def sensor_kind(self, name: str) -> str:
         """What a sensor shows: an angle or a stroke, its own or that of its joint."""
-        own = self.elements["sensors", name].coordinate
-        return own or self.coordinate(self.scenario.sensors[name].joint).kind
+        own = self.elements["sensors", name].coordinates
+        return own[0] if own else self.coordinate(self.scenario.sensors[name].joint).kind
 
     def state(self, scale: str | float, follows: int = -1) -> int:
         """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 'speed',

@@ -53,10 +53,9 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
-from trsim.elements.contract import (
-    N_BOOK,
-)
-from trsim.elements.prescribed import ENTRY
+from trsim.elements.contract import N_BOOK, Pair
+from trsim.elements.coordinates import of_joint
+from trsim.elements.rows import column_of
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
@@ -151,12 +150,10 @@ def stages(
         own = hubs(full, y6, rows, kept, planar, spans(at))
         return build(scenario, at, instances, kept, d, own, left)
 
-    angles = {} if planar else {x.entry: n for n, x in at.coordinates.items() if x.kind == "angle"}
-    turning = {
-        (i.section, i.name): angles[i.row.con[ENTRY]]
-        for i in instances
-        if i.section in ("drives", SECTION) and not i.row.is_force and i.row.con[ENTRY] in angles
-    }
+    angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
+    rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
+    entries = [(i.section, i.name, Pair.of(i.row).coordinate) for i in rigid]
+    turning = {(of, name): angles[x] for of, name, x in entries if x in angles}
     return Stages(at.switches, instances, first, built, rebuilt, turning)
 
 
@@ -225,16 +222,16 @@ def pack(  # type: ignore[no-untyped-def]
     if at.jumped and at.switches.jumps < 0:
         at.switches = replace(at.switches, jumps=at.state(0.0))
     for name in coordinates:
-        if at.elements["joints", name].coordinate:
-            at.coordinate(name)
+        for own in of_joint(name, scenario.joints):
+            at.coordinate(own)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
-        if instance.section == "joints" and instance.name in at.coordinates:
-            row = instance.row
-            index = at.coordinates[instance.name].entry
-            con = (*row.con[:2], index, *row.con[3:])
-            row = replace(row, con=con)
-            instances[n] = Instance(instance.section, instance.name, instance.element, row)
+        if instance.section == "joints":
+            con = [*instance.row.con]
+            for k, name in enumerate(of_joint(instance.name, scenario.joints)):
+                if name in at.coordinates:
+                    con[column_of(k, len(instance.element.rows))] = at.coordinates[name].entry
+            instances[n] = replace(instance, row=replace(instance.row, con=tuple(con)))
     return at, instances
 
 

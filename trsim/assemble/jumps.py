@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
-from trsim.elements.prescribed import OWN_MOTION, OWN_STATE
+from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, some
 from trsim.kernels.signatures import A1, A2, f8, i8, void
 from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, WIDTH, hold, motion
@@ -45,9 +45,9 @@ def driven(at: Any, instances: list[Any]) -> dict[int, Driven]:
     for e, instance in enumerate(instances):
         if instance.section != "drives":
             continue
-        con = instance.row.con
+        own = AnyDrive.of(instance.row)
         switched = bool(at.switches) and ("drives", instance.name) in at.switches.names
-        found[con[OWN_MOTION]] = Driven(e, con[OWN_STATE] >= 0, switched, instance.row.slip)
+        found[own.motion] = Driven(e, own.state >= 0, switched, instance.row.slip)
         for state, offset in at.switches.motions.get(instance.name, ()) if at.switches else ():
             found[offset] = Driven(e, state >= 0, True, instance.row.slip)
     return found

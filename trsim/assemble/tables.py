@@ -27,20 +27,18 @@ FARTHEST = 0.01  # of the mechanism with its anchors: the least that stands for 
 
 def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.int64], Array]:
     """con and par of all instances; dropped constraint rows have the index -1."""
-    number = {(r.instance, r.index): k for k, r in enumerate(rows)}
-    cons: list[list[int]] = []
-    for n, instance in enumerate(instances):
-        c = instance.row.con
-        own = [number.get((n, k), -1) for k in range(len(instance.element.rows))]
-        cons.append([*c[:FIRST_ROW], *own, *c[FIRST_ROW:]] if own else list(c))
-    con = np.full((max(len(cons), 1), max((len(c) for c in cons), default=1)), -1, np.int64)
-    for e, numbers in enumerate(cons):
-        con[e, : len(numbers)] = numbers
-    pars = [instance.row.par for instance in instances]
-    par = np.zeros((max(len(pars), 1), max((len(p) for p in pars), default=1)))
-    for e, p in enumerate(pars):
-        par[e, : len(p)] = p
-    return con, par
+    con = padded([instance.row.con for instance in instances], -1, np.int64)
+    for k, row in enumerate(rows):
+        con[row.instance, FIRST_ROW + row.index] = k
+    return con, padded([instance.row.par for instance in instances], 0.0, np.float64)
+
+
+def padded(rows: Sequence[Sequence[float]], rest: float, kind: type) -> Any:
+    """A table of rows, as wide as the widest."""
+    table: Any = np.full((max(len(rows), 1), max(map(len, rows), default=1)), rest, kind)
+    for e, row in enumerate(rows):
+        table[e, : len(row)] = row
+    return table
 
 
 def watched_rows(

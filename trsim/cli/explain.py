@@ -50,9 +50,9 @@ def element(page: dict[str, Any]) -> Iterator[str]:
     yield f"{page['word']}: an element, in `{page['section']}`"
     yield from ("", page["law"], "", page["about"])
     yield from keys(page)
-    if page["coordinate"]:
+    if page["coordinates"]:
         of = "joint " if page["section"] == "joints" else ""
-        yield from ("", f"{of}coordinate: {page['coordinate']}")
+        yield from ("", f"{of}coordinate: {', '.join(page['coordinates'])}")
     if page["channels"]:
         yield from ("", "channels:")
     for channel in page["channels"]:

@@ -16,6 +16,8 @@ ELEMENTS = {
     "spherical": "joints",
     "universal": "joints",
     "prismatic": "joints",
+    "cylindrical": "joints",
+    "inline": "joints",
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`
     "drive": "drives",

@@ -18,11 +18,12 @@ import numpy as np
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
-from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
+from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Memory, Row, kernel
 from trsim.elements.frames import cross, dot, helper
 from trsim.elements.rigid_body import RigidBody
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
+from trsim.kernels.columns import V3, f8, i8
 from trsim.kernels.vectors import clear_table
 from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
@@ -98,9 +99,23 @@ class AncfCable(Cable):
         )
 
 
-# con: where; par: how much
-FIRST, NODES, STRAIN, CURVATURE, STRETCHING, ELEMENT_0 = 0, 1, 2, 3, 4, 5
-LENGTH, STIFFNESS, BENDING, BETA, MASS, FIELD = 0, 1, 2, 3, 4, 5
+class Own(Memory):
+    """Of one instance."""
+
+    first: i8  # node
+    nodes: i8
+    strain: i8  # one of STRAINS, and so on
+    curvature: i8
+    stretching: i8
+    element: i8  # its first, among those of all bars
+    length: f8  # m, of an element
+    EA: f8  # N
+    EI: f8  # N*m^2
+    beta: f8  # s, of its damping
+    mass: f8  # kg/m
+    field: V3  # m/s^2
+
+
 BAR, AT_NODE = 18, 5  # columns of a bar, and of each of its nodes
 E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 
@@ -109,23 +124,27 @@ def pack(name, spec, at):
     beam = at.beams[name]
     area, moment, _ = spec.numbers
     E, field = spec.youngs_modulus, at.scenario.gravity
-    return Row(
-        (
-            beam.first,
-            beam.nodes,
-            STRAINS[spec.strain],
-            CURVATURES[spec.curvature],
-            STRETCHINGS[spec.stretching],
-            beam.element,
-        ),
-        (beam.length, E * area, E * moment, spec.damping, spec.per_length, *field),
-        channels=channels(beam.nodes),
+    own = Own.packed(
+        first=beam.first,
+        nodes=beam.nodes,
+        strain=STRAINS[spec.strain],
+        curvature=CURVATURES[spec.curvature],
+        stretching=STRETCHINGS[spec.stretching],
+        element=beam.element,
+        length=beam.length,
+        EA=E * area,
+        EI=E * moment,
+        beta=spec.damping,
+        mass=spec.per_length,
+        field=field,
     )
+    return Row(*own, channels=channels(beam.nodes))
 
 
 def own_nodes(row):
     """The frames of its nodes."""
-    return frozenset(range(row.con[FIRST], row.con[FIRST] + row.con[NODES]))
+    own = Own.of(row)
+    return frozenset(range(own.first, own.first + own.nodes))
 
 
 def channels(nodes):
@@ -168,39 +187,40 @@ def gathered(scene, i):
 
 @kernel
 def force(t, scene, a, b):
-    con, par, F, Q, element = scene.con, scene.par, scene.F, scene.Q, scene.element
+    F, Q, element = scene.F, scene.Q, scene.element
     for e in range(a, b):
-        l, mass = par[e, LENGTH], par[e, MASS]
-        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+        own = Own(scene, e)
+        for i in range(own.first, own.first + own.nodes - 1):
             gathered(scene, i)
-            add_force(
-                element[E_NOW], element[E_RATE], l, par[e, STIFFNESS], par[e, BENDING],
-                par[e, BETA], con[e, STRAIN], con[e, CURVATURE], con[e, STRETCHING],
-                element[E_FORCE],
-            )  # fmt: skip
-            s1, s2, s3, s4 = uniform_shares(l)
+            add_elastic_force(element, own, own.beta)
+            s1, s2, s3, s4 = uniform_shares(own.length)
             for c in range(3):
-                weight = mass * par[e, FIELD + c]
+                weight = own.mass * own.field[c]
                 F[i, c] += element[E_FORCE, c] + s1 * weight
                 Q[i, c] += element[E_FORCE, 3 + c] + s2 * weight
                 F[i + 1, c] += element[E_FORCE, 6 + c] + s3 * weight
                 Q[i + 1, c] += element[E_FORCE, 9 + c] + s4 * weight
-            if par[e, BETA] > 0.0:
-                scene.zd[DAMPERS] += damping_power(scene, par, con, e)
+            if own.beta > 0.0:
+                scene.zd[DAMPERS] += damping_power(element, own)
 
 
 @helper
-def damping_power(scene, par, con, e):
+def add_elastic_force(element, own, beta):
+    """Elastic and damping forces of the element last gathered, added to those in its room."""
+    add_force(
+        element[E_NOW], element[E_RATE], own.length, own.EA, own.EI, beta, own.strain,
+        own.curvature, own.stretching, element[E_FORCE],
+    )  # fmt: skip
+
+
+@helper
+def damping_power(element, own):
     """Power of the damping forces of the element last gathered, W; never positive."""
-    element = scene.element
     power = 0.0
     for k in range(12):
         power += element[E_FORCE, k] * element[E_RATE, k]
         element[E_FORCE, k] = 0.0
-    add_force(
-        element[E_NOW], element[E_RATE], par[e, LENGTH], par[e, STIFFNESS], par[e, BENDING],
-        0.0, con[e, STRAIN], con[e, CURVATURE], con[e, STRETCHING], element[E_FORCE],
-    )  # fmt: skip
+    add_elastic_force(element, own, 0.0)
     for k in range(12):
         power -= element[E_FORCE, k] * element[E_RATE, k]
     return power
@@ -208,40 +228,43 @@ def damping_power(scene, par, con, e):
 
 @kernel
 def stiffness(t, scene, a, b):
-    con, par, element = scene.con, scene.par, scene.element
+    element = scene.element
     for e in range(a, b):
-        l, beta = par[e, LENGTH], par[e, BETA]
-        for k in range(con[e, NODES] - 1):
-            gathered(scene, con[e, FIRST] + k)
-            row = 12 * (con[e, ELEMENT_0] + k)
+        own = Own(scene, e)
+        for k in range(own.nodes - 1):
+            gathered(scene, own.first + k)
+            row = 12 * (own.element + k)
             K, C = scene.tangent[row : row + 12], scene.viscous[row : row + 12]
             clear_table(K)
             add_stiffness(
-                element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                con[e, CURVATURE], con[e, STRETCHING], element[ROOM:], K,
+                element[E_NOW], own.length, own.EA, own.EI, own.strain, own.curvature,
+                own.stretching, element[ROOM:], K,
             )  # fmt: skip
-            if beta > 0.0:
+            if own.beta > 0.0:
                 clear_table(C)
                 add_damping(
-                    element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], beta, con[e, STRAIN],
-                    con[e, CURVATURE], con[e, STRETCHING], element[ROOM:], C,
+                    element[E_NOW], own.length, own.EA, own.EI, own.beta, own.strain,
+                    own.curvature, own.stretching, element[ROOM:], C,
                 )  # fmt: skip
+
+
+@helper
+def stored(x, own):
+    """Energy of the stretch and of the bend of an element with coordinates x, J."""
+    return energies(x, own.length, own.EA, own.EI, own.strain, own.curvature, own.stretching)
 
 
 @kernel
 def energy(t, scene, a, b):
-    con, par, E, element = scene.con, scene.par, scene.E, scene.element
+    E, x = scene.E, scene.element[E_NOW]
     for e in range(a, b):
-        l, mass = par[e, LENGTH], par[e, MASS]
-        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+        own = Own(scene, e)
+        for i in range(own.first, own.first + own.nodes - 1):
             gathered(scene, i)
-            stretching, bending = energies(
-                element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                con[e, CURVATURE], con[e, STRETCHING],
-            )  # fmt: skip
+            stretching, bending = stored(x, own)
             E[SPRINGS] += stretching + bending
             for c in range(3):
-                E[GRAVITY] -= mass * par[e, FIELD + c] * moment(element[E_NOW], l, c)
+                E[GRAVITY] -= own.mass * own.field[c] * moment(x, own.length, c)
 
 
 @helper
@@ -253,13 +276,13 @@ def moment(x, l, c):
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, con, par, wanted, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
-    element = scene.element
+    X, V, out, element = scene.X, scene.V, scene.out, scene.element
     for e in range(a, b):
-        o = wanted[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
-        first, nodes, l = con[e, FIRST], con[e, NODES], par[e, LENGTH]
+        own = Own(scene, e)
+        first, nodes, l = own.first, own.nodes, own.length
         last = first + nodes - 1
         whole = l * (nodes - 1)
         for k in range(BAR + AT_NODE * nodes):
@@ -270,17 +293,11 @@ def measure(t, scene, a, b):
             for c in range(3):
                 out[o + c] += moment(x, l, c) / whole
                 out[o + 3 + c] += moment(v, l, c) / whole
-            stretching, bending = energies(
-                x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE],
-                con[e, STRETCHING],
-            )  # fmt: skip
+            stretching, bending = stored(x, own)
             out[o + 16] += stretching + bending
             out[o + 17] += stretching
             for n in range(2):
-                N, M = stress(
-                    x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE],
-                    float(n),
-                )  # fmt: skip
+                N, M = stress(x, l, own.EA, own.EI, own.strain, own.curvature, float(n))
                 # a node between two elements has the mean of both
                 share = 1.0 if i + n == first or i + n == last else 0.5
                 place = o + BAR + AT_NODE * (i + n - first)
@@ -327,8 +344,8 @@ ELEMENT = Element(
     pack=pack,
     channels=channels(5),
     acts_on=own_nodes,
-    elastic=(STIFFNESS, BENDING),
-    viscous=(BETA,),
+    elastic=tuple(Own.columns[name].at for name in ("EA", "EI")),
+    viscous=(Own.columns["beta"].at,),
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:

@@ -23,15 +23,17 @@ from trsim.elements.contract import (
     SPRINGS,
     Channel,
     Element,
-    Held,
     Reach,
     Row,
+    Springs,
     Turning,
     kernel,
 )
 from trsim.elements.frames import (
+    TwoPoints,
     dot,
     helper,
+    points,
     push,
     separation,
     spin,
@@ -43,13 +45,13 @@ from trsim.elements.rotations import gradient, into, out_of, rotation_vector, tr
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.frame import across
+from trsim.kernels.columns import V3, i8
 
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
 NONE = (0.0, 0.0, 0.0)
 TURN = "rotation_vector"
 NEXT_TO_HALF = 0.1  # rad: so near to half a turn it is told
-STIFFNESS, DAMPING, ROTATIONAL = 24, 27, 30  # par, after the arms and the axes in both bodies
 
 
 class Bushing(Spec):
@@ -90,64 +92,83 @@ class Bushing(Spec):
         return x, across(z, x), z
 
 
+class Own(TwoPoints):
+    """Of one instance."""
+
+    turns: i8  # 1: something acts against turns
+    x_i: V3  # directions of the stiffnesses in the axes of body i
+    y_i: V3
+    z_i: V3
+    x_j: V3  # and in those of body j
+    y_j: V3
+    z_j: V3
+    stiffness: V3
+    damping: V3
+    rotational_stiffness: V3
+    rotational_damping: V3
+
+
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    own = spec.axes
+    directions = tuple(zip("xyz", spec.axes, strict=True))
     turning = any((*spec.rotational_stiffness, *spec.rotational_damping))
     return Row(
-        (i, j, -1, int(turning)),
-        (
-            *at.local(i, spec.at),
-            *at.local(j, spec.at),
-            *(c for axis in own for c in at.axes(i, axis)),
-            *(c for axis in own for c in at.axes(j, axis)),
-            *(*spec.stiffness, *spec.damping),
-            *(*spec.rotational_stiffness, *spec.rotational_damping),
-        ),
+        *Own.packed(
+            **points(at, i, j, spec.at, spec.at),
+            turns=turning,
+            **{f"{name}_i": at.axes(i, axis) for name, axis in directions},
+            **{f"{name}_j": at.axes(j, axis) for name, axis in directions},
+            stiffness=spec.stiffness,
+            damping=spec.damping,
+            rotational_stiffness=spec.rotational_stiffness,
+            rotational_damping=spec.rotational_damping,
+        )
     )
 
 
 @helper
-def diagonal(par, e, k, v):
-    """Three numbers of par from k on times those of v."""
-    return (par[e, k] * v[0], par[e, k + 1] * v[1], par[e, k + 2] * v[2])
+def diagonal(K, v):
+    """K v with the diagonal K."""
+    return (K[0] * v[0], K[1] * v[1], K[2] * v[2])
 
 
 @helper
-def half_square(par, e, k, v):
-    """(v^T K v)/2 with three numbers K of par from k on."""
-    return 0.5 * dot(v, diagonal(par, e, k, v))
+def half_square(K, v):
+    """(v^T K v)/2 with the diagonal K."""
+    return 0.5 * dot(v, diagonal(K, v))
 
 
 @helper
-def slide(X, con, par, e):
+def slide(scene, e):
     """The axes A_i, the arm to P_j on body i and on body j, and d."""
-    i, p_i, j, p_j = two_points(X, con, par, e)
+    X, own = scene.X, Own(scene, e)
+    i, p_i, j, p_j = two_points(scene, e)
     D = separation(X, i, p_i, j, p_j)
-    A = triad(X, i, par, e, 6)
+    A = triad(X, i, own.x_i, own.y_i, own.z_i)
     return A, (p_i[0] + D[0], p_i[1] + D[1], p_i[2] + D[2]), p_j, into(A, D)
 
 
 @helper
-def turn(X, A, con, par, e):
+def turn(X, A, own):
     """theta."""
-    return rotation_vector(A, triad(X, con[e, 1], par, e, 15))
+    return rotation_vector(A, triad(X, own.j, own.x_j, own.y_j, own.z_j))
 
 
 @helper
-def loads(X, V, con, par, e):
+def loads(scene, e):
     """Arms on both bodies, force and moment on body j in world axes, the power lost."""
-    i, j = con[e, 0], con[e, 1]
-    A, p_i, p_j, d = slide(X, con, par, e)
+    V, own = scene.V, Own(scene, e)
+    i, j = own.i, own.j
+    A, p_i, p_j, d = slide(scene, e)
     v_i, v_j, o_i, o_j = velocity(V, i, p_i), velocity(V, j, p_j), spin(V, i), spin(V, j)
     rate = into(A, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    k, c = diagonal(par, e, STIFFNESS, d), diagonal(par, e, DAMPING, rate)
+    k, c = diagonal(own.stiffness, d), diagonal(own.damping, rate)
     f, m, lost = (-k[0] - c[0], -k[1] - c[1], -k[2] - c[2]), (0.0, 0.0, 0.0), dot(c, rate)
-    if con[e, 3] == 1:
-        theta = turn(X, A, con, par, e)
+    if own.turns == 1:
+        theta = turn(scene.X, A, own)
         omega = into(A, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
-        k = gradient(theta, diagonal(par, e, ROTATIONAL, theta))
-        c = diagonal(par, e, ROTATIONAL + 3, omega)
+        k = gradient(theta, diagonal(own.rotational_stiffness, theta))
+        c = diagonal(own.rotational_damping, omega)
         m = (-k[0] - c[0], -k[1] - c[1], -k[2] - c[2])
         lost += dot(c, omega)
     return p_i, p_j, out_of(A, f), out_of(A, m), lost
@@ -155,10 +176,11 @@ def loads(X, V, con, par, e):
 
 @kernel
 def force(t, scene, a, b):
-    X, V, con, par, F, zd = scene.X, scene.V, scene.con, scene.par, scene.F, scene.zd
+    F, zd = scene.F, scene.zd
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i, p_j, f, m, lost = loads(X, V, con, par, e)
+        own = Own(scene, e)
+        i, j = own.i, own.j
+        p_i, p_j, f, m, lost = loads(scene, e)
         push(F, j, p_j, f)
         push(F, i, p_i, (-f[0], -f[1], -f[2]))
         twist(F, j, m)
@@ -168,31 +190,32 @@ def force(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, con, par, E = scene.X, scene.con, scene.par, scene.E
+    E = scene.E
     for e in range(a, b):
-        A, _, _, d = slide(X, con, par, e)
-        E[SPRINGS] += half_square(par, e, STIFFNESS, d)
-        if con[e, 3] == 1:
-            E[SPRINGS] += half_square(par, e, ROTATIONAL, turn(X, A, con, par, e))
+        own = Own(scene, e)
+        A, _, _, d = slide(scene, e)
+        E[SPRINGS] += half_square(own.stiffness, d)
+        if own.turns == 1:
+            E[SPRINGS] += half_square(own.rotational_stiffness, turn(scene.X, A, own))
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, con, par, col, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
+    out = scene.out
     for e in range(a, b):
-        o = col[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
-        A, _, _, d = slide(X, con, par, e)
-        _, _, f, m, _ = loads(X, V, con, par, e)
-        theta = turn(X, A, con, par, e)
+        A, _, _, d = slide(scene, e)
+        _, _, f, m, _ = loads(scene, e)
+        theta = turn(scene.X, A, Own(scene, e))
         for c in range(3):
             out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
 
 
 def turns_against(row):
     """Whether something acts against turns, which has a meaning below half a turn only."""
-    return any(row.par[ROTATIONAL : ROTATIONAL + 3])
+    return any(Own.of(row).rotational_stiffness)
 
 
 def doubts(name, spec, largest):
@@ -208,32 +231,32 @@ def doubts(name, spec, largest):
         )
 
 
-def holds(row):
-    stiff = (row.par[n : n + 3] for n in (STIFFNESS, ROTATIONAL))
-    return Held(row.par[6:15], row.par[3:6], *stiff)
+def springs(row):
+    own = Own.of(row)
+    return Springs((own.x_i, own.y_i, own.z_i), own.p_j, own.stiffness, own.rotational_stiffness)
 
 
 def reach(row):
     """Its matrices of stiffness and damping; each acts in the plane where it couples no z to it."""
-    i, j = row.con[:2]
-    axes, k, c, k_r, c_r = (
-        row.par[n : n + m] for n, m in ((6, 9), (24, 3), (27, 3), (30, 3), (33, 3))
+    own = Own.of(row)
+    axes = (*own.x_i, *own.y_i, *own.z_i)
+    sliding, turning = (
+        (own.stiffness, own.damping),
+        (own.rotational_stiffness, own.rotational_damping),
     )
+    laws = (*((law, False) for law in sliding), *((law, True) for law in turning))
     return Reach(
-        places=((i, row.par[:3], (i, j)),) if any(k + c) else (),
+        places=((own.i, own.p_i, (own.i, own.j)),) if any(map(any, sliding)) else (),
         always=True,
-        tensors=tuple(
-            (i, axes, law, turns)
-            for law, turns in ((k, False), (c, False), (k_r, True), (c_r, True))
-            if any(law)
-        ),
+        tensors=tuple((own.i, axes, law, turns) for law, turns in laws if any(law)),
     )
 
 
 def turning(row):
     """All turns are felt: two at least of its three axes point across a bar."""
-    i, j, _, turns = row.con
-    return Turning((i, j), axes=((i, (0.0, 0.0, 0.0)),), held=(j,) if turns else ())
+    own = Own.of(row)
+    held = (own.j,) if own.turns else ()
+    return Turning((own.i, own.j), axes=((own.i, (0.0, 0.0, 0.0)),), held=held)
 
 
 ELEMENT = Element(
@@ -244,7 +267,7 @@ ELEMENT = Element(
     reach=reach,
     judged=turns_against,
     doubts=doubts,
-    holds=holds,
+    springs=springs,
     channels=(
         Channel("force", "N", "on the second body at its point, world axes", 3),
         Channel("moment", "N*m", "on the second body, world axes", 3),

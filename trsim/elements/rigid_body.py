@@ -15,9 +15,10 @@ from pydantic import BeforeValidator
 
 from trsim import elements
 from trsim.elements.cable import Cable
-from trsim.elements.contract import Channel, Element, Row, kernel
+from trsim.elements.contract import Channel, Element, Memory, Row, kernel
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
+from trsim.kernels.columns import f8, i8
 
 KG_M2 = Unit("kg*m^2")
 INERTIA = Annotated[float, Ge(0), KG_M2]
@@ -102,17 +103,24 @@ class RigidBody(Spec):
         return self
 
 
+class Own(Memory):
+    """Of one instance."""
+
+    body: i8
+    mass: f8
+
+
 def pack(name, spec, at):
-    return Row((at.body(name),), (spec.mass,))
+    return Row(*Own.packed(body=at.body(name), mass=spec.mass))
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, A, con, col, out = scene.X, scene.V, scene.A, scene.con, scene.wanted, scene.out
+    X, V, A, col, out = scene.X, scene.V, scene.A, scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        i, o = con[e, 0], col[e]
+        i, o = Own(scene, e).body, col[e]
         for c in range(3):
             out[o + c] = X[i, c]
             out[o + 3 + c] = V[i, c]

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
-from trsim import elements
 from trsim.laws.contact import (
     damping_factor,
     delivered_restitution,
@@ -212,13 +211,10 @@ def _away(place: Any, hinge: Any) -> float:
 
 def _all_stops(scenario: Any) -> Iterator[tuple[str, Any, float]]:
     for name, stop in scenario.forces.items():
-        if not hasattr(stop, "pressed"):
-            continue
-        bodies, joint = stop.pressed(scenario.joints)
-        slides = joint is None or elements.load(joint.type).coordinate == "stroke"
-        mass = _reduced(scenario, bodies, None if slides else joint)
-        if 0.0 < mass < inf:
-            yield name, stop, mass
+        if hasattr(stop, "pressed"):
+            mass = _reduced(scenario, *stop.pressed(scenario.joints))
+            if 0.0 < mass < inf:
+                yield name, stop, mass
 
 
 def _stops(scenario: Any) -> Iterator[str]:

@@ -86,7 +86,7 @@ def slides(scenario: Any) -> set[str]:
     return {
         body
         for joint in scenario.joints.values()
-        if elements.load(joint.type).coordinate == "stroke"
+        if "stroke" in elements.load(joint.type).coordinates
         for body in joint.bodies
     }
 

@@ -18,9 +18,11 @@ Array = NDArray[np.float64]
 GROUND = "ground"
 # what elements are drawn as; other joints, drives and forces are not
 IDEAL_POINTS = ("pin", "ball", "cross", "weld")  # joints that hold two points together
+SLIDES = ("slide", "sleeve", "bead")  # joints along whose axis a body slides
 SPATIAL = ("ball", "cross")  # joints that let a body leave a plane
 STIFF = ("slide", "weld")  # joints that let no body turn against the other
-JOINTS = (*IDEAL_POINTS, "slide", "journal")
+LOOSE = (*SPATIAL, "bead")  # joints that keep no axis
+JOINTS = (*IDEAL_POINTS, *SLIDES, "journal")
 LINES = ("cylinder", "coil", "block")  # forces and drives that have a place
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim import elements
+from trsim.elements.coordinates import split
 from trsim.report.animation import solids, turns
 from trsim.report.animation.drawing import Array, Joint
 from trsim.report.animation.fittings import journal
@@ -82,6 +83,7 @@ def stop_point(moved: Motion, spec: object) -> tuple[str, Array]:
     point, name = spec.point, spec.joint  # type: ignore[attr-defined]
     if point is not None:
         return point.body, np.array(point.at)
+    name, _ = split(name, moved.drawn.scenario.joints)
     joint = next((one for one in moved.drawn.joints if one.name == name), None)
     return (joint.j, joint.at) if joint is not None else ("", np.zeros(3))
 

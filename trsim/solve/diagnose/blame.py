@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.prescribed import ENTRY
+from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.locked import locked
@@ -77,7 +77,7 @@ def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
         length = instance.row.length
         if length == 0.0:
             continue
-        stroke = float(w.S[instance.row.con[ENTRY], 0])
+        stroke = float(w.S[AnyDrive.of(instance.row).coordinate, 0])
         if length + stroke < SHORT * length:
             return (
                 f"{scenario.entry(instance.section, instance.name)}: a stroke of {stroke:.4g} m "

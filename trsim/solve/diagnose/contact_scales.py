@@ -12,6 +12,7 @@ from trsim.assemble.equations import gaps, poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import against_rates
+from trsim.elements.rows import Axes
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
 from trsim.solve.diagnose.linearised import Linearised
@@ -102,10 +103,11 @@ def journal(
 
     The largest over the directions in which it may touch; where it touches, that one.
     """
-    i, j = w.con[e, 0], w.con[e, 1]
+    own = Axes(w, e)
+    i, j = own.i, own.j
     R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-    p_i, p_j = R_i @ w.par[e, 0:3], R_j @ w.par[e, 3:6]
-    u, v, a = (R_i @ w.par[e, 6 + 3 * k : 9 + 3 * k] for k in range(3))
+    p_i, p_j = R_i @ own.p_i, R_j @ own.p_j
+    u, v, a = (R_i @ axis for axis in (own.u_i, own.w_i, own.a_i))
     d = w.X[j, :3] + p_j - w.X[i, :3] - p_i
     angles = pi * np.arange(DIRECTIONS) / DIRECTIONS
     if closed:

@@ -11,8 +11,7 @@ from trsim.elements.contract import (
     IMPACT_SPEED,
     PHASE,
     SCENE,
-    I,
-    J,
+    Pair,
     compiled,
 )
 from trsim.kernels.packed import A1
@@ -82,7 +81,8 @@ def change_phases(s, r, b, setting, t1):
         if b.corner_root[c] <= first + SAME:
             e = s.contact[c]
             s.mem[e, BRANCH] = s.corner[e, 1]
-            r.stale[s.con[e, I]] = r.stale[s.con[e, J]] = 1
+            own = Pair(s, e)
+            r.stale[own.i] = r.stale[own.j] = 1
             r.count[CORNERS] += 1
     touched = fire(s, r, b, first) > 0
     h, were_closed = 1e300, closed(s, r)

@@ -28,6 +28,7 @@ from trsim.elements.contract import (
     UNLOCATED,
     WHOLE,
 )
+from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.blame import refuse_no_number
@@ -104,7 +105,7 @@ def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
 def check_names(scenario: Any, initial: Any) -> None:
     """Joints given a value under `initial` have a coordinate to set."""
     for name in initial.values:
-        if not elements.load(scenario.joints[name].type).coordinate:
+        if not of_joint(split(name, scenario.joints)[0], scenario.joints):
             raise ModelError(
                 f"joint '{name}' has no coordinate to set",
                 "name a revolute or a prismatic joint",
@@ -244,7 +245,11 @@ def by_ideal_joints(
 
 def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     """The scenario's drives at rest, those of the joints of `initial` replaced by rigid holds."""
-    moved = {n for n, d in scenario.drives.items() if getattr(d, "joint", "") in initial.values}
+    joints = scenario.joints
+    moved = {
+        n for n, d in scenario.drives.items()
+        if called(getattr(d, "joint", ""), joints) in initial.values
+    }  # fmt: skip
     drives = {n: d.at_rest() for n, d in scenario.drives.items() if n not in moved}
     return drives | {f"hold {name}": hold(name) for name in initial.values}
 
