@@ -180,12 +180,8 @@ def pack(  # type: ignore[no-untyped-def]
     wanted: list[tuple[str, str, str, Any]] = []
     bodies = members(scenario, stiff)
     sections = {s: getattr(scenario, s) for s in ("joints", "drives", "sensors")}
-    sections["bodies"] = bodies
-    if drives is not None:
-        sections["drives"] = drives
-    sections["forces"] = scenario.forces
-    if drives is None:
-        sections[SECTION] = dict(locks(scenario))
+    sections |= {"bodies": bodies, "forces": scenario.forces}
+    sections |= {SECTION: locks(scenario)} if drives is None else {"drives": drives}
     for section, entries in sections.items():
         for name, spec in entries.items():
             key = spec.type

@@ -86,14 +86,14 @@ def lock_name(coordinate: str) -> str:
     return f"{coordinate}.lock"
 
 
-def locks(scenario: Any) -> list[tuple[str, Any]]:
+def locks(scenario: Any) -> dict[str, Any]:
     """A drive for every coordinate of a joint that some event locks."""
     found = {}
     for name, event in scenario.events.items():
         for k, joint in enumerate(event.do.lock):
             own, *_ = named(joint, scenario.joints, path=(SECTION, name, "do", "lock", k))
             found[lock_name(own)] = hold(own)
-    return list(found.items())
+    return found
 
 
 def hold(joint: str) -> Any:

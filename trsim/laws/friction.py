@@ -20,14 +20,7 @@ from trsim.kernels.lazy import law
 # the word of a scenario -> the code of `friction_force`
 CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}
 
-# the parameters of each, in order; the rest of N_PARAMETERS is not read
-PARAMETERS = {
-    "none": (),
-    "coulomb": ("mu",),
-    "modified_coulomb": ("mu", "v0", "v1"),  # -, m/s, m/s
-    "sticking": ("mu_s", "mu_k", "v_s", "sigma0", "sigma1"),  # -, -, m/s, 1/m, s/m
-}
-N_PARAMETERS = 6
+N_PARAMETERS = 6  # at most
 
 
 @law
@@ -176,7 +169,7 @@ def friction_force(code, F_n, v_t, w, par):
     F_n : float          normal force, N
     v_t : float          sliding velocity, m/s
     w : float            bristle deflection, m; read by code 3 only
-    par : (N_PARAMETERS) parameters, in the order of `PARAMETERS`
+    par : (N_PARAMETERS) parameters of the law, in the order it takes them; the rest is not read
 
     Returns
     -------

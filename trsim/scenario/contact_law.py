@@ -14,7 +14,7 @@ from pydantic import model_validator
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
 from trsim.laws.contact import cylinder_stiffness, damping_factor, hertz_stiffness
-from trsim.laws.friction import CODES, N_PARAMETERS, PARAMETERS
+from trsim.laws.friction import CODES, N_PARAMETERS
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
@@ -22,13 +22,15 @@ Length = Annotated[float, Gt(0), Unit("m")]
 Speed = Annotated[float, Gt(0), Unit("m/s")]
 Coefficient = Annotated[float, Ge(0), Unit("-")]
 
-# what a word cannot do without
-FRICTION_NEEDS = {
+# the parameters of a law, in the order it takes them (laws/friction.py)
+STATIC = "static_coefficient"  # the coefficient unless given
+FRICTION_KEYS = {
     "none": (),
     "coulomb": ("coefficient",),
     "modified_coulomb": ("coefficient", "v0", "v1"),
-    "sticking": ("coefficient", "stribeck_speed", "bristle_stiffness"),
+    "sticking": (STATIC, "coefficient", "stribeck_speed", "bristle_stiffness", "bristle_damping"),
 }
+# what a word cannot do without
 STIFFNESS_NEEDS = {
     "internal": ("bearing_radius", "youngs_modulus", "poisson"),
     "paper": ("bearing_radius", "youngs_modulus", "poisson"),
@@ -68,7 +70,8 @@ class Friction(Spec):
 
     @model_validator(mode="after")
     def complete(self) -> "Friction":
-        _needs(self, f"friction law {self.law}", FRICTION_NEEDS[self.law])
+        keys = tuple(key for key in FRICTION_KEYS[self.law] if key != STATIC)
+        _needs(self, f"friction law {self.law}", keys)
         if self.law == "sticking" and self.coefficient == 0.0:
             raise ScenarioError("friction law sticking needs a coefficient > 0")
         if self.v0 is not None and self.v1 is not None and self.v0 >= self.v1:
@@ -78,17 +81,8 @@ class Friction(Spec):
     @property
     def numbers(self) -> tuple[int, tuple[float, ...]]:
         """Code of the law and its N_PARAMETERS numbers."""
-        words: dict[str, Any] = {
-            "mu": self.coefficient,
-            "mu_k": self.coefficient,
-            "mu_s": self.static_coefficient or self.coefficient,
-            "v0": self.v0,
-            "v1": self.v1,
-            "v_s": self.stribeck_speed,
-            "sigma0": self.bristle_stiffness,
-            "sigma1": self.bristle_damping,
-        }
-        numbers = [float(words[name]) for name in PARAMETERS[self.law]]
+        given = {**dict(self), STATIC: self.static_coefficient or self.coefficient}
+        numbers = [float(given[key]) for key in FRICTION_KEYS[self.law]]
         return CODES[self.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
 
 

@@ -60,7 +60,7 @@ def _inertias(scenario: Any) -> Iterator[str]:
     for name, body in plausible.rigid(scenario):
         if isinstance(body.inertia, float):
             continue
-        low, middle, high = sorted(_principal(body.inertia))
+        low, middle, high = _principal(body)
         where = f"bodies.{name}.inertia"
         if low < -ROUNDED * high:
             yield (
@@ -76,13 +76,11 @@ def _inertias(scenario: Any) -> Iterator[str]:
             )
 
 
-def _principal(inertia: tuple[float, ...]) -> tuple[float, ...]:
-    if len(inertia) == 3:
-        return inertia
+def _principal(body: Any) -> list[float]:
+    """Principal inertias, the smallest first."""
     import numpy as np
 
-    xx, yy, zz, xy, xz, yz = inertia
-    return tuple(np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).tolist())
+    return np.linalg.eigvalsh(np.reshape(body.tensor[0], (3, 3))).tolist()  # type: ignore[no-any-return]
 
 
 def _sizes(scenario: Any) -> Iterator[str]:
@@ -93,8 +91,7 @@ def _sizes(scenario: Any) -> Iterator[str]:
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)
     slides = plausible.slides(scenario)
     for name, body in plausible.rigid(scenario):
-        about_z = isinstance(body.inertia, float)
-        largest = body.inertia if about_z else max(_principal(body.inertia))
+        largest = max(_principal(body))
         if name in slides or largest <= 0.0:  # does not turn; a point
             continue
         where = f"bodies.{name}"
