@@ -90,21 +90,12 @@ E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 def pack(name, spec, at):
     beam = at.beams[name]
     area, moment, _ = spec.numbers
-    E, field = spec.youngs_modulus, at.scenario.gravity
+    E = spec.youngs_modulus
     own = Own.packed(
-        first=beam.first,
-        nodes=beam.nodes,
-        strain=STRAINS[spec.strain],
-        curvature=CURVATURES[spec.curvature],
-        stretching=STRETCHINGS[spec.stretching],
-        element=beam.element,
-        length=beam.length,
-        EA=E * area,
-        EI=E * moment,
-        beta=spec.damping,
-        mass=spec.per_length,
-        field=field,
-    )
+        beam, strain=STRAINS[spec.strain], curvature=CURVATURES[spec.curvature],
+        stretching=STRETCHINGS[spec.stretching], EA=E * area, EI=E * moment, beta=spec.damping,
+        mass=spec.per_length, field=at.scenario.gravity,
+    )  # fmt: skip
     return Row(*own, channels=channels(beam.nodes))
 
 

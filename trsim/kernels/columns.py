@@ -11,8 +11,9 @@
 Fields stand in their table in the order they are written in, those of the base class first.
 
     own = Own(scene, e)                  compiled or not: own.axis, own.masses[k], own.phase = 1.0
-    Own.packed(body=3, axis=a, ...)      con and par of a row; every field is given, but the
-                                         constraint rows, which only assembly knows
+    Own.packed(spec, body=3, axis=a)     con and par of a row: of every field its number, or that
+                                         of `spec` under the same name; constraint rows are not
+                                         given, only assembly knows them
     Own.of(row).axis                     the same of a packed row
     Own.columns["stiffness"].at          the column
 
@@ -116,9 +117,11 @@ class Columns(metaclass=Layout):
         return own
 
     @classmethod
-    def packed(cls, **values: Any) -> Numbers:
+    def packed(cls, like: Any = None, /, **values: Any) -> Numbers:
         """con and par of a row."""
-        wrong = {k for k, c in cls.columns.items() if c.packed} ^ values.keys()
+        told = {k for k, c in cls.columns.items() if c.packed}
+        values = {k: getattr(like, k) for k in told - values.keys() if hasattr(like, k)} | values
+        wrong = told ^ values.keys()
         found: dict[str, list[Any]] = {table: [] for table in TABLES}
         for name, column in cls.columns.items() if not wrong else ():
             value: Any = values.get(name, -1)
