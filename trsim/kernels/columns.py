@@ -26,7 +26,7 @@ from dataclasses import replace
 from inspect import get_annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from trsim.kernels import signatures
+from trsim.kernels.signatures import KINDS
 
 __all__ = ["V3", "Column", "Columns", "Layout", "constraint_row", "f8", "i8", "memory", "run"]
 
@@ -70,7 +70,7 @@ else:
     V3 = Column("par", 3, TUPLE)
     constraint_row = Column("con", packed=False)
     memory = Column("mem", packed=False)
-OF_KINDS: dict[Any, Any] = {signatures.f8: Column("par"), signatures.i8: Column("con")}
+OF_KINDS: dict[Any, Any] = {KINDS["f8"]: Column("par"), KINDS["i8"]: Column("con")}
 
 
 def run(kind: Any, number: int = 0) -> Any:
