@@ -37,8 +37,8 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
     if spec.kind == "table":
         of_t, held = spec.of == "t", [offset + HELD_OF_TABLE]
         times = distinct(list(spec.x), end) if of_t else []
-        sensed = () if of_t else (int(code[VARIABLE]),)
-        return [Cornered(offset, times, held, sensed, end, 0, not of_t)]
+        by = () if of_t else (int(code[VARIABLE]),)
+        return [Cornered(offset, times, held, by, end, 0, not of_t)]
     n_in = int(code[N_IN])
     places = range(HEAD + n_in, HEAD + n_in + WIDTH * int(code[N_OP]), WIDTH)
     watched = [p for p in places if code[p + WATCHED] != UNWATCHED]

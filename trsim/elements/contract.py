@@ -38,9 +38,9 @@ from typing import NamedTuple
 
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
-from trsim.kernels.columns import Columns, i8, memory
+from trsim.kernels.columns import Columns, f8, i8, memory
 from trsim.kernels.machine import Compiled
-from trsim.kernels.signatures import Signature, f8, void
+from trsim.kernels.signatures import Signature, void
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
@@ -127,6 +127,18 @@ class Contact(NamedTuple):
     state: int = -1  # entry of z that a touch sets to zero
     slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
+
+
+class ContactNumbers(Columns, par="contact_par"):
+    """The same in a model, with what depends on the bodies."""
+
+    stiffness: f8
+    exponent: f8
+    mass: f8  # kg, effective; of a stop on an angle an inertia, that of its bodies at `arm`
+    clearance: f8
+    slowest_impact: f8
+    arm: f8  # turns its depth, an angle, into the length that errors are weighed with; or 1
+    damping: f8
 
 
 class Limit(NamedTuple):
