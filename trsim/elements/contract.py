@@ -153,9 +153,9 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """One packed instance."""
+    """One packed instance, its constants by Columns.packed of its element."""
 
-    con: tuple[int, ...]
+    con: tuple[int, ...]  # its constraint rows, from FIRST_ROW on, are -1 here
     par: tuple[float, ...]
     contact: Contact | None = None
     channels: tuple[Channel, ...] | None = None  # of this instance, where they are not its kind's
