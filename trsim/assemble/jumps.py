@@ -16,7 +16,7 @@ from trsim.elements.contract import compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, some
 from trsim.kernels.signatures import A1, A2, f8, i8, void
-from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, WIDTH, hold, motion
+from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, N_IN, N_OP, WIDTH, hold, motion
 from trsim.laws.operations import ATAN2, COS, DIV, EXP, LOG, POW, SIN, SQRT, TAN
 
 Array = NDArray[np.float64]
@@ -120,8 +120,8 @@ def steep(at: Any, instances: list[Any]) -> int:
     for offset, drive in driven(at, instances).items():
         if drive.by_velocity or instances[drive.e].row.is_force or at.tab[offset] != EXPRESSION:
             continue
-        first = offset + HEAD + int(at.tab[offset + 1])
-        codes = at.tab[first : first + WIDTH * int(at.tab[offset + 2]) : WIDTH]
+        first = offset + HEAD + int(at.tab[offset + N_IN])
+        codes = at.tab[first : first + WIDTH * int(at.tab[offset + N_OP]) : WIDTH]
         count += bool(STEEP & {int(code) for code in codes})
     return count
 

@@ -13,7 +13,7 @@ from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales
-from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
+from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, ContactNumbers, Element
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -298,22 +298,17 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
 def contact_numbers(
     at: Addresses, instances: list[Instance], contacts: list[int], arms: list[float]
 ) -> Array:
-    """K, exponent, effective mass, clearance, slowest impact, arm and damping of every contact.
-
-    A stop on an angle has an inertia for a mass, that of its bodies at the larger of their arms;
-    the arm turns its depth, an angle, into the length that errors are weighed with.
-    """
+    """ContactNumbers of every contact; of a stop on an angle the larger arm of its bodies."""
     rows = []
     for e in contacts:
         row = instances[e].row
         assert row.contact is not None  # noqa: S101
         i, j = row.con[0], row.con[1]
         inverse = (1.0 / at.mass(i) if i else 0.0) + (1.0 / at.mass(j) if j else 0.0)
-        c = row.contact
         arm = max(arms[f] for f in (i, j) if f) if row.turns else 1.0
-        mass = arm**2 / inverse
-        rows.append((c.stiffness, c.exponent, mass, c.clearance, c.slowest_impact, arm, c.damping))
-    return np.array(rows, float).reshape(-1, 7)
+        numbers = ContactNumbers.numbers(row.contact, mass=arm**2 / inverse, arm=arm)
+        rows.append(numbers["contact_par"])
+    return np.array(rows, float).reshape(-1, len(ContactNumbers.columns))
 
 
 def eccentricity(element: Element) -> int:

@@ -118,29 +118,19 @@ def pack(name, spec, at):
     word = "velocity" if by_velocity else "position"
     f = at.function(getattr(spec, word), word, time_only=True)
     states = (at.state("stroke", follows=entry) if by_velocity else -1, -1, -1)
-    supply = dict.fromkeys(("supply", "supply_damping", "mass"), 0.0)
+    supply, supply_damping, mass = 0.0, 0.0, 0.0
     if spec.supply is not None:
         states = (states[0], at.state("stroke", follows=entry), at.state("speed"))
-        of = spec.supply
-        supply = {"supply": of.stiffness, "supply_damping": of.damping, "mass": of.mass}
+        supply, supply_damping = spec.supply.stiffness, spec.supply.damping
+        mass = spec.supply.mass
     limits = (Limit("stall", spec.stall, "N", "jammed", STALLED),) if spec.stall else ()
     channels = None if spec.supply is None else (*CHANNELS, *WITH_SUPPLY)
     state, piston, slip = states
     own = Own.packed(
-        **points(at, i, j, p, q, entry),
-        axis=(0.0, 0.0, 0.0),
-        state=state,
-        rotates=False,
-        motion=f,
-        stiffness=spec.stiffness or 0.0,
-        damping=spec.damping,
-        sign=spec.sign,
-        place=piston,
-        slip=slip,
-        length=drawn,
-        **supply,
-        stall=spec.stall or 0.0,
-    )
+        spec, **points(at, i, j, p, q, entry), axis=(0.0, 0.0, 0.0), state=state, rotates=False,
+        motion=f, stiffness=spec.stiffness or 0.0, place=piston, slip=slip, length=drawn,
+        supply=supply, supply_damping=supply_damping, mass=mass, stall=spec.stall or 0.0,
+    )  # fmt: skip
     return Row(*own, None, channels, spec.stiffness is not None, states, limits,
                piston=piston, slip=slip, length=drawn)  # fmt: skip
 

@@ -123,21 +123,12 @@ E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 def pack(name, spec, at):
     beam = at.beams[name]
     area, moment, _ = spec.numbers
-    E, field = spec.youngs_modulus, at.scenario.gravity
+    E = spec.youngs_modulus
     own = Own.packed(
-        first=beam.first,
-        nodes=beam.nodes,
-        strain=STRAINS[spec.strain],
-        curvature=CURVATURES[spec.curvature],
-        stretching=STRETCHINGS[spec.stretching],
-        element=beam.element,
-        length=beam.length,
-        EA=E * area,
-        EI=E * moment,
-        beta=spec.damping,
-        mass=spec.per_length,
-        field=field,
-    )
+        beam, strain=STRAINS[spec.strain], curvature=CURVATURES[spec.curvature],
+        stretching=STRETCHINGS[spec.stretching], EA=E * area, EI=E * moment, beta=spec.damping,
+        mass=spec.per_length, field=at.scenario.gravity,
+    )  # fmt: skip
     return Row(*own, channels=channels(beam.nodes))
 
 
@@ -192,7 +183,7 @@ def force(t, scene, a, b):
         own = Own(scene, e)
         for i in range(own.first, own.first + own.nodes - 1):
             gathered(scene, i)
-            add_elastic_force(element, own, own.beta)
+            add_force(element[E_NOW], element[E_RATE], own, own.beta, element[E_FORCE])
             s1, s2, s3, s4 = uniform_shares(own.length)
             for c in range(3):
                 weight = own.mass * own.field[c]
@@ -205,22 +196,13 @@ def force(t, scene, a, b):
 
 
 @helper
-def add_elastic_force(element, own, beta):
-    """Elastic and damping forces of the element last gathered, added to those in its room."""
-    add_force(
-        element[E_NOW], element[E_RATE], own.length, own.EA, own.EI, beta, own.strain,
-        own.curvature, own.stretching, element[E_FORCE],
-    )  # fmt: skip
-
-
-@helper
 def damping_power(element, own):
     """Power of the damping forces of the element last gathered, W; never positive."""
     power = 0.0
     for k in range(12):
         power += element[E_FORCE, k] * element[E_RATE, k]
         element[E_FORCE, k] = 0.0
-    add_elastic_force(element, own, 0.0)
+    add_force(element[E_NOW], element[E_RATE], own, 0.0, element[E_FORCE])
     for k in range(12):
         power -= element[E_FORCE, k] * element[E_RATE, k]
     return power
@@ -236,22 +218,10 @@ def stiffness(t, scene, a, b):
             row = 12 * (own.element + k)
             K, C = scene.tangent[row : row + 12], scene.viscous[row : row + 12]
             clear_table(K)
-            add_stiffness(
-                element[E_NOW], own.length, own.EA, own.EI, own.strain, own.curvature,
-                own.stretching, element[ROOM:], K,
-            )  # fmt: skip
+            add_stiffness(element[E_NOW], own, element[ROOM:], K)
             if own.beta > 0.0:
                 clear_table(C)
-                add_damping(
-                    element[E_NOW], own.length, own.EA, own.EI, own.beta, own.strain,
-                    own.curvature, own.stretching, element[ROOM:], C,
-                )  # fmt: skip
-
-
-@helper
-def stored(x, own):
-    """Energy of the stretch and of the bend of an element with coordinates x, J."""
-    return energies(x, own.length, own.EA, own.EI, own.strain, own.curvature, own.stretching)
+                add_damping(element[E_NOW], own, element[ROOM:], C)
 
 
 @kernel
@@ -261,7 +231,7 @@ def energy(t, scene, a, b):
         own = Own(scene, e)
         for i in range(own.first, own.first + own.nodes - 1):
             gathered(scene, i)
-            stretching, bending = stored(x, own)
+            stretching, bending = energies(x, own)
             E[SPRINGS] += stretching + bending
             for c in range(3):
                 E[GRAVITY] -= own.mass * own.field[c] * moment(x, own.length, c)
@@ -293,11 +263,11 @@ def measure(t, scene, a, b):
             for c in range(3):
                 out[o + c] += moment(x, l, c) / whole
                 out[o + 3 + c] += moment(v, l, c) / whole
-            stretching, bending = stored(x, own)
+            stretching, bending = energies(x, own)
             out[o + 16] += stretching + bending
             out[o + 17] += stretching
             for n in range(2):
-                N, M = stress(x, l, own.EA, own.EI, own.strain, own.curvature, float(n))
+                N, M = stress(x, own, float(n))
                 # a node between two elements has the mean of both
                 share = 1.0 if i + n == first or i + n == last else 0.5
                 place = o + BAR + AT_NODE * (i + n - first)

@@ -110,20 +110,10 @@ class Own(TwoPoints):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    directions = tuple(zip("xyz", spec.axes, strict=True))
-    turning = any((*spec.rotational_stiffness, *spec.rotational_damping))
-    return Row(
-        *Own.packed(
-            **points(at, i, j, spec.at, spec.at),
-            turns=turning,
-            **{f"{name}_i": at.axes(i, axis) for name, axis in directions},
-            **{f"{name}_j": at.axes(j, axis) for name, axis in directions},
-            stiffness=spec.stiffness,
-            damping=spec.damping,
-            rotational_stiffness=spec.rotational_stiffness,
-            rotational_damping=spec.rotational_damping,
-        )
-    )
+    named = zip(("x", "y", "z"), spec.axes, strict=True)
+    own = {f"{k}_{end}": at.axes(f, axis) for k, axis in named for end, f in (("i", i), ("j", j))}
+    turns = any((*spec.rotational_stiffness, *spec.rotational_damping))
+    return Row(*Own.packed(spec, **points(at, i, j, spec.at, spec.at), **own, turns=turns))
 
 
 @helper

@@ -123,19 +123,10 @@ def pack(name, spec, at):
     # w settles at +-mu / sigma0: that is its size in the error norm
     state = at.state(friction[1] / friction[3]) if sticks else -1
     own = Own.packed(
-        **points(at, i, j, spec.at, spec.at),
-        **triads(i, j, spec.axis, at, spec.drawn_in),
-        state=state,
-        friction_law=code,
-        bearing_radius=law.bearing_radius,
-        clearance=spec.clearance,
-        stiffness=K,
-        exponent=exponent,
-        form=form,
-        chi=chi,
-        slowest_impact=law.slowest_impact,
-        friction=friction,
-    )
+        law, **points(at, i, j, spec.at, spec.at), **triads(i, j, spec.axis, at, spec.drawn_in),
+        clearance=spec.clearance, stiffness=K, exponent=exponent, form=form, chi=chi, state=state,
+        friction_law=code, friction=friction,
+    )  # fmt: skip
     ramp = law.friction.law == "modified_coulomb"
     slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
     jump = Own.columns["friction"].at if law.friction.law == "coulomb" else -1

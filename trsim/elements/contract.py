@@ -50,9 +50,9 @@ from typing import Any, NamedTuple
 
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
-from trsim.kernels.columns import Columns, i8, memory
+from trsim.kernels.columns import Columns, f8, i8, memory
 from trsim.kernels.machine import Compiled
-from trsim.kernels.signatures import Signature, f8, void
+from trsim.kernels.signatures import Signature, void
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
@@ -143,6 +143,18 @@ class Contact(NamedTuple):
     radius: float = 0.0  # m, of the bearing of a journal
 
 
+class ContactNumbers(Columns, par="contact_par"):
+    """The same in a model, with what depends on the bodies."""
+
+    stiffness: f8
+    exponent: f8
+    mass: f8  # kg, effective; of a stop on an angle an inertia, that of its bodies at `arm`
+    clearance: f8
+    slowest_impact: f8
+    arm: f8  # turns its depth, an angle, into the length that errors are weighed with; or 1
+    damping: f8
+
+
 class Limit(NamedTuple):
     """What ends a run where the gap of an element rises through zero; located like an event."""
 
@@ -155,9 +167,9 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """One packed instance."""
+    """One packed instance, its constants by Columns.packed of its element."""
 
-    con: tuple[int, ...]
+    con: tuple[int, ...]  # its constraint rows, from FIRST_ROW on, are -1 here
     par: tuple[float, ...]
     contact: Contact | None = None
     channels: tuple[Channel, ...] | None = None  # of this instance, where they are not its kind's

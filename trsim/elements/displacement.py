@@ -45,8 +45,7 @@ def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     axis = perpendicular(spec.axis)[2]
     places = points(at, i, j, spec.at, spec.at, at.sensor(name))
-    own = Own.packed(**places, axis=at.axes(i, axis), sign=spec.sign, at_start=spec.at_start)
-    return Row(*own, travel="stroke")
+    return Row(*Own.packed(spec, **places, axis=at.axes(i, axis)), travel="stroke")
 
 
 @kernel

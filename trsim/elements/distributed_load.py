@@ -66,10 +66,8 @@ def pack(name, spec, at):
     n = at.axes(frame, direction(spec.direction))
     f = at.function(spec.force_per_length, "force_per_length")
     # stiff for a start: all of it at the centre
-    first, nodes, length = (
-        (i, 1, bar.length) if beam is None else (beam.first, beam.nodes, beam.length)
-    )
-    own = Own.packed(first=first, nodes=nodes, frame=frame, function=f, length=length, direction=n)
+    where = {"first": i, "nodes": 1, "length": bar.length} if beam is None else {}
+    own = Own.packed(beam, **where, frame=frame, function=f, direction=n)
     return Row(*own, reads=spec.force_per_length.sensors)
 
 

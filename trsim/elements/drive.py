@@ -120,9 +120,8 @@ def pack(name, spec, at):
         zeta = spec.compliance.damping_ratio
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
     turns = x.kind == "angle"
-    own = AnyDrive.packed(
-        **on_joint(x), state=state, rotates=turns, motion=f, stiffness=k, damping=c, sign=spec.sign
-    )
+    act = {"state": state, "motion": f, "stiffness": k, "damping": c}
+    own = AnyDrive.packed(spec, **on_joint(x), rotates=turns, **act)
     return Row(*own, is_force=k > 0.0, states=(state,), turns=turns)
 
 

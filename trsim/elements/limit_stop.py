@@ -150,7 +150,6 @@ class Own(Along):
 
 
 def pack(name, spec, at):
-    law = {"stiffness": spec.stiffness, "damping": spec.damping, "ramp": spec.ramp}
     contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0, 0.0)
     if spec.joint is None:
         if spec.wall.body == spec.point.body:
@@ -166,7 +165,7 @@ def pack(name, spec, at):
         j = at.body(spec.point.body, "point", "body", near=spec.point.at)
         n = at.axes(i, direction(spec.wall.normal))
         places = points(at, i, j, spec.wall.at, spec.point.at)
-        own = Own.packed(**places, kind=ON_WALL, axis=n, **law, lower=0.0, upper=0.0)
+        own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0)
         return Row(*own, contact, travel="stroke")
     x = at.coordinate(spec.joint)
     for key, turning, sliding in UNITS:
@@ -174,7 +173,7 @@ def pack(name, spec, at):
     kind = ON_ANGLE if x.kind == "angle" else ON_STROKE
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
-    own = Own.packed(**on_joint(x), kind=kind, **law, lower=low, upper=high)
+    own = Own.packed(spec, **on_joint(x), kind=kind, lower=low, upper=high)
     turns = kind == ON_ANGLE
     return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 

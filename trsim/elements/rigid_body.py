@@ -111,7 +111,7 @@ class Own(Memory):
 
 
 def pack(name, spec, at):
-    return Row(*Own.packed(body=at.body(name), mass=spec.mass))
+    return Row(*Own.packed(spec, body=at.body(name)))
 
 
 @kernel

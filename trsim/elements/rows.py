@@ -38,8 +38,6 @@ from trsim.elements.frames import (
 )
 from trsim.kernels.columns import V3, f8
 
-MOST = 6  # rows of a joint
-
 
 class Axes(TwoPoints):
     """Of one instance of a joint."""
@@ -80,40 +78,50 @@ TURN = perpendicular("w", "u", "turn")
 
 @cache
 def constraint_of(rows):
-    """The kernel that fills a list of rows."""
-    turning = tuple(row for row in rows if row.of_j)
-    points, n, before = rows[:3] == POINT, len(turning), len(rows) - len(turning)
-    sliding = padded(f"{row.of_i}_i" for row in rows[:before] if row.of_i)
-    of_i, of_j = (
-        padded(f"{row.of_i}_i" for row in turning),
-        padded(f"{row.of_j}_j" for row in turning),
-    )
+    """The kernel that fills a list of rows, six at most; those of a point count as one."""
+    fills = [fill_of(row, FIRST_ROW + k) for k, row in enumerate(rows) if row.of_i]
+    fills = [point_rows, *fills] if rows[:3] == POINT else fills
+    one, two, three, four, five, six = (*fills, *(nothing,) * (6 - len(fills)))
 
     @kernel
     def constraint(t, scene, a, b):
-        X, con = scene.X, scene.con
         for e in range(a, b):
-            if points:
-                i, j = point_rows(scene, e)
-            else:
-                i, p_i, j, p_j = two_points(scene, e)
-                for r in range(before):
-                    k = con[e, FIRST_ROW + r]
-                    if k >= 0:
-                        u = arm(X, i, axis(scene, e, sliding[r]))
-                        along_row(scene, i, p_i, u, j, p_j, k)
-            for r in range(n):
-                k = con[e, FIRST_ROW + before + r]
-                if k >= 0:
-                    u, w = arm(X, i, axis(scene, e, of_i[r])), arm(X, j, axis(scene, e, of_j[r]))
-                    perpendicular_row(scene, i, u, j, w, k)
+            one(scene, e)
+            two(scene, e)
+            three(scene, e)
+            four(scene, e)
+            five(scene, e)
+            six(scene, e)
 
     return constraint
 
 
-def padded(axes):
-    """Columns of par where these axes begin, as many for every joint."""
-    return (*(Axes.columns[axis].at for axis in axes), *(0,) * MOST)[:MOST]
+@helper
+def nothing(scene, e):
+    """Where a joint has no more rows."""
+
+
+def fill_of(row, column):
+    """What fills a row whose index stands in a column of con."""
+    c = Axes.columns[f"{row.of_i}_i"].at
+    o = Axes.columns[f"{row.of_j}_j"].at if row.of_j else -1
+
+    @helper
+    def turn(scene, e):
+        k = scene.con[e, column]
+        if k >= 0:
+            X, own = scene.X, Pair(scene, e)
+            u, w = arm(X, own.i, axis(scene, e, c)), arm(X, own.j, axis(scene, e, o))
+            perpendicular_row(scene, own.i, u, own.j, w, k)
+
+    @helper
+    def slide(scene, e):
+        k = scene.con[e, column]
+        if k >= 0:
+            i, p_i, j, p_j = two_points(scene, e)
+            along_row(scene, i, p_i, arm(scene.X, i, axis(scene, e, c)), j, p_j, k)
+
+    return turn if row.of_j else slide
 
 
 @helper

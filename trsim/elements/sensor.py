@@ -47,14 +47,8 @@ def pack(name, spec, at):
     source = at.coordinate(spec.joint)
     at.check_unit(source.kind, "rad", "m", "sensors", name, "at_start")
     turns = source.kind == "angle"
-    own = Own.packed(
-        **on_joint(source) | {"coordinate": at.sensor(name)},
-        source=source.entry,
-        turns=turns,
-        sign=spec.sign,
-        drawn=source.drawn,
-        at_start=spec.at_start,
-    )
+    shown = on_joint(source) | {"coordinate": at.sensor(name)}
+    own = Own.packed(spec, **shown, source=source.entry, turns=turns, drawn=source.drawn)
     return Row(*own, turns=turns, travel=source.kind)
 
 

@@ -58,15 +58,8 @@ def pack(name, spec, at):
     p, q = spec.points
     i, j = at.bodies(spec.bodies, p, q)
     drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
-    return Row(
-        *Own.packed(
-            **points(at, i, j, p, q),
-            preload=spec.preload,
-            stiffness=spec.stiffness,
-            damping=spec.damping,
-            free_length=drawn if spec.free_length is None else spec.free_length,
-        )
-    )
+    free = drawn if spec.free_length is None else spec.free_length
+    return Row(*Own.packed(spec, **points(at, i, j, p, q), free_length=free))
 
 
 @kernel

@@ -33,7 +33,7 @@ from trsim.elements.contract import (
     Channel,
     Element,
     Limit,
-    Pair,
+    Memory,
     Row,
     kernel,
 )
@@ -78,9 +78,11 @@ class SyncShaft(Spec):
         return self
 
 
-class Own(Pair):
-    """Of one instance; its frames are the ground."""
+class Own(Memory):
+    """Of one instance."""
 
+    i: i8  # the ground, as all it acts on are states
+    j: i8
     count: i8  # how many pistons
     stations: run(i8)  # of each its place and its slip in z, or -1
     stiffness: f8
@@ -122,19 +124,15 @@ def pack(name, spec, at):
     locks = spec.self_locking or spec.efficiency <= 0.5
     back = LOCKED if locks else max(2.0 - 1.0 / spec.efficiency, LOCKED)
     n = len(spec.actuators)
+    losses = {"loss": 1.0 - spec.efficiency, "loss_back": 1.0 / back - 1.0}
     own = Own.packed(
+        spec,
         i=0,
         j=0,
-        coordinate=-1,
         count=n,
         stations=stations,
-        stiffness=spec.stiffness,
-        damping=spec.damping,
-        ratio=spec.ratio,
-        loss=1.0 - spec.efficiency,
-        loss_back=1.0 / back - 1.0,
+        **losses,
         lost_at=spec.lost_at or 0.0,
-        turning_speed=spec.turning_speed,
         masses=masses,
     )
     said = "synchronism was lost: the strokes of two neighbours differ too much"

@@ -49,15 +49,7 @@ class Own(Along):
 
 def pack(name, spec, at):
     x = at.coordinate(spec.joint, "angle")
-    return Row(
-        *Own.packed(
-            **on_joint(x),
-            preload=spec.preload,
-            stiffness=spec.stiffness,
-            damping=spec.damping,
-            drawn=x.drawn,
-        )
-    )
+    return Row(*Own.packed(spec, **on_joint(x), drawn=x.drawn))
 
 
 @kernel

@@ -9,10 +9,12 @@
         phase: memory         mem: a number that may be written
 
 Fields stand in their table in the order they are written in, those of the base class first.
+`class Other(Columns, par="table")` names columns of another table of the record.
 
     own = Own(scene, e)                  compiled or not: own.axis, own.masses[k], own.phase = 1.0
-    Own.packed(body=3, axis=a, ...)      con and par of a row; every field is given, but the
-                                         constraint rows, which only assembly knows
+    Own.packed(spec, body=3, axis=a)     con and par of a row: of every field its number, or that
+                                         of `spec` under the same name; constraint rows are not
+                                         given, only assembly knows them
     Own.of(row).axis                     the same of a packed row
     Own.columns["stiffness"].at          the column
 
@@ -25,18 +27,17 @@ from dataclasses import replace
 from inspect import get_annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from trsim.kernels import signatures
+from trsim.kernels.signatures import KINDS
 
 __all__ = ["V3", "Column", "Columns", "Layout", "constraint_row", "f8", "i8", "memory", "run"]
 
-TABLES = ("con", "par", "mem")
 NUMBER, TUPLE, ARRAY = "number", "tuple", "array"
 
 
 class Column(NamedTuple):
     """Where a field stands, and how it is read."""
 
-    table: str
+    table: str  # of a record: con, par, mem
     number: int = 1  # of columns; 0: all that follow
     form: str = NUMBER
     packed: bool = True  # told by whoever packs the row
@@ -69,7 +70,7 @@ else:
     V3 = Column("par", 3, TUPLE)
     constraint_row = Column("con", packed=False)
     memory = Column("mem", packed=False)
-OF_KINDS: dict[Any, Any] = {signatures.f8: Column("par"), signatures.i8: Column("con")}
+OF_KINDS: dict[Any, Any] = {KINDS["f8"]: Column("par"), KINDS["i8"]: Column("con")}
 
 
 def run(kind: Any, number: int = 0) -> Any:
@@ -89,14 +90,23 @@ class Layout(type):
 
     columns: dict[str, Column]
 
-    def __init__(cls, name: str, bases: tuple[type, ...], space: dict[str, Any]) -> None:
+    def __new__(cls, name: str, bases: tuple[type, ...], space: dict[str, Any], **_: str) -> Any:
+        return super().__new__(cls, name, bases, space)
+
+    def __init__(cls, name: str, bases: Any, space: Any, **tables: str) -> None:
         super().__init__(name, bases, space)
         cls.columns = dict(getattr(cls, "columns", {}))
         for field, kind in get_annotations(cls).items():
             column: Any = OF_KINDS.get(kind, kind)
-            there = (c.number for c in cls.columns.values() if c.table == column.table)
-            cls.columns[field] = column._replace(at=sum(there))
+            table = tables.get(column.table, column.table)
+            there = (c.number for c in cls.columns.values() if c.table == table)
+            cls.columns[field] = column._replace(table=table, at=sum(there))
             setattr(cls, field, cls.columns[field])
+
+    @property
+    def tables(cls) -> list[str]:
+        """Where its columns are."""
+        return list(dict.fromkeys(column.table for column in cls.columns.values()))
 
 
 class Columns(metaclass=Layout):
@@ -104,9 +114,8 @@ class Columns(metaclass=Layout):
 
     def __init__(self, record: Any, e: int) -> None:
         """record: what has the tables; e: the row."""
-        self._row: dict[str, Any] = {
-            table: getattr(record, table)[e] for table in TABLES if hasattr(record, table)
-        }
+        tables = [table for table in type(self).tables if hasattr(record, table)]
+        self._row: dict[str, Any] = {table: getattr(record, table)[e] for table in tables}
 
     @classmethod
     def of(cls, row: Any) -> Any:
@@ -116,19 +125,28 @@ class Columns(metaclass=Layout):
         return own
 
     @classmethod
-    def packed(cls, **values: Any) -> Numbers:
+    def packed(cls, like: Any = None, /, **values: Any) -> Numbers:
         """con and par of a row."""
-        wrong = {k for k, c in cls.columns.items() if c.packed} ^ values.keys()
-        found: dict[str, list[Any]] = {table: [] for table in TABLES}
+        found = cls.numbers(like, **values)
+        con, par = found.get("con", ()), found.get("par", ())
+        return Numbers(tuple(map(int, con)), tuple(map(float, par)))
+
+    @classmethod
+    def numbers(cls, like: Any = None, /, **values: Any) -> dict[str, list[Any]]:
+        """A row of each table."""
+        told = {k for k, c in cls.columns.items() if c.packed}
+        values = {k: getattr(like, k) for k in told - values.keys() if hasattr(like, k)} | values
+        wrong, found = told ^ values.keys(), {table: list[Any]() for table in cls.tables}
         for name, column in cls.columns.items() if not wrong else ():
             value: Any = values.get(name, -1)
             single = column.form == NUMBER or not column.packed
-            found[column.table] += (value,) * column.number if single else value
-            if column.number and len(found[column.table]) != column.at + column.number:
+            row = found[column.table]
+            row += (value,) * column.number if single else value
+            if column.number and len(row) != column.at + column.number:
                 wrong.add(name)
         if wrong:
             raise TypeError(f"{cls.__qualname__}: fields {sorted(wrong)} are missing or wrong")
-        return Numbers(tuple(map(int, found["con"])), tuple(map(float, found["par"])))
+        return found
 
     @classmethod
     def changed(cls, row: Any, **values: float) -> Any:

@@ -31,7 +31,7 @@ from numba.extending import (
 )
 from numba.np.arrayobj import populate_array
 
-from trsim.kernels.columns import ARRAY, NUMBER, TABLES, Column, Layout
+from trsim.kernels.columns import ARRAY, NUMBER, Column, Layout
 from trsim.kernels.lazy import inner
 from trsim.kernels.packed import WORDS
 from trsim.kernels.signatures import Kind, Signature
@@ -153,19 +153,19 @@ class PackedAttribute(AttributeTemplate):
 def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
     place = typ.index[attr]
     kind, columns = typ.fields[place][1], typ.columns[place]
-    first = _word(builder, value, place, 0)
+    first = _word(builder, value, WORDS * place)
     if not isinstance(kind, types.Array):
         return builder.bitcast(first, ir.DoubleType()) if kind == types.float64 else first
-    shape = [_word(builder, value, place, 1 + k) for k in range(kind.ndim)]
+    shape = [_word(builder, value, WORDS * place + 1 + k) for k in range(kind.ndim)]
     if columns:
         shape[1] = ir.Constant(WORD, columns)
     return _array(context, builder, kind, first, shape)
 
 
-def _word(builder: Any, record: Any, place: int, k: int) -> Any:
-    """Word k of a field of a record."""
-    base = builder.inttoptr(record, ir.PointerType(WORD))
-    loaded = builder.load(builder.gep(base, [ir.Constant(WORD, WORDS * place + k)]))
+def _word(builder: Any, value: Any, k: int) -> Any:
+    """The k-th word of a record, which never changes."""
+    base = builder.inttoptr(value, ir.PointerType(WORD))
+    loaded = builder.load(builder.gep(base, [ir.Constant(WORD, k)]))
     loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
     return loaded
 
@@ -190,8 +190,7 @@ class ColumnsType(types.Type):
     """The numba type of the columns of an instance, in the tables of a record."""
 
     def __init__(self, layout: Layout, record: PackedType) -> None:
-        there = {c.table for c in layout.columns.values()}
-        self.record, self.tables = record, [t for t in TABLES if t in there & record.index.keys()]
+        self.record, self.tables = record, [t for t in layout.tables if t in record.index]
         self.columns = {k: c for k, c in layout.columns.items() if c.table in self.tables}
         digest = hashlib.sha256(f"{record.name} {self.columns}".encode()).hexdigest()[:8]
         super().__init__(name=f"{layout.__name__}_{digest}")
@@ -235,10 +234,10 @@ def _at_row(layout: Layout) -> Any:
             own = cgutils.create_struct_proxy(columns)(context, builder)
             own.record = values[0]
             for table in columns.tables:
-                place = record.index[table]
+                first = WORDS * record.index[table]  # address, rows, columns
                 entry = context.get_value_type(_entries(record, table).dtype)
-                base = builder.inttoptr(_word(builder, values[0], place, 0), entry.as_pointer())
-                begin = builder.mul(values[1], _word(builder, values[0], place, 2))
+                base = builder.inttoptr(_word(builder, values[0], first), entry.as_pointer())
+                begin = builder.mul(values[1], _word(builder, values[0], first + 2))
                 setattr(own, table, builder.gep(base, [begin], inbounds=True))
             return own._getvalue()
 
@@ -271,7 +270,7 @@ def _get_column(context: Any, builder: Any, typ: ColumnsType, value: Any, attr: 
         size = ir.Constant(WORD, column.number)
         if not column.number:
             own = cgutils.create_struct_proxy(typ)(context, builder, value=value)
-            whole = _word(builder, own.record, typ.record.index[column.table], 2)
+            whole = _word(builder, own.record, WORDS * typ.record.index[column.table] + 2)
             size = builder.sub(whole, ir.Constant(WORD, column.at))
         first = builder.ptrtoint(_place(context, builder, typ, value, column, 0), WORD)
         return _array(context, builder, typ.kind(column), first, [size])

@@ -12,6 +12,7 @@ from trsim.assemble.equations import gaps, poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import against_rates
+from trsim.elements.contract import ContactNumbers
 from trsim.elements.rows import Axes
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
@@ -66,9 +67,10 @@ def contact_scales(
     unit = {column.name: column.unit for column in mechanism.columns}
     for c, e in enumerate(mechanism.model.contact.tolist()):
         instance = mechanism.instances[e]
-        K, n, alone, clearance, slowest, *_ = w.contact_par[c].tolist()
+        own = ContactNumbers(w, c)
+        K, n, alone = float(own.stiffness), float(own.exponent), float(own.mass)
         d, slope = float(begun.depth[c]), instance.row.contact.slope
-        if clearance < np.inf:
+        if own.clearance < np.inf:
             poses(w, begun.y)
             inverse, sliding = journal(w, e, instance, linear.twists, bool(closed[e]))
         else:
@@ -76,7 +78,7 @@ def contact_scales(
         free = inverse * alone > IMMOVABLE
         mass = 1.0 / inverse if free else np.inf
         k, force = n * K * d ** (n - 1.0), K * d**n
-        v = slowest or SLOWEST
+        v = float(own.slowest_impact) or SLOWEST
         yield ContactScale(
             name=instance.name,
             closed=bool(closed[e]),

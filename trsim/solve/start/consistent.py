@@ -27,6 +27,7 @@ from trsim.elements.contract import (
     PHASE,
     UNLOCATED,
     WHOLE,
+    ContactNumbers,
 )
 from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.scene import Model, workspace
@@ -319,7 +320,8 @@ def phases(model: Model, y: Array, located: bool) -> Array:
     for c, e in enumerate(model.contact):
         closed = w.gap[e, 0] > 0.0
         mem[e, PHASE] = (CONTACT if closed else FLIGHT) if located else UNLOCATED
-        mem[e, IMPACT_SPEED] = max(model.contact_par[c, 4], 0.0) if closed else 0.0
+        slowest = ContactNumbers(model, c).slowest_impact
+        mem[e, IMPACT_SPEED] = max(slowest, 0.0) if closed else 0.0
     return mem
 
 
