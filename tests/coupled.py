@@ -16,6 +16,7 @@ import pytest
 from trsim import elements
 from trsim.elements.contract import Element, Reach, Row, kernel
 from trsim.elements.frames import (
+    TwoPoints,
     arm,
     centripetal,
     cross,
@@ -26,10 +27,19 @@ from trsim.elements.frames import (
     velocity,
 )
 from trsim.fields import Spec, Unit
+from trsim.kernels.columns import constraint_row, f8, i8, run
 
-CONSTANT, FIRST = 6, 7  # par: in front the point of a joint, which these do not have
 TERM = 10  # numbers of a term: coefficient, points on i and j, axis
-NUMBER = 4  # con: how many terms, then of each frames i and j, coordinate, whether it turns
+
+
+class Own(TwoPoints):
+    """Of one instance; the points of a joint it does not have."""
+
+    turn: constraint_row
+    number: i8  # of terms
+    where: run(i8)  # of each frames i and j, coordinate, whether it turns
+    constant: f8
+    terms: run(f8)
 
 
 class Coupler(Spec):
@@ -61,8 +71,12 @@ def relation(joints, coefficients, at):
         par += [c, *x.s_i, *x.s_j, *x.axis_i]
         constant += c * x.drawn
     named = tuple(dict.fromkeys(f for x in terms for f in (x.i, x.j)))
-    head = (terms[0].i, terms[0].j, -1, len(terms))
-    return Row((*head, *con), (*[0.0] * CONSTANT, constant, *par), named=(named,))
+    nowhere = (0.0, 0.0, 0.0)
+    own = Own.packed(
+        i=terms[0].i, j=terms[0].j, coordinate=-1, p_i=nowhere, p_j=nowhere, number=len(terms),
+        where=con, constant=constant, terms=par,
+    )  # fmt: skip
+    return Row(*own, named=(named,))
 
 
 def pack_coupler(name, spec, at):
@@ -95,21 +109,22 @@ def add(J, line, c, f, m):
 @helper
 def term(scene, e, k, q):
     """What the q-th coordinate of instance e adds to row k."""
-    X, V, con, par, J, gamma = scene.X, scene.V, scene.con, scene.par, scene.J, scene.gamma
-    n, o = NUMBER + 1 + 4 * q, FIRST + TERM * q
-    i, j, c = con[e, n], con[e, n + 1], par[e, o]
+    X, V, J, gamma = scene.X, scene.V, scene.J, scene.gamma
+    own, n, o = Own(scene, e), 4 * q, TERM * q
+    where, p = own.where, own.terms
+    i, j, c = where[n], where[n + 1], p[o]
     l_i, l_j = line_of(scene, k, i), line_of(scene, k, j)
-    axis = arm(X, i, par[e, o + 7], par[e, o + 8], par[e, o + 9])
+    axis = arm(X, i, (p[o + 7], p[o + 8], p[o + 9]))
     turning, none = cross(spin(V, i), axis), (0.0, 0.0, 0.0)
-    scene.phi[k] += c * scene.S[con[e, n + 2], 0]
-    if con[e, n + 3] == 1:
+    scene.phi[k] += c * scene.S[where[n + 2], 0]
+    if where[n + 3] == 1:
         add(J, l_i, -c, none, axis)
         add(J, l_j, c, none, axis)
         o_i, o_j = spin(V, i), spin(V, j)
         gamma[k] -= c * dot(turning, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
         return
-    p_i = arm(X, i, par[e, o + 1], par[e, o + 2], par[e, o + 3])
-    p_j = arm(X, j, par[e, o + 4], par[e, o + 5], par[e, o + 6])
+    p_i = arm(X, i, (p[o + 1], p[o + 2], p[o + 3]))
+    p_j = arm(X, j, (p[o + 4], p[o + 5], p[o + 6]))
     d = separation(X, i, p_i, j, p_j)
     add(J, l_i, -c, axis, cross((p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]), axis))
     add(J, l_j, c, axis, cross(p_j, axis))
@@ -123,25 +138,26 @@ def term(scene, e, k, q):
 
 @kernel
 def constraint(t, scene, a, b):
-    con, par, J = scene.con, scene.par, scene.J
+    J = scene.J
     for e in range(a, b):
-        k = con[e, 3]
+        own = Own(scene, e)
+        k = own.turn
         if k < 0:
             continue
-        scene.phi[k], scene.phi_t[k], scene.gamma[k] = -par[e, CONSTANT], 0.0, 0.0
+        scene.phi[k], scene.phi_t[k], scene.gamma[k] = -own.constant, 0.0, 0.0
         for line in range(scene.row_start[k], scene.row_start[k + 1]):
             for c in range(6):
                 J[line, c] = 0.0
-        for q in range(con[e, NUMBER]):
+        for q in range(own.number):
             term(scene, e, k, q)
 
 
 def reach(row):
     """Its torques are about the axes of hinges, its forces along those of slides."""
-    hinges, slides = [], []
-    for q in range(row.con[NUMBER - 1]):
-        i, _, _, turns = row.con[NUMBER + 4 * q : NUMBER + 4 * q + 4]
-        axis = row.par[FIRST + TERM * q + 7 : FIRST + TERM * (q + 1)]
+    own, hinges, slides = Own.of(row), [], []
+    for q in range(own.number):
+        i, _, _, turns = own.where[4 * q : 4 * q + 4]
+        axis = own.terms[TERM * q + 7 : TERM * (q + 1)]
         (hinges if turns else slides).append((i, axis))
     return Reach(hinges=tuple(hinges), slides=tuple(slides))
 

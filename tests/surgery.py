@@ -206,10 +206,10 @@ def damaged(whole: Path, path: Path, dice: random.Random) -> str:
                 told.append(change(file, dice))
         if dice.random() < 0.5:  # by somebody who knows how
             from trsim.store.content import content_hash
-            from trsim.store.sound import see_sound
+            from trsim.store.sound import check_sound
 
             with contextlib.suppress(Exception):
-                see_sound(file)  # the hash of others may have no end
+                check_sound(file)  # the hash of others may have no end
                 file.attrs["content_sha256"] = content_hash(file)
                 told.append("and its hash")
     return "; ".join(told)

@@ -8,7 +8,7 @@ from trsim import elements
 from trsim.errors import TrsimError
 from trsim.fields import Spec
 from trsim.scenario.load import loads
-from trsim.scenario.scenario import DEFAULT, Scenario
+from trsim.scenario.scenario import Scenario
 
 LETTERS = "abcdefghijklmnopqrstuvwxyz_"
 LEAST = 0.95  # of the misspellings get the right suggestion
@@ -34,7 +34,7 @@ def all_places():
     yield from places(Scenario, (), [])
     for word, section in elements.ELEMENTS.items():
         if section:
-            lines = [] if DEFAULT.get(section) == word else [f"type: {word}"]
+            lines = [] if elements.DEFAULT.get(section) == word else [f"type: {word}"]
             yield from places(elements.load(word).spec, (section, "thing"), lines)
 
 

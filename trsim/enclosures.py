@@ -29,7 +29,7 @@ class Interval(NamedTuple):
 
 
 class Enclosure(NamedTuple):
-    """Of a quantity and of its rate in t."""
+    """Intervals that hold a quantity and its rate in t."""
 
     value: Interval
     rate: Interval
@@ -78,7 +78,7 @@ def minus(a: Interval, b: Interval) -> Interval:
 
 
 def times(a: Interval, b: Interval) -> Interval:
-    """Exactly zero where one factor is, whatever the other."""
+    """a b; exactly zero where one factor is, whatever the other."""
     ends = (a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high)
     ends_ = [np.where(np.isnan(e), 0.0, e) for e in ends]  # 0 times infinity
     low, high = np.minimum.reduce(ends_), np.maximum.reduce(ends_)
@@ -96,7 +96,7 @@ def over(a: Interval, b: Interval) -> Interval:
 
 
 def rising(f: Callable[[Array], Array], a: Interval) -> Interval:
-    """Of a function that rises."""
+    """The values on an interval of a function that rises."""
     return widened(f(a.low), f(a.high))
 
 
@@ -142,7 +142,7 @@ def power(a: Interval, n: int) -> Interval:
 
 
 def enclosure(node: Node, T: Interval) -> Enclosure:
-    """Of an expression of t alone, over intervals of t."""
+    """The enclosure of an expression of t alone, over intervals of t."""
     zero, one = exactly(0.0, T.low), exactly(1.0, T.low)
     match node:
         case ("number", value):
@@ -161,7 +161,7 @@ def enclosure(node: Node, T: Interval) -> Enclosure:
 
 
 def of_call(word: str, a: list[Enclosure]) -> Enclosure:
-    """Of a function of what is enclosed already."""
+    """The enclosure of a function of what is enclosed already."""
     if word in ("min", "max"):
         found = a[0]
         for other in a[1:]:

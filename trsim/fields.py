@@ -31,7 +31,7 @@ from trsim.errors import ScenarioError, described, known
 from trsim.frame import Frame
 from trsim.numbers import number
 from trsim.references import renamed
-from trsim.units import check_dimension, quantity, titled, told, unit
+from trsim.units import check_dimension, quantity, titled, unit, units_hint
 
 
 class Unit:
@@ -106,7 +106,7 @@ class _VectorUnit(Unit):
         for k, item in enumerate(value):  # a frame moves numbers, whatever pydantic says later
             if not isinstance(item, str | int | float):
                 raise ScenarioError(
-                    f"must be a number, got {described(item)}", told(self.units), (k,)
+                    f"must be a number, got {described(item)}", units_hint(self.units), (k,)
                 )
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
         whole = tuple([*numbers, 0.0][:3])

@@ -58,7 +58,7 @@ class Frame(NamedTuple):
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
-        """Of its axes; the scalar first.  The largest component is found from the diagonal."""
+        """The quaternion of its axes, the scalar first, from its largest component."""
         (xx, yx, zx), (xy, yy, zy), (xz, yz, zz) = self.x, self.y, self.z
         squares = (1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz)
         rows = (  # 4 q_k (q_0, q_1, q_2, q_3)

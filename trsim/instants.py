@@ -233,13 +233,13 @@ class _Search:
         return high
 
     def sign(self, t: Array) -> Array:
-        """Of u - value."""
+        """The sign of u - value."""
         return np.sign(values(self.u, t) - self.value)
 
 
 def too_many() -> ScenarioError:
     return ScenarioError(
-        f"changes its course more than {MOST} times within the run, or cannot be told when",
+        f"changes its course more than {MOST} times within the run, or at times nobody can find",
         "a step would end at each of these instants: make the run shorter, or write the mean of "
         "what is so fast",
     )

@@ -30,7 +30,8 @@ def renamed(fields: Mapping[str, Any], data: dict, names: Mapping[str, str]) -> 
 
 def _meant(value: Any, names: Mapping[str, str]) -> Any:
     if isinstance(value, str):
-        return names.get(value, value)
+        joint, dot, coordinate = value.rpartition(".")
+        return names.get(value) or names.get(joint, joint) + dot + coordinate
     if isinstance(value, list | tuple):
         return [_meant(item, names) for item in value]
     if isinstance(value, dict):

@@ -245,7 +245,7 @@ def inside(units: tuple[str, ...]) -> str:
     return f"this number is {', or '.join(parts)}"
 
 
-def told(units: tuple[str, ...]) -> str:
+def units_hint(units: tuple[str, ...]) -> str:
     """These units as a hint."""
     return f"T{inside(units)[1:]}." if units != ("-",) else ""
 

@@ -6,7 +6,15 @@ import pytest
 from tests import small
 from tests.analyse.series import logistic
 from tests.analyse.studies import Case, Study
-from trsim.analyse.bifurcation import NARROW, diagram, narrow, period, spread, swept, told
+from trsim.analyse.bifurcation import (
+    NARROW,
+    diagram,
+    narrow,
+    period,
+    period_in_words,
+    spread,
+    swept,
+)
 from trsim.errors import UsageError
 
 PERIODIC = """
@@ -45,7 +53,7 @@ def test_period_needs_both_axes_and_enough_points():
     assert period(x, y, 1.0, 2.0) == 6
     assert period(x[:5], y[:5], 1.0, 1.0) == -1
     assert period(np.linspace(0, 1, 30), np.zeros(30), 1.0, 1.0) == 0
-    assert [told(n) for n in (-1, 0, 3)] == ["too few points", "scattered", "period 3"]
+    assert [period_in_words(n) for n in (-1, 0, 3)] == ["too few points", "scattered", "period 3"]
 
 
 @pytest.fixture(scope="module")

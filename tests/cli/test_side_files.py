@@ -7,7 +7,7 @@ import pytest
 from tests import small
 from trsim.errors import FileError
 from trsim.solve import simulate as solver
-from trsim.store.target import see_writable
+from trsim.store.target import check_writable
 from trsim.sweep import job
 from trsim.sweep.go import sweep_out
 from trsim.sweep.ledger import Ledger, entries
@@ -93,7 +93,7 @@ def test_names_that_end_in_the_number_of_the_process(words, target, how, plant, 
 @pytest.mark.parametrize("how", PLANTED)
 def test_a_folder_is_tried_without_a_name(how, plant, tmp_path):
     plant(how, tmp_path / f".trsim.{os.getpid()}")
-    see_writable(tmp_path)
+    check_writable(tmp_path)
 
 
 @pytest.mark.parametrize("how", PLANTED)

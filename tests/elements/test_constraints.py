@@ -9,18 +9,20 @@ they put on the bodies and the ground adds up to no force and no moment.
 import numpy as np
 import pytest
 
+from trsim import elements
+
 from .bench import bench, check_action_is_reaction, now, put_right
 
 AXIS, PLACE = np.array([0.48, 0.6, 0.64]), np.array([0.2, 0.1, 0.0])
-AT, ALONG = "at: [0.2, 0.1, 0]", "axis: [0.48, 0.6, 0.64]"
-JOINTS = {
-    "revolute": f"type: revolute, {AT}, {ALONG}",
-    "spherical": f"type: spherical, {AT}",
-    "universal": f"type: universal, {AT}, {ALONG}, second_axis: [0.6, -0.48, 0]",
-    "prismatic": f"type: prismatic, {AT}, {ALONG}",
-    "fixed": f"type: fixed, {AT}",
-    "clearance_joint": f"type: revolute, {AT}, {ALONG}, clearance: 0.03, contact: law",
+# of the keys a joint has
+KEYS = {
+    "at": "[0.2, 0.1, 0]",
+    "axis": "[0.48, 0.6, 0.64]",
+    "second_axis": "[0.6, -0.48, 0]",
+    "clearance": "0.03",
+    "contact": "law",
 }
+JOINTS = {word: elements.load(word) for word, of in elements.ELEMENTS.items() if of == "joints"}
 LAW = """
 contact_laws: {law: {normal: hunt_crossley, stiffness: 1e6, bearing_radius: 0.2, restitution: 0.9}}
 """
@@ -30,28 +32,31 @@ DRIVES = {
     "table": "velocity: {table: [[0, 1], [0.2, 2], [0.5, 1], [1, 0]]}",
     "constant": "velocity: 0.7",
 }
-CASES = {name: (name, "") for name in JOINTS}
-CASES |= {f"{d} of {j}": (j, d) for j in ("revolute", "prismatic") for d in DRIVES}
-ROWS = {
-    "revolute": 5,
-    "spherical": 3,
-    "universal": 4,
-    "prismatic": 5,
-    "fixed": 6,
-    "clearance_joint": 3,
-}
+CASES = {name: (name, "", "") for name in JOINTS}
+CASES |= {
+    f"{d} of {j}'s {x}": (j, d, x)
+    for j, joint in JOINTS.items() if not joint.ideal for x in joint.coordinates for d in DRIVES
+}  # fmt: skip
+
+
+def written(word):
+    """A joint of a type, with the keys that it has."""
+    fields = JOINTS[word].spec.model_fields
+    own = ", ".join(f"{key}: {value}" for key, value in KEYS.items() if key in fields)
+    return f"type: {JOINTS[word].ideal or word}, {own}"
 
 
 def thrown(case, seed):
     """The joint in a random pose; with a turning drive in one that the joint allows."""
-    joint, drive = CASES[case]
+    joint, drive, coordinate = CASES[case]
     rng = np.random.default_rng(seed)
-    text = f"joints: {{joint: {{bodies: [left, right], {JOINTS[joint]}}}}}\n"
-    text += LAW if joint == "clearance_joint" else ""
-    text += f"drives: {{drive: {{joint: joint, {DRIVES[drive]}}}}}\n" if drive else ""
+    text = f"joints: {{joint: {{bodies: [left, right], {written(joint)}}}}}\n"
+    text += LAW if JOINTS[joint].ideal else ""
+    of = f"joint.{coordinate}"
+    text += f"drives: {{drive: {{joint: {of}, {DRIVES[drive]}}}}}\n" if drive else ""
     b = bench(text, rng)
-    assert b.mechanism.model.m == ROWS[joint] + bool(drive)
-    if drive and joint == "revolute":
+    assert b.mechanism.model.m == len(JOINTS[joint].rows) + bool(drive)
+    if coordinate == "angle":
         # an angle is one only while the axes are parallel, and its rate while they stay so
         put_right(b, PLACE, rng.uniform(-2, 2) * AXIS, np.zeros(3))
         b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS)

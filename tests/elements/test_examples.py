@@ -3,10 +3,11 @@
 import pytest
 
 from trsim.elements import ELEMENTS, load
+from trsim.elements.contract import FIRST_ROW
 from trsim.scenario.event import EXAMPLE
 
 from .. import small
-from ..runs import energy_error, short_run
+from ..runs import built, energy_error, short_run
 
 EXAMPLES = {word: load(word).example for word in ELEMENTS} | {"event": EXAMPLE}
 CORNERS = """
@@ -47,6 +48,14 @@ FRICTION = small.SLIDER_CRANK.replace(
 @pytest.mark.parametrize("word", EXAMPLES)
 def test_the_example_runs(word):
     assert short_run(EXAMPLES[word]).outcome.status == "done"
+
+
+@pytest.mark.parametrize("word", EXAMPLES)
+def test_constraint_rows_stand_behind_the_coordinate(word):
+    """Where the tables of a model put their indices; whatever else con tells stands behind."""
+    for instance in built(EXAMPLES[word]).instances:
+        rows = len(instance.element.rows)
+        assert instance.row.con[FIRST_ROW : FIRST_ROW + rows] == (-1,) * rows
 
 
 def test_corners_of_expressions_and_tables():

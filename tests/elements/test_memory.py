@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 
 from trsim import elements
-from trsim.elements.contract import Channel, Element, Row, kernel
+from trsim.elements.contract import Channel, Element, Memory, Row, kernel
 from trsim.elements.scene import N_MEM, scene
 from trsim.fields import Spec
+from trsim.kernels.columns import i8, memory
 
 from ..runs import run
 
-OWN = N_MEM  # of mem: what an element adds to the columns of all
+
+class Own(Memory):
+    body: i8
+    time: memory
 
 
 class Clock(Spec):
@@ -25,15 +29,16 @@ class Clock(Spec):
 
 
 def pack(name, spec, at):
-    return Row((at.body(spec.body),), ())
+    return Row(*Own.packed(body=at.body(spec.body)))
 
 
 @kernel
 def measure(t, scene, a, b):
     for e in range(a, b):
-        scene.mem[e, OWN] = t
+        own = Own(scene, e)
+        own.time = t
         if scene.wanted[e] >= 0:
-            scene.out[scene.wanted[e]] = scene.mem[e, OWN]
+            scene.out[scene.wanted[e]] = own.time
 
 
 CLOCK = Element(
@@ -62,7 +67,7 @@ def test_an_element_with_a_column_more(monkeypatch):
     assert work.mem.shape == (len(rows), N_MEM + 1)
     measure(0.7, work, rows["one"], rows["one"] + 1)
     changed = np.argwhere(work.mem)
-    assert changed.tolist() == [[rows["one"], OWN]]
+    assert changed.tolist() == [[rows["one"], N_MEM]]
 
 
 def test_without_such_an_element_the_table_is_as_wide_as_all_need():

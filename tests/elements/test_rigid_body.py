@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
-from trsim.elements.rigid_body import tensor
+from trsim.elements.rigid_body import RigidBody
 
 from ..mechanisms import free_top
 from ..runs import run
+
+
+def tensor(inertia):
+    return RigidBody(mass=1.0, inertia=inertia).tensor
 
 
 def test_tensor_of_one_three_and_six_numbers():

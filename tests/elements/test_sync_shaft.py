@@ -177,3 +177,10 @@ def test_friction_that_is_not_whole_is_told():
     there = run(three((5e-4, 5.5e-4, 5e-4), shaft=SHAFT))
     told = doubts(there.scenario, there.mechanism, there.outcome)
     assert not [x for x in told if "turning_speed" in x]
+
+
+def test_nothing_is_said_of_speeds_that_are_not_recorded():
+    text = three((5e-4, 5.5e-4, 5e-4), shaft=f"{SHAFT}, efficiency: 0.8")
+    there = run(text.replace("every: 1 ms", "every: 1 ms, channels: [one.position]"))
+    told = doubts(there.scenario, there.mechanism, there.outcome)
+    assert not [x for x in told if "turning_speed" in x]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.assemble.release import release
+from trsim.elements.rows import Axes
 from trsim.errors import TrsimError
 
 from ..runs import built, energy_error, run, scenario
@@ -130,4 +131,4 @@ def test_refused(axis, second, key, words, hint):
 def test_nearly_perpendicular_is_made_so():
     m = built(PLANE.format("[1, 0, 0]", "[1e-7, 1, 0]"))
     [joint] = [i for i in m.instances if i.name == "cross"]
-    assert joint.row.par[9:12] == (0.0, 1.0, 0.0)
+    assert Axes.of(joint.row).a_j == (0.0, 1.0, 0.0)

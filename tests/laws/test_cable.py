@@ -14,11 +14,17 @@ from trsim.laws.cable_section import (
 from trsim.laws.cable_stretch import ASSUMED, ENGINEERING, FULL, GREEN
 from trsim.laws.cable_tangent import add_damping, add_stiffness
 
+from ..bars import Bar
+
 L, EA, EI, BETA = 0.1, 40.0, 0.1, 1e-3  # m, N, N*m^2, s
 STRAINS, CURVATURES = (GREEN, ENGINEERING), (EXACT, GERSTMAYR, PAPER)
 FORMS = [(s, c, w) for s in STRAINS for c in CURVATURES for w in (ASSUMED, FULL)]
 LOBATTO = (0.0, 0.5 - 0.05**0.5, 0.5 + 0.05**0.5, 1.0)  # x / l
 each_form = pytest.mark.parametrize("form", FORMS, ids=str)
+
+
+def bar(form):
+    return Bar(L, EA, EI, BETA, *form)
 
 
 def strained(rng, planar=False):
@@ -33,19 +39,19 @@ def strained(rng, planar=False):
 
 def force(e, v, form, beta=0.0):
     F = np.zeros(12)
-    add_force(e, v, L, EA, EI, beta, *form, F)
+    add_force(e, v, bar(form), beta, F)
     return F
 
 
 def stiffness(e, form):
     K = np.zeros((12, 12))
-    add_stiffness(e, L, EA, EI, *form, np.zeros((4, 12)), K)
+    add_stiffness(e, bar(form), np.zeros((4, 12)), K)
     return K
 
 
 def damping(e, form):
     C = np.zeros((12, 12))
-    add_damping(e, L, EA, EI, BETA, *form, np.zeros((4, 12)), C)
+    add_damping(e, bar(form), np.zeros((4, 12)), C)
     return C
 
 
@@ -74,7 +80,7 @@ def test_force_is_the_gradient_of_the_energy(form, rng):
     for _ in range(5):
         e = strained(rng)
         F = force(e, e, form)
-        gradient = differences(lambda x: np.array(sum(energies(x, L, EA, EI, *form))), e, 1e-4)
+        gradient = differences(lambda x: np.array(sum(energies(x, bar(form)))), e, 1e-4)
         assert abs(F + gradient).max() < 1e-7 * abs(F).max()
 
 
@@ -117,7 +123,7 @@ def test_rigid_velocities_are_not_damped(form, rng):
 
 def rates(e, v, form, xi, h=1e-6):
     """Rates of axial force and moment at xi, by differences."""
-    ahead, behind = (stress(e + s * v, L, EA, EI, *form[:2], xi) for s in (h, -h))
+    ahead, behind = (stress(e + s * v, bar(form), xi) for s in (h, -h))
     return (np.array(ahead) - behind) / (2 * h)
 
 
@@ -216,6 +222,6 @@ def test_stress_in_a_stretched_arc(curvature, power):
     angle = stretched * L / R
     e = np.array([R, 0, 0, 0, stretched, 0, *(R * np.cos(angle), R * np.sin(angle), 0), 0, 0, 0])
     e[9:11] = -stretched * np.sin(angle), stretched * np.cos(angle)
-    N, M = stress(e, L, EA, EI, ENGINEERING, curvature, 0.5)
+    N, M = stress(e, bar((ENGINEERING, curvature, ASSUMED)), 0.5)
     assert pytest.approx(EA * 0.1, rel=1e-5) == N
     assert pytest.approx(EI / R * stretched**power, rel=1e-3) == M

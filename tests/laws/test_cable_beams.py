@@ -11,6 +11,8 @@ from trsim.laws.cable_section import mass, uniform_shares
 from trsim.laws.cable_stretch import ASSUMED, ENGINEERING, FULL, GREEN
 from trsim.laws.cable_tangent import add_damping, add_stiffness
 
+from ..bars import Bar
+
 DATA = Path(__file__).parents[1] / "data"
 BETA_L = (1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349, 14.1371683910)
 STIFF = 1.2e7  # EA L^2 / EI of a beam that hardly stretches
@@ -31,10 +33,11 @@ def straight(n):
 def tangent_system(q, n, EA, EI, form):
     """Force and stiffness of n elements with a total length of 1."""
     F, K, workspace = np.zeros(q.size), np.zeros((q.size, q.size)), np.zeros((4, 12))
+    bar = Bar(1 / n, float(EA), float(EI), 0.0, *form)
     for k in range(n):
         at, add = slice(6 * k, 6 * k + 12), np.zeros((12, 12))
-        add_force(q[at], q[at], 1 / n, EA, EI, 0.0, *form, F[at])
-        add_stiffness(q[at], 1 / n, EA, EI, *form, workspace, add)
+        add_force(q[at], q[at], bar, 0.0, F[at])
+        add_stiffness(q[at], bar, workspace, add)
         K[at, at] += add
     return F, K
 
@@ -204,7 +207,7 @@ def test_only_rigid_velocities_of_a_bent_beam_in_a_plane_are_free(form, n):
     C = np.zeros((q.size, q.size))
     for k in range(n):
         at, add = slice(6 * k, 6 * k + 12), np.zeros((12, 12))
-        add_damping(q[at], 1 / n, 100.0, 1.0, 1.0, *form, np.zeros((4, 12)), add)
+        add_damping(q[at], Bar(1 / n, 100.0, 1.0, 1.0, *form), np.zeros((4, 12)), add)
         C[at, at] += add
     plane = np.array([k for k in range(q.size) if k % 3 != 2])
     values = np.linalg.eigvalsh(C[np.ix_(plane, plane)])
@@ -243,6 +246,7 @@ def pendulum(n, end, h):
     v[2::6], v[5::6] = -4.0 * q[0::6], -4.0
     for k in range(n):
         gravity[6 * k + 1 : 6 * k + 12 : 3] -= 9.81 * rho * A * np.array(uniform_shares(1 / n))
+    bar = Bar(1 / n, E * A, E * I, 0.0, ENGINEERING, GERSTMAYR, FULL)
     inverse = np.zeros((q.size, q.size))
     inverse[3:, 3:] = np.linalg.inv(mass_matrix(n, rho * A)[3:, 3:])
 
@@ -250,7 +254,7 @@ def pendulum(n, end, h):
         F = gravity.copy()
         for k in range(0, 6 * n, 6):
             e = y[0, k : k + 12]
-            add_force(e, e, 1 / n, E * A, E * I, 0.0, ENGINEERING, GERSTMAYR, FULL, F[k : k + 12])
+            add_force(e, e, bar, 0.0, F[k : k + 12])
         return np.array([y[1], inverse @ F])
 
     y, rows = np.array([q, v]), []

@@ -11,12 +11,12 @@ from scipy.integrate import solve_ivp
 from trsim.laws.friction import (
     CODES,
     N_PARAMETERS,
-    PARAMETERS,
     bristle,
     coulomb,
     friction_force,
     modified_coulomb,
 )
+from trsim.scenario.contact_law import Friction
 
 MU, V0, V1 = 0.3, 1e-4, 1e-3
 BRISTLE = dict(mu_s=0.4, mu_k=0.3, v_s=0.01, sigma0=1e5, sigma1=300.0)
@@ -124,16 +124,18 @@ def test_bristle_lets_go_above_the_friction_angle():
     assert (last, v) == pytest.approx((a / 2, a), rel=2e-2)
 
 
-def test_dispatch_reads_its_parameters_in_the_stated_order():
-    numbers = dict(mu=MU, v0=V0, v1=V1, **BRISTLE)
+def test_dispatch_reads_the_parameters_of_a_scenario():
+    sticking = dict(static_coefficient=0.4, stribeck_speed=0.01, bristle_stiffness=1e5)
+    given = dict(coefficient=MU, v0=V0, v1=V1, bristle_damping=300.0, **sticking)
     w, v, F_n = 1e-6, 5e-4, 40.0
-    laws = {"none": lambda F, v: 0.0, "coulomb": coulomb, "modified_coulomb": modified_coulomb}
-    for name, code in CODES.items():
-        par = np.full(2 + N_PARAMETERS, np.nan)
-        values = [numbers[word] for word in PARAMETERS[name]]
-        par[2 : 2 + len(values)] = values
-        if name == "sticking":
-            expected = bristle(F_n, v, w, **BRISTLE)
-        else:
-            expected = (laws[name](F_n, v, *values), 0.0)
-        assert friction_force(code, F_n, v, w, par, 2) == expected
+    expected = {
+        "none": (0.0, 0.0),
+        "coulomb": (coulomb(F_n, v, MU), 0.0),
+        "modified_coulomb": (modified_coulomb(F_n, v, MU, V0, V1), 0.0),
+        "sticking": bristle(F_n, v, w, **BRISTLE),
+    }
+    assert {*expected} == {*CODES}
+    for law, force in expected.items():
+        code, par = Friction(law=law, **given).numbers
+        assert len(par) == N_PARAMETERS
+        assert friction_force(code, F_n, v, w, np.array(par)) == force

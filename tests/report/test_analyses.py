@@ -65,8 +65,8 @@ def test_a_single_stroke_has_no_exponent(paths, tmp_path):
 def test_told_exponents():
     grows = exponents.Exponent(0.9, 0.1, "grows", "", np.arange(9.0), np.zeros(9), None, 3, 0.1,
                                1.0, 50)  # fmt: skip
-    assert exponents.told(grows) == "0.9 +- 0.1 1/s, 3 dimensions, delay 0.1 s, 50 pairs"
-    assert exponents.told_short(grows) == "0.9 \u00b1 0.1 1/s"
+    assert exponents.in_words(grows) == "0.9 +- 0.1 1/s, 3 dimensions, delay 0.1 s, 50 pairs"
+    assert exponents.in_short(grows) == "0.9 \u00b1 0.1 1/s"
 
 
 def test_the_legend_of_exponents_fits_and_a_line_is_told_where_there_is_one(paths):
@@ -87,7 +87,7 @@ def test_the_legend_of_exponents_fits_and_a_line_is_told_where_there_is_one(path
         assert box.x0 >= whole.x0
         assert box.x1 <= whole.x1
         assert "too short" not in "".join(text.get_text() for text in legend.get_texts())
-    assert reason in exponents.told(none)
+    assert reason in exponents.in_words(none)
 
 
 def test_compare(paths, tmp_path):

@@ -11,6 +11,7 @@ from trsim.cli import main
 from trsim.errors import UsageError
 from trsim.report.animation import film, forces, section, solids, turns, write
 from trsim.report.animation.bodies import rails, skeleton
+from trsim.report.animation.fittings import pins
 from trsim.report.animation.lines import lines
 from trsim.report.animation.motion import FRAMES, frames, motion
 from trsim.report.animation.page import arrow_scale
@@ -57,6 +58,20 @@ joints:
   cross: {type: universal, bodies: [driver, driven], at: [0, 0, 0], axis: [0, 0, 1],
           second_axis: [-3, 4, 0]}
 initial: {one: 50 deg}
+solver: {end: 0.1 s, tolerance: 1e-9}
+output: {every: 0.1 ms, channels: ["*", "*.rotation"]}
+"""
+# a ring on a shaft with a bead on a wire of its own
+SLIDES = """
+planar: false
+bodies:
+  ring: {mass: 2, inertia: [0.02, 0.02, 0.02], at: [0.1, 0, 0], angular_velocity: [0, 0, 20],
+         velocity: [0, 2, 0]}
+  bead: {mass: 1, inertia: [0.01, 0.01, 0.01], at: [0.3, 0.1, 0], angular_velocity: [5, 9, 0]}
+joints:
+  shaft: {type: cylindrical, bodies: [ground, ring], at: [0, 0, 0], axis: [0, 0, 1]}
+  wire: {type: inline, bodies: [ring, bead], at: [0.3, 0, 0], axis: [1, 0, 1]}
+gravity: [0, 0, -9.81]
 solver: {end: 0.1 s, tolerance: 1e-9}
 output: {every: 0.1 ms, channels: ["*", "*.rotation"]}
 """
@@ -131,7 +146,10 @@ def angle(p, q):
 # --- poses -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("text", "exact"), [(SPINNING, 1e-6), (FOUR_BAR, 1e-7), (CARDAN, 1e-7)])
+TURNING = [(SPINNING, 1e-6), (FOUR_BAR, 1e-7), (CARDAN, 1e-7), (SLIDES, 1e-6)]
+
+
+@pytest.mark.parametrize(("text", "exact"), TURNING)
 def test_attitudes_are_those_recorded(text, exact, tmp_path):
     """The integral of the velocities, from a start that is not the drawing, is the rotation."""
     run = of(tmp_path, text=text)
@@ -144,6 +162,13 @@ def test_attitudes_are_those_recorded(text, exact, tmp_path):
 
 def test_recorded_attitudes_close_the_joints(tmp_path):
     assert motion(of(tmp_path, text=FOUR_BAR)).open < 1e-7
+
+
+def test_what_slides_is_on_a_rail(tmp_path):
+    moved, sizes, drawn = named(of(tmp_path, "output.every=1 ms", text=SLIDES))
+    assert {"shaft rail", "wire rail"} <= set(drawn)
+    assert list(pins(moved, sizes)) == []
+    assert moved.open < 1e-6
 
 
 def test_order_of_the_integral(tmp_path):

@@ -86,10 +86,19 @@ FAKES = {
 }
 
 
+COORDINATES = {Revolute: ("angle",), ClearanceJoint: ("angle",), Prismatic: ("stroke",)}
+
+
 @pytest.fixture(autouse=True)
 def fake_elements(monkeypatch):
     known = {
-        spec.type: SimpleNamespace(key=spec.type, section=section, spec=spec, rows=())
+        spec.type: SimpleNamespace(
+            key=spec.type,
+            section=section,
+            spec=spec,
+            rows=(),
+            coordinates=COORDINATES.get(spec, ()),
+        )
         for section, specs in FAKES.items()
         for spec in specs
     }

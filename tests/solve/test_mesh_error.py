@@ -12,6 +12,7 @@ from trsim.solve.start.bars import places
 from trsim.solve.start.cable_systems import Law, assumed, system
 from trsim.solve.start.consistent import start
 
+from ..bars import Bar
 from ..runs import assemble, loads, run
 
 FINE = 32
@@ -96,10 +97,11 @@ def test_many_elements_at_once_are_the_law(strain, curvature):
     e = np.array([0, 0, 0, 1, 0, 0, l, 0, 0, 1, 0, 0.0]) + rng.normal(size=(3, 12)) * 0.01
     elements = e.reshape(3, 4, 3)
     dU, stiff = system(elements, l, law, assumed(elements, l, law))
+    bar = Bar(l, 40.0, 0.1, 0.0, strain, curvature, ASSUMED)
     for k in range(3):
         F, K = np.zeros(12), np.zeros((12, 12))
-        add_force(e[k], e[k], l, 40.0, 0.1, 0.0, strain, curvature, ASSUMED, F)
-        add_stiffness(e[k], l, 40.0, 0.1, strain, curvature, ASSUMED, np.zeros((4, 12)), K)
+        add_force(e[k], e[k], bar, 0.0, F)
+        add_stiffness(e[k], bar, np.zeros((4, 12)), K)
         assert dU[k] == pytest.approx(-F, abs=1e-12 * abs(F).max())
         assert stiff[k] == pytest.approx(K, abs=1e-12 * abs(K).max())
     flat = elements.copy()

@@ -159,7 +159,7 @@ def test_a_run_killed_at_any_instant(scene, tmp_path, monkeypatch):
     for folder in folders:
         for path in folder.iterdir():
             kind = ENDING.get(path.name.removeprefix("x.h5"))
-            assert kind is None or own.see(path, kind), (folder, path)
+            assert kind is None or own.exists(path, kind), (folder, path)
     for folder in some(folders):
         refuse_if_written(folder / "x.h5")
         if (folder / "x.h5.part").exists() and folder in folders[:10]:

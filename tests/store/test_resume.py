@@ -180,7 +180,7 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
     cut(path, scenario, mechanism, 2, closed=True)
     kept = checkpoint.load(checkpoint.beside(path))
     left = r"run\.h5\.part holds the run until t = \S+ s; `trsim recover .*` goes on with the run"
-    for module, name in ((hdf5, "see_room"), (checkpoint, "synced")):
+    for module, name in ((hdf5, "check_room"), (checkpoint, "synced")):
         running = solver.simulate(scenario, mechanism, kept.state)
         with monkeypatch.context() as patch, pytest.raises(FileError) as error:
             patch.setattr(module, name, full)

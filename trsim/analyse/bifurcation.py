@@ -125,7 +125,7 @@ def spread(parts: list[Array]) -> float:
 def sizes(
     study: Any, found: list[Section], definition: Mapping[str, Any]
 ) -> list[tuple[float, float]]:
-    """Of x and y, for each case: the size its points are held against, see above."""
+    """The sizes that x and y of the points of each case are held against, see above."""
     whole = {axis: spread([getattr(one, axis) for one in found]) for axis in ("x", "y")}
     cases, each = {case.name: case for case in study.cases}, []
     for one in found:
@@ -161,6 +161,6 @@ def period(x: Array, y: Array, x_range: float, y_range: float) -> int:
     return 0
 
 
-def told(period: int) -> str:
+def period_in_words(period: int) -> str:
     """A period in words."""
     return {-1: "too few points", 0: "scattered"}.get(period, f"period {period}")

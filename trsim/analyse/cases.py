@@ -99,7 +99,7 @@ def reason(error: TrsimError, case: Any) -> str:
     return error.what.removeprefix(str(case.file)).removeprefix(":").strip()
 
 
-def told(why: Mapping[str, str]) -> list[str]:
+def reasons(why: Mapping[str, str]) -> list[str]:
     """CASE: why.  Cases with the same reason share a line."""
     groups: dict[str, list[str]] = {}
     for name, text in why.items():

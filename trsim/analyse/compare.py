@@ -84,7 +84,7 @@ def curve(run: Run, channel: str, against: str = "") -> Curve:
 
 
 def channels(runs: list[Run]) -> list[str]:
-    """What is compared unless told: sensors and their rates, forces of drives and of contacts."""
+    """What is compared by default: sensors and their rates, forces of drives and of contacts."""
     first = runs[0]
     found = [
         f"{name}{suffix}"

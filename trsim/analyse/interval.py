@@ -87,7 +87,7 @@ class Batches:
 
     @property
     def mean(self) -> Array:
-        """Of all rows taken."""
+        """The means of the columns over all rows taken."""
         return self.total / max(self.taken, 1)
 
     @property

@@ -222,14 +222,15 @@ def points(
 
 
 def slope(x: Sequence[float], error: Sequence[float]) -> float:
-    """Of log error over log x; nan of fewer than two points.  1: ten times x, ten times error."""
+    """The slope of log error over log x, 1 where ten times x makes ten times the error; nan of
+    fewer than two points."""
     if len(set(x)) < 2:
         return np.nan
     return float(np.polyfit(np.log(x), np.log(np.maximum(error, 1e-300)), 1)[0])
 
 
 def slopes(found: Sequence[Point], to: Reference) -> dict[str, float]:
-    """Of every method, over its points whose error is resolved.
+    """The slope of every method, over its points whose error is resolved.
 
     Where the references part, of the peak error: pointwise errors before that are saturated.
     """

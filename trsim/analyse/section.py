@@ -211,7 +211,7 @@ def trembling(time: Array, channels: tuple[Array, ...], k: Numbers, root: Array)
 
 
 def scatter(time: Array, channels: tuple[Array, ...]) -> list[Array]:
-    """Of each row with three on both sides: how far it is from what those say of it.
+    """How far each row with three on both sides is from what those say of it.
 
     In units of the standard deviation of rows that are independent.
     """
@@ -250,7 +250,7 @@ def value(u: Array, w: Array, at: Array) -> Array:
 
 
 def weights(u: Array, at: Array) -> Array:
-    """Of the values at u in the value of the polynomial through them, one row for each."""
+    """Weights of the values at u in that of the polynomial through them, a row for each place."""
     weight = np.ones_like(u)
     for i in range(u.shape[1]):
         for j in range(u.shape[1]):

@@ -8,20 +8,24 @@ import numpy as np
 
 from trsim.assemble.cornered import Cornered, cornered
 from trsim.assemble.dense import product
-from trsim.assemble.members import AT_A_NODE, Beam, beams, cable, off_the_nodes
+from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
+from trsim.elements.coordinates import named
 from trsim.elements.joint import perpendicular
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
 from trsim.frame import Frame
 from trsim.laws import functions
+from trsim.scenario.slender import ends
 from trsim.units import fits
 
 
 class JointCoordinate(NamedTuple):
     """An angle or a stroke of a joint, ready for those who act along it."""
 
+    name: str  # what it is called
+    joint: str
     entry: int  # in S
     kind: str  # angle, stroke
     i: int
@@ -59,7 +63,7 @@ class Addresses:
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
-        rigid = {n: spec for n, spec in self.members.items() if spec.type != "ancf_cable"}
+        rigid = {n: spec for n, spec in self.members.items() if spec.flexible is None}
         self.frames = {"ground": 0} | {name: f for f, name in enumerate(rigid, start=1)}
         self.n_rigid = len(self.frames)
         self.beams: dict[str, Beam] = beams(self.members, self.n_rigid)
@@ -109,16 +113,16 @@ class Addresses:
     def bar(self, name: str) -> Any:
         """The spec of a flexible bar, also where it is stiff for a start; None of others."""
         spec = self.scenario.bodies.get(name)
-        if spec is None or (spec.type == "rigid_body" and spec.flexible is None):
+        if spec is None or spec.flexible is None:
             return None
-        return spec if spec.type == "ancf_cable" else cable(name, spec, self.scenario)
+        return spec.bar(*ends(self.scenario, name))
 
     def is_node(self, i: int) -> bool:
         """Whether a frame is a node of a flexible bar."""
         return i >= self.n_rigid
 
     def tangent(self, i: int) -> tuple[float, ...]:
-        """Of a node of a flexible bar as drawn; of other frames none."""
+        """The tangent of a node of a flexible bar as drawn; empty for other frames."""
         return tuple(self.rotation[i][:, 0].tolist()) if self.is_node(i) else ()
 
     def centre(self, i: int) -> tuple[float, ...]:
@@ -160,7 +164,7 @@ class Addresses:
         if i == 0:
             return float("inf")
         spec = self.members[self.owners[i]]
-        return float(spec.per_length * spec.length if self.is_node(i) else spec.mass)
+        return float(spec.whole_mass if self.is_node(i) else spec.mass)
 
     def inertia_about(self, i: int, axis: tuple[float, ...], through: tuple[float, ...]) -> float:
         """Moment of inertia of one body about an axis (world, as drawn): a . I a + m d^2.
@@ -168,60 +172,33 @@ class Addresses:
         through: a point of the axis, in the axes of frame i from its origin; d is the distance of
         the body's centre of mass from the axis.
         """
-        from trsim.elements.rigid_body import tensor
-
-        a, bar = np.array(axis), self.members[self.owners[i]]
+        a, body = np.array(axis), self.members[self.owners[i]]
         place = self.at_start[i] + product(self.rotation[i], np.array(through))
         if self.is_node(i):  # a slender bar
             across = np.linalg.norm(np.cross(self.rotation[i][:, 0], a))
-            own = bar.per_length * bar.length**3 / 12.0 * across**2
+            own = body.per_length * body.length**3 / 12.0 * across**2
             ends = self.beams[self.owners[i]].places
             centre = 0.5 * (ends[0] + ends[-1])
         else:
             inside, centre = np.array(self.axes(i, axis)), self.at_start[i]
-            own = inside @ np.array(tensor(bar.inertia)[0]).reshape(3, 3) @ inside
+            own = inside @ np.array(body.tensor[0]).reshape(3, 3) @ inside
         away = np.cross(place - centre, a)
         return float(own + self.mass(i) * (away @ away))
 
-    def coordinate(self, joint: str, kind: str = "") -> JointCoordinate:
-        """The coordinate of a joint; entering it in S is what makes it computed."""
-        if joint not in self.scenario.joints:
-            raise ScenarioError(
-                f"no joint named '{joint}'", known(joint, self.scenario.joints), ("joint",)
-            )
-        element = self.elements["joints", joint]
-        if not element.coordinate:
-            raise ScenarioError(
-                f"joint '{joint}' ({element.key}) has no coordinate",
-                "name a revolute or a prismatic joint",
-                ("joint",),
-            )
-        if kind and element.coordinate != kind:
-            raise ScenarioError(
-                f"joint '{joint}' has a {element.coordinate}, not an {kind}",
-                "name a revolute joint" if kind == "angle" else "name a prismatic joint",
-                ("joint",),
-            )
-        if joint not in self.coordinates:
+    def coordinate(self, reference: str, kind: str = "") -> JointCoordinate:
+        """A coordinate of a joint; entering it in S is what makes it computed."""
+        name, joint, kind = named(reference, self.scenario.joints, kind)
+        if name not in self.coordinates:
             spec = self.scenario.joints[joint]
             i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
             axis = perpendicular(spec.axis, spec.drawn_in)[2]
-            self.coordinates[joint] = JointCoordinate(
-                self.n_s,
-                element.coordinate,
-                i,
-                j,
-                self.local(i, place),
-                self.local(j, place),
-                self.axes(i, axis),
-                axis,
-                self.drawn_angle(i, j, axis, spec.drawn_in)
-                if element.coordinate == "angle"
-                else 0.0,
+            drawn = self.drawn_angle(i, j, axis, spec.drawn_in) if kind == "angle" else 0.0
+            points, s = (self.local(i, place), self.local(j, place)), self.entry()
+            self.coordinates[name] = JointCoordinate(
+                name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn
             )
-            self.n_s += 1
-        return self.coordinates[joint]
+        return self.coordinates[name]
 
     def sensor(self, name: str) -> int:
         """Index of a sensor in S."""
@@ -243,8 +220,8 @@ class Addresses:
 
     def sensor_kind(self, name: str) -> str:
         """What a sensor shows: an angle or a stroke, its own or that of its joint."""
-        own = self.elements["sensors", name].coordinate
-        return own or self.coordinate(self.scenario.sensors[name].joint).kind
+        own = self.elements["sensors", name].coordinates
+        return own[0] if own else self.coordinate(self.scenario.sensors[name].joint).kind
 
     def state(self, scale: str | float, follows: int = -1) -> int:
         """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 'speed',

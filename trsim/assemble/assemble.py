@@ -53,10 +53,9 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
-from trsim.elements.contract import (
-    N_BOOK,
-)
-from trsim.elements.prescribed import ENTRY
+from trsim.elements.contract import N_BOOK, Pair
+from trsim.elements.coordinates import of_joint
+from trsim.elements.rows import column_of
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
 from trsim.errors import ScenarioError
 
@@ -151,12 +150,10 @@ def stages(
         own = hubs(full, y6, rows, kept, planar, spans(at))
         return build(scenario, at, instances, kept, d, own, left)
 
-    angles = {} if planar else {x.entry: n for n, x in at.coordinates.items() if x.kind == "angle"}
-    turning = {
-        (i.section, i.name): angles[i.row.con[ENTRY]]
-        for i in instances
-        if i.section in ("drives", SECTION) and not i.row.is_force and i.row.con[ENTRY] in angles
-    }
+    angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
+    rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
+    entries = [(i.section, i.name, Pair.of(i.row).coordinate) for i in rigid]
+    turning = {(of, name): angles[x] for of, name, x in entries if x in angles}
     return Stages(at.switches, instances, first, built, rebuilt, turning)
 
 
@@ -183,12 +180,8 @@ def pack(  # type: ignore[no-untyped-def]
     wanted: list[tuple[str, str, str, Any]] = []
     bodies = members(scenario, stiff)
     sections = {s: getattr(scenario, s) for s in ("joints", "drives", "sensors")}
-    sections["bodies"] = bodies
-    if drives is not None:
-        sections["drives"] = drives
-    sections["forces"] = scenario.forces
-    if drives is None:
-        sections[SECTION] = dict(locks(scenario))
+    sections |= {"bodies": bodies, "forces": scenario.forces}
+    sections |= {SECTION: locks(scenario)} if drives is None else {"drives": drives}
     for section, entries in sections.items():
         for name, spec in entries.items():
             key = spec.type
@@ -196,12 +189,10 @@ def pack(  # type: ignore[no-untyped-def]
             if other and (spec.clearance == 0.0 or name in ideal):
                 key = other
             wanted.append((key, section, name, spec))
-    if any(scenario.gravity):
-        gravity = elements.load("gravity")
-        for name, spec in bodies.items():
-            if spec.type == "rigid_body" and spec.mass > 0.0:  # a flexible bar has its own
-                field = gravity.spec(body=name, field=scenario.gravity)
-                wanted.append(("gravity", "", name, field))
+    for key, section in elements.ELEMENTS.items():
+        if not section:  # made from a key of the scenario
+            made = elements.load(key).of_scenario(scenario, bodies)
+            wanted += [(key, section, name, spec) for name, spec in made]
     order = list(elements.ELEMENTS)
     wanted.sort(key=lambda item: order.index(item[0]))
     kinds = {key: elements.load(key) for key, *_ in wanted}
@@ -227,16 +218,16 @@ def pack(  # type: ignore[no-untyped-def]
     if at.jumped and at.switches.jumps < 0:
         at.switches = replace(at.switches, jumps=at.state(0.0))
     for name in coordinates:
-        if at.elements["joints", name].coordinate:
-            at.coordinate(name)
+        for own in of_joint(name, scenario.joints):
+            at.coordinate(own)
     # a joint learns its coordinate only after everybody who asks for it was packed
     for n, instance in enumerate(instances):
-        if instance.section == "joints" and instance.name in at.coordinates:
-            row = instance.row
-            index = at.coordinates[instance.name].entry
-            con = (*row.con[:2], index, *row.con[3:])
-            row = replace(row, con=con)
-            instances[n] = Instance(instance.section, instance.name, instance.element, row)
+        if instance.section == "joints":
+            con = [*instance.row.con]
+            for k, name in enumerate(of_joint(instance.name, scenario.joints)):
+                if name in at.coordinates:
+                    con[column_of(k, len(instance.element.rows))] = at.coordinates[name].entry
+            instances[n] = replace(instance, row=replace(instance.row, con=tuple(con)))
     return at, instances
 
 

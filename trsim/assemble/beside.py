@@ -150,7 +150,7 @@ def beside(s, t, y, yd):
 
 @equation
 def factors_again(s):
-    """Those of S at the poses at hand, which others have taken the place of."""
+    """Factorise S at the poses at hand once more, as other factors have taken its place."""
     rows(s)
     factorise(s)
 
@@ -175,7 +175,7 @@ def apart(s, yd):
 
 @equation
 def seen(s, scale):
-    """What is less of a difference from the limit is left to the error estimate."""
+    """The difference from the limit below which it is left to the error estimate."""
     return 0.0 if s.status[5] > 0 else SEEN * s.tolerance * scale
 
 
@@ -190,7 +190,7 @@ def idle(s, yd, best, scale):
 
 @equation
 def unit(s, i):
-    """Of the i-th velocity: the mechanism's size or 1."""
+    """The unit of the i-th velocity: the mechanism's size or 1."""
     return s.size if i % s.d < s.d // 2 + s.d % 2 else 1.0
 
 

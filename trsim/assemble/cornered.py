@@ -8,7 +8,11 @@ from trsim.laws.functions import (
     HEAD,
     HELD,
     HELD_OF_TABLE,
+    N_IN,
+    N_OP,
+    SLOTS,
     UNWATCHED,
+    VARIABLE,
     WATCHED,
     WIDTH,
 )
@@ -33,9 +37,10 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
     if spec.kind == "table":
         of_t, held = spec.of == "t", [offset + HELD_OF_TABLE]
         times = distinct(list(spec.x), end) if of_t else []
-        return [Cornered(offset, times, held, () if of_t else (int(code[1]),), end, 0, not of_t)]
-    n_in = int(code[1])
-    places = range(HEAD + n_in, HEAD + n_in + WIDTH * int(code[2]), WIDTH)
+        by = () if of_t else (int(code[VARIABLE]),)
+        return [Cornered(offset, times, held, by, end, 0, not of_t)]
+    n_in = int(code[N_IN])
+    places = range(HEAD + n_in, HEAD + n_in + WIDTH * int(code[N_OP]), WIDTH)
     watched = [p for p in places if code[p + WATCHED] != UNWATCHED]
     if not watched:
         return []
@@ -43,5 +48,5 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
     by_sensors = any(code[p + WATCHED] == BY_SENSORS for p in watched)
     sensed = tuple(int(k) for k in inputs) if by_sensors else ()
     held = [offset + p + HELD for p in watched]
-    slots = (len(code) - int(code[3])) // 3
+    slots = (len(code) - int(code[SLOTS])) // 3
     return [Cornered(offset, instants(spec.node, end), held, sensed, end, slots, n_in > 0)]

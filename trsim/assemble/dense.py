@@ -173,7 +173,7 @@ def symmetric(K: Array) -> tuple[Array, Array]:
 
 
 def inverse(M: Array) -> Array:
-    """That of a small regular matrix, by Gauss and Jordan with exchange of rows."""
+    """The inverse of a small regular matrix, by Gauss and Jordan with exchange of rows."""
     n = len(M)
     A = np.hstack([M, np.eye(n)])
     for k in range(n):

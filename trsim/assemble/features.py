@@ -21,8 +21,8 @@ import numpy as np
 
 from trsim.assemble.jumps import NOBODY, driven
 from trsim.assemble.travel import of_instance
-from trsim.elements.contract import SCENE, SINCE, compiled
-from trsim.elements.prescribed import MOTION
+from trsim.elements.contract import SCENE, Pair, compiled
+from trsim.elements.prescribed import AnyDrive
 from trsim.kernels.calls import caller
 from trsim.kernels.signatures import f8, i8, void
 from trsim.kernels.vectors import internal
@@ -41,7 +41,6 @@ from trsim.laws.functions import (
 OFFSET, DRIVE, FIRST, BEHIND, HELD_FROM, HELD_TO, SENSED, READS, PISTON, N_FEATURE = range(10)
 PLACE_JUMP, RATE_JUMP = range(2)  # columns of `jump`
 ENTRY, KIND, INSTANCE = range(3)  # of `sensed`
-SENSOR_ENTRY = 2  # of Row.con: where a sensor stands in S
 SAME = 0.5e-12  # of the run: an instant so near has been reached
 
 
@@ -63,7 +62,8 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
         rows.append((*own_rows, drive.slip))
         held += f.held
     entries = sorted({k for f in at.functions for k in f.sensed})
-    owner = {i.row.con[SENSOR_ENTRY]: e for e, i in enumerate(instances) if i.section == "sensors"}
+    sensors = [(i.row, e) for e, i in enumerate(instances) if i.section == "sensors"]
+    owner = {Pair.of(row).coordinate: e for row, e in sensors}
     sensed = [(k, *of_instance(instances, owner[k])[:2]) for k in entries]
     return {
         "sensed": np.array(sensed, np.int64).reshape(-1, 3),
@@ -86,9 +86,10 @@ def passed(s, n, t):
     e, first = s.feature[n, DRIVE], s.feature[n, FIRST]
     low, high = first, s.feature[n, BEHIND]
     if e >= 0:
-        if s.con[e, MOTION] != s.feature[n, OFFSET]:
+        own = AnyDrive(s, e)
+        if own.motion != s.feature[n, OFFSET]:
             return 0
-        t -= s.mem[e, SINCE]
+        t -= own.since
     reached = t + SAME * s.instant[high - 1]
     while low < high:
         middle = (low + high) // 2

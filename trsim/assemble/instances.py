@@ -17,7 +17,8 @@ class Column(NamedTuple):
     size: int
     wanted: bool
     for_points: bool = False  # measured only because a section or a portrait shows it
-    least: float = -inf  # what its definition alone keeps it above, or at
+    least: float = -inf  # a lower bound by its definition alone
+    turn: bool = False  # one about any axis, whose largest angle every run is judged by
 
 
 class Section(NamedTuple):

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
-from trsim.elements.prescribed import OWN_MOTION, OWN_STATE
+from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, some
 from trsim.kernels.signatures import A1, A2, f8, i8, void
-from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, WIDTH, hold, motion
+from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, N_IN, N_OP, WIDTH, hold, motion
 from trsim.laws.operations import ATAN2, COS, DIV, EXP, LOG, POW, SIN, SQRT, TAN
 
 Array = NDArray[np.float64]
@@ -28,7 +28,7 @@ SHOWN = 3  # jumps of one motion in a note
 
 
 class Driven(NamedTuple):
-    """Whose motion a function is."""
+    """The drive whose motion a function is."""
 
     e: int
     by_velocity: bool
@@ -45,9 +45,9 @@ def driven(at: Any, instances: list[Any]) -> dict[int, Driven]:
     for e, instance in enumerate(instances):
         if instance.section != "drives":
             continue
-        con = instance.row.con
+        own = AnyDrive.of(instance.row)
         switched = bool(at.switches) and ("drives", instance.name) in at.switches.names
-        found[con[OWN_MOTION]] = Driven(e, con[OWN_STATE] >= 0, switched, instance.row.slip)
+        found[own.motion] = Driven(e, own.state >= 0, switched, instance.row.slip)
         for state, offset in at.switches.motions.get(instance.name, ()) if at.switches else ():
             found[offset] = Driven(e, state >= 0, True, instance.row.slip)
     return found
@@ -109,7 +109,7 @@ def find_jumps(at: Any, instances: list[Any], size: float) -> dict[int, Array]:
                 ("drives", instance.name, "position"),
             )
         if not drive.switched:  # its time may be another
-            at.notes += told(at, instance, times, jumps, f"{unit}/s")
+            at.notes += notes(at, instance, times, jumps, f"{unit}/s")
     return found
 
 
@@ -120,13 +120,13 @@ def steep(at: Any, instances: list[Any]) -> int:
     for offset, drive in driven(at, instances).items():
         if drive.by_velocity or instances[drive.e].row.is_force or at.tab[offset] != EXPRESSION:
             continue
-        first = offset + HEAD + int(at.tab[offset + 1])
-        codes = at.tab[first : first + WIDTH * int(at.tab[offset + 2]) : WIDTH]
+        first = offset + HEAD + int(at.tab[offset + N_IN])
+        codes = at.tab[first : first + WIDTH * int(at.tab[offset + N_OP]) : WIDTH]
         count += bool(STEEP & {int(code) for code in codes})
     return count
 
 
-def told(at: Any, instance: Any, times: list[float], jumps: Array, unit: str) -> Iterator[str]:
+def notes(at: Any, instance: Any, times: list[float], jumps: Array, unit: str) -> Iterator[str]:
     """What is said of the velocity jumps of a motion."""
     when = np.flatnonzero(jumps[:, 1])
     if len(when) == 0 or instance.row.is_force:

@@ -8,7 +8,6 @@ import numpy as np
 
 from trsim.assemble.instances import Column, Instance
 from trsim.assemble.outputs import energy_columns
-from trsim.elements.bushing import TURN
 from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
@@ -60,8 +59,8 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
 
     def add(name: str, channel: Channel, extra: bool = False) -> None:
         nonlocal width
-        _, unit, meaning, size, least = channel
-        columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least))
+        _, unit, meaning, size, least, turn = channel
+        columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least, turn))
         width += size
 
     for e, instance in enumerate(instances):
@@ -130,7 +129,7 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
         kin += [number(column)] * column.size
     vectors = [c for c in columns if is_vector(c)]
     kin += [number(column) for column in vectors]
-    turns = [c for c in columns if is_turn(c)]  # judged in any run: behind those that are told
+    turns = [c for c in columns if c.turn]  # judged in any run: behind those that are told
     kin += [of_kind(column) for column in turns]
     vectors += turns
     levers = [lever(column) for column in columns for _ in range(column.size)]
@@ -148,11 +147,6 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
         "least": np.array([least[k] for k in sought]),
         "shared": np.array(shared, np.int64),
     }
-
-
-def is_turn(column: Column) -> bool:
-    """Whether a channel is a turn about any axis, whose angle the run is judged by (doubts.py)."""
-    return column.size == 3 and column.name.endswith(f".{TURN}")
 
 
 def is_vector(column: Column) -> bool:

@@ -177,7 +177,7 @@ def contradictory(s, x):
 
 @internal
 def smallest_pivot(s):
-    """Of the rows of the last factorisation, as a share of its diagonal.
+    """The least pivot of the rows of the last factorisation, as a share of its diagonal.
 
     The square of what is left of a row when those before it are taken out.
     """

@@ -35,7 +35,7 @@ class Mechanism:
     not_unique: tuple[str, ...]  # and those it does not
     rows: tuple[str, ...]  # rows in the solve
     follows: tuple[int, ...]  # coordinate each element state starts at, or -1
-    coordinates: Mapping[str, Any]  # joint -> JointCoordinate
+    coordinates: Mapping[str, Any]  # what it is called -> JointCoordinate
     frames: Mapping[str, int]
     beams: Mapping[str, Beam]
     notes: tuple[str, ...]

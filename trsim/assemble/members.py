@@ -1,7 +1,7 @@
 """Which bodies there are: rigid ones, and flexible bars as beams or, for a start, as rigid ones."""
 
 from itertools import islice
-from math import dist, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,14 +13,12 @@ from trsim.scenario.slender import ends
 
 Array = NDArray[np.float64]
 
-SLENDER = 1e-6  # of its inertia across: what a bar without width has about its own line
 AT_A_NODE = 1e-6  # of its length: a joint so far from a node is at it
 MOST_TRIED = 100  # elements
 SHORTEST, LONGEST = 1e-9, 1e9  # m, of elements
 LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
 THINNEST, THICKEST = 1e-9, 1e3  # sqrt(I/A), of the length of an element
 SLOWEST, LIGHT, HIGHEST = 1e-6, 3e8, 1e12  # m/s, 1/s
-ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
 class Beam(NamedTuple):
@@ -39,27 +37,27 @@ class Beam(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Of one element, m."""
+        """The length of one element, m."""
         return self.whole / (self.nodes - 1)
 
 
 def members(scenario: Any, stiff: bool = False) -> dict[str, Any]:
-    """The bodies by name: RigidBody or AncfCable; with `stiff` all of them rigid."""
+    """The bodies by name, flexible ones as the bars that are solved; with `stiff` all rigid."""
     found = {}
     for name, spec in scenario.bodies.items():
-        bar = spec
-        if spec.type == "rigid_body" and spec.flexible is not None:
-            try:
-                bar = cable(name, spec, scenario)
-            except ScenarioError as error:
-                raise error.at("bodies", name) from None
-        if bar.type == "ancf_cable":
-            see_solvable(name, bar)
-        found[name] = stiffened(bar) if stiff and bar.type == "ancf_cable" else bar
+        found[name] = spec
+        if spec.flexible is None:
+            continue
+        try:
+            bar = spec.bar(*ends(scenario, name))
+        except ScenarioError as error:
+            raise error.at("bodies", name) from None
+        check_solvable(name, bar)
+        found[name] = bar.as_rigid() if stiff else bar
     return found
 
 
-def see_solvable(name: str, bar: Any) -> None:
+def check_solvable(name: str, bar: Any) -> None:
     """Refuse bars whose numbers no arithmetic of 16 digits carries; they are slips of units.
 
     With l the length of an element, c = sqrt(E A / rho A) the speed of waves along it and
@@ -92,71 +90,17 @@ def _unsolvable(name: str, what: str, limits: str) -> ModelError:
     return ModelError(f"the bar has {what}", hint, ("bodies", name))
 
 
-def cable(name: str, spec: Any, scenario: Any) -> Any:
-    """The rigid bar `spec` as a flexible one, between its joints."""
-    from trsim.elements.ancf_cable import AncfCable
-
-    start, end = ends(scenario, name)
-    if start == end:
-        raise ScenarioError(
-            "a flexible bar lies between two of its joints, and this one has fewer",
-            "give it joints at both ends, or make it an ancf_cable with `start` and `end`",
-            ("flexible",),
-        )
-    if spec.mass == 0.0 and spec.flexible.density is None and spec.flexible.mass is None:
-        raise ScenarioError(
-            "a flexible bar needs a mass",
-            "give the body a `mass`, or `flexible` a `density`",
-            ("mass",),
-        )
-    middle = tuple(0.5 * (a + b) for a, b in zip(start, end, strict=True))
-    away = dist(middle, spec.at)
-    if away > ON_LINE * dist(start, end):
-        raise ScenarioError(
-            f"its centre of mass is {away:.3g} m away from the middle between its joints",
-            "a flexible bar is straight and alike all along; make it an ancf_cable with `start` "
-            "and `end`, or fix rigid bodies to it",
-            ("flexible",),
-        )
-    words = {key: value for key, value in spec.flexible if value is not None}
-    if spec.flexible.density is None and spec.flexible.mass is None:
-        words["mass"] = spec.mass
-    return AncfCable.model_construct(
-        **{**dict(spec.flexible), **words},
-        start=start,
-        end=end,
-        velocity=spec.velocity,
-        angular_velocity=spec.angular_velocity,
-    )
-
-
-def stiffened(bar: Any) -> Any:
-    """A flexible bar as a rigid one of the same mass, slender; its axes are the world's."""
-    from trsim.elements.rigid_body import RigidBody
-
-    t = tangent(bar)
-    across = bar.per_length * bar.length**3 / 12.0
-    I = across * ((1.0 + SLENDER) * np.eye(3) - np.outer(t, t))
-    return RigidBody.model_construct(
-        mass=bar.per_length * bar.length,
-        inertia=(I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]),
-        at=tuple(0.5 * (a + b) for a, b in zip(bar.start, bar.end, strict=True)),
-        velocity=bar.velocity,
-        angular_velocity=bar.angular_velocity,
-    )
-
-
 def beams(bodies: dict[str, Any], first: int) -> dict[str, Beam]:
     """The beams among the bodies; frame `first` is the first of their nodes."""
     found: dict[str, Beam] = {}
     element = 0
     for name, bar in bodies.items():
-        if bar.type != "ancf_cable":
+        if bar.flexible is None:
             continue
         nodes = bar.elements + 1
         part = np.linspace(0.0, 1.0, nodes)[:, None]
         places = (1.0 - part) * np.array(bar.start) + part * np.array(bar.end)
-        t = tangent(bar)
+        t = bar.tangent
         found[name] = Beam(
             first,
             nodes,
@@ -179,11 +123,6 @@ def axes(t: Array) -> Array:
         return np.array([[t[0], -t[1], 0.0], [t[1], t[0], 0.0], [0.0, 0.0, 1.0]])
     across = np.array(perpendicular(tuple(t))[0])
     return np.stack([t, across, np.cross(t, across)], axis=1)
-
-
-def tangent(bar: Any) -> Array:
-    """Unit vector from start to end."""
-    return (np.array(bar.end) - np.array(bar.start)) / bar.length
 
 
 def off_the_nodes(scenario: Any, name: str, beam: Beam, place: Array) -> tuple[str, str]:

@@ -142,7 +142,7 @@ class Branches:
 
 
 def as_fast(c: Array, b: Array, B: Array, at: Array) -> tuple[Array, Array, Array]:
-    """Those of `quadratic` and |at + z| = |at|: rest, which goes on for ever, is no answer."""
+    """`quadratic` with |at + z|^2 = |at|^2 as well: rest, which goes on for ever, is no answer."""
     size = float(np.abs(c).max() / max(at @ at, 1e-300))
     n = len(at)
     return (

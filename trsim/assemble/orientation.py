@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 def orientations(rigid: Mapping[str, Any], beams: Mapping[str, Beam]) -> tuple[Array, Array, Array]:
-    """Of the ground, the rigid bodies and the nodes of the beams, in this order:
+    """The attitudes of the ground, the rigid bodies and the nodes of the beams, in this order:
 
     angle (n)          about the z axis of what a body is drawn in, rad
     about_z (n)        the same about the world's z axis; means nothing where that is another one
@@ -38,7 +38,7 @@ def orientations(rigid: Mapping[str, Any], beams: Mapping[str, Beam]) -> tuple[A
 
 
 def quaternion(spec: Any) -> Array:
-    """Of the axes of a rigid body as drawn, the scalar first."""
+    """The quaternion of the axes of a rigid body as drawn, the scalar first."""
     c, s = np.cos(spec.angle / 2), np.sin(spec.angle / 2)
     if spec.drawn_in is None:
         return np.array([c, 0.0, 0.0, s])

@@ -11,7 +11,7 @@ In a planar scene the out-of-plane components are those of the planar problem: z
 
 from trsim.assemble.equations import call_all, call_derivative, equation, kinetic, stored_energy
 from trsim.elements.contract import BOOK, N_BOOK, STORED
-from trsim.elements.frames import arm
+from trsim.elements.frames import TwoPoints, arm
 from trsim.elements.scene import N_STORED
 
 
@@ -57,18 +57,19 @@ def measure(s, t, y, work_projection, energy_0):
 @equation
 def reaction(s, k):
     """Force and moment of one joint on its body j, at the joint."""
-    out, con, par, lam, J, row_start = s.out, s.con, s.par, s.lam, s.J, s.row_start
+    out, lam, J, row_start = s.out, s.lam, s.J, s.row_start
     e, first, number, o = s.joint_out[k, 0], s.joint_out[k, 1], s.joint_out[k, 2], s.joint_out[k, 3]
+    own = TwoPoints(s, e)
     for c in range(6):
         out[o + c] = 0.0
     for r in range(first, first + number):
-        row = con[e, r]
+        row = s.con[e, r]
         if row >= 0:
             for l in range(row_start[row], row_start[row + 1]):
-                if s.line_frame[l] == con[e, 1]:
+                if s.line_frame[l] == own.j:
                     for c in range(6):
                         out[o + c] -= lam[row] * J[l, c]
-    p = arm(s.X, con[e, 1], par[e, 3], par[e, 4], par[e, 5])
+    p = arm(s.X, own.j, own.p_j)
     f0, f1, f2 = out[o], out[o + 1], out[o + 2]
     out[o + 3] -= p[1] * f2 - p[2] * f1
     out[o + 4] -= p[2] * f0 - p[0] * f2

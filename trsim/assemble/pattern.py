@@ -175,7 +175,7 @@ def structure(
 
 
 def no_pattern(m: int, n: int) -> dict[str, Any]:
-    """That of a model whose equations nobody solves: only its m rows are looked at."""
+    """The pattern of a model whose equations nobody solves: only its m rows are looked at."""
     return {**pattern([], n), "column_start": np.zeros(m + 1, np.int64)}
 
 

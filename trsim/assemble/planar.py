@@ -25,7 +25,6 @@ from trsim.assemble.equations import forces, poses
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.reduce import displaced, jacobian, moves
 from trsim.elements.contract import PHASE, UNLOCATED
-from trsim.elements.rigid_body import tensor
 from trsim.elements.scene import Model, scene
 from trsim.errors import ModelError, some
 
@@ -121,8 +120,7 @@ def reaching_out(
 
 def all_known(at: Addresses) -> bool:
     """Whether the scene could be solved in space: the inertias of its bodies are known."""
-    rigid = (spec for spec in at.members.values() if spec.type == "rigid_body")
-    return not any(isinstance(spec.inertia, float) for spec in rigid)
+    return all(spec.tensor[1] for spec in at.members.values() if spec.flexible is None)
 
 
 def level(v: Any) -> bool:
@@ -145,11 +143,11 @@ def of_bodies(at: Addresses) -> Iterator[Out]:
             yield Out(f"bodies.{name}", "starts with a velocity along z", MOVES)
         if any(spec.angular_velocity[:2]):
             yield Out(f"bodies.{name}", "starts turning about another axis than z", MOVES)
-        if spec.type != "rigid_body":
+        if spec.flexible is not None:
             continue
         if spec.drawn_in is not None and not spec.drawn_in.flat:
             yield Out(f"bodies.{name}", "is turned out of the x-y plane by its instance", MOVES)
-        I, known = tensor(spec.inertia)
+        I, known = spec.tensor
         if known and max(abs(I[2]), abs(I[5])) > NOTHING * I[8]:
             yield Out(f"bodies.{name}", "has products of inertia Ixz or Iyz", TURNS)
 
@@ -174,7 +172,7 @@ def of_elements(
         reach = instance.element.reach(instance.row)
         if reach.always and not pushed:
             continue
-        whose = f"{instance.section}.{instance.name}" if instance.section else "gravity"
+        whose = f"{instance.section}.{instance.name}" if instance.section else instance.element.key
         yield from dict.fromkeys(Out(whose, *found) for found in reaching(at, reach, size))
 
 

@@ -52,7 +52,7 @@ def plainly_independent(rows: Array) -> bool:
 
 
 def sparse_proof(rows: Array) -> bool:
-    """That proof by L D L^T of rows rows^T along its zeros."""
+    """The proof of `plainly_independent` by L D L^T of rows rows^T along its zeros."""
     m = len(rows)
     near = neighbours_of(rows)
     order = minimum_degree(near)

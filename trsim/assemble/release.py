@@ -9,7 +9,7 @@ forces, joint types trsim has before others, few joints, pins between moving bod
 bearings, then the order of the file.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import combinations, product
 from typing import Any, NamedTuple
@@ -17,6 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim import elements
+from trsim.assemble.addresses import Addresses
 from trsim.assemble.assemble import build, pack
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.mechanism import Mechanism
@@ -25,11 +27,13 @@ from trsim.assemble.reduce import jacobian, moves, weights
 from trsim.assemble.redundant import nearby
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
+from trsim.elements.rows import Axes
 from trsim.elements.scene import scene
 
 Array = NDArray[np.float64]
 
 REGULAR = 1e-6  # smallest singular value of N[L]: below, it is not sure that L may go
+ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
 MOST_JOINTS = 3  # changed together in the search; beyond that, rows one by one
 
 
@@ -69,7 +73,9 @@ def release(scenario: Any, mechanism: Mechanism) -> Release | None:
     stress = self_stress(scenario, mechanism, at, instances)
     k = len(mechanism.redundant)
     options = [
-        list(changes(instances[n], stress, at.coordinates))
+        sorted(
+            changes(instances[n], stress, at), key=lambda change: forces(change.rows, stress.rows)
+        )
         for n in sorted({stress.rows[r].instance for r in stress.inside})
         if instances[n].section == "joints"
     ]
@@ -91,7 +97,9 @@ def release(scenario: Any, mechanism: Mechanism) -> Release | None:
     return Release(best[0], words, len(best) - 1, proven(gone, stress))
 
 
-def self_stress(scenario: Any, mechanism: Mechanism, at: Any, instances: list[Instance]) -> Stress:
+def self_stress(
+    scenario: Any, mechanism: Mechanism, at: Addresses, instances: list[Instance]
+) -> Stress:
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
     full = scene(build(scenario, at, instances, rows, 6))
@@ -114,15 +122,48 @@ def self_stress(scenario: Any, mechanism: Mechanism, at: Any, instances: list[In
     return Stress(rows, inside, jacobians, spaces)
 
 
-def changes(instance: Instance, stress: Stress, used: Any) -> Iterator[Change]:
-    """What may go of one joint; nothing of one whose angle or stroke somebody needs."""
-    if instance.name in used:
+def changes(instance: Instance, stress: Stress, at: Addresses) -> Iterator[Change]:
+    """What may go of a joint so that it becomes another; nothing of one whose angle or stroke
+    somebody needs."""
+    if instance.name in {x.joint for x in at.coordinates.values()}:
         return
+    types, element = joint_types(), instance.element
+    holds = dict(zip(element.rows, held(instance, at), strict=False))
     own = {stress.rows[r].axis: r for r in stress.inside if stress.rows[r].element == instance.name}
-    for change in instance.element.changes(instance.row):
-        if all(axis in own for axis in change.rows) and len(change.rows) < len(own):
-            gone = tuple(own[axis] for axis in change.rows)
-            yield Change(instance.name, gone, change.becomes, change.type)
+    may = [axis for axis in own if holds.get(axis, "x") not in "xyz"]
+    for number in range(len(own) - 1, 0, -1):
+        for gone in combinations(may, number):
+            # the contact of a joint with clearance goes on holding two displacements
+            left = "".join(held for axis, held in holds.items() if axis not in gone)
+            word = types.get(shape(left + "uw" if element.ideal else left))
+            if word:
+                rows = tuple(own[axis] for axis in gone)
+                yield Change(instance.name, rows, word, None if element.ideal else word)
+
+
+def held(instance: Instance, at: Addresses) -> tuple[str, ...]:
+    """What the rows of a joint hold; of a hinge along x, y or z one of its point is along it."""
+    element, row = instance.element, instance.row
+    if "angle" in element.coordinates:
+        axis = np.abs(at.rotation[row.con[0]] @ np.array(Axes.of(row).a_i))
+        if axis.max() > ALONG:
+            axial = "xyz"[int(axis.argmax())]
+            return tuple("a" if one == axial else one for one in element.holds)
+    return element.holds
+
+
+def joint_types() -> dict[tuple[str, str], str]:
+    """The joint types, by what their rows hold."""
+    kinds = (elements.load(word) for word, of in elements.ELEMENTS.items() if of == "joints")
+    return {shape("".join(kind.holds)): kind.key for kind in kinds if kind.holds and not kind.ideal}
+
+
+def shape(holds: str) -> tuple[str, str]:
+    """The displacements and the turns that are held; which one turn it is does not matter."""
+    points = sum(one in "xyz" for one in holds)
+    places = {*holds} & {*"uwa"} | {*"uwa"[:points]}
+    turns = "".join(sorted({*holds} & {*"UWA"}))
+    return "".join(sorted(places)), turns if len(turns) > 1 else "1" * len(turns)
 
 
 def choices(options: list[list[Change]], k: int) -> Iterator[tuple[Change, ...]]:
@@ -140,12 +181,17 @@ def price(
     """Forces let go; joints of a type trsim lacks; joints changed; bearings opened."""
     gone = [row for change in chosen for row in change.rows]
     return (
-        sum(not rows[row].rotation for row in gone),
+        forces(gone, rows),
         sum(change.type is None for change in chosen),
         len(chosen),
-        sum(change.becomes == "universal" for change in chosen),
+        sum(elements.load(change.becomes).dear for change in chosen if change.becomes),
         sum(0 in rows[change.rows[0]].frames for change in chosen),
     )
+
+
+def forces(gone: Iterable[int], rows: list[RowName]) -> int:
+    """How many of the rows let go of are forces."""
+    return sum(not rows[row].rotation for row in gone)
 
 
 def removable(gone: list[int], stress: Stress) -> bool:

@@ -119,7 +119,7 @@ def check_inertias(at: Addresses, planar: bool, because: str = "") -> None:
     if planar:
         return
     for name, spec in at.members.items():
-        if spec.type == "rigid_body" and isinstance(spec.inertia, float):
+        if spec.flexible is None and not spec.tensor[1]:
             raise ModelError(
                 "one inertia (about z) is not enough in a scene that is not planar"
                 + (f": {because}" if because else ""),
@@ -131,7 +131,7 @@ def check_inertias(at: Addresses, planar: bool, because: str = "") -> None:
 def check_space(at: Addresses, instances: list[Instance]) -> None:
     """What a flexible bar cannot do in space: it has no torsion and bends alike all around."""
     for name, spec in at.members.items():
-        if spec.type == "ancf_cable" and not spec.numbers[2]:
+        if spec.flexible is not None and not spec.flexible.numbers[2]:
             raise ModelError(
                 "a flexible bar in space bends alike in all directions, and this section does not",
                 "use a round or square section, or draw the mechanism in the x-y plane",

@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.addresses import JointCoordinate
 from trsim.assemble.better import better
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, MOST, Switches, lock_name
-from trsim.elements.prescribed import OWN_MOTION, OWN_STATE, C, K
+from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import Model, Scene
 
 Array = NDArray[np.float64]
@@ -51,7 +52,7 @@ class Choice(NamedTuple):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the rows in the solve."""
+        """The names of the rows in the solve."""
         return tuple(f"{row.element}.{row.axis}" for row in self.kept)
 
 
@@ -62,11 +63,11 @@ class Stages:
         self, switches: Switches, instances: list[Instance], first: Choice,
         build: Callable[[list[Instance], Rows], Choice],
         rebuild: Callable[[list[Instance], Rows, Rows], Model],
-        turning: Mapping[tuple[str, str], str],
+        turning: Mapping[tuple[str, str], JointCoordinate],
     ) -> None:  # fmt: skip
         """build: (instances, rows that are in force) -> a choice, its model without outputs;
         rebuild: (instances, rows to solve, rows to leave out) -> such a model;
-        turning: rigid drives and locks (section, name) of hinges in space, and which hinge."""
+        turning: rigid drives and locks (section, name) of hinges in space, and of which angle."""
         self.switches, self.instances, self.first = switches, instances, first.model
         self._build, self._rebuild, self._turning = build, rebuild, turning
         self._made = {(0,) * len(switches.names): first}
@@ -122,24 +123,26 @@ class Stages:
         """With the outputs of all stages; what is locked crosses no value, and is not looked at."""
         at = zip(self.switches.names, stage.tolist(), strict=True)
         held = {name for (section, name), to in at if (section, to) == ("locks", HELD)}
-        held -= {joint for _, joint in self.without_hinge(stage)}
+        held -= {angle.name for _, angle in self.without_hinge(stage)}
         watch = model.watch.copy()
-        watch[[event.joint in held for event in self.switches.events], MOST] = 0
+        watch[[event.coordinate in held for event in self.switches.events], MOST] = 0
         outputs = {name: getattr(self.first, name) for name in OUTPUTS}
         return model.replaced(watch=watch, **outputs)
 
-    def without_hinge(self, stage: NDArray[np.int64]) -> list[tuple[tuple[str, str], str]]:
-        """Rigid drives and closed locks (section, name) whose hinge in space is apart, and it.
+    def without_hinge(
+        self, stage: NDArray[np.int64]
+    ) -> list[tuple[tuple[str, str], JointCoordinate]]:
+        """Rigid drives and closed locks (section, name) whose hinge in space is apart; its angle.
 
         What is seen of its angle is that of a line that leaves the plane of the hinge: there is
         nothing to turn, so they let go.
         """
         at = dict(zip(self.switches.names, stage.tolist(), strict=True))
         return [
-            (of, joint)
-            for of, joint in self._turning.items()
-            if at.get(("joints", joint)) == LOOSE
-            and (at.get(of) != LOOSE if of[0] == "drives" else at.get(("locks", joint)) == HELD)
+            (of, x)
+            for of, x in self._turning.items()
+            if at.get(("joints", x.joint)) == LOOSE
+            and (at.get(of) != LOOSE if of[0] == "drives" else at.get(("locks", x.name)) == HELD)
         ]
 
     def _found(self, stage: NDArray[np.int64]) -> Choice:
@@ -162,12 +165,10 @@ def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switc
     to = at.get((instance.section, instance.name), AS_DRAWN)
     if instance.section != "drives" or to == AS_DRAWN:
         return instance
-    con, par = list(instance.row.con), list(instance.row.par)
     if to == LOOSE:
-        par[K] = par[C] = 0.0
-    else:
-        con[OWN_STATE], con[OWN_MOTION] = switches.motions[instance.name][to - 1]
-    return replace(instance, row=replace(instance.row, con=tuple(con), par=tuple(par)))
+        return replace(instance, row=AnyDrive.changed(instance.row, stiffness=0.0, damping=0.0))
+    state, motion = switches.motions[instance.name][to - 1]
+    return replace(instance, row=AnyDrive.changed(instance.row, state=state, motion=motion))
 
 
 def in_force(

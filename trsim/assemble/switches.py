@@ -17,7 +17,8 @@ from typing import Any
 from trsim import elements
 from trsim.assemble.addresses import UNITS, Addresses
 from trsim.assemble.instances import Instance
-from trsim.elements.prescribed import ENTRY, OWN_STATE
+from trsim.elements.coordinates import called, named
+from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
 from trsim.scenario.methods import METHODS
@@ -52,7 +53,7 @@ class UserEvent:
     when: str  # what is watched
     status: Ended = "done"  # of the run where it ends here
     unit: str = ""  # of the value, where the kind does not tell
-    joint: str = ""  # whose coordinate is watched
+    coordinate: str = ""  # of a joint, if one is watched
 
     @property
     def rate(self) -> str:
@@ -60,7 +61,7 @@ class UserEvent:
         own = UNITS.get(self.kind, self.unit)
         return f"{own}/s" if own != "s" else "-"
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         """When it happens and what it does, in words."""
         if self.kind == "limit":
             return f"{self.when} {self.said} ({self.value:g} {self.unit}): the run is {self.status}"
@@ -80,21 +81,25 @@ class Switches:
     jumps: int = -1  # entry of z with the work of the events
 
 
-def lock_name(joint: str) -> str:
+def lock_name(coordinate: str) -> str:
     """The name of the instance that holds a joint; no name a user can write."""
-    return f"{joint}.lock"
+    return f"{coordinate}.lock"
 
 
-def locks(scenario: Any) -> list[tuple[str, Any]]:
-    """A drive for every joint that some event locks."""
-    drive: Any = elements.load("drive").spec
+def locks(scenario: Any) -> dict[str, Any]:
+    """A drive for every coordinate of a joint that some event locks."""
     found = {}
     for name, event in scenario.events.items():
         for k, joint in enumerate(event.do.lock):
-            check(joint, scenario.joints, "joint", (SECTION, name, "do", "lock", k))
-            still = {"joint": joint, "velocity": 0.0}
-            found[lock_name(joint)] = drive.model_validate(still, context={"parameters": {}})
-    return list(found.items())
+            own, *_ = named(joint, scenario.joints, path=(SECTION, name, "do", "lock", k))
+            found[lock_name(own)] = hold(own)
+    return found
+
+
+def hold(joint: str) -> Any:
+    """The spec of a drive that keeps a joint where it is."""
+    spec: Any = elements.load(elements.DEFAULT["drives"]).spec
+    return spec.model_validate({"joint": joint, "velocity": 0.0}, context={"parameters": {}})
 
 
 def check(name: str, there: Any, kind: str, path: tuple) -> None:
@@ -146,12 +151,14 @@ class _Packing:
         entry, kind = self.watched(name, spec)
         turned = [self.motion(name, drive, motion) for drive, motion in spec.do.set.items()]
         turned += [self.released(name, k, one) for k, one in enumerate(spec.do.release)]
-        turned += [self.switch("locks", one, HELD) for one in spec.do.lock]
+        turned += [
+            self.switch("locks", called(x, self.scenario.joints), HELD) for x in spec.do.lock
+        ]
         turned += [self.unlocked(name, k, one) for k, one in enumerate(spec.do.unlock)]
         return UserEvent(
             name, entry, spec.value, kind, DIRECTIONS[spec.crosses],
             spec.times or ALWAYS, tuple(turned), spec.do.record, spec.do.end, spec.do.said(),
-            spec.when, joint=self.joint(spec.when),
+            spec.when, coordinate=self.coordinate(spec.when),
         )  # fmt: skip
 
     def watched(self, name: str, spec: Event) -> tuple[int, str]:
@@ -163,10 +170,10 @@ class _Packing:
         self.check_value(name, spec.when, UNITS[kind])
         return (TIME if kind == "time" else self.at.sensor(spec.when)), kind
 
-    def joint(self, when: str) -> str:
-        """The joint whose coordinate a sensor is; empty for t, and for a displacement."""
+    def coordinate(self, when: str) -> str:
+        """The coordinate of a joint that a sensor is; empty for t, and for a displacement."""
         sensor = self.scenario.sensors.get(when)
-        return getattr(sensor, "joint", "")
+        return called(getattr(sensor, "joint", ""), self.scenario.joints)
 
     def check_value(self, name: str, when: str, wanted: str) -> None:
         """Refuse a written unit that does not fit what is watched."""
@@ -191,7 +198,7 @@ class _Packing:
                     "set a velocity where it has a velocity, a position where it has a position",
                     path,
                 )
-            kind, entry = "stroke", self.instances["drives", drive].row.con[ENTRY]
+            kind, entry = "stroke", AnyDrive.of(self.instances["drives", drive].row).coordinate
         else:
             x = self.at.coordinate(spec.joint)
             kind, entry = x.kind, x.entry
@@ -214,7 +221,7 @@ class _Packing:
 
     def state(self, drive: str, kind: str, entry: int) -> int:
         """The entry of z that holds the place of a drive with a velocity."""
-        own = self.instances["drives", drive].row.con[OWN_STATE]
+        own: int = AnyDrive.of(self.instances["drives", drive].row).state
         if own >= 0:
             return own
         if drive not in self.states:
@@ -237,7 +244,7 @@ class _Packing:
 
     def unlocked(self, name: str, k: int, one: str) -> tuple[int, int]:
         path = (SECTION, name, "do", "unlock", k)
-        check(one, self.scenario.joints, "joint", path)
-        if (SECTION, lock_name(one)) not in self.instances:
+        own, *_ = named(one, self.scenario.joints, path=path)
+        if (SECTION, lock_name(own)) not in self.instances:
             raise ScenarioError(f"no event locks the joint '{one}'", "", path)
-        return self.switch("locks", one, AS_DRAWN)
+        return self.switch("locks", own, AS_DRAWN)

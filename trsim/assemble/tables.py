@@ -13,7 +13,7 @@ from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, Switches
 from trsim.elements import scene as scales
-from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, Element
+from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, ContactNumbers, Element
 from trsim.errors import ModelError
 
 Array = NDArray[np.float64]
@@ -27,20 +27,18 @@ FARTHEST = 0.01  # of the mechanism with its anchors: the least that stands for 
 
 def tables(instances: list[Instance], rows: list[RowName]) -> tuple[NDArray[np.int64], Array]:
     """con and par of all instances; dropped constraint rows have the index -1."""
-    number = {(r.instance, r.index): k for k, r in enumerate(rows)}
-    cons: list[list[int]] = []
-    for n, instance in enumerate(instances):
-        c = instance.row.con
-        own = [number.get((n, k), -1) for k in range(len(instance.element.rows))]
-        cons.append([*c[:FIRST_ROW], *own, *c[FIRST_ROW:]] if own else list(c))
-    con = np.full((max(len(cons), 1), max((len(c) for c in cons), default=1)), -1, np.int64)
-    for e, numbers in enumerate(cons):
-        con[e, : len(numbers)] = numbers
-    pars = [instance.row.par for instance in instances]
-    par = np.zeros((max(len(pars), 1), max((len(p) for p in pars), default=1)))
-    for e, p in enumerate(pars):
-        par[e, : len(p)] = p
-    return con, par
+    con = padded([instance.row.con for instance in instances], -1, np.int64)
+    for k, row in enumerate(rows):
+        con[row.instance, FIRST_ROW + row.index] = k
+    return con, padded([instance.row.par for instance in instances], 0.0, np.float64)
+
+
+def padded(rows: Sequence[Sequence[float]], rest: float, kind: type) -> Any:
+    """A table of rows, as wide as the widest."""
+    table: Any = np.full((max(len(rows), 1), max(map(len, rows), default=1)), rest, kind)
+    for e, row in enumerate(rows):
+        table[e, : len(row)] = row
+    return table
 
 
 def watched_rows(
@@ -86,8 +84,6 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
 
     Of a node of a beam its share of them, lumped: for what is judged, not solved, by them.
     """
-    from trsim.elements.rigid_body import tensor
-
     n = len(at.frames)
     mass, inertia = np.zeros(n), np.zeros((n, 9))
     mass_inverse, inertia_inverse = np.zeros(n), np.zeros((n, 9))
@@ -100,7 +96,7 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
     for f, name in enumerate(at.owners[1 : at.n_rigid], start=1):
         spec = at.members[name]
         mass[f] = spec.mass
-        inertia[f], complete = tensor(spec.inertia)
+        inertia[f], complete = spec.tensor
         known = inertia[f].reshape(3, 3)
         if spec.mass == 0.0:
             raise ModelError("a body without mass cannot be solved for", "give it a mass",
@@ -302,22 +298,17 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
 def contact_numbers(
     at: Addresses, instances: list[Instance], contacts: list[int], arms: list[float]
 ) -> Array:
-    """K, exponent, effective mass, clearance, slowest impact, arm and damping of every contact.
-
-    A stop on an angle has an inertia for a mass, that of its bodies at the larger of their arms;
-    the arm turns its depth, an angle, into the length that errors are weighed with.
-    """
+    """ContactNumbers of every contact; of a stop on an angle the larger arm of its bodies."""
     rows = []
     for e in contacts:
         row = instances[e].row
         assert row.contact is not None  # noqa: S101
         i, j = row.con[0], row.con[1]
         inverse = (1.0 / at.mass(i) if i else 0.0) + (1.0 / at.mass(j) if j else 0.0)
-        c = row.contact
         arm = max(arms[f] for f in (i, j) if f) if row.turns else 1.0
-        mass = arm**2 / inverse
-        rows.append((c.stiffness, c.exponent, mass, c.clearance, c.slowest_impact, arm, c.damping))
-    return np.array(rows, float).reshape(-1, 7)
+        numbers = ContactNumbers.numbers(row.contact, mass=arm**2 / inverse, arm=arm)
+        rows.append(numbers["contact_par"])
+    return np.array(rows, float).reshape(-1, len(ContactNumbers.columns))
 
 
 def eccentricity(element: Element) -> int:

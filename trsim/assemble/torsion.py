@@ -25,7 +25,6 @@ from trsim.assemble.addresses import Addresses
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.planar import lasting, reaching_out
 from trsim.assemble.reduce import jacobian, weights
-from trsim.elements.rigid_body import tensor
 from trsim.elements.scene import Model
 from trsim.errors import ModelError
 
@@ -141,7 +140,7 @@ def is_round(body: int, at: Addresses, place: Array, t: Array) -> bool:
     """Whether a body is the same all around a line, and does not turn about it at the start."""
     spec = at.members[at.owners[body]]
     R = at.rotation[body]
-    I = R @ np.array(tensor(spec.inertia)[0]).reshape(3, 3) @ R.T
+    I = R @ np.array(spec.tensor[0]).reshape(3, 3) @ R.T
     along = t @ I @ t
     across = 0.5 * (np.trace(I) - along)
     like = along * np.outer(t, t) + across * (np.eye(3) - np.outer(t, t))

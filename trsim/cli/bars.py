@@ -30,16 +30,16 @@ def bar_lines(found: dict[str, Any]) -> list[str]:
 
 
 def mesh_line(bar: dict[str, Any]) -> str:
-    """What its mesh makes wrong at the start, or who tells it."""
+    """How wrong its mesh makes the start, or where that can be found."""
     mesh, lead = bar["mesh"], "              its mesh: "
     if mesh is None:
         return lead + "no estimate of its error (`stretching: full`, or more than 100 elements)"
     if mesh["relative"] < STRAIGHT:
-        return lead + "no error at the start, where nothing bends it; a run tells its own"
+        return lead + "no error at the start, where nothing bends it; a run gives its own estimate"
     return lead + (
         f"wrong by about {mesh['error']:.1e} m at the start, {mesh['relative']:.1e} of the length "
         f"(estimated by halving the elements); {mesh['wanted']} elements would make it 1e-4; a "
-        "run tells its own"
+        "run gives its own"
     )
 
 

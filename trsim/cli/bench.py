@@ -71,14 +71,14 @@ def one(
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
     compiling(answer, "auto")
     from trsim.analyse import precision
-    from trsim.report.precision import see_room
+    from trsim.report.precision import check_room
 
     named = [known_method(name) for name in methods.split(",")]
     asked = [tolerance(x) for x in tolerances.split(",")] if tolerances else precision.TOLERANCES
     ends = [scenario.solver.end / n for n in precision.FIXED]
     fixed = [seconds(x) for x in steps.split(",")] if steps else ends
     against = chosen(reference) if reference else precision.reference_setting(named, asked)
-    see_room(folder)
+    check_room(folder)
     try:
         return measured(answer, scenario, precision.plan(named, asked, fixed), against,
                         quantities, repeats)  # fmt: skip

@@ -124,7 +124,7 @@ def full(found: Any) -> dict[str, Any]:
     return {**brief(found), **{n: [row._asdict() for row in getattr(found, n)] for n in REST}}
 
 
-def told(answer: Answer, target: Path, data: dict[str, Any]) -> None:
+def print_certificate(answer: Answer, target: Path, data: dict[str, Any]) -> None:
     """Say it in a few lines."""
     first, *rest = lines(data)
     answer.say(f"{target}: {first}")

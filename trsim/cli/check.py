@@ -56,7 +56,7 @@ def one(answer: Answer, source: str, sets: tuple[str, ...], modes: bool = False)
             doing(f"assembling {len(scenario.bodies)} bodies")
             mechanism = assemble(scenario)
             check_output(scenario, mechanism)
-            doing("telling redundant rows and what to release")
+            doing("finding redundant rows and what to release")
             found |= described(scenario, mechanism)
             doing("looking for the start and its time scales")
             found |= begun(scenario, mechanism, modes)
@@ -89,7 +89,7 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "drives": list(scenario.drives),
         "forces": {name: spec.type for name, spec in scenario.forces.items()},
         "contacts": [mechanism.instances[e].name for e in model.contact],
-        "events": {e.name: e.told() for e in mechanism.stages.switches.events},
+        "events": {e.name: e.in_words() for e in mechanism.stages.switches.events},
         "planar": mechanism.planar,
         "planar_assumed": mechanism.planar_assumed,
         "spatial_because": list(mechanism.spatial_because),

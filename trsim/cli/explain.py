@@ -50,9 +50,9 @@ def element(page: dict[str, Any]) -> Iterator[str]:
     yield f"{page['word']}: an element, in `{page['section']}`"
     yield from ("", page["law"], "", page["about"])
     yield from keys(page)
-    if page["coordinate"]:
+    if page["coordinates"]:
         of = "joint " if page["section"] == "joints" else ""
-        yield from ("", f"{of}coordinate: {page['coordinate']}")
+        yield from ("", f"{of}coordinate: {', '.join(page['coordinates'])}")
     if page["channels"]:
         yield from ("", "channels:")
     for channel in page["channels"]:
@@ -85,16 +85,16 @@ def key(one: dict[str, Any], name: str, indent: int) -> Iterator[str]:
     facts = [one["type"]]
     facts += [one["unit"]] if one["unit"] not in (None, "-") else []
     facts += ["required"] if one["required"] else []
-    facts += [f"default {told(one['default'])}"] if one["default"] not in (None, "") else []
+    facts += [f"default {as_written(one['default'])}"] if one["default"] not in (None, "") else []
     told_of = _wrapped(f"{name}: {', '.join(facts)}", indent)
     yield from (line if k == 0 else f"{' ' * INDENT}{line}" for k, line in enumerate(told_of))
     yield from _wrapped(one["meaning"], indent + INDENT)
 
 
-def told(default: Any) -> str:
+def as_written(default: Any) -> str:
     """A default as one would write it."""
     if isinstance(default, list | tuple):
-        return f"[{', '.join(map(told, default))}]"
+        return f"[{', '.join(map(as_written, default))}]"
     if isinstance(default, bool):
         return str(default).lower()
     return f"{default:g}" if isinstance(default, float) else str(default)

@@ -31,10 +31,10 @@ def compiling(answer: Answer, method: str = "") -> None:
         files = METHODS[method].files.get(INDEX_1, ("scipy_ivp",))
         later = ["march.complete", *(f"methods.{name}" for name in reversed(files)), "march.loop"]
         from trsim.solve.march.complete import complete as needed
-    see_own(answer)
+    warn_of_shared_code(answer)
     if needed.known:
         return
-    see_kept(answer)
+    warn_of_code_not_kept(answer)
     answer.say("compiling (once per installation, about half a minute)")
     if later:
         from trsim.kernels import ahead
@@ -60,7 +60,7 @@ def compiling_sparse(answer: Answer, scenario: Any, mechanism: Any) -> None:
         ahead.begin("trsim.solve.methods.radau_ggl")
 
 
-def see_own(answer: Answer) -> None:
+def warn_of_shared_code(answer: Answer) -> None:
     """Say so where machine code would come from a folder that others may write in."""
     from trsim.kernels.kept import refused
 
@@ -73,15 +73,15 @@ def see_own(answer: Answer) -> None:
         )  # fmt: skip
 
 
-def see_kept(answer: Answer) -> None:
+def warn_of_code_not_kept(answer: Answer) -> None:
     """Say so where what is compiled cannot be kept for the next run."""
     from trsim.kernels.kept import folder, make
-    from trsim.store.target import see_writable, told
+    from trsim.store.target import check_writable, file_errors
 
     try:
-        with told(folder()):
+        with file_errors(folder()):
             make(folder())
-        see_writable(folder())
+        check_writable(folder())
     except FileError as error:
         answer.say(
             f"warning: machine code cannot be kept, so every run compiles anew: {error.what}; "
@@ -128,7 +128,7 @@ def watched(
         for block in run:
             Stop.patient = True
             percent = f"{100 * block.time / end:.0f} %, "
-            show.update(block.time, told(block), percent + told(block))
+            show.update(block.time, summary(block), percent + summary(block))
             yield block
             if Stop.number:
                 raise KeyboardInterrupt
@@ -145,7 +145,8 @@ def left(elapsed: float, share: float, first: float) -> str:
     return f"{seconds / 60:.0f} min" if seconds > 90 else f"{seconds:.0f} s"
 
 
-def told(block: Any) -> str:
+def summary(block: Any) -> str:
+    """How far a run is."""
     return f"t = {block.time:.4g} s, step {block.step:.1e} s, {block.n_events} contact events"
 
 

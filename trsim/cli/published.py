@@ -75,7 +75,7 @@ def _close(entry: dict[str, Any], kind: Any) -> None:
 
 
 def _meanings(kind: Any) -> dict[str, str]:
-    """Of the keys of a typed dictionary; its bases are not in its order of resolution."""
+    """The meanings of the keys of a typed dictionary, whose bases are no part of its __mro__."""
     found: dict[str, str] = {}
     for base in getattr(kind, "__orig_bases__", ()):
         found |= _meanings(base) if hasattr(base, "__required_keys__") else {}

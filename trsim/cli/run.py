@@ -101,9 +101,9 @@ def one(
     answer.say(line(summary))
     remark(answer, source, summary)
     if "certificate" in summary:
-        from trsim.cli.certify import told
+        from trsim.cli.certify import print_certificate
 
-        told(answer, target, summary["certificate"])
+        print_certificate(answer, target, summary["certificate"])
     return summary
 
 

@@ -47,7 +47,7 @@ def modeline(file: str) -> str:
 
 def write(target: Path, text: str) -> None:
     """Write a schema, over nothing but an older one."""
-    from trsim.store.target import SCHEMA, fresh, told
+    from trsim.store.target import SCHEMA, file_errors, fresh
 
-    with told(target), fresh(target, SCHEMA) as unfinished:
+    with file_errors(target), fresh(target, SCHEMA) as unfinished:
         unfinished.write_text(text + "\n", encoding="utf-8")

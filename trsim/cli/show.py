@@ -24,7 +24,7 @@ def command(answer: Answer, run: str, verify: bool) -> None:
 
     found = read(run)
     if verify:
-        see_same(found)
+        check_same(found)
     answer.data |= {
         "file": str(found.path),
         **{name: found.attributes[name] for name in TOLD if name in found.attributes},
@@ -58,8 +58,8 @@ def command(answer: Answer, run: str, verify: bool) -> None:
             answer.put(f"    {text}")
 
 
-def see_same(run: Any) -> None:
-    """See that a file holds what its content hash says; raises FileError."""
+def check_same(run: Any) -> None:
+    """Check that a file holds what its content hash says; raises FileError."""
     from trsim.store.read import verify
 
     path = str(run.path)

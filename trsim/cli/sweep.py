@@ -244,9 +244,9 @@ def ran(
 def warming(answer: Answer, planned: Any) -> bool:
     """Whether nothing was compiled on this machine yet; says so, and begins with it."""
     from trsim.assemble.equations import derivative
-    from trsim.cli.progress import compiling, see_own
+    from trsim.cli.progress import compiling, warn_of_shared_code
 
-    see_own(answer)
+    warn_of_shared_code(answer)
     if derivative.file.exists():
         return False
     compiling(answer, planned.scenario(planned.cases[0]).solver.method)

@@ -16,6 +16,8 @@ ELEMENTS = {
     "spherical": "joints",
     "universal": "joints",
     "prismatic": "joints",
+    "cylindrical": "joints",
+    "inline": "joints",
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`
     "drive": "drives",
@@ -31,6 +33,11 @@ ELEMENTS = {
     "limit_stop": "forces",
     "sync_shaft": "forces",
 }
+
+# word -> the key that makes it another element, and which
+BECOMES = {"revolute": ("clearance", "clearance_joint")}
+# section -> what an entry is that names no type
+DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}
 
 
 def load(word: str) -> "Element":

@@ -22,20 +22,19 @@ from pydantic import model_validator
 from trsim.elements.contract import (
     DAMPERS,
     DRIVES,
-    SINCE,
     SPRINGS,
     Channel,
     Element,
     Limit,
     Reach,
     Row,
-    between_points,
     kernel,
 )
-from trsim.elements.frames import distance_row, helper, line, push
-from trsim.elements.prescribed import MOTION, SIGN, STATE, C, K, holds, prescribed
+from trsim.elements.frames import between_points, distance_row, helper, line, points, push
+from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
+from trsim.kernels.columns import f8, i8
 
 
 class Supply(Spec):
@@ -96,9 +95,16 @@ class Actuator(Spec):
         return self.model_copy(update={"stiffness": k, "damping": 0.0, "supply": None})
 
 
-LENGTH = 6  # par: l_0
-SUPPLY, SUPPLY_DAMPING, MASS, STALL = 12, 13, 14, 15
-PLACE, SLIP = 7, 8  # con: states u and u' - f', or -1
+class Own(AnyDrive):
+    """Of one instance; with a supply it has states u and u' - f', else -1."""
+
+    place: i8
+    slip: i8
+    length: f8  # l_0
+    supply: f8
+    supply_damping: f8
+    mass: f8
+    stall: f8
 
 
 def pack(name, spec, at):
@@ -112,19 +118,20 @@ def pack(name, spec, at):
     word = "velocity" if by_velocity else "position"
     f = at.function(getattr(spec, word), word, time_only=True)
     states = (at.state("stroke", follows=entry) if by_velocity else -1, -1, -1)
-    supply = (0.0, 0.0, 0.0)
+    supply, supply_damping, mass = 0.0, 0.0, 0.0
     if spec.supply is not None:
         states = (states[0], at.state("stroke", follows=entry), at.state("speed"))
-        supply = (spec.supply.stiffness, spec.supply.damping, spec.supply.mass)
-    par = (
-        *at.local(i, p), *at.local(j, q), drawn, 0.0, 0.0,
-        spec.stiffness or 0.0, spec.damping, float(spec.sign), *supply, spec.stall or 0.0,
-    )  # fmt: skip
+        supply, supply_damping = spec.supply.stiffness, spec.supply.damping
+        mass = spec.supply.mass
     limits = (Limit("stall", spec.stall, "N", "jammed", STALLED),) if spec.stall else ()
-    own = None if spec.supply is None else (*CHANNELS, *WITH_SUPPLY)
-    con = (i, j, entry, states[0], 0, f, *states[1:])
-    _, piston, slip = states
-    return Row(con, par, None, own, spec.stiffness is not None, states, limits,
+    channels = None if spec.supply is None else (*CHANNELS, *WITH_SUPPLY)
+    state, piston, slip = states
+    own = Own.packed(
+        spec, **points(at, i, j, p, q, entry), axis=(0.0, 0.0, 0.0), state=state, rotates=False,
+        motion=f, stiffness=spec.stiffness or 0.0, place=piston, slip=slip, length=drawn,
+        supply=supply, supply_damping=supply_damping, mass=mass, stall=spec.stall or 0.0,
+    )  # fmt: skip
+    return Row(*own, None, channels, spec.stiffness is not None, states, limits,
                piston=piston, slip=slip, length=drawn)  # fmt: skip
 
 
@@ -133,23 +140,24 @@ STALLED = "reached its stall force"
 
 @kernel
 def coordinate(t, scene, a, b):
-    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    S = scene.S
     for e in range(a, b):
-        _, _, _, length, rate = line(X, V, con, par, e)
-        S[con[e, 2], 0] = length - par[e, LENGTH]
-        S[con[e, 2], 1] = rate
+        own = Own(scene, e)
+        _, _, _, length, rate = line(scene, e)
+        S[own.coordinate, 0] = length - own.length
+        S[own.coordinate, 1] = rate
 
 
 @kernel
 def constraint(t, scene, a, b):
-    z, con, par, tab, mem = scene.z, scene.con, scene.par, scene.tab, scene.mem
     for e in range(a, b):
-        k = con[e, 3]
+        own = Own(scene, e)
+        k = own.row
         if k < 0:
             continue
-        f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
+        f, f_dot, f_ddot = prescribed(t, scene, e)
         distance_row(scene, e, k)
-        scene.phi[k] -= par[e, LENGTH] + f
+        scene.phi[k] -= own.length + f
         scene.phi_t[k] = -f_dot
         scene.gamma[k] += f_ddot
 
@@ -161,95 +169,96 @@ def state_of(t, scene, e):
     Reads the stroke and its rate from S.  Without a supply the piston is where f puts it, and once
     it is released f where the stroke is; a supply goes on driving a piston that was released.
     """
-    S, z, con, par, mem = scene.S, scene.z, scene.con, scene.par, scene.mem
-    f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, scene.tab, con[e, STATE], con[e, MOTION])
-    s = con[e, 2]
-    if con[e, PLACE] < 0 and not holds(con, par, e):
+    S, z, own = scene.S, scene.z, Own(scene, e)
+    f, f_dot, f_ddot = prescribed(t, scene, e)
+    s = own.coordinate
+    if own.place < 0 and not holds(scene, e):
         f, f_dot, f_ddot = S[s, 0], S[s, 1], 0.0
     u, u_dot = f, f_dot
-    if con[e, PLACE] >= 0:
-        u, u_dot = z[con[e, PLACE]], f_dot + z[con[e, SLIP]]
-    if par[e, LENGTH] + u <= 0.0:
+    if own.place >= 0:
+        u, u_dot = z[own.place], f_dot + z[own.slip]
+    if own.length + u <= 0.0:
         u = nan  # no line has such a length: the run ends here, and says whose it is
-    P = -par[e, K] * (S[s, 0] - u) - par[e, C] * (S[s, 1] - u_dot)
-    behind = -par[e, SUPPLY] * (u - f) - par[e, SUPPLY_DAMPING] * (u_dot - f_dot)
-    if con[e, PLACE] < 0:
+    P = -own.stiffness * (S[s, 0] - u) - own.damping * (S[s, 1] - u_dot)
+    behind = -own.supply * (u - f) - own.supply_damping * (u_dot - f_dot)
+    if own.place < 0:
         behind = P
     return P, behind, u, u_dot, f, f_dot, f_ddot
 
 
 @kernel
 def force(t, scene, a, b):
-    X, V, S, con, par, F, zd = (
-        scene.X, scene.V, scene.S, scene.con, scene.par, scene.F, scene.zd,
-    )  # fmt: skip
+    F, zd = scene.F, scene.zd
     for e in range(a, b):
+        own = Own(scene, e)
         P, behind, _, u_dot, _, f_dot, f_ddot = state_of(t, scene, e)
-        if con[e, STATE] >= 0:
-            zd[con[e, STATE]] = f_dot
-        if con[e, PLACE] >= 0:
+        if own.state >= 0:
+            zd[own.state] = f_dot
+        if own.place >= 0:
             slip = u_dot - f_dot
-            zd[con[e, PLACE]] = u_dot
-            zd[con[e, SLIP]] = (behind - P) / par[e, MASS] - f_ddot
-            zd[DAMPERS] -= par[e, SUPPLY_DAMPING] * slip * slip
+            zd[own.place] = u_dot
+            zd[own.slip] = (behind - P) / own.mass - f_ddot
+            zd[DAMPERS] -= own.supply_damping * slip * slip
             zd[DRIVES] += behind * f_dot
-        if par[e, K] > 0.0:
-            stretch = S[con[e, 2], 1] - u_dot
-            zd[DAMPERS] -= par[e, C] * stretch * stretch
-            p_i, p_j, n, _, _ = line(X, V, con, par, e)
-            push(F, con[e, 1], p_j, (P * n[0], P * n[1], P * n[2]))
-            push(F, con[e, 0], p_i, (-P * n[0], -P * n[1], -P * n[2]))
-            if con[e, PLACE] < 0:
+        if own.stiffness > 0.0:
+            stretch = scene.S[own.coordinate, 1] - u_dot
+            zd[DAMPERS] -= own.damping * stretch * stretch
+            p_i, p_j, n, _, _ = line(scene, e)
+            push(F, own.j, p_j, (P * n[0], P * n[1], P * n[2]))
+            push(F, own.i, p_i, (-P * n[0], -P * n[1], -P * n[2]))
+            if own.place < 0:
                 zd[DRIVES] += behind * f_dot
 
 
 @kernel
 def gap(t, scene, a, b):
-    S, con, par, g = scene.S, scene.con, scene.par, scene.gap
+    g = scene.gap
     for e in range(a, b):
+        own = Own(scene, e)
         _, behind, _, u_dot, _, f_dot, _ = state_of(t, scene, e)
         sign = 1.0 if behind > 0.0 else -1.0
-        g[e, 0] = sign * behind - par[e, STALL]
+        g[e, 0] = sign * behind - own.stall
         # of the spring alone: that of the damper takes accelerations
-        g[e, 1] = -sign * par[e, K] * (S[con[e, 2], 1] - u_dot)
-        if con[e, PLACE] >= 0:
-            g[e, 1] = -sign * par[e, SUPPLY] * (u_dot - f_dot)
+        g[e, 1] = -sign * own.stiffness * (scene.S[own.coordinate, 1] - u_dot)
+        if own.place >= 0:
+            g[e, 1] = -sign * own.supply * (u_dot - f_dot)
 
 
 @kernel
 def energy(t, scene, a, b):
-    S, z, con, par, mem, E = scene.S, scene.z, scene.con, scene.par, scene.mem, scene.E
+    z, E = scene.z, scene.E
     for e in range(a, b):
-        if par[e, K] == 0.0 and con[e, PLACE] < 0:
+        own = Own(scene, e)
+        if own.stiffness == 0.0 and own.place < 0:
             continue
-        f, f_dot, _ = prescribed(t - mem[e, SINCE], z, scene.tab, con[e, STATE], con[e, MOTION])
+        f, f_dot, _ = prescribed(t, scene, e)
         u = f
-        if con[e, PLACE] >= 0:
-            u, u_dot = z[con[e, PLACE]], f_dot + z[con[e, SLIP]]
-            E[SPRINGS] += 0.5 * par[e, SUPPLY] * (u - f) ** 2 + 0.5 * par[e, MASS] * u_dot**2
-        E[SPRINGS] += 0.5 * par[e, K] * (S[con[e, 2], 0] - u) ** 2
+        if own.place >= 0:
+            u, u_dot = z[own.place], f_dot + z[own.slip]
+            E[SPRINGS] += 0.5 * own.supply * (u - f) ** 2 + 0.5 * own.mass * u_dot**2
+        E[SPRINGS] += 0.5 * own.stiffness * (scene.S[own.coordinate, 0] - u) ** 2
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, S, lam, con, par = scene.X, scene.V, scene.S, scene.lam, scene.con, scene.par
-    col, out = scene.wanted, scene.out
+    S, out = scene.S, scene.out
     for e in range(a, b):
-        o = col[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
+        own = Own(scene, e)
         P, behind, u, _, f, f_dot, _ = state_of(t, scene, e)
-        if con[e, 3] >= 0:
-            P = -lam[con[e, 3]]
+        if own.row >= 0:
+            P = -scene.lam[own.row]
             behind = P
-        _, _, n, _, _ = line(X, V, con, par, e)
-        out[o] = par[e, SIGN] * P
+        _, _, n, _, _ = line(scene, e)
+        out[o] = own.sign * P
         for c in range(3):
             out[o + 1 + c] = P * n[c]
-        out[o + 4], out[o + 5] = S[con[e, 2], 0], S[con[e, 2], 1]
+        out[o + 4], out[o + 5] = S[own.coordinate, 0], S[own.coordinate, 1]
         out[o + 6], out[o + 7], out[o + 8] = f, f_dot, behind * f_dot
-        if con[e, PLACE] >= 0:
-            out[o + 9], out[o + 10] = u, par[e, SIGN] * behind
+        if own.place >= 0:
+            out[o + 9], out[o + 10] = u, own.sign * behind
 
 
 CHANNELS = (
@@ -268,9 +277,10 @@ WITH_SUPPLY = (
 
 
 def reach(row):
-    i, j = row.con[:2]
-    p, q = row.par[:3], row.par[3:6]
-    return Reach(lines=((i, p, j, q),), places=((i, p, (i, j)),))
+    own = Own.of(row)
+    return Reach(
+        lines=((own.i, own.p_i, own.j, own.p_j),), places=((own.i, own.p_i, (own.i, own.j)),)
+    )
 
 
 ELEMENT = Element(
@@ -283,6 +293,7 @@ ELEMENT = Element(
     channels=CHANNELS,
     turning=between_points,
     picture="cylinder",
+    loads={"force": "force"},
     kernels={
         "coordinate": coordinate,
         "constraint": constraint,

@@ -14,18 +14,23 @@ body are those of its chord, from the first node to the last.
 from math import sqrt
 from typing import ClassVar
 
+import numpy as np
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
-from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Row, kernel
+from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Memory, Row, kernel
 from trsim.elements.frames import cross, dot, helper
+from trsim.elements.rigid_body import RigidBody
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
+from trsim.kernels.columns import V3, f8, i8
 from trsim.kernels.vectors import clear_table
 from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
 from trsim.laws.cable_stretch import STRAINS, STRETCHINGS
 from trsim.laws.cable_tangent import add_damping, add_stiffness
+
+SLENDER = 1e-6  # of its inertia across: what a bar without width has about its own line
 
 
 class AncfCable(Cable):
@@ -64,10 +69,53 @@ class AncfCable(Cable):
         assert self.density is not None  # noqa: S101
         return self.density * self.numbers[0]
 
+    @property
+    def flexible(self):
+        return self
 
-# con: where; par: how much
-FIRST, NODES, STRAIN, CURVATURE, STRETCHING, ELEMENT_0 = 0, 1, 2, 3, 4, 5
-LENGTH, STIFFNESS, BENDING, BETA, MASS, FIELD = 0, 1, 2, 3, 4, 5
+    @property
+    def whole_mass(self):
+        return self.per_length * self.length
+
+    @property
+    def tangent(self):
+        """Unit vector from start to end."""
+        return (np.array(self.end) - np.array(self.start)) / self.length
+
+    def bar(self, start, end):
+        return self
+
+    def as_rigid(self):
+        """A rigid body of the same mass, slender; its axes are the world's."""
+        t = self.tangent
+        across = self.per_length * self.length**3 / 12.0
+        I = across * ((1.0 + SLENDER) * np.eye(3) - np.outer(t, t))
+        return RigidBody.model_construct(
+            mass=self.whole_mass,
+            inertia=(I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]),
+            at=tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True)),
+            velocity=self.velocity,
+            angular_velocity=self.angular_velocity,
+        )
+
+
+class Own(Memory):
+    """Of one instance."""
+
+    first: i8  # node
+    nodes: i8
+    strain: i8  # one of STRAINS, and so on
+    curvature: i8
+    stretching: i8
+    element: i8  # its first, among those of all bars
+    length: f8  # m, of an element
+    EA: f8  # N
+    EI: f8  # N*m^2
+    beta: f8  # s, of its damping
+    mass: f8  # kg/m
+    field: V3  # m/s^2
+
+
 BAR, AT_NODE = 18, 5  # columns of a bar, and of each of its nodes
 E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 
@@ -75,19 +123,19 @@ E_NOW, E_RATE, E_FORCE, ROOM = 0, 1, 2, 3  # rows of scene.element
 def pack(name, spec, at):
     beam = at.beams[name]
     area, moment, _ = spec.numbers
-    E, field = spec.youngs_modulus, at.scenario.gravity
-    return Row(
-        (
-            beam.first,
-            beam.nodes,
-            STRAINS[spec.strain],
-            CURVATURES[spec.curvature],
-            STRETCHINGS[spec.stretching],
-            beam.element,
-        ),
-        (beam.length, E * area, E * moment, spec.damping, spec.per_length, *field),
-        channels=channels(beam.nodes),
-    )
+    E = spec.youngs_modulus
+    own = Own.packed(
+        beam, strain=STRAINS[spec.strain], curvature=CURVATURES[spec.curvature],
+        stretching=STRETCHINGS[spec.stretching], EA=E * area, EI=E * moment, beta=spec.damping,
+        mass=spec.per_length, field=at.scenario.gravity,
+    )  # fmt: skip
+    return Row(*own, channels=channels(beam.nodes))
+
+
+def own_nodes(row):
+    """The frames of its nodes."""
+    own = Own.of(row)
+    return frozenset(range(own.first, own.first + own.nodes))
 
 
 def channels(nodes):
@@ -130,39 +178,31 @@ def gathered(scene, i):
 
 @kernel
 def force(t, scene, a, b):
-    con, par, F, Q, element = scene.con, scene.par, scene.F, scene.Q, scene.element
+    F, Q, element = scene.F, scene.Q, scene.element
     for e in range(a, b):
-        l, mass = par[e, LENGTH], par[e, MASS]
-        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+        own = Own(scene, e)
+        for i in range(own.first, own.first + own.nodes - 1):
             gathered(scene, i)
-            add_force(
-                element[E_NOW], element[E_RATE], l, par[e, STIFFNESS], par[e, BENDING],
-                par[e, BETA], con[e, STRAIN], con[e, CURVATURE], con[e, STRETCHING],
-                element[E_FORCE],
-            )  # fmt: skip
-            s1, s2, s3, s4 = uniform_shares(l)
+            add_force(element[E_NOW], element[E_RATE], own, own.beta, element[E_FORCE])
+            s1, s2, s3, s4 = uniform_shares(own.length)
             for c in range(3):
-                weight = mass * par[e, FIELD + c]
+                weight = own.mass * own.field[c]
                 F[i, c] += element[E_FORCE, c] + s1 * weight
                 Q[i, c] += element[E_FORCE, 3 + c] + s2 * weight
                 F[i + 1, c] += element[E_FORCE, 6 + c] + s3 * weight
                 Q[i + 1, c] += element[E_FORCE, 9 + c] + s4 * weight
-            if par[e, BETA] > 0.0:
-                scene.zd[DAMPERS] += damping_power(scene, par, con, e)
+            if own.beta > 0.0:
+                scene.zd[DAMPERS] += damping_power(element, own)
 
 
 @helper
-def damping_power(scene, par, con, e):
+def damping_power(element, own):
     """Power of the damping forces of the element last gathered, W; never positive."""
-    element = scene.element
     power = 0.0
     for k in range(12):
         power += element[E_FORCE, k] * element[E_RATE, k]
         element[E_FORCE, k] = 0.0
-    add_force(
-        element[E_NOW], element[E_RATE], par[e, LENGTH], par[e, STIFFNESS], par[e, BENDING],
-        0.0, con[e, STRAIN], con[e, CURVATURE], con[e, STRETCHING], element[E_FORCE],
-    )  # fmt: skip
+    add_force(element[E_NOW], element[E_RATE], own, 0.0, element[E_FORCE])
     for k in range(12):
         power -= element[E_FORCE, k] * element[E_RATE, k]
     return power
@@ -170,40 +210,31 @@ def damping_power(scene, par, con, e):
 
 @kernel
 def stiffness(t, scene, a, b):
-    con, par, element = scene.con, scene.par, scene.element
+    element = scene.element
     for e in range(a, b):
-        l, beta = par[e, LENGTH], par[e, BETA]
-        for k in range(con[e, NODES] - 1):
-            gathered(scene, con[e, FIRST] + k)
-            row = 12 * (con[e, ELEMENT_0] + k)
+        own = Own(scene, e)
+        for k in range(own.nodes - 1):
+            gathered(scene, own.first + k)
+            row = 12 * (own.element + k)
             K, C = scene.tangent[row : row + 12], scene.viscous[row : row + 12]
             clear_table(K)
-            add_stiffness(
-                element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                con[e, CURVATURE], con[e, STRETCHING], element[ROOM:], K,
-            )  # fmt: skip
-            if beta > 0.0:
+            add_stiffness(element[E_NOW], own, element[ROOM:], K)
+            if own.beta > 0.0:
                 clear_table(C)
-                add_damping(
-                    element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], beta, con[e, STRAIN],
-                    con[e, CURVATURE], con[e, STRETCHING], element[ROOM:], C,
-                )  # fmt: skip
+                add_damping(element[E_NOW], own, element[ROOM:], C)
 
 
 @kernel
 def energy(t, scene, a, b):
-    con, par, E, element = scene.con, scene.par, scene.E, scene.element
+    E, x = scene.E, scene.element[E_NOW]
     for e in range(a, b):
-        l, mass = par[e, LENGTH], par[e, MASS]
-        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+        own = Own(scene, e)
+        for i in range(own.first, own.first + own.nodes - 1):
             gathered(scene, i)
-            stretching, bending = energies(
-                element[E_NOW], l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN],
-                con[e, CURVATURE], con[e, STRETCHING],
-            )  # fmt: skip
+            stretching, bending = energies(x, own)
             E[SPRINGS] += stretching + bending
             for c in range(3):
-                E[GRAVITY] -= mass * par[e, FIELD + c] * moment(element[E_NOW], l, c)
+                E[GRAVITY] -= own.mass * own.field[c] * moment(x, own.length, c)
 
 
 @helper
@@ -215,13 +246,13 @@ def moment(x, l, c):
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, con, par, wanted, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
-    element = scene.element
+    X, V, out, element = scene.X, scene.V, scene.out, scene.element
     for e in range(a, b):
-        o = wanted[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
-        first, nodes, l = con[e, FIRST], con[e, NODES], par[e, LENGTH]
+        own = Own(scene, e)
+        first, nodes, l = own.first, own.nodes, own.length
         last = first + nodes - 1
         whole = l * (nodes - 1)
         for k in range(BAR + AT_NODE * nodes):
@@ -232,17 +263,11 @@ def measure(t, scene, a, b):
             for c in range(3):
                 out[o + c] += moment(x, l, c) / whole
                 out[o + 3 + c] += moment(v, l, c) / whole
-            stretching, bending = energies(
-                x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE],
-                con[e, STRETCHING],
-            )  # fmt: skip
+            stretching, bending = energies(x, own)
             out[o + 16] += stretching + bending
             out[o + 17] += stretching
             for n in range(2):
-                N, M = stress(
-                    x, l, par[e, STIFFNESS], par[e, BENDING], con[e, STRAIN], con[e, CURVATURE],
-                    float(n),
-                )  # fmt: skip
+                N, M = stress(x, own, float(n))
                 # a node between two elements has the mean of both
                 share = 1.0 if i + n == first or i + n == last else 0.5
                 place = o + BAR + AT_NODE * (i + n - first)
@@ -288,6 +313,9 @@ ELEMENT = Element(
     spec=AncfCable,
     pack=pack,
     channels=channels(5),
+    acts_on=own_nodes,
+    elastic=tuple(Own.columns[name].at for name in ("EA", "EI")),
+    viscous=(Own.columns["beta"].at,),
     kernels={"force": force, "stiffness": stiffness, "energy": energy, "measure": measure},
     example="""
 bodies:

@@ -10,9 +10,10 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Memory, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
+from trsim.kernels.columns import V3, i8
 from trsim.laws.functions import value
 
 
@@ -44,6 +45,17 @@ class AppliedLoad(Spec):
         return self
 
 
+class Own(Memory):
+    """Of one instance."""
+
+    body: i8
+    frame: i8  # with which the direction turns
+    function: i8  # f in tab
+    turns: i8  # 1: a torque
+    point: V3  # m, in the axes of the body
+    direction: V3  # in those of the frame
+
+
 def pack(name, spec, at):
     i = at.body(spec.body, "body", near=spec.at)
     frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame", near=spec.at, off=1.0)
@@ -53,55 +65,57 @@ def pack(name, spec, at):
     is_torque = spec.force is None
     load = spec.torque if is_torque else spec.force
     f = at.function(load, "torque" if is_torque else "force")
-    con, par = (i, frame, f, int(is_torque)), (*at.local(i, place), *n)
-    return Row(con, par, turns=is_torque, reads=load.sensors)
+    own = Own.packed(
+        body=i, frame=frame, function=f, turns=is_torque, point=at.local(i, place), direction=n
+    )
+    return Row(*own, turns=is_torque, reads=load.sensors)
 
 
 @kernel
 def force(t, scene, a, b):
-    X, V, S, con = scene.X, scene.V, scene.S, scene.con
-    par, tab, F, zd = scene.par, scene.tab, scene.F, scene.zd
+    X, V, F, zd = scene.X, scene.V, scene.F, scene.zd
     for e in range(a, b):
-        i, frame = con[e, 0], con[e, 1]
-        f = value(tab, con[e, 2], t, S)
-        n = arm(X, frame, par[e, 3], par[e, 4], par[e, 5])
+        own = Own(scene, e)
+        i, n = own.body, arm(X, own.frame, own.direction)
+        f = value(scene.tab, own.function, t, scene.S)
         load = (f * n[0], f * n[1], f * n[2])
-        if con[e, 3] == 1:
+        if own.turns == 1:
             twist(F, i, load)
             zd[LOADS] += dot(load, spin(V, i))
         else:
-            p = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
+            p = arm(X, i, own.point)
             push(F, i, p, load)
             zd[LOADS] += dot(load, velocity(V, i, p))
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, S, con = scene.X, scene.S, scene.con
-    par, tab, col, out = scene.par, scene.tab, scene.wanted, scene.out
+    col, out = scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        f = value(tab, con[e, 2], t, S)
-        n = arm(X, con[e, 1], par[e, 3], par[e, 4], par[e, 5])
+        own = Own(scene, e)
+        f = value(scene.tab, own.function, t, scene.S)
+        n = arm(scene.X, own.frame, own.direction)
         out[col[e]] = f
         for c in range(3):
             out[col[e] + 1 + c] = f * n[c]
 
 
 def reach(row):
-    i, frame, _, is_torque = row.con
-    way = ((frame, row.par[3:6]),)
-    if is_torque:
+    own = Own.of(row)
+    way = ((own.frame, own.direction),)
+    if own.turns:
         return Reach(torques=way)
-    return Reach(forces=way, places=((i, row.par[:3], (i,)),))
+    return Reach(forces=way, places=((own.body, own.point, (own.body,)),))
 
 
 def turning(row):
-    body, frame, _, is_torque = row.con
-    if is_torque:
-        return Turning((body, frame), torques=((body, frame, row.par[3:6]),))
-    return Turning(points=((body, row.par[:3]),), axes=((frame, row.par[3:6]),))
+    own = Own.of(row)
+    if own.turns:
+        torque = (own.body, own.frame, own.direction)
+        return Turning((own.body, own.frame), torques=(torque,))
+    return Turning(points=((own.body, own.point),), axes=((own.frame, own.direction),))
 
 
 ELEMENT = Element(
@@ -115,6 +129,7 @@ ELEMENT = Element(
         Channel("load", "drive", "its components, world axes", 3),
     ),
     turning=turning,
+    loads={"magnitude": "load"},
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

@@ -13,6 +13,7 @@ from the other side, and the run says so (doubts.py).  A rail is a bushing witho
 damping along it.
 """
 
+from math import degrees, pi
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
@@ -24,12 +25,15 @@ from trsim.elements.contract import (
     Element,
     Reach,
     Row,
+    Springs,
     Turning,
     kernel,
 )
 from trsim.elements.frames import (
+    TwoPoints,
     dot,
     helper,
+    points,
     push,
     separation,
     spin,
@@ -41,12 +45,13 @@ from trsim.elements.rotations import gradient, into, out_of, rotation_vector, tr
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.frame import across
+from trsim.kernels.columns import V3, i8
 
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
 NONE = (0.0, 0.0, 0.0)
 TURN = "rotation_vector"
-STIFFNESS, DAMPING, ROTATIONAL = 24, 27, 30  # par, after the arms and the axes in both bodies
+NEXT_TO_HALF = 0.1  # rad: so near to half a turn it is told
 
 
 class Bushing(Spec):
@@ -72,79 +77,88 @@ class Bushing(Spec):
     rotational_stiffness: Annotated[Three, Unit("N*m/rad")] = NONE
     rotational_damping: Annotated[Three, Unit("N*m*s/rad")] = NONE
 
+    @property
+    def axes(self):
+        """The three unit vectors along which stiffnesses are meant, world axes as drawn."""
+        for key in ("x_axis", "y_axis"):
+            if not any(getattr(self, key)):
+                raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
+        x, y = direction(self.x_axis), direction(self.y_axis)
+        z = across(x, y)
+        if max(map(abs, z)) < 1e-6:
+            what = "`y_axis` has the direction of `x_axis`"
+            raise ScenarioError(what, "give the one across it, for example [0, 0, 1]", ("y_axis",))
+        z = direction(z)
+        return x, across(z, x), z
 
-def axes(spec):
-    """The three unit vectors along which stiffnesses are meant, world axes as drawn."""
-    for key in ("x_axis", "y_axis"):
-        if not any(getattr(spec, key)):
-            raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
-    x, y = direction(spec.x_axis), direction(spec.y_axis)
-    z = across(x, y)
-    if max(map(abs, z)) < 1e-6:
-        what = "`y_axis` has the direction of `x_axis`"
-        raise ScenarioError(what, "give the one across it, for example [0, 0, 1]", ("y_axis",))
-    z = direction(z)
-    return x, across(z, x), z
+
+class Own(TwoPoints):
+    """Of one instance."""
+
+    turns: i8  # 1: something acts against turns
+    x_i: V3  # directions of the stiffnesses in the axes of body i
+    y_i: V3
+    z_i: V3
+    x_j: V3  # and in those of body j
+    y_j: V3
+    z_j: V3
+    stiffness: V3
+    damping: V3
+    rotational_stiffness: V3
+    rotational_damping: V3
 
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    own = axes(spec)
-    turning = any((*spec.rotational_stiffness, *spec.rotational_damping))
-    return Row(
-        (i, j, -1, int(turning)),
-        (
-            *at.local(i, spec.at),
-            *at.local(j, spec.at),
-            *(c for axis in own for c in at.axes(i, axis)),
-            *(c for axis in own for c in at.axes(j, axis)),
-            *(*spec.stiffness, *spec.damping),
-            *(*spec.rotational_stiffness, *spec.rotational_damping),
-        ),
-    )
+    named = zip(("x", "y", "z"), spec.axes, strict=True)
+    own = {f"{k}_{end}": at.axes(f, axis) for k, axis in named for end, f in (("i", i), ("j", j))}
+    turns = any((*spec.rotational_stiffness, *spec.rotational_damping))
+    return Row(*Own.packed(spec, **points(at, i, j, spec.at, spec.at), **own, turns=turns))
 
 
 @helper
-def diagonal(par, e, k, v):
-    """Three numbers of par from k on times those of v."""
-    return (par[e, k] * v[0], par[e, k + 1] * v[1], par[e, k + 2] * v[2])
+def diagonal(K, v):
+    """K v with the diagonal K."""
+    return (K[0] * v[0], K[1] * v[1], K[2] * v[2])
 
 
 @helper
-def half_square(par, e, k, v):
-    """(v^T K v)/2 with three numbers K of par from k on."""
-    return 0.5 * dot(v, diagonal(par, e, k, v))
+def half_square(K, v):
+    """(v^T K v)/2 with the diagonal K."""
+    return 0.5 * dot(v, diagonal(K, v))
 
 
 @helper
-def slide(X, con, par, e):
+def slide(scene, e):
     """The axes A_i, the arm to P_j on body i and on body j, and d."""
-    i, p_i, j, p_j = two_points(X, con, par, e)
+    X, own = scene.X, Own(scene, e)
+    i, p_i, j, p_j = two_points(scene, e)
     D = separation(X, i, p_i, j, p_j)
-    A = triad(X, i, par, e, 6)
+    A = triad(X, i, own.x_i, own.y_i, own.z_i)
     return A, (p_i[0] + D[0], p_i[1] + D[1], p_i[2] + D[2]), p_j, into(A, D)
 
 
 @helper
-def turn(X, A, con, par, e):
+def turn(X, A, own):
     """theta."""
-    return rotation_vector(A, triad(X, con[e, 1], par, e, 15))
+    return rotation_vector(A, triad(X, own.j, own.x_j, own.y_j, own.z_j))
 
 
 @helper
-def loads(X, V, con, par, e):
+def loads(scene, e):
     """Arms on both bodies, force and moment on body j in world axes, the power lost."""
-    i, j = con[e, 0], con[e, 1]
-    A, p_i, p_j, d = slide(X, con, par, e)
+    V, own = scene.V, Own(scene, e)
+    i, j = own.i, own.j
+    A, p_i, p_j, d = slide(scene, e)
     v_i, v_j, o_i, o_j = velocity(V, i, p_i), velocity(V, j, p_j), spin(V, i), spin(V, j)
     rate = into(A, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    k, c = diagonal(par, e, STIFFNESS, d), diagonal(par, e, DAMPING, rate)
+    k, c = diagonal(own.stiffness, d), diagonal(own.damping, rate)
     f, m, lost = (-k[0] - c[0], -k[1] - c[1], -k[2] - c[2]), (0.0, 0.0, 0.0), dot(c, rate)
-    if con[e, 3] == 1:
-        theta = turn(X, A, con, par, e)
+    if own.turns == 1:
+        theta = turn(scene.X, A, own)
         omega = into(A, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
-        k = gradient(theta, diagonal(par, e, ROTATIONAL, theta))
-        c = diagonal(par, e, ROTATIONAL + 3, omega)
+        k = gradient(theta, diagonal(own.rotational_stiffness, theta))
+        c = diagonal(own.rotational_damping, omega)
         m = (-k[0] - c[0], -k[1] - c[1], -k[2] - c[2])
         lost += dot(c, omega)
     return p_i, p_j, out_of(A, f), out_of(A, m), lost
@@ -152,10 +166,11 @@ def loads(X, V, con, par, e):
 
 @kernel
 def force(t, scene, a, b):
-    X, V, con, par, F, zd = scene.X, scene.V, scene.con, scene.par, scene.F, scene.zd
+    F, zd = scene.F, scene.zd
     for e in range(a, b):
-        i, j = con[e, 0], con[e, 1]
-        p_i, p_j, f, m, lost = loads(X, V, con, par, e)
+        own = Own(scene, e)
+        i, j = own.i, own.j
+        p_i, p_j, f, m, lost = loads(scene, e)
         push(F, j, p_j, f)
         push(F, i, p_i, (-f[0], -f[1], -f[2]))
         twist(F, j, m)
@@ -165,54 +180,73 @@ def force(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, con, par, E = scene.X, scene.con, scene.par, scene.E
+    E = scene.E
     for e in range(a, b):
-        A, _, _, d = slide(X, con, par, e)
-        E[SPRINGS] += half_square(par, e, STIFFNESS, d)
-        if con[e, 3] == 1:
-            E[SPRINGS] += half_square(par, e, ROTATIONAL, turn(X, A, con, par, e))
+        own = Own(scene, e)
+        A, _, _, d = slide(scene, e)
+        E[SPRINGS] += half_square(own.stiffness, d)
+        if own.turns == 1:
+            E[SPRINGS] += half_square(own.rotational_stiffness, turn(scene.X, A, own))
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, con, par, col, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
+    out = scene.out
     for e in range(a, b):
-        o = col[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
-        A, _, _, d = slide(X, con, par, e)
-        _, _, f, m, _ = loads(X, V, con, par, e)
-        theta = turn(X, A, con, par, e)
+        A, _, _, d = slide(scene, e)
+        _, _, f, m, _ = loads(scene, e)
+        theta = turn(scene.X, A, Own(scene, e))
         for c in range(3):
             out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
 
 
 def turns_against(row):
     """Whether something acts against turns, which has a meaning below half a turn only."""
-    return any(row.par[ROTATIONAL : ROTATIONAL + 3])
+    return any(Own.of(row).rotational_stiffness)
+
+
+def doubts(name, spec, largest):
+    """A moment that jumps, or is about to: turns in space cannot be counted."""
+    if not any(spec.rotational_stiffness):
+        return
+    angle, when = largest(f"{name}.{TURN}")
+    if angle > pi - NEXT_TO_HALF:
+        yield (
+            f"forces.{name}: turned by {degrees(angle):.4g} deg at {when:.4g} s; from "
+            "half a turn on its moment is that of the turn from the other side, since turns "
+            "about any axis cannot be counted: a torsion_spring on a hinge counts them"
+        )
+
+
+def springs(row):
+    own = Own.of(row)
+    return Springs((own.x_i, own.y_i, own.z_i), own.p_j, own.stiffness, own.rotational_stiffness)
 
 
 def reach(row):
     """Its matrices of stiffness and damping; each acts in the plane where it couples no z to it."""
-    i, j = row.con[:2]
-    axes, k, c, k_r, c_r = (
-        row.par[n : n + m] for n, m in ((6, 9), (24, 3), (27, 3), (30, 3), (33, 3))
+    own = Own.of(row)
+    axes = (*own.x_i, *own.y_i, *own.z_i)
+    sliding, turning = (
+        (own.stiffness, own.damping),
+        (own.rotational_stiffness, own.rotational_damping),
     )
+    laws = (*((law, False) for law in sliding), *((law, True) for law in turning))
     return Reach(
-        places=((i, row.par[:3], (i, j)),) if any(k + c) else (),
+        places=((own.i, own.p_i, (own.i, own.j)),) if any(map(any, sliding)) else (),
         always=True,
-        tensors=tuple(
-            (i, axes, law, turns)
-            for law, turns in ((k, False), (c, False), (k_r, True), (c_r, True))
-            if any(law)
-        ),
+        tensors=tuple((own.i, axes, law, turns) for law, turns in laws if any(law)),
     )
 
 
 def turning(row):
-    """Of its three axes two at least point across a bar."""
-    i, j, _, turns = row.con
-    return Turning((i, j), axes=((i, (0.0, 0.0, 0.0)),), held=(j,) if turns else ())
+    """All turns are felt: two at least of its three axes point across a bar."""
+    own = Own.of(row)
+    held = (own.j,) if own.turns else ()
+    return Turning((own.i, own.j), axes=((own.i, (0.0, 0.0, 0.0)),), held=held)
 
 
 ELEMENT = Element(
@@ -222,11 +256,13 @@ ELEMENT = Element(
     pack=pack,
     reach=reach,
     judged=turns_against,
+    doubts=doubts,
+    springs=springs,
     channels=(
         Channel("force", "N", "on the second body at its point, world axes", 3),
         Channel("moment", "N*m", "on the second body, world axes", 3),
         Channel("displacement", "m", "of the second body's point, in the axes of the first", 3),
-        Channel(TURN, "rad", "of the second body, in the same axes", 3),
+        Channel(TURN, "rad", "of the second body, in the same axes", 3, turn=True),
     ),
     turning=turning,
     picture="block",

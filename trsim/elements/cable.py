@@ -117,7 +117,7 @@ class Cable(Spec):
 
     @property
     def thickness(self) -> float:
-        """In the direction of bending, m; without a shape that of a rectangle."""
+        """Its thickness in the direction of bending, m; without a shape that of a rectangle."""
         if self.section is not None:
             section = self.section
             return section.diameter or section.height or section.width or 0.0

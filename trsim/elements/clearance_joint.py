@@ -20,14 +20,11 @@ from typing import Annotated, ClassVar
 from annotated_types import Ge
 
 from trsim.elements.contract import (
-    BRANCH,
     CONTACT,
     CONTACTS,
     FLIGHT,
     FRICTION,
-    IMPACT_SPEED,
     IMPACTS,
-    PHASE,
     WHOLE,
     Channel,
     Contact,
@@ -37,33 +34,30 @@ from trsim.elements.contract import (
     kernel,
 )
 from trsim.elements.frames import (
-    along_row,
     arm,
     cross,
     dot,
     helper,
-    perpendicular_row,
+    points,
     push,
     separation,
     two_points,
     velocity,
 )
-from trsim.elements.joint import of_a_hinge, triads
-from trsim.elements.revolute import Revolute, coordinate
+from trsim.elements.joint import triads
+from trsim.elements.revolute import Revolute
+from trsim.elements.rows import TILTS, Axes, along, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
+from trsim.kernels.columns import constraint_row, f8, i8, run
 from trsim.laws.contact import (
-    cylinder_stiffness,
-    damping_factor,
     elastic,
-    hertz_stiffness,
     normal_force,
     stored,
 )
 from trsim.laws.friction import (
     CODES,
     N_PARAMETERS,
-    PARAMETERS,
     beyond,
     branch_of,
     friction_force,
@@ -85,42 +79,26 @@ class ClearanceJoint(Revolute):
     type: ClassVar[str] = "clearance_joint"
 
 
-# par, after the 22 of joint.py
-R_B, C, STIFFNESS, EXPONENT, FORM, CHI, SLOWEST, FRICTION_PAR = 22, 23, 24, 25, 26, 27, 28, 29
-AXIAL, TILT_1, TILT_2, STATE, FRICTION_LAW = 3, 4, 5, 6, 7  # con
-MU, V0, V1 = FRICTION_PAR, FRICTION_PAR + 1, FRICTION_PAR + 2  # of modified_coulomb
-CORNERED = CODES["modified_coulomb"]
+class Own(Axes):
+    """Of one instance."""
+
+    axial: constraint_row
+    tilt_1: constraint_row
+    tilt_2: constraint_row
+    state: i8  # of z: the deflection of bristles, or -1
+    friction_law: i8  # one of CODES
+    bearing_radius: f8
+    clearance: f8
+    stiffness: f8
+    exponent: f8
+    form: i8  # of the elastic law
+    chi: f8
+    slowest_impact: f8
+    friction: run(f8, N_PARAMETERS)
 
 
-def normal_numbers(law, c):
-    """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch."""
-    E_j = law.journal_youngs_modulus or law.youngs_modulus
-    nu_j = law.poisson if law.journal_poisson is None else law.journal_poisson
-    chi = damping_factor(law.normal, law.restitution)
-    if isinstance(law.stiffness, float):
-        return law.stiffness, law.exponent, 0, chi, law.stiffness
-    if law.stiffness == "cylinder":
-        K = cylinder_stiffness(law.width, law.youngs_modulus, law.poisson, E_j, nu_j)
-        return K, 1.5, 1, chi, K / c**0.5
-    R_i = law.bearing_radius
-    K = hertz_stiffness(R_i, R_i - c, law.youngs_modulus, law.poisson, E_j, nu_j, law.stiffness)
-    return K, law.exponent, 0, chi, K
-
-
-def friction_numbers(friction):
-    """Code of the friction law and its N_PARAMETERS numbers."""
-    words = {
-        "mu": friction.coefficient,
-        "mu_k": friction.coefficient,
-        "mu_s": friction.static_coefficient or friction.coefficient,
-        "v0": friction.v0,
-        "v1": friction.v1,
-        "v_s": friction.stribeck_speed,
-        "sigma0": friction.bristle_stiffness,
-        "sigma1": friction.bristle_damping,
-    }
-    numbers = [float(words[name]) for name in PARAMETERS[friction.law]]
-    return CODES[friction.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
+CORNERED = CODES["modified_coulomb"]  # its parameters are mu, v0, v1
+ROWS = (along("a", "axial"), *TILTS)
 
 
 def pack(name, spec, at):
@@ -139,66 +117,45 @@ def pack(name, spec, at):
             "the usual size is some tenths of a millimetre",
             ("clearance",),
         )
-    K, exponent, form, chi, light = normal_numbers(law, spec.clearance)
-    code, friction = friction_numbers(law.friction)
+    K, exponent, form, chi, light = law.normal_numbers(spec.clearance)
+    code, friction = law.friction.numbers
     sticks = law.friction.law == "sticking"
     # w settles at +-mu / sigma0: that is its size in the error norm
     state = at.state(friction[1] / friction[3]) if sticks else -1
-    par = (
-        *at.local(i, spec.at),
-        *at.local(j, spec.at),
-        *triads(i, j, spec.axis, at, spec.drawn_in),
-        law.bearing_radius,
-        spec.clearance,
-        K,
-        exponent,
-        float(form),
-        chi,
-        law.slowest_impact,
-        *friction,
-    )
+    own = Own.packed(
+        law, **points(at, i, j, spec.at, spec.at), **triads(i, j, spec.axis, at, spec.drawn_in),
+        clearance=spec.clearance, stiffness=K, exponent=exponent, form=form, chi=chi, state=state,
+        friction_law=code, friction=friction,
+    )  # fmt: skip
     ramp = law.friction.law == "modified_coulomb"
     slope = friction[0] / (friction[2] - friction[1]) if ramp else 0.0
-    jump = FRICTION_PAR if law.friction.law == "coulomb" else -1
-    contact = Contact(light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump)
-    return Row((i, j, -1, state, code), par, contact, states=(state,), travel="distance")
-
-
-@kernel
-def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
-    for e in range(a, b):
-        k3, k4, k5 = con[e, AXIAL], con[e, TILT_1], con[e, TILT_2]
-        if k3 < 0 and k4 < 0 and k5 < 0:
-            continue
-        i, p_i, j, p_j = two_points(X, con, par, e)
-        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-        axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
-        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
-        along_row(scene, i, p_i, axis, j, p_j, k3)
-        perpendicular_row(scene, i, u, j, a_j, k4)
-        perpendicular_row(scene, i, w, j, a_j, k5)
+    jump = Own.columns["friction"].at if law.friction.law == "coulomb" else -1
+    contact = Contact(
+        light, exponent, spec.clearance, law.slowest_impact, chi, state, slope, jump,
+        law.bearing_radius,
+    )  # fmt: skip
+    return Row(*own, contact, states=(state,), travel="distance")
 
 
 @helper
-def play(X, V, con, par, e):
+def play(scene, e):
     """Arms, separation, unit normal and tangent, penetration and its rate."""
-    i, p_i, j, p_j = two_points(X, con, par, e)
-    axis = arm(X, i, par[e, 12], par[e, 13], par[e, 14])
+    X, V, own = scene.X, scene.V, Own(scene, e)
+    i, p_i, j, p_j = two_points(scene, e)
+    axis = arm(X, i, own.a_i)
     d = separation(X, i, p_i, j, p_j)
     along = dot(axis, d)
     e_r = (d[0] - along * axis[0], d[1] - along * axis[1], d[2] - along * axis[2])
     size = sqrt(dot(e_r, e_r))
     if size == 0.0:  # centred: the normal is arbitrary and nothing touches
-        n = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        n = arm(X, i, own.u_i)
     else:
         n = (e_r[0] / size, e_r[1] / size, e_r[2] / size)
     # against the bearing's body moving with the journal centre: n turns with it
     v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
     v_j = velocity(V, j, p_j)
     rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    return p_i, p_j, d, n, cross(axis, n), size - par[e, C], rate
+    return p_i, p_j, d, n, cross(axis, n), size - own.clearance, rate
 
 
 @helper
@@ -225,49 +182,51 @@ def slip(V, i, c_i, j, c_j, tangent):
 
 
 @helper
-def sliding(X, V, con, par, e):
+def sliding(scene, e):
     """The sliding speed of instance e, m/s."""
-    p_i, p_j, d, n, tangent, _, _ = play(X, V, con, par, e)
-    c_i, c_j = touching(p_i, p_j, d, n, par[e, R_B] - par[e, C])
-    return slip(V, con[e, 0], c_i, con[e, 1], c_j, tangent)
+    own = Own(scene, e)
+    p_i, p_j, d, n, tangent, _, _ = play(scene, e)
+    c_i, c_j = touching(p_i, p_j, d, n, own.bearing_radius - own.clearance)
+    return slip(scene.V, own.i, c_i, own.j, c_j, tangent)
 
 
 @helper
 def contact_forces(scene, e):
     """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
-    X, V, z, con, par, mem = scene.X, scene.V, scene.z, scene.con, scene.par, scene.mem
-    p_i, p_j, d, n, tangent, depth, rate = play(X, V, con, par, e)
-    i, j = con[e, 0], con[e, 1]
-    c_i, c_j = touching(p_i, p_j, d, n, par[e, R_B] - par[e, C])
-    if mem[e, PHASE] == FLIGHT or depth <= 0.0:
+    V, own = scene.V, Own(scene, e)
+    i, j = own.i, own.j
+    p_i, p_j, d, n, tangent, depth, rate = play(scene, e)
+    c_i, c_j = touching(p_i, p_j, d, n, own.bearing_radius - own.clearance)
+    if own.phase == FLIGHT or depth <= 0.0:
         # at the touch itself nothing presses yet, and the journal slides as it will right behind it
-        v_t = slip(V, i, c_i, j, c_j, tangent) if mem[e, PHASE] == CONTACT else 0.0
+        v_t = slip(V, i, c_i, j, c_j, tangent) if own.phase == CONTACT else 0.0
         return 0.0, 0.0, v_t, 0.0, c_i, c_j, n, tangent, depth, rate
-    first = mem[e, IMPACT_SPEED]
+    first = own.impact_speed
     if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
-        first = max(rate, par[e, SLOWEST])
-    F_n = normal_force(depth, rate, first, par[e, STIFFNESS], par[e, EXPONENT], par[e, C],
-                       int(par[e, FORM]), par[e, CHI])  # fmt: skip
+        first = max(rate, own.slowest_impact)
+    F_n = normal_force(
+        depth, rate, first, own.stiffness, own.exponent, own.clearance, own.form, own.chi
+    )
     v_t = slip(V, i, c_i, j, c_j, tangent)
-    state = con[e, STATE]
-    w = z[state] if state >= 0 else 0.0
-    branch = mem[e, BRANCH]
-    if con[e, FRICTION_LAW] == CORNERED and branch != WHOLE:
-        F_t, w_dot = on_branch(branch, F_n, v_t, par[e, MU], par[e, V0], par[e, V1]), 0.0
+    w = scene.z[own.state] if own.state >= 0 else 0.0
+    f = own.friction
+    if own.friction_law == CORNERED and own.branch != WHOLE:
+        F_t, w_dot = on_branch(own.branch, F_n, v_t, f[0], f[1], f[2]), 0.0
     else:
-        F_t, w_dot = friction_force(con[e, FRICTION_LAW], F_n, v_t, w, par[e], FRICTION_PAR)
+        F_t, w_dot = friction_force(own.friction_law, F_n, v_t, w, f)
     return F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate
 
 
 @kernel
 def force(t, scene, a, b):
-    con, par, mem, F, zd, left = scene.con, scene.par, scene.mem, scene.F, scene.zd, scene.left
+    F, zd, left = scene.F, scene.zd, scene.left
     for e in range(a, b):
-        if mem[e, PHASE] == FLIGHT:
+        own = Own(scene, e)
+        if own.phase == FLIGHT:
             continue
         F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
-        if con[e, FRICTION_LAW] == CORNERED and mem[e, BRANCH] != WHOLE:
-            left[e] = max(left[e], beyond(mem[e, BRANCH], v_t, par[e, V0], par[e, V1]))
+        if own.friction_law == CORNERED and own.branch != WHOLE:
+            left[e] = max(left[e], beyond(own.branch, v_t, own.friction[1], own.friction[2]))
         if depth <= 0.0:
             continue
         f = (
@@ -275,33 +234,32 @@ def force(t, scene, a, b):
             -F_n * n[1] + F_t * tangent[1],
             -F_n * n[2] + F_t * tangent[2],
         )
-        push(F, con[e, 1], c_j, f)
-        push(F, con[e, 0], c_i, (-f[0], -f[1], -f[2]))
-        spring = elastic(depth, par[e, STIFFNESS], par[e, EXPONENT], par[e, C], int(par[e, FORM]))
+        push(F, own.j, c_j, f)
+        push(F, own.i, c_i, (-f[0], -f[1], -f[2]))
+        spring = elastic(depth, own.stiffness, own.exponent, own.clearance, own.form)
         zd[IMPACTS] -= (F_n - spring) * rate
         zd[FRICTION] += F_t * v_t
-        if con[e, STATE] >= 0:
-            zd[con[e, STATE]] = w_dot
+        if own.state >= 0:
+            zd[own.state] = w_dot
 
 
 @kernel
 def gap(t, scene, a, b):
-    X, V, con, par, g = scene.X, scene.V, scene.con, scene.par, scene.gap
+    g = scene.gap
     for e in range(a, b):
-        _, _, _, _, _, depth, rate = play(X, V, con, par, e)
-        g[e, 0] = depth
-        g[e, 1] = rate
+        _, _, _, _, _, g[e, 0], g[e, 1] = play(scene, e)
 
 
 @kernel
 def corners(t, scene, a, b):
-    X, V, con, par, mem, out = scene.X, scene.V, scene.con, scene.par, scene.mem, scene.corner
+    out = scene.corner
     for e in range(a, b):
+        own = Own(scene, e)
         out[e, 0] = -1.0
-        if con[e, FRICTION_LAW] != CORNERED or mem[e, PHASE] != CONTACT:
+        if own.friction_law != CORNERED or own.phase != CONTACT:
             continue
-        v_t = sliding(X, V, con, par, e)
-        v0, v1, branch = par[e, V0], par[e, V1], mem[e, BRANCH]
+        v_t = sliding(scene, e)
+        v0, v1, branch = own.friction[1], own.friction[2], own.branch
         if branch == WHOLE:
             out[e, 1] = branch_of(v_t, v0, v1)
         else:
@@ -310,31 +268,30 @@ def corners(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, con, par, mem, E = scene.X, scene.con, scene.par, scene.mem, scene.E
+    E = scene.E
     for e in range(a, b):
-        if mem[e, PHASE] == FLIGHT:
+        own = Own(scene, e)
+        if own.phase == FLIGHT:
             continue
-        # the penetration needs no velocity: X stands in for V, its rate is not used
-        _, _, _, _, _, depth, _ = play(X, X, con, par, e)
-        E[CONTACTS] += stored(depth, par[e, STIFFNESS], par[e, EXPONENT], par[e, C],
-                              int(par[e, FORM]))  # fmt: skip
+        _, _, _, _, _, depth, _ = play(scene, e)
+        E[CONTACTS] += stored(depth, own.stiffness, own.exponent, own.clearance, own.form)
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, con, par, col, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
+    X, V, out = scene.X, scene.V, scene.out
     for e in range(a, b):
-        o = col[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
+        own = Own(scene, e)
         F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
-        i, p_i, j, p_j = two_points(X, con, par, e)
+        i, p_i, j, p_j = two_points(scene, e)
         d = separation(X, i, p_i, j, p_j)
         v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
         v_j = velocity(V, j, p_j)
         v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
+        u, w = arm(X, i, own.u_i), arm(X, i, own.w_i)
         out[o], out[o + 1], out[o + 2] = F_n, F_t, sqrt(F_n * F_n + F_t * F_t)
         out[o + 3], out[o + 4], out[o + 5] = depth, rate, v_t
         out[o + 6], out[o + 7] = dot(u, d), dot(w, d)
@@ -344,8 +301,8 @@ def measure(t, scene, a, b):
 
 
 def reach(row):
-    i, j = row.con[:2]
-    return Reach(hinges=((i, row.par[12:15]),), places=((i, row.par[:3], (i, j)),))
+    own = Own.of(row)
+    return Reach(hinges=((own.i, own.a_i),), places=((own.i, own.p_i, (own.i, own.j)),))
 
 
 ELEMENT = Element(
@@ -354,8 +311,9 @@ ELEMENT = Element(
     spec=ClearanceJoint,
     pack=pack,
     reach=reach,
-    rows=("axial", "tilt 1", "tilt 2"),
-    coordinate="angle",
+    rows=tuple(row.name for row in ROWS),
+    holds=tuple(row.holds for row in ROWS),
+    coordinates=("angle",),
     channels=(
         Channel("normal_force", "N", "normal contact force; never negative", least=0.0),
         Channel("friction_force", "N", "on the journal, along axis x normal"),
@@ -373,11 +331,11 @@ ELEMENT = Element(
     ),
     meets=True,
     ideal="revolute",
-    changes=lambda _: of_a_hinge("axial", None, None),
     picture="journal",
+    loads={"contact_force": "contact force"},
     kernels={
-        "constraint": constraint,
-        "coordinate": coordinate,
+        "constraint": constraint_of(ROWS),
+        "coordinate": coordinate_of(("angle",), len(ROWS)),
         "force": force,
         "gaps": gap,
         "corners": corners,

@@ -3,13 +3,15 @@
 The user's words end in `pack`; from there on an element is rows of numbers.  Every instance of
 every element owns one row e of the three tables of a model,
 
-    con (N, n_con) int64     where: frames, joint coordinate, constraint rows, further indices
+    con (N, n_con) int64     where: frames, joint coordinate, constraint rows, further indices,
+                             further joint coordinates
     par (N, n_par) float64   how much: constants of the instance, SI
     mem (N, n_mem) float64   what it remembers; frozen while a step is being tried
 
-and the instances of one element are neighbours: a kernel is called once, as kernel(t, scene, a, b),
-for its rows a <= e < b.  It reads poses and twists of the scene in world axes (X, V), joint
-coordinates and sensors (S, angles unwrapped), the states z, and writes what its kind may write:
+whose columns have names (kernels/columns.py), and the instances of one element are neighbours: a
+kernel is called once, as kernel(t, scene, a, b), for its rows a <= e < b.  It reads poses and
+twists of the scene in world axes (X, V), joint coordinates and sensors (S, angles unwrapped), the
+states z, and writes what its kind may write:
 
     force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
     constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma; J of row k
@@ -18,7 +20,7 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
                 the angle itself in a planar scene
     gaps        gap[e] = penetration (m, > 0 in contact), its rate (m/s); or how far a limit of
                 the element is exceeded, and its rate
-    corners     corner[e] = how far the element has left the branch in mem[e, BRANCH] of a law with
+    corners     corner[e] = how far the element has left the branch it remembers of a law with
                 corners (< 0: inside), and the branch to go on with; `force` keeps the largest
                 such value it meets in left[e]
     energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
@@ -26,32 +28,59 @@ coordinates and sensors (S, angles unwrapped), the states z, and writes what its
     measure     out[wanted[e] + c] = channel c; wanted[e] < 0 when nobody asked.  May also read
                 the accelerations A = V' and the multipliers lam
 
+A spec of the section `bodies` says of itself
+
+    flexible          how it bends, a Cable; None where it is rigid
+    bar(start, end)   where it is flexible: the bar that is solved, which lies between these places
+                      unless it has its own
+    as_rigid()        a rigid body, with
+    tensor            its inertia, row by row, and whether all of it is known
+
+and one of a force that pushes back from a limit, `pressed(joints)`: the two bodies it pushes apart,
+and the hinge about whose axis it does, or None.
+
 The fields are listed in scene.py.  Body 0 is the ground: X[0] the identity, V[0] zero.  No kernel
 has a branch for it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
+from trsim.kernels.columns import Columns, f8, i8, memory
 from trsim.kernels.machine import Compiled
-from trsim.kernels.signatures import Signature, f8, i8, void
+from trsim.kernels.signatures import Signature, void
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
 
-# con: the first columns of every element that joins two frames
-I, J, COORDINATE_INDEX, FIRST_ROW = 0, 1, 2, 3
 
-# mem: its first N_MEM columns, the march's own; an element's own follow.  Of elements with a gap
-PHASE, IMPACT_SPEED, BRANCH = 0, 1, 2
-FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # UNLOCATED: the integrator finds no events
-WHOLE = 9.0  # BRANCH: the law with all its branches
-# and of every drive
-SINCE = 3  # s: when its prescribed motion began, see scenario/event.py
+class Memory(Columns):
+    """The first N_MEM columns of mem are the march's; those of the element follow."""
+
+    phase: memory  # of elements with a gap
+    impact_speed: memory  # m/s
+    branch: memory
+    since: memory  # s: when the prescribed motion of a drive began, see scenario/event.py
+
+
+PHASE, IMPACT_SPEED, BRANCH, SINCE = (column.at for column in Memory.columns.values())
+FLIGHT, CONTACT, UNLOCATED = 0.0, 1.0, 2.0  # phases; UNLOCATED: the integrator finds no events
+WHOLE = 9.0  # branch: the law with all its branches
+
+
+class Pair(Memory):
+    """Of every element between two frames."""
+
+    i: i8
+    j: i8
+    coordinate: i8  # in S, or -1
+
+
+FIRST_ROW = Pair.columns["coordinate"].at + 1  # of con: constraint rows come behind
 
 # z: the energy book, power flowing into the mechanism (W), in front of the elements' own states
 DRIVES, LOADS, DAMPERS, IMPACTS, FRICTION, N_BOOK = 0, 1, 2, 3, 4, 5
@@ -84,7 +113,8 @@ class Channel(NamedTuple):
     unit: str
     meaning: str
     size: int = 1
-    least: float = -inf  # what its definition alone keeps it above, or at
+    least: float = -inf  # a lower bound by its definition alone
+    turn: bool = False  # one about any axis, whose largest angle every run is judged by
 
     def unit_on(self, own: str) -> str:
         """The unit where it depends on what it acts along, a coordinate in `own`: rad or m."""
@@ -110,6 +140,19 @@ class Contact(NamedTuple):
     state: int = -1  # entry of z that a touch sets to zero
     slope: float = 0.0  # s/m, of its coefficient of friction over the speed, at rest
     jump: int = -1  # column of par with the coefficient of a friction that jumps at rest
+    radius: float = 0.0  # m, of the bearing of a journal
+
+
+class ContactNumbers(Columns, par="contact_par"):
+    """The same in a model, with what depends on the bodies."""
+
+    stiffness: f8
+    exponent: f8
+    mass: f8  # kg, effective; of a stop on an angle an inertia, that of its bodies at `arm`
+    clearance: f8
+    slowest_impact: f8
+    arm: f8  # turns its depth, an angle, into the length that errors are weighed with; or 1
+    damping: f8
 
 
 class Limit(NamedTuple):
@@ -124,9 +167,9 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """One packed instance."""
+    """One packed instance, its constants by Columns.packed of its element."""
 
-    con: tuple[int, ...]
+    con: tuple[int, ...]  # its constraint rows, from FIRST_ROW on, are -1 here
     par: tuple[float, ...]
     contact: Contact | None = None
     channels: tuple[Channel, ...] | None = None  # of this instance, where they are not its kind's
@@ -183,18 +226,13 @@ class Turning(NamedTuple):
     held: tuple[int, ...] = ()  # frames whose turns it resists
 
 
-class Looser(NamedTuple):
-    """Rows of a joint that can go together, and what it is without them; see release.py."""
+class Springs(NamedTuple):
+    """Directions in which springs hold two bodies."""
 
-    rows: tuple[str, ...]
-    becomes: str  # in words
-    type: str | None = None  # the joint type of a scenario, where there is one
-
-
-def between_points(row: Row) -> Turning:
-    """Of what acts between a point of either body and does nothing else to them."""
-    (i, j), par = row.con[:2], row.par
-    return Turning(points=((i, par[:3]), (j, par[3:6])))
+    axes: tuple[tuple[float, ...], ...]  # three, in the axes of the first body
+    place: tuple[float, ...]  # in the axes of the second one
+    along: tuple[float, ...]  # stiffness along each of the three there
+    about: tuple[float, ...]  # and about each
 
 
 def ends(row: Row) -> frozenset[int]:
@@ -210,15 +248,24 @@ class Element:
     section: str  # where it stands in the scenario
     spec: type
     pack: Callable  # (name, spec, at) -> Row
+    # (scenario, bodies) -> (name, spec) of each that a key of the scenario makes; of no section
+    of_scenario: Callable[[Any, dict], Iterable[tuple[str, Any]]] = lambda *_: ()
     rows: tuple[str, ...] = ()  # names of the constraint rows of an instance
-    coordinate: str = ""  # what a joint, or a sensor without one, has: angle, stroke
+    holds: tuple[str, ...] = ()  # of a joint, what each row holds; see rows.py
+    coordinates: tuple[str, ...] = ()  # what a joint, or a sensor without one, has: angle, stroke
     channels: tuple[Channel, ...] = ()
+    loads: dict[str, str] = field(default_factory=dict)  # channels -> names in tables of loads
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
-    changes: Callable[[Row], tuple[Looser, ...]] = lambda _: ()  # what may be let go of a joint
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged
     judged: Callable[[Row], bool] = lambda _: False
+    # (name, spec, largest) -> what speaks against believing a run, in sentences; see doubts.py
+    doubts: Callable[[str, Any, Callable], Iterable[str]] = lambda *_: ()
+    springs: Callable[[Row], Springs] | None = None  # what they hold is at rest at the start
+    elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
+    viscous: tuple[int, ...] = ()  # and those of its material's damping
+    dear: bool = False  # no joint is released to it where another choice does as well
     meets: bool = False  # its bodies meet at the point `at`
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else

@@ -10,9 +10,10 @@ the stroke of a body on compliant rails.
 from typing import Annotated, ClassVar, Literal
 
 from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel
-from trsim.elements.frames import arm, stroke, stroke_acceleration
+from trsim.elements.frames import Along, arm, points, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
 from trsim.fields import Spec, Unit, point, vector
+from trsim.kernels.columns import f8
 
 
 class Displacement(Spec):
@@ -33,39 +34,52 @@ class Displacement(Spec):
     at_start: Annotated[float, Unit("m")] = 0.0
 
 
+class Own(Along):
+    """Of one instance."""
+
+    sign: f8
+    at_start: f8
+
+
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     axis = perpendicular(spec.axis)[2]
-    places = (*at.local(i, spec.at), *at.local(j, spec.at))
-    par = (*places, *at.axes(i, axis), float(spec.sign), spec.at_start)
-    return Row((i, j, at.sensor(name)), par, travel="stroke")
+    places = points(at, i, j, spec.at, spec.at, at.sensor(name))
+    return Row(*Own.packed(spec, **places, axis=at.axes(i, axis)), travel="stroke")
 
 
 @kernel
 def coordinate(t, scene, a, b):
-    X, V, S, con, par = scene.X, scene.V, scene.S, scene.con, scene.par
+    S = scene.S
     for e in range(a, b):
-        s, axis = con[e, 2], arm(X, con[e, 0], par[e, 6], par[e, 7], par[e, 8])
-        x, x_dot = stroke(X, V, con, par, e, axis)
-        S[s, 0] = par[e, 9] * x + par[e, 10]
-        S[s, 1] = par[e, 9] * x_dot
+        own = Own(scene, e)
+        s = own.coordinate
+        x, x_dot = stroke(scene, e, arm(scene.X, own.i, own.axis))
+        S[s, 0] = own.sign * x + own.at_start
+        S[s, 1] = own.sign * x_dot
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, A, S = scene.X, scene.V, scene.A, scene.S
-    con, par, col, out = scene.con, scene.par, scene.wanted, scene.out
+    S, out = scene.S, scene.out
     for e in range(a, b):
-        o = col[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
-        s, axis = con[e, 2], arm(X, con[e, 0], par[e, 6], par[e, 7], par[e, 8])
+        own = Own(scene, e)
+        s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
         out[o], out[o + 1] = S[s, 0], S[s, 1]
-        out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, con, par, e, axis)
+        out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
+
+
+def reach(row):
+    own = Own.of(row)
+    return Reach(shown=((own.i, own.axis),))
 
 
 def turning(row):
-    return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
+    own = Own.of(row)
+    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.axis),))
 
 
 ELEMENT = Element(
@@ -73,8 +87,8 @@ ELEMENT = Element(
     section="sensors",
     spec=Displacement,
     pack=pack,
-    reach=lambda row: Reach(shown=((row.con[0], row.par[6:9]),)),
-    coordinate="stroke",
+    reach=reach,
+    coordinates=("stroke",),
     channels=(
         Channel("", "m", "displacement along the axis"),
         Channel("rate", "m/s", "its rate"),

@@ -10,10 +10,11 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Reach, Row, Turning, kernel
+from trsim.elements.contract import LOADS, Channel, Element, Memory, Reach, Row, Turning, kernel
 from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
+from trsim.kernels.columns import V3, f8, i8
 from trsim.laws.cable_section import uniform_shares
 from trsim.laws.functions import value
 
@@ -40,8 +41,15 @@ class DistributedLoad(Spec):
         return self
 
 
-FIRST, NODES, FRAME, FUNCTION = 0, 1, 2, 3  # con
-LENGTH, DIRECTION = 0, 1  # par
+class Own(Memory):
+    """Of one instance."""
+
+    first: i8  # node, or the body of a bar that is rigid for a start
+    nodes: i8
+    frame: i8  # with which the direction turns
+    function: i8  # f in tab
+    length: f8  # m, of an element
+    direction: V3  # in the axes of the frame
 
 
 def pack(name, spec, at):
@@ -57,39 +65,40 @@ def pack(name, spec, at):
     frame = 0 if spec.frame == "world" else at.body(spec.frame, "frame")
     n = at.axes(frame, direction(spec.direction))
     f = at.function(spec.force_per_length, "force_per_length")
-    reads = spec.force_per_length.sensors
-    if beam is None:  # stiff for a start: all of it at the centre
-        return Row((i, 1, frame, f), (bar.length, *n), reads=reads)
-    return Row((beam.first, beam.nodes, frame, f), (beam.length, *n), reads=reads)
+    # stiff for a start: all of it at the centre
+    where = {"first": i, "nodes": 1, "length": bar.length} if beam is None else {}
+    own = Own.packed(beam, **where, frame=frame, function=f, direction=n)
+    return Row(*own, reads=spec.force_per_length.sensors)
 
 
 def acts_on(row):
     """A load in a fixed direction is the same wherever the bar is."""
-    first, nodes, frame, _ = row.con
-    return frozenset({frame, *range(first, first + nodes)} if frame else ())
+    own = Own.of(row)
+    return frozenset({own.frame, *range(own.first, own.first + own.nodes)} if own.frame else ())
 
 
 @helper
 def load(t, scene, e):
     """Force per length, world axes."""
-    par = scene.par
-    f = value(scene.tab, scene.con[e, FUNCTION], t, scene.S)
-    n = arm(scene.X, scene.con[e, FRAME], par[e, 1], par[e, 2], par[e, 3])
+    own = Own(scene, e)
+    f = value(scene.tab, own.function, t, scene.S)
+    n = arm(scene.X, own.frame, own.direction)
     return f, (f * n[0], f * n[1], f * n[2])
 
 
 @kernel
 def force(t, scene, a, b):
-    V, G, F, Q, con = scene.V, scene.G, scene.F, scene.Q, scene.con
+    V, G, F, Q = scene.V, scene.G, scene.F, scene.Q
     for e in range(a, b):
+        own = Own(scene, e)
         _, p = load(t, scene, e)
-        if con[e, NODES] == 1:
-            i, l = con[e, FIRST], scene.par[e, LENGTH]
+        if own.nodes == 1:
+            i, l = own.first, own.length
             for c in range(3):
                 F[i, c] += l * p[c]
                 scene.zd[LOADS] += l * p[c] * V[i, c]
-        s1, s2, s3, s4 = uniform_shares(scene.par[e, LENGTH])
-        for i in range(con[e, FIRST], con[e, FIRST] + con[e, NODES] - 1):
+        s1, s2, s3, s4 = uniform_shares(own.length)
+        for i in range(own.first, own.first + own.nodes - 1):
             for c in range(3):
                 F[i, c] += s1 * p[c]
                 Q[i, c] += s2 * p[c]
@@ -106,15 +115,21 @@ def measure(t, scene, a, b):
     for e in range(a, b):
         if wanted[e] < 0:
             continue
+        own = Own(scene, e)
         f, p = load(t, scene, e)
-        whole = scene.par[e, LENGTH] * max(scene.con[e, NODES] - 1, 1)
+        whole = own.length * max(own.nodes - 1, 1)
         out[wanted[e]] = f
         for c in range(3):
             out[wanted[e] + 1 + c] = whole * p[c]
 
 
 def reach(row):
-    return Reach(forces=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),))
+    own = Own.of(row)
+    return Reach(forces=((own.frame, own.direction),))
+
+
+def turning(row):
+    return Turning(axes=reach(row).forces)
 
 
 ELEMENT = Element(
@@ -128,7 +143,8 @@ ELEMENT = Element(
         Channel("magnitude", "N/m", "force per length along its direction"),
         Channel("load", "N", "of the whole bar, world axes", 3),
     ),
-    turning=lambda row: Turning(axes=((row.con[FRAME], row.par[DIRECTION : DIRECTION + 3]),)),
+    turning=turning,
+    loads={"magnitude": "load"},
     kernels={"force": force, "measure": measure},
     example="""
 bodies:

@@ -16,7 +16,6 @@ from pydantic import model_validator
 from trsim.elements.contract import (
     DAMPERS,
     DRIVES,
-    SINCE,
     SPRINGS,
     Channel,
     Element,
@@ -29,6 +28,7 @@ from trsim.elements.frames import (
     cross,
     dot,
     helper,
+    on_joint,
     push,
     separation,
     spin,
@@ -36,7 +36,7 @@ from trsim.elements.frames import (
     twist,
     two_points,
 )
-from trsim.elements.prescribed import MOTION, ROTATES, SIGN, STATE, C, K, holds, prescribed
+from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.fields import Function, Spec, Unit
 
 
@@ -119,50 +119,50 @@ def pack(name, spec, at):
         )
         zeta = spec.compliance.damping_ratio
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
-    con = (x.i, x.j, x.entry, state, int(x.kind == "angle"), f)
-    par = (*x.s_i, *x.s_j, *x.axis_i, k, c, float(spec.sign))
-    return Row(con, par, is_force=k > 0.0, states=(state,), turns=x.kind == "angle")
+    turns = x.kind == "angle"
+    act = {"state": state, "motion": f, "stiffness": k, "damping": c}
+    own = AnyDrive.packed(spec, **on_joint(x), rotates=turns, **act)
+    return Row(*own, is_force=k > 0.0, states=(state,), turns=turns)
 
 
 @kernel
 def constraint(t, scene, a, b):
-    X, V, S, z, con, mem = scene.X, scene.V, scene.S, scene.z, scene.con, scene.mem
-    par, tab, phi, phi_t, gamma = scene.par, scene.tab, scene.phi, scene.phi_t, scene.gamma
+    X, V, phi, phi_t, gamma = scene.X, scene.V, scene.phi, scene.phi_t, scene.gamma
     for e in range(a, b):
-        k = con[e, 3]
+        own = AnyDrive(scene, e)
+        i, j, k = own.i, own.j, own.row
         if k < 0:
             continue
-        i, j = con[e, 0], con[e, 1]
-        f, f_dot, f_ddot = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
-        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+        f, f_dot, f_ddot = prescribed(t, scene, e)
+        axis = arm(X, i, own.axis)
         o_i, o_j = spin(V, i), spin(V, j)
-        if con[e, ROTATES] == 1:
+        if own.rotates == 1:
             turn_lines(scene, k, axis)
             turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
             gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
         else:
-            _, p_i, _, p_j = two_points(X, con, par, e)
+            _, p_i, _, p_j = two_points(scene, e)
             along_row(scene, i, p_i, axis, j, p_j, k)
             gamma[k] += f_ddot
-        phi[k] = S[con[e, 2], 0] - f
+        phi[k] = scene.S[own.coordinate, 0] - f
         phi_t[k] = -f_dot
 
 
 @kernel
 def force(t, scene, a, b):
-    S, z, con, mem = scene.S, scene.z, scene.con, scene.mem
-    par, tab, zd = scene.par, scene.tab, scene.zd
+    S, zd = scene.S, scene.zd
     for e in range(a, b):
-        state, k = con[e, STATE], par[e, K]
+        own = AnyDrive(scene, e)
+        state, k = own.state, own.stiffness
         if k == 0.0 and state < 0:
             continue
-        f, f_dot, _ = prescribed(t - mem[e, SINCE], z, tab, state, con[e, MOTION])
+        f, f_dot, _ = prescribed(t, scene, e)
         if state >= 0:
-            zd[state] = f_dot if holds(con, par, e) else 0.0
+            zd[state] = f_dot if holds(scene, e) else 0.0
         if k > 0.0:
-            s = con[e, 2]
+            s = own.coordinate
             slip = S[s, 1] - f_dot
-            damping = -par[e, C] * slip
+            damping = -own.damping * slip
             pull = -k * (S[s, 0] - f) + damping
             zd[DAMPERS] += damping * slip
             zd[DRIVES] += pull * f_dot
@@ -172,12 +172,12 @@ def force(t, scene, a, b):
 @helper
 def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
-    X, con, par, F = scene.X, scene.con, scene.par, scene.F
-    i, p_i, j, p_j = two_points(X, con, par, e)
-    axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
+    X, F, own = scene.X, scene.F, AnyDrive(scene, e)
+    i, p_i, j, p_j = two_points(scene, e)
+    axis = arm(X, i, own.axis)
     f = (pull * axis[0], pull * axis[1], pull * axis[2])
     g = (-f[0], -f[1], -f[2])
-    if con[e, ROTATES] == 1:
+    if own.rotates == 1:
         twist(F, j, f)
         twist(F, i, g)
     else:
@@ -188,31 +188,31 @@ def act(scene, e, pull):
 
 @kernel
 def energy(t, scene, a, b):
-    S, z, con, mem = scene.S, scene.z, scene.con, scene.mem
-    par, tab, E = scene.par, scene.tab, scene.E
+    E = scene.E
     for e in range(a, b):
-        if par[e, K] > 0.0:
-            f, _, _ = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
-            slip = S[con[e, 2], 0] - f
-            E[SPRINGS] += 0.5 * par[e, K] * slip * slip
+        own = AnyDrive(scene, e)
+        if own.stiffness > 0.0:
+            f, _, _ = prescribed(t, scene, e)
+            slip = scene.S[own.coordinate, 0] - f
+            E[SPRINGS] += 0.5 * own.stiffness * slip * slip
 
 
 @kernel
 def measure(t, scene, a, b):
-    S, z, lam, con, mem = scene.S, scene.z, scene.lam, scene.con, scene.mem
-    par, tab, col, out = scene.par, scene.tab, scene.wanted, scene.out
+    S, col, out = scene.S, scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        f, f_dot, _ = prescribed(t - mem[e, SINCE], z, tab, con[e, STATE], con[e, MOTION])
-        s = con[e, 2]
-        if not holds(con, par, e):
+        own = AnyDrive(scene, e)
+        f, f_dot, _ = prescribed(t, scene, e)
+        s = own.coordinate
+        if not holds(scene, e):
             f, f_dot = S[s, 0], S[s, 1]
-        if con[e, 3] >= 0:
-            pull = -lam[con[e, 3]]
+        if own.row >= 0:
+            pull = -scene.lam[own.row]
         else:
-            pull = -par[e, K] * (S[s, 0] - f) - par[e, C] * (S[s, 1] - f_dot)
-        out[col[e]] = par[e, SIGN] * pull
+            pull = -own.stiffness * (S[s, 0] - f) - own.damping * (S[s, 1] - f_dot)
+        out[col[e]] = own.sign * pull
         out[col[e] + 1] = f
         out[col[e] + 2] = f_dot
         out[col[e] + 3] = pull * f_dot
@@ -232,6 +232,7 @@ ELEMENT = Element(
         Channel("velocity", "coordinate/s", "its rate"),
         Channel("power", "W", "given to the mechanism"),
     ),
+    loads={"force": "force"},
     kernels={
         "constraint": constraint,
         "force": force,

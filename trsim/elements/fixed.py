@@ -8,9 +8,10 @@ reaction and reaction_moment act on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Looser, Row, kernel
-from trsim.elements.frames import arm, perpendicular_row, point_rows
-from trsim.elements.joint import TILTS, Joint, perpendicular, triads
+from trsim.elements.contract import Row
+from trsim.elements.frames import points
+from trsim.elements.joint import Joint, Z, joint, perpendicular, triads
+from trsim.elements.rows import POINT, TILTS, TURN, Axes
 
 
 class Fixed(Joint):
@@ -21,49 +22,24 @@ class Fixed(Joint):
 
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
-    places = (*at.local(i, spec.at), *at.local(j, spec.at))
+    places = points(at, i, j, spec.at, spec.at)
     if at.tangent(i) and not at.tangent(j):
         # t . u = t . w = 0 with the tangent t of bar i and u, w fixed in body j: rows tilt 1, turn
         t = at.axes(i, at.tangent(i))
         u, w, _ = perpendicular(at.tangent(i))
-        par = (*places, *t, *t, *t, *at.axes(j, w), *at.axes(j, u), 0.0)
-        return Row((i, j, -1), par, unheld="tilt 2")
+        axes = {"u_i": t, "w_i": t, "a_i": t, "u_j": at.axes(j, w), "a_j": at.axes(j, u)}
+        return Row(*Axes.packed(**places, **axes, drawn=0.0), unheld="tilt 2")
     # a bar has no torsion, so about its tangent the weld holds nothing: of bar j the row `turn`
-    axes = triads(i, j, at.tangent(j) or (0.0, 0.0, 1.0), at)
-    return Row((i, j, -1), (*places, *axes), unheld="turn" if at.tangent(j) else "")
+    axes = triads(i, j, at.tangent(j) or Z, at)
+    return Row(*Axes.packed(**places, **axes), unheld="turn" if at.tangent(j) else "")
 
 
-@kernel
-def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
-    for e in range(a, b):
-        i, j = point_rows(scene, e)
-        u = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        w = arm(X, i, par[e, 9], par[e, 10], par[e, 11])
-        u_j = arm(X, j, par[e, 15], par[e, 16], par[e, 17])
-        a_j = arm(X, j, par[e, 18], par[e, 19], par[e, 20])
-        perpendicular_row(scene, i, u, j, a_j, con[e, 6])
-        perpendicular_row(scene, i, w, j, a_j, con[e, 7])
-        perpendicular_row(scene, i, w, j, u_j, con[e, 8])
-
-
-def changes(_):
-    ball = (*TILTS, "turn")
-    return Looser(("turn",), "revolute", "revolute"), Looser(ball, "spherical", "spherical")
-
-
-ELEMENT = Element(
+ELEMENT = joint(
     key="fixed",
-    section="joints",
     spec=Fixed,
+    rows=(*POINT, *TILTS, TURN),
     pack=pack,
-    rows=("x", "y", "z", "tilt 1", "tilt 2", "turn"),
-    meets=True,
-    welds=True,
-    holds_twist=False,
-    changes=changes,
-    picture="weld",
-    kernels={"constraint": constraint},
+    holds_twist=False,  # it leaves out the row that would
     example="""
 bodies:
   rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}

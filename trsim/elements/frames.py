@@ -21,16 +21,58 @@ The multiplier of a row is minus the generalised force it puts on body j along i
 
 from math import sqrt
 
+from trsim.elements.contract import Pair, Turning
+from trsim.kernels.columns import V3, constraint_row
 from trsim.kernels.vectors import internal as helper
 
 
+class TwoPoints(Pair):
+    """Of an element between a point of each frame."""
+
+    p_i: V3  # m, from the centre of mass in the axes of frame i
+    p_j: V3
+
+
+def points(at, i, j, p, q, coordinate=-1):
+    """These columns, of the points p of body i and q of body j as drawn."""
+    return {
+        "i": i, "j": j, "coordinate": coordinate, "p_i": at.local(i, p), "p_j": at.local(j, q),
+    }  # fmt: skip
+
+
+def between_points(row):
+    """Turning of what acts between a point of either body and does nothing else to them."""
+    own = TwoPoints.of(row)
+    return Turning(points=((own.i, own.p_i), (own.j, own.p_j)))
+
+
+class Along(TwoPoints):
+    """Of an element along an axis or about it, such as that of a joint."""
+
+    axis: V3  # in the axes of frame i
+
+
+def on_joint(x):
+    """These columns, of the coordinate of a joint."""
+    places = {"p_i": x.s_i, "p_j": x.s_j, "axis": x.axis_i}
+    return {"i": x.i, "j": x.j, "coordinate": x.entry, **places}
+
+
+class Coincident(TwoPoints):
+    """Of a joint whose points coincide along the world axes."""
+
+    x: constraint_row
+    y: constraint_row
+    z: constraint_row
+
+
 @helper
-def arm(X, i, s0, s1, s2):
+def arm(X, i, s):
     """R_i s, world axes."""
     return (
-        X[i, 3] * s0 + X[i, 4] * s1 + X[i, 5] * s2,
-        X[i, 6] * s0 + X[i, 7] * s1 + X[i, 8] * s2,
-        X[i, 9] * s0 + X[i, 10] * s1 + X[i, 11] * s2,
+        X[i, 3] * s[0] + X[i, 4] * s[1] + X[i, 5] * s[2],
+        X[i, 6] * s[0] + X[i, 7] * s[1] + X[i, 8] * s[2],
+        X[i, 9] * s[0] + X[i, 10] * s[1] + X[i, 11] * s[2],
     )
 
 
@@ -49,11 +91,10 @@ def dot(a, b):
 
 
 @helper
-def two_points(X, con, par, e):
-    """Both bodies of instance e with the arms of its points, the first six columns of par."""
-    i, j = con[e, 0], con[e, 1]
-    p_i = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-    return i, p_i, j, arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+def two_points(scene, e):
+    """Both bodies of instance e with the arms of its points."""
+    own = TwoPoints(scene, e)
+    return own.i, arm(scene.X, own.i, own.p_i), own.j, arm(scene.X, own.j, own.p_j)
 
 
 @helper
@@ -150,12 +191,13 @@ def turn_lines(scene, k, n):
 
 @helper
 def point_rows(scene, e):
-    """The points of instance e coincide along the world axes whose row, the first three of its own,
-    is not negative.  Returns its bodies."""
-    X, V, con = scene.X, scene.V, scene.con
+    """The points of instance e coincide along the world axes whose row is not negative.  Returns
+    its bodies."""
+    X, V = scene.X, scene.V
     phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
-    i, p_i, j, p_j = two_points(X, con, scene.par, e)
-    kx, ky, kz = con[e, 3], con[e, 4], con[e, 5]
+    i, p_i, j, p_j = two_points(scene, e)
+    own = Coincident(scene, e)
+    kx, ky, kz = own.x, own.y, own.z
     d = separation(X, i, p_i, j, p_j)
     if scene.d == 3:
         c_i, c_j = inward(V, i, p_i), inward(V, j, p_j)
@@ -230,13 +272,13 @@ def perpendicular_row(scene, i, u, j, w, k):
 
 
 @helper
-def line(X, V, con, par, e):
-    """Arms, unit vector from i to j, length and its rate of a line between two points.
+def line(scene, e):
+    """Arms, unit vector from i to j, length and its rate of the line between two points.
 
-    par holds the points, in the axes of both bodies, in its first six columns.  A line without
-    length has no direction: its unit vector is zero.
+    A line without length has no direction: its unit vector is zero.
     """
-    i, p_i, j, p_j = two_points(X, con, par, e)
+    X, V = scene.X, scene.V
+    i, p_i, j, p_j = two_points(scene, e)
     d = separation(X, i, p_i, j, p_j)
     length = sqrt(dot(d, d))
     if length == 0.0:
@@ -250,9 +292,9 @@ def line(X, V, con, par, e):
 @helper
 def distance_row(scene, e, k):
     """The length of the line of instance e, as row k; phi is the length itself."""
-    X, V, con, par = scene.X, scene.V, scene.con, scene.par
-    i, j = con[e, 0], con[e, 1]
-    p_i, p_j, n, length, rate = line(X, V, con, par, e)
+    V, own = scene.V, Pair(scene, e)
+    i, j = own.i, own.j
+    p_i, p_j, n, length, rate = line(scene, e)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
     c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
@@ -272,8 +314,10 @@ def nearest_branch(angle, guess):
 
 
 @helper
-def turn_acceleration(V, A, i, j, axis):
+def turn_acceleration(scene, e, axis):
     """Second rate of the angle of body j against body i about an axis of body i."""
+    V, A, own = scene.V, scene.A, Pair(scene, e)
+    i, j = own.i, own.j
     o_i, o_j = spin(V, i), spin(V, j)
     turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
     return dot(axis, (A[j, 3] - A[i, 3], A[j, 4] - A[i, 4], A[j, 5] - A[i, 5])) + dot(
@@ -282,9 +326,10 @@ def turn_acceleration(V, A, i, j, axis):
 
 
 @helper
-def stroke(X, V, con, par, e, axis):
+def stroke(scene, e, axis):
     """axis . d and its rate, with the axis fixed in body i and d the separation."""
-    i, p_i, j, p_j = two_points(X, con, par, e)
+    X, V = scene.X, scene.V
+    i, p_i, j, p_j = two_points(scene, e)
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
@@ -292,9 +337,10 @@ def stroke(X, V, con, par, e, axis):
 
 
 @helper
-def stroke_acceleration(X, V, A, con, par, e, axis):
+def stroke_acceleration(scene, e, axis):
     """Second rate of the same."""
-    i, p_i, j, p_j = two_points(X, con, par, e)
+    X, V, A = scene.X, scene.V, scene.A
+    i, p_i, j, p_j = two_points(scene, e)
     d = separation(X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])

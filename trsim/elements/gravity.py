@@ -3,8 +3,10 @@
 F = m g at the centre of mass,     E = -m g . r
 """
 
-from trsim.elements.contract import GRAVITY, Element, Reach, Row, kernel
+from trsim.elements.contract import GRAVITY, Element, Memory, Reach, Row, kernel
+from trsim.elements.frames import dot
 from trsim.fields import Spec
+from trsim.kernels.columns import V3, i8
 
 
 class Gravity(Spec):
@@ -18,31 +20,47 @@ class Gravity(Spec):
     field: tuple[float, float, float]
 
 
+def of_scenario(scenario, bodies):
+    """One for each body with mass where there is gravity; flexible bars have their own."""
+    if any(scenario.gravity):
+        for name, spec in bodies.items():
+            if spec.flexible is None and spec.mass > 0.0:
+                yield name, Gravity(body=name, field=scenario.gravity)
+
+
+class Own(Memory):
+    """Of one instance."""
+
+    body: i8
+    weight: V3  # N
+
+
 def pack(name, spec, at):
     i = at.body(spec.body)
-    return Row((i,), tuple(at.mass(i) * c for c in spec.field))
+    return Row(*Own.packed(body=i, weight=[at.mass(i) * c for c in spec.field]))
 
 
 @kernel
 def force(t, scene, a, b):
-    con, par, F = scene.con, scene.par, scene.F
+    F = scene.F
     for e in range(a, b):
-        i = con[e, 0]
-        F[i, 0] += par[e, 0]
-        F[i, 1] += par[e, 1]
-        F[i, 2] += par[e, 2]
+        own = Own(scene, e)
+        i, weight = own.body, own.weight
+        F[i, 0] += weight[0]
+        F[i, 1] += weight[1]
+        F[i, 2] += weight[2]
 
 
 @kernel
 def energy(t, scene, a, b):
-    X, con, par, E = scene.X, scene.con, scene.par, scene.E
+    X, E = scene.X, scene.E
     for e in range(a, b):
-        i = con[e, 0]
-        E[GRAVITY] -= par[e, 0] * X[i, 0] + par[e, 1] * X[i, 1] + par[e, 2] * X[i, 2]
+        own = Own(scene, e)
+        E[GRAVITY] -= dot(own.weight, (X[own.body, 0], X[own.body, 1], X[own.body, 2]))
 
 
 def reach(row):
-    return Reach(forces=((0, row.par),))
+    return Reach(forces=((0, Own.of(row).weight),))
 
 
 ELEMENT = Element(
@@ -50,6 +68,7 @@ ELEMENT = Element(
     section="",
     spec=Gravity,
     pack=pack,
+    of_scenario=of_scenario,
     reach=reach,
     kernels={"force": force, "energy": energy},
     example="""

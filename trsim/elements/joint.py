@@ -1,15 +1,15 @@
-"""What all joints share: two bodies, a point, an axis, and the layout of their constants.
+"""What all joints share: two bodies, a point, an axis, and what follows from a list of rows."""
 
-par[0:3], par[3:6]              the point in the axes of body i, of body j
-par[6:9], [9:12], [12:15]       triad u, w, a in the axes of body i (a = u x w, the axis)
-par[15:18], [18:21]             u and a in the axes of body j
-par[21]                         joint angle as drawn
-"""
+from dataclasses import replace
 
-from trsim.elements.contract import Looser
+from trsim.elements.contract import Element, Reach, Row, Turning
+from trsim.elements.frames import between_points, points
+from trsim.elements.rows import POINT, Axes, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
+
+Z = (0.0, 0.0, 1.0)
 
 
 class Joint(Spec):
@@ -23,28 +23,76 @@ class Joint(Spec):
     at: point("m")
 
 
-TILTS = ("tilt 1", "tilt 2")
-ALONG = 1.0 - 1e-9  # cosine of an axis along a world axis
+def pack(name, spec, at):
+    """A joint about its axis, or z; without a place at the second body's centre of mass."""
+    i, j = at.bodies(spec.bodies, spec.at)
+    place = at.centre(j) if spec.at is None else spec.at
+    axes = triads(i, j, getattr(spec, "axis", Z), at, spec.drawn_in)
+    return Row(*Axes.packed(**points(at, i, j, place, place), **axes))
 
 
-def axial_row(row):
-    """The row that holds a joint along its axis, where one row does."""
-    largest = max(range(3), key=lambda c: abs(row.par[12 + c]))
-    return "xyz"[largest] if abs(row.par[12 + largest]) > ALONG else ""
+def on_line(row):
+    """Of rows that hold a point of body j where it may slide along directions of body i."""
+    own = Axes.of(row)
+    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.a_i),))
 
 
-def of_a_hinge(axial, ball, cross):
-    """What a hinge becomes without some of its rows; ball, cross: types that hold what is left."""
-    changes = (
-        Looser(TILTS, ball or "free to tilt", ball),
-        *(Looser((tilt,), "universal", cross) for tilt in TILTS),
+def reach(row, coordinates):
+    """Bodies turn about the axis of an angle, and slide along that of a stroke."""
+    axis = ((Axes.of(row).i, Axes.of(row).a_i),)
+    return Reach(
+        hinges=axis if "angle" in coordinates else (),
+        slides=axis if "stroke" in coordinates else (),
     )
-    if not axial:
-        return changes
-    return (
-        *changes,
-        Looser((axial,), "cylindrical"),
-        Looser((axial, *TILTS), "a ball in a sleeve"),
+
+
+# by how many displacements and turns a joint holds: its picture, see report/animation/drawing.py
+PICTURES = {
+    (3, 0): "ball",
+    (3, 1): "cross",
+    (3, 2): "pin",
+    (3, 3): "weld",
+    (2, 0): "bead",
+    (2, 2): "sleeve",
+    (2, 3): "slide",
+}
+
+
+def joint(key, spec, rows, coordinates=(), pack=pack, **other):
+    """The element that a list of rows makes (rows.py), with the coordinates these leave free.
+
+    other: fields of Element, also those that follow from the rows where they are to differ.
+    """
+    room = (-1,) * (len(rows) + len(coordinates[1:]))  # of con, for what assembly knows
+    places = sum(not row.of_j for row in rows)
+    turns, ball = len(rows) - places, rows == POINT
+    kernels = {"constraint": constraint_of(rows)}
+    if coordinates:
+        kernels["coordinate"] = coordinate_of(coordinates, len(rows))
+        other.setdefault("reach", lambda row: reach(row, coordinates))
+
+    def packed(name, spec, at):
+        row = pack(name, spec, at)
+        return replace(row, con=(*row.con, *room))
+
+    follows = {
+        "meets": places == 3,
+        "welds": (places, turns) == (3, 3),
+        "pin": (2, 3) if ball else (2,) if places == 3 and "angle" in coordinates else (),
+        "holds_twist": turns > 0,
+        "turning": between_points if ball else None if turns else on_line,
+        "picture": PICTURES.get((places, turns), ""),
+    }
+    return Element(
+        key=key,
+        section="joints",
+        spec=spec,
+        pack=packed,
+        rows=tuple(row.name for row in rows),
+        holds=tuple(row.holds for row in rows),
+        coordinates=coordinates,
+        kernels=kernels,
+        **(follows | other),
     )
 
 
@@ -68,14 +116,18 @@ def perpendicular(axis, frame=None):
     return u, across(a, u), a
 
 
+def held(i, j, u, w, a, at):
+    """The axes of a joint, of a triad in world axes as drawn."""
+    return {
+        "u_i": at.axes(i, u),
+        "w_i": at.axes(i, w),
+        "a_i": at.axes(i, a),
+        "u_j": at.axes(j, u),
+        "a_j": at.axes(j, a),
+    }
+
+
 def triads(i, j, axis, at, frame=None):
-    """par[6:22] of a joint between bodies i and j about a world axis, as drawn in a frame."""
+    """The columns of a joint between bodies i and j about a world axis, as drawn in a frame."""
     u, w, a = perpendicular(axis, frame)
-    return (
-        *at.axes(i, u),
-        *at.axes(i, w),
-        *at.axes(i, a),
-        *at.axes(j, u),
-        *at.axes(j, a),
-        at.drawn_angle(i, j, a, frame),
-    )
+    return held(i, j, u, w, a, at) | {"drawn": at.drawn_angle(i, j, a, frame)}

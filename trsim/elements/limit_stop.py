@@ -16,12 +16,10 @@ from annotated_types import Ge, Gt
 from pydantic import model_validator
 
 from trsim.elements.contract import (
-    BRANCH,
     CONTACT,
     CONTACTS,
     FLIGHT,
     IMPACTS,
-    PHASE,
     WHOLE,
     Channel,
     Contact,
@@ -31,10 +29,14 @@ from trsim.elements.contract import (
     Turning,
     kernel,
 )
+from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.frames import (
+    Along,
     arm,
     dot,
     helper,
+    on_joint,
+    points,
     push,
     separation,
     twist,
@@ -43,6 +45,7 @@ from trsim.elements.frames import (
 )
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
+from trsim.kernels.columns import f8, i8
 from trsim.laws.contact import (
     ramped_beyond,
     ramped_branch_of,
@@ -113,6 +116,16 @@ class LimitStop(Spec):
             raise ValueError("`normal` must not be zero")
         return self
 
+    def pressed(self, joints):
+        """The two bodies it pushes apart, and the hinge about whose axis it does."""
+        if self.joint is None:
+            return (self.point.body, self.wall.body), None
+        name, _ = split(self.joint, joints)
+        if name not in joints:
+            return (), None
+        slides = of_joint(name, joints).get(called(self.joint, joints)) == "stroke"
+        return joints[name].bodies, None if slides else joints[name]
+
 
 UNITS = (
     ("lower", "rad", "m"),
@@ -125,8 +138,18 @@ ON_WALL, ON_ANGLE, ON_STROKE = 0, 1, 2
 UNBOUNDED = 1e300
 
 
+class Own(Along):
+    """Of one instance; its axis is the normal of the wall, or that of the joint."""
+
+    kind: i8  # ON_WALL, ON_ANGLE or ON_STROKE
+    stiffness: f8
+    damping: f8
+    ramp: f8
+    lower: f8
+    upper: f8
+
+
 def pack(name, spec, at):
-    law = (spec.stiffness, spec.damping, spec.ramp)
     contact = Contact(spec.stiffness, 1.0, float("inf"), 0.0, 0.0)
     if spec.joint is None:
         if spec.wall.body == spec.point.body:
@@ -141,31 +164,32 @@ def pack(name, spec, at):
         i = at.body(spec.wall.body, "wall", "body", near=spec.wall.at, off=1.0)
         j = at.body(spec.point.body, "point", "body", near=spec.point.at)
         n = at.axes(i, direction(spec.wall.normal))
-        places = (*at.local(i, spec.wall.at), *at.local(j, spec.point.at))
-        return Row((i, j, -1, ON_WALL), (*places, *n, *law, 0.0, 0.0), contact, travel="stroke")
+        places = points(at, i, j, spec.wall.at, spec.point.at)
+        own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0)
+        return Row(*own, contact, travel="stroke")
     x = at.coordinate(spec.joint)
     for key, turning, sliding in UNITS:
         at.check_unit(x.kind, turning, sliding, "forces", name, key)
     kind = ON_ANGLE if x.kind == "angle" else ON_STROKE
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
-    par = (*x.s_i, *x.s_j, *x.axis_i, *law, low, high)
-    con, turns = (x.i, x.j, x.entry, kind), kind == ON_ANGLE
-    return Row(con, par, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
+    own = Own.packed(spec, **on_joint(x), kind=kind, lower=low, upper=high)
+    turns = kind == ON_ANGLE
+    return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 
 
 @helper
-def touch(X, V, S, con, par, e):
+def touch(scene, e):
     """Penetration, its rate, and the direction of the force on body j (world, or + - axis)."""
-    i, j = con[e, 0], con[e, 1]
-    n = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-    if con[e, 3] != ON_WALL:
-        s = con[e, 2]
-        low, high = par[e, 12] - S[s, 0], S[s, 0] - par[e, 13]
+    X, V, S, own = scene.X, scene.V, scene.S, Own(scene, e)
+    i, j, n = own.i, own.j, arm(X, own.i, own.axis)
+    if own.kind != ON_WALL:
+        s = own.coordinate
+        low, high = own.lower - S[s, 0], S[s, 0] - own.upper
         if low > high:
             return low, -S[s, 1], n
         return high, S[s, 1], (-n[0], -n[1], -n[2])
-    _, p_i, _, p_j = two_points(X, con, par, e)
+    _, p_i, _, p_j = two_points(scene, e)
     d = separation(X, i, p_i, j, p_j)
     # the wall turns: the speed of its body under the point counts
     v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
@@ -176,29 +200,28 @@ def touch(X, V, S, con, par, e):
 
 @kernel
 def force(t, scene, a, b):
-    X, V, S, con = scene.X, scene.V, scene.S, scene.con
-    par, mem, F, zd, left = scene.par, scene.mem, scene.F, scene.zd, scene.left
+    X, F, zd, left = scene.X, scene.F, scene.zd, scene.left
     for e in range(a, b):
-        if mem[e, PHASE] == FLIGHT:
+        own = Own(scene, e)
+        if own.phase == FLIGHT:
             continue
-        d, d_dot, n = touch(X, V, S, con, par, e)
-        if d <= 0.0 and mem[e, PHASE] != CONTACT:
+        d, d_dot, n = touch(scene, e)
+        if d <= 0.0 and own.phase != CONTACT:
             continue
-        i, j, k, c, ramp, branch = (
-            con[e, 0], con[e, 1], par[e, 9], par[e, 10], par[e, 11], mem[e, BRANCH]
-        )  # fmt: skip
-        if mem[e, PHASE] == CONTACT and c > 0.0 and branch != WHOLE:
+        i, j, branch = own.i, own.j, own.branch
+        k, c, ramp = own.stiffness, own.damping, own.ramp
+        if own.phase == CONTACT and c > 0.0 and branch != WHOLE:
             left[e] = max(left[e], ramped_beyond(branch, d, d_dot, k, c, ramp))
             f = ramped_on_branch(branch, d, d_dot, k, c, ramp)
         else:
             # a trial step past the separation goes on smoothly; it is cut at the root of d
             f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
         on_j, on_i = (f * n[0], f * n[1], f * n[2]), (-f * n[0], -f * n[1], -f * n[2])
-        if con[e, 3] == ON_ANGLE:
+        if own.kind == ON_ANGLE:
             twist(F, j, on_j)
             twist(F, i, on_i)
         else:
-            p_j = arm(X, j, par[e, 3], par[e, 4], par[e, 5])
+            p_j = arm(X, j, own.p_j)
             push(F, j, p_j, on_j)
             r_i = (X[j, 0] + p_j[0] - X[i, 0], X[j, 1] + p_j[1] - X[i, 1],
                    X[j, 2] + p_j[2] - X[i, 2])  # fmt: skip
@@ -208,23 +231,21 @@ def force(t, scene, a, b):
 
 @kernel
 def gap(t, scene, a, b):
-    X, V, S, con, par, g = scene.X, scene.V, scene.S, scene.con, scene.par, scene.gap
+    g = scene.gap
     for e in range(a, b):
-        d, d_dot, _ = touch(X, V, S, con, par, e)
-        g[e, 0] = d
-        g[e, 1] = d_dot
+        g[e, 0], g[e, 1], _ = touch(scene, e)
 
 
 @kernel
 def corners(t, scene, a, b):
-    X, V, S, con = scene.X, scene.V, scene.S, scene.con
-    par, mem, out = scene.par, scene.mem, scene.corner
+    out = scene.corner
     for e in range(a, b):
+        own = Own(scene, e)
         out[e, 0] = -1.0
-        k, c, ramp, branch = par[e, 9], par[e, 10], par[e, 11], mem[e, BRANCH]
-        if c == 0.0 or mem[e, PHASE] != CONTACT:
+        k, c, ramp, branch = own.stiffness, own.damping, own.ramp, own.branch
+        if c == 0.0 or own.phase != CONTACT:
             continue
-        d, d_dot, _ = touch(X, V, S, con, par, e)
+        d, d_dot, _ = touch(scene, e)
         if branch == WHOLE:
             out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
         else:
@@ -234,28 +255,28 @@ def corners(t, scene, a, b):
 
 @kernel
 def energy(t, scene, a, b):
-    X, S, con, par, mem, E = scene.X, scene.S, scene.con, scene.par, scene.mem, scene.E
+    E = scene.E
     for e in range(a, b):
-        if mem[e, PHASE] == FLIGHT:
+        own = Own(scene, e)
+        if own.phase == FLIGHT:
             continue
-        # the penetration needs no velocity: X stands in for V, its rate is not used
-        d, _, _ = touch(X, X, S, con, par, e)
+        d, _, _ = touch(scene, e)
         if d > 0.0:
-            E[CONTACTS] += 0.5 * par[e, 9] * d * d
+            E[CONTACTS] += 0.5 * own.stiffness * d * d
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, S, con = scene.X, scene.V, scene.S, scene.con
-    par, mem, col, out = scene.par, scene.mem, scene.wanted, scene.out
+    out = scene.out
     for e in range(a, b):
-        o = col[e]
+        o = scene.wanted[e]
         if o < 0:
             continue
-        d, d_dot, n = touch(X, V, S, con, par, e)
+        own = Own(scene, e)
+        d, d_dot, n = touch(scene, e)
         f = 0.0
-        if mem[e, PHASE] != FLIGHT and d > 0.0:
-            f = ramped_damping(d, d_dot, par[e, 9], par[e, 10], par[e, 11])
+        if own.phase != FLIGHT and d > 0.0:
+            f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)
         out[o] = f
         out[o + 1] = d
         out[o + 2] = f * n[0]
@@ -264,17 +285,18 @@ def measure(t, scene, a, b):
 
 
 def reach(row):
-    i, j, _, kind = row.con
-    if kind != ON_WALL:  # along the coordinate of a joint
+    own = Own.of(row)
+    if own.kind != ON_WALL:  # along the coordinate of a joint
         return Reach()
-    return Reach(forces=((i, row.par[6:9]),), places=((j, row.par[3:6], (i, j)),))
+    return Reach(forces=((own.i, own.axis),), places=((own.j, own.p_j, (own.i, own.j)),))
 
 
 def turning(row):
     """The wall is carried along by its body."""
-    if row.con[3] != ON_WALL:
-        return Turning(frames=row.con[:2])
-    return Turning(points=((row.con[1], row.par[3:6]),), axes=((row.con[0], row.par[6:9]),))
+    own = Own.of(row)
+    if own.kind != ON_WALL:
+        return Turning(frames=(own.i, own.j))
+    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.axis),))
 
 
 ELEMENT = Element(
@@ -290,6 +312,7 @@ ELEMENT = Element(
     ),
     turning=turning,
     picture="stop",
+    loads={"normal_force": "contact force"},
     kernels={
         "force": force,
         "gaps": gap,

@@ -1,8 +1,4 @@
-"""What all drives share: a prescribed motion f(t), and the layout of their rows.
-
-Row.con   0 i, 1 j, 2 coordinate x in S, 3 state of z or -1, 4 angle or stroke, 5 f in tab
-con       the same with the constraint row of the drive behind the coordinate
-par       0:3, 3:6 the points in bodies i and j, 6:9 the drive's own, 9 k, 10 c, 11 sign
+"""What all drives share: a prescribed motion f(t), and names of their columns.
 
 A drive that an event has released has neither row nor spring: nothing is prescribed any more, and
 what it tells is where its joint is.
@@ -14,13 +10,22 @@ the motion began; f is the velocity then.
 from typing import Any
 
 from trsim.elements.contract import compiled
-from trsim.elements.frames import helper
-from trsim.kernels.signatures import A1, f8, i8, void
+from trsim.elements.frames import Along, helper
+from trsim.kernels.columns import constraint_row, f8, i8
+from trsim.kernels.signatures import A1, void
 from trsim.laws.functions import motion
 
-ENTRY, OWN_STATE, OWN_MOTION = 2, 3, 5  # of Row.con
-ROW, STATE, ROTATES, MOTION = 3, 4, 5, 6  # of con
-K, C, SIGN = 9, 10, 11  # of par
+
+class AnyDrive(Along):
+    """Of every drive; one between two points has no axis of its own."""
+
+    row: constraint_row
+    state: i8  # of z: the prescribed place of a drive by velocity, or -1
+    rotates: i8  # 1: it drives an angle
+    motion: i8  # f in tab
+    stiffness: f8  # 0 of a rigid drive, and of one that was released
+    damping: f8
+    sign: f8
 
 
 @compiled(void(A1, i8, f8, A1))
@@ -40,15 +45,17 @@ def rates_at(tab: Any, offset: int, t: float) -> tuple[float, float, float]:
 
 
 @helper
-def holds(con, par, e):
+def holds(scene, e):
     """Whether a drive acts on its joint: it has not let go."""
-    return con[e, ROW] >= 0 or par[e, K] > 0.0
+    own = AnyDrive(scene, e)
+    return own.row >= 0 or own.stiffness > 0.0
 
 
 @helper
-def prescribed(t, z, tab, state, offset):
-    """Prescribed place, its rate and second rate at the time t since the motion began."""
-    f, f_dot, f_ddot = motion(tab, offset, t)
-    if state < 0:
+def prescribed(t, scene, e):
+    """Prescribed place, its rate and second rate at time t."""
+    own = AnyDrive(scene, e)
+    f, f_dot, f_ddot = motion(scene.tab, own.motion, t - own.since)
+    if own.state < 0:
         return f, f_dot, f_ddot
-    return z[state], f, f_dot
+    return scene.z[own.state], f, f_dot

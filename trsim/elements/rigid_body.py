@@ -7,17 +7,22 @@ Its axes are at t = 0 those of the frame it is drawn in, the world's or its inst
 equations of motion hold the masses (assemble/equations.py).
 """
 
+from math import dist
 from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Ge
 from pydantic import BeforeValidator
 
+from trsim import elements
 from trsim.elements.cable import Cable
-from trsim.elements.contract import Channel, Element, Row, kernel
+from trsim.elements.contract import Channel, Element, Memory, Row, kernel
+from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
+from trsim.kernels.columns import f8, i8
 
 KG_M2 = Unit("kg*m^2")
 INERTIA = Annotated[float, Ge(0), KG_M2]
+ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
 def _switched_off(value: Any) -> Any:
@@ -65,26 +70,57 @@ class RigidBody(Spec):
     angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
     flexible: Annotated[Cable | None, SWITCH] = None
 
+    @property
+    def tensor(self):
+        """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
+        if isinstance(self.inertia, float):
+            return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self.inertia), False
+        xx, yy, zz, xy, xz, yz = (*self.inertia, 0.0, 0.0, 0.0)[:6]
+        return (xx, xy, xz, xy, yy, yz, xz, yz, zz), True
 
-def tensor(inertia):
-    """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
-    if isinstance(inertia, float):
-        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, inertia), False
-    xx, yy, zz, xy, xz, yz = (*inertia, 0.0, 0.0, 0.0)[:6]
-    return (xx, xy, xz, xy, yy, yz, xz, yz, zz), True
+    def bar(self, start, end):
+        if start == end:
+            what = "a flexible bar lies between two of its joints, and this one has fewer"
+            hint = "give it joints at both ends, or make it an ancf_cable with `start` and `end`"
+            raise ScenarioError(what, hint, ("flexible",))
+        own = self.flexible.density is not None or self.flexible.mass is not None
+        if self.mass == 0.0 and not own:
+            hint = "give the body a `mass`, or `flexible` a `density`"
+            raise ScenarioError("a flexible bar needs a mass", hint, ("mass",))
+        away = dist((0.5 * (a + b) for a, b in zip(start, end, strict=True)), self.at)
+        if away > ON_LINE * dist(start, end):
+            raise ScenarioError(
+                f"its centre of mass is {away:.3g} m away from the middle between its joints",
+                "a flexible bar is straight and alike all along; make it an ancf_cable with "
+                "`start` and `end`, or fix rigid bodies to it",
+                ("flexible",),
+            )
+        words = {**dict(self.flexible), **({} if own else {"mass": self.mass})}
+        words |= {"velocity": self.velocity, "angular_velocity": self.angular_velocity}
+        return elements.load("ancf_cable").spec.model_construct(**words, start=start, end=end)
+
+    def as_rigid(self):
+        return self
+
+
+class Own(Memory):
+    """Of one instance."""
+
+    body: i8
+    mass: f8
 
 
 def pack(name, spec, at):
-    return Row((at.body(name),), (spec.mass,))
+    return Row(*Own.packed(spec, body=at.body(name)))
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, A, con, col, out = scene.X, scene.V, scene.A, scene.con, scene.wanted, scene.out
+    X, V, A, col, out = scene.X, scene.V, scene.A, scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        i, o = con[e, 0], col[e]
+        i, o = Own(scene, e).body, col[e]
         for c in range(3):
             out[o + c] = X[i, c]
             out[o + 3 + c] = V[i, c]

@@ -19,13 +19,9 @@ SMALL = 0.1  # rad: below, h is its series; the first term left out is 5e-15 of 
 
 
 @helper
-def triad(X, i, par, e, k):
-    """The three axes that par[e, k:k + 9] tells in the axes of body i."""
-    return (
-        arm(X, i, par[e, k], par[e, k + 1], par[e, k + 2]),
-        arm(X, i, par[e, k + 3], par[e, k + 4], par[e, k + 5]),
-        arm(X, i, par[e, k + 6], par[e, k + 7], par[e, k + 8]),
-    )
+def triad(X, i, x, y, z):
+    """Three vectors in the axes of body i, world axes."""
+    return arm(X, i, x), arm(X, i, y), arm(X, i, z)
 
 
 @helper

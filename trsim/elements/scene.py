@@ -96,7 +96,7 @@ class Model(Packed):
     scale_kind: I1  # (n_y) which unit weighs an entry of y in the error norm
     scale: A1  # (n_y) lever or magnitude that goes with it
     contact: I1  # (n_contacts) row e of each element with a gap
-    contact_par: A2  # (n_contacts, 7) see contact_numbers of assemble/tables.py
+    contact_par: A2  # (n_contacts, 7) ContactNumbers of contract.py
     contact_state: I1  # (n_contacts) entry of z to reset at a touch, or -1
     contact_width: I1  # (n_contacts) its output columns
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1

@@ -8,8 +8,15 @@ Loads, expressions and plots use sensors; x is the angle or stroke of the joint.
 from typing import Annotated, ClassVar, Literal
 
 from trsim.elements.contract import Channel, Element, Row, kernel
-from trsim.elements.frames import arm, stroke_acceleration, turn_acceleration
+from trsim.elements.frames import (
+    Along,
+    arm,
+    on_joint,
+    stroke_acceleration,
+    turn_acceleration,
+)
 from trsim.fields import Spec, Unit
+from trsim.kernels.columns import f8, i8
 
 
 class Sensor(Spec):
@@ -26,49 +33,49 @@ class Sensor(Spec):
     at_start: Annotated[float, Unit("rad", "m")] = 0.0
 
 
+class Own(Along):
+    """Of one instance."""
+
+    source: i8  # coordinate of the joint in S
+    turns: i8  # 1: it is an angle
+    sign: f8
+    drawn: f8
+    at_start: f8
+
+
 def pack(name, spec, at):
     source = at.coordinate(spec.joint)
     at.check_unit(source.kind, "rad", "m", "sensors", name, "at_start")
-    return Row(
-        (source.i, source.j, at.sensor(name), source.entry, int(source.kind == "angle")),
-        (
-            *source.s_i,
-            *source.s_j,
-            *source.axis_i,
-            float(spec.sign),
-            source.drawn,
-            spec.at_start,
-        ),
-        turns=source.kind == "angle",
-        travel=source.kind,
-    )
+    turns = source.kind == "angle"
+    shown = on_joint(source) | {"coordinate": at.sensor(name)}
+    own = Own.packed(spec, **shown, source=source.entry, turns=turns, drawn=source.drawn)
+    return Row(*own, turns=turns, travel=source.kind)
 
 
 @kernel
 def coordinate(t, scene, a, b):
-    S, con, par = scene.S, scene.con, scene.par
+    S = scene.S
     for e in range(a, b):
-        s, x = con[e, 2], con[e, 3]
-        S[s, 0] = par[e, 9] * (S[x, 0] - par[e, 10]) + par[e, 11]
-        S[s, 1] = par[e, 9] * S[x, 1]
+        own = Own(scene, e)
+        s, x = own.coordinate, own.source
+        S[s, 0] = own.sign * (S[x, 0] - own.drawn) + own.at_start
+        S[s, 1] = own.sign * S[x, 1]
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, A, S = scene.X, scene.V, scene.A, scene.S
-    con, par, col, out = scene.con, scene.par, scene.wanted, scene.out
+    S, out = scene.S, scene.out
     for e in range(a, b):
-        if col[e] < 0:
+        o = scene.wanted[e]
+        if o < 0:
             continue
-        s, o = con[e, 2], col[e]
-        out[o] = S[s, 0]
-        out[o + 1] = S[s, 1]
-        i, j = con[e, 0], con[e, 1]
-        axis = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        if con[e, 4] == 1:
-            out[o + 2] = par[e, 9] * turn_acceleration(V, A, i, j, axis)
+        own = Own(scene, e)
+        out[o], out[o + 1] = S[own.coordinate, 0], S[own.coordinate, 1]
+        axis = arm(scene.X, own.i, own.axis)
+        if own.turns == 1:
+            out[o + 2] = own.sign * turn_acceleration(scene, e, axis)
         else:
-            out[o + 2] = par[e, 9] * stroke_acceleration(X, V, A, con, par, e, axis)
+            out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
 
 
 ELEMENT = Element(

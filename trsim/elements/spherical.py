@@ -7,9 +7,8 @@ reaction is the force on body j at the point, world axes.
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Row, between_points, kernel
-from trsim.elements.frames import point_rows
-from trsim.elements.joint import Joint
+from trsim.elements.joint import Joint, joint
+from trsim.elements.rows import POINT
 
 
 class Spherical(Joint):
@@ -18,29 +17,10 @@ class Spherical(Joint):
     type: ClassVar[str] = "spherical"
 
 
-def pack(name, spec, at):
-    i, j = at.bodies(spec.bodies, spec.at)
-    return Row((i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at)))
-
-
-@kernel
-def constraint(t, scene, a, b):
-    for e in range(a, b):
-        point_rows(scene, e)
-
-
-ELEMENT = Element(
+ELEMENT = joint(
     key="spherical",
-    section="joints",
     spec=Spherical,
-    pack=pack,
-    rows=("x", "y", "z"),
-    meets=True,
-    pin=(2, 3),
-    holds_twist=False,
-    turning=between_points,
-    picture="ball",
-    kernels={"constraint": constraint},
+    rows=POINT,
     example="""
 planar: false
 bodies:

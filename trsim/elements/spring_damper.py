@@ -18,11 +18,11 @@ from trsim.elements.contract import (
     Element,
     Reach,
     Row,
-    between_points,
     kernel,
 )
-from trsim.elements.frames import line, push
+from trsim.elements.frames import TwoPoints, between_points, line, points, push
 from trsim.fields import Spec, Unit, point
+from trsim.kernels.columns import f8
 
 
 class SpringDamper(Spec):
@@ -45,54 +45,63 @@ class SpringDamper(Spec):
     preload: Annotated[float, Unit("N")] = 0.0
 
 
+class Own(TwoPoints):
+    """Of one instance."""
+
+    preload: f8
+    stiffness: f8
+    damping: f8
+    free_length: f8
+
+
 def pack(name, spec, at):
     p, q = spec.points
     i, j = at.bodies(spec.bodies, p, q)
     drawn = sqrt(sum((b - a) ** 2 for a, b in zip(p, q, strict=True)))
     free = drawn if spec.free_length is None else spec.free_length
-    return Row(
-        (i, j, -1),
-        (*at.local(i, p), *at.local(j, q), spec.preload, spec.stiffness, spec.damping, free),
-    )
+    return Row(*Own.packed(spec, **points(at, i, j, p, q), free_length=free))
 
 
 @kernel
 def force(t, scene, a, b):
-    X, V, con, par, F, zd = scene.X, scene.V, scene.con, scene.par, scene.F, scene.zd
+    F, zd = scene.F, scene.zd
     for e in range(a, b):
-        p_i, p_j, n, length, rate = line(X, V, con, par, e)
-        damping = par[e, 8] * rate
-        T = par[e, 6] + par[e, 7] * (length - par[e, 9]) + damping
-        push(F, con[e, 0], p_i, (T * n[0], T * n[1], T * n[2]))
-        push(F, con[e, 1], p_j, (-T * n[0], -T * n[1], -T * n[2]))
+        own = Own(scene, e)
+        p_i, p_j, n, length, rate = line(scene, e)
+        damping = own.damping * rate
+        T = own.preload + own.stiffness * (length - own.free_length) + damping
+        push(F, own.i, p_i, (T * n[0], T * n[1], T * n[2]))
+        push(F, own.j, p_j, (-T * n[0], -T * n[1], -T * n[2]))
         zd[DAMPERS] -= damping * rate
 
 
 @kernel
 def energy(t, scene, a, b):
-    X, con, par, E = scene.X, scene.con, scene.par, scene.E
+    E = scene.E
     for e in range(a, b):
-        # the length needs no velocity: X stands in for V, its rate is not used
-        _, _, _, length, _ = line(X, X, con, par, e)
-        x = length - par[e, 9]
-        E[SPRINGS] += 0.5 * par[e, 7] * x * x + par[e, 6] * x
+        own = Own(scene, e)
+        _, _, _, length, _ = line(scene, e)
+        x = length - own.free_length
+        E[SPRINGS] += 0.5 * own.stiffness * x * x + own.preload * x
 
 
 @kernel
 def measure(t, scene, a, b):
-    X, V, con, par, col, out = scene.X, scene.V, scene.con, scene.par, scene.wanted, scene.out
+    col, out = scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        _, _, _, length, rate = line(X, V, con, par, e)
-        out[col[e]] = par[e, 6] + par[e, 7] * (length - par[e, 9]) + par[e, 8] * rate
+        own = Own(scene, e)
+        _, _, _, length, rate = line(scene, e)
+        spring = own.preload + own.stiffness * (length - own.free_length)
+        out[col[e]] = spring + own.damping * rate
         out[col[e] + 1] = length
 
 
 def reach(row):
-    i, j = row.con[:2]
-    p, q = row.par[:3], row.par[3:6]
-    return Reach(lines=((i, p, j, q),), places=((i, p, (i, j)),), always=True)
+    own = Own.of(row)
+    line, place = (own.i, own.p_i, own.j, own.p_j), (own.i, own.p_i, (own.i, own.j))
+    return Reach(lines=(line,), places=(place,), always=True)
 
 
 ELEMENT = Element(
@@ -107,6 +116,7 @@ ELEMENT = Element(
     ),
     turning=between_points,
     picture="coil",
+    loads={"force": "force"},
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

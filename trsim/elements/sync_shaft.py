@@ -24,7 +24,7 @@ from typing import Annotated, ClassVar
 from annotated_types import Ge, Gt, Le
 from pydantic import model_validator
 
-from trsim.elements.actuator import MASS
+from trsim.elements.actuator import Own as Actuator
 from trsim.elements.contract import (
     DAMPERS,
     DRIVES,
@@ -33,12 +33,14 @@ from trsim.elements.contract import (
     Channel,
     Element,
     Limit,
+    Memory,
     Row,
     kernel,
 )
 from trsim.elements.frames import helper
 from trsim.errors import ScenarioError
 from trsim.fields import Flag, Spec, Unit
+from trsim.kernels.columns import f8, i8, run
 
 
 class SyncShaft(Spec):
@@ -76,30 +78,44 @@ class SyncShaft(Spec):
         return self
 
 
-K, DAMPING, RATIO, LOSS, LOSS_BACK, LOST, TURNING = range(7)  # par
-MASSES = 7  # and on: of the pistons
-COUNT, STATIONS = 2, 3  # con: how many pistons, then of each its place and its slip in z, or -1
+class Own(Memory):
+    """Of one instance."""
+
+    i: i8  # the ground, as all it acts on are states
+    j: i8
+    count: i8  # how many pistons
+    stations: run(i8)  # of each its place and its slip in z, or -1
+    stiffness: f8
+    damping: f8
+    ratio: f8
+    loss: f8  # of the ideal force, where the shaft moves the piston
+    loss_back: f8  # and where the piston moves the shaft
+    lost_at: f8
+    turning_speed: f8
+    masses: run(f8)  # of the pistons
+
+
 LOCKED = 0.01  # eta_b of a self-locking gear
+WHOLE = 10.0  # turning speeds: from here on friction is whole to half a per cent
 
 
 def pack(name, spec, at):
     if len(spec.actuators) < 2:
         raise ScenarioError("joins two or more actuators", "", ("actuators",))
-    stations, masses, frames = [], [], set()
+    stations, masses = [], []
     for k, one in enumerate(spec.actuators):
         found = at.packed("drives", one, ("actuators", k))
         if one in spec.actuators[:k]:
             raise ScenarioError(f"'{one}' stands there twice", "", ("actuators", k))
-        if found.element.key != "actuator" or found.row.con[3] < 0:
+        driven = Actuator.of(found.row) if found.element.key == "actuator" else None
+        if driven is None or driven.state < 0:
             raise ScenarioError(
                 f"'{one}' is no actuator with a velocity",
                 "a shaft joins elements of `type: actuator`, each driven by its `velocity`",
                 ("actuators", k),
             )
-        _, _, _, place, _, _, piston, slip = found.row.con
-        stations += [place if piston < 0 else piston, slip]
-        masses.append(found.row.par[MASS])
-        frames |= {*found.row.con[:2]}
+        stations += [driven.state if driven.place < 0 else driven.place, driven.slip]
+        masses.append(driven.mass)
     if not any(masses):
         at.notes.append(
             "actuators: their speeds are prescribed, so the shaft changes nothing and "
@@ -107,19 +123,26 @@ def pack(name, spec, at):
         )
     locks = spec.self_locking or spec.efficiency <= 0.5
     back = LOCKED if locks else max(2.0 - 1.0 / spec.efficiency, LOCKED)
-    par = (
-        spec.stiffness, spec.damping, spec.ratio, 1.0 - spec.efficiency,
-        1.0 / back - 1.0, spec.lost_at or 0.0, spec.turning_speed, *masses,
-    )  # fmt: skip
     n = len(spec.actuators)
+    losses = {"loss": 1.0 - spec.efficiency, "loss_back": 1.0 / back - 1.0}
+    own = Own.packed(
+        spec,
+        i=0,
+        j=0,
+        count=n,
+        stations=stations,
+        **losses,
+        lost_at=spec.lost_at or 0.0,
+        masses=masses,
+    )
     said = "synchronism was lost: the strokes of two neighbours differ too much"
     limits = (Limit("lost", spec.lost_at, "m", "jammed", said),) if spec.lost_at else ()
-    own = tuple(s for s in stations if s >= 0)
-    return Row((0, 0, n, *stations), par, None, channels(n), states=own, limits=limits)
+    states = tuple(s for s in stations if s >= 0)
+    return Row(*own, None, channels(n), states=states, limits=limits)
 
 
 def channels(n):
-    """Of a shaft between n actuators."""
+    """The channels of a shaft between n actuators."""
     return (
         *(
             Channel(
@@ -138,58 +161,58 @@ def channels(n):
 @helper
 def place(scene, e, k):
     """Stroke of piston k and its rate, which its actuator left in zd."""
-    s = scene.con[e, STATIONS + 2 * k]
+    s = Own(scene, e).stations[2 * k]
     return scene.z[s], scene.zd[s]
 
 
 @helper
 def torque(scene, e, k):
-    """In segment k between pistons k and k + 1; zero beyond the ends."""
-    if k < 0 or k >= scene.con[e, COUNT] - 1:
+    """Torque in segment k between pistons k and k + 1; zero beyond the ends."""
+    own = Own(scene, e)
+    if k < 0 or k >= own.count - 1:
         return 0.0
     u, u_dot = place(scene, e, k)
     v, v_dot = place(scene, e, k + 1)
-    par = scene.par
-    return par[e, RATIO] * (par[e, K] * (v - u) + par[e, DAMPING] * (v_dot - u_dot))
+    return own.ratio * (own.stiffness * (v - u) + own.damping * (v_dot - u_dot))
 
 
 @helper
 def gear(scene, e, k):
     """Ideal and real force on piston k, and its speed."""
-    par = scene.par
-    ideal = par[e, RATIO] * (torque(scene, e, k) - torque(scene, e, k - 1))
+    own = Own(scene, e)
+    ideal = own.ratio * (torque(scene, e, k) - torque(scene, e, k - 1))
     _, speed = place(scene, e, k)
-    way = speed / sqrt(speed * speed + par[e, TURNING] * par[e, TURNING])
-    if ideal * speed > 0.0:
-        return ideal, ideal - par[e, LOSS] * abs(ideal) * way, speed
-    return ideal, ideal - par[e, LOSS_BACK] * abs(ideal) * way, speed
+    way = speed / sqrt(speed * speed + own.turning_speed * own.turning_speed)
+    loss = own.loss if ideal * speed > 0.0 else own.loss_back
+    return ideal, ideal - loss * abs(ideal) * way, speed
 
 
 @kernel
 def force(t, scene, a, b):
-    con, par, zd = scene.con, scene.par, scene.zd
+    zd = scene.zd
     for e in range(a, b):
-        n = con[e, COUNT]
+        own = Own(scene, e)
+        n = own.count
         for k in range(n - 1):
             _, u_dot = place(scene, e, k)
             _, v_dot = place(scene, e, k + 1)
-            twist = par[e, RATIO] * (v_dot - u_dot)
-            zd[DAMPERS] -= par[e, DAMPING] * twist * twist
+            twist = own.ratio * (v_dot - u_dot)
+            zd[DAMPERS] -= own.damping * twist * twist
         for k in range(n):
             ideal, G, speed = gear(scene, e, k)
             zd[FRICTION] += (G - ideal) * speed
-            slip = con[e, STATIONS + 2 * k + 1]
+            slip = own.stations[2 * k + 1]
             if slip >= 0:
-                zd[slip] += G / par[e, MASSES + k]
+                zd[slip] += G / own.masses[k]
             else:
                 zd[DRIVES] -= G * speed  # whoever prescribes the motion takes the force
 
 
 @helper
 def largest_difference(scene, e):
-    """Of the strokes of neighbours, and its rate."""
+    """The largest difference of the strokes of neighbours, and its rate."""
     largest, rate = -1.0, 0.0
-    for k in range(scene.con[e, COUNT] - 1):
+    for k in range(Own(scene, e).count - 1):
         u, u_dot = place(scene, e, k)
         v, v_dot = place(scene, e, k + 1)
         if abs(v - u) > largest:
@@ -203,19 +226,20 @@ def gap(t, scene, a, b):
     for e in range(a, b):
         # the rate is that of the last evaluation: near enough to see whether it turns
         difference, rate = largest_difference(scene, e)
-        scene.gap[e, 0] = difference - scene.par[e, LOST]
+        scene.gap[e, 0] = difference - Own(scene, e).lost_at
         scene.gap[e, 1] = rate
 
 
 @kernel
 def energy(t, scene, a, b):
-    par, E = scene.par, scene.E
+    E = scene.E
     for e in range(a, b):
-        for k in range(scene.con[e, COUNT] - 1):
+        own = Own(scene, e)
+        for k in range(own.count - 1):
             u, _ = place(scene, e, k)
             v, _ = place(scene, e, k + 1)
-            twist = par[e, RATIO] * (v - u)
-            E[SPRINGS] += 0.5 * par[e, K] * twist * twist
+            twist = own.ratio * (v - u)
+            E[SPRINGS] += 0.5 * own.stiffness * twist * twist
 
 
 @kernel
@@ -225,7 +249,7 @@ def measure(t, scene, a, b):
         o = scene.wanted[e]
         if o < 0:
             continue
-        n = scene.con[e, COUNT]
+        n = Own(scene, e).count
         for k in range(n - 1):
             out[o + k] = torque(scene, e, k)
         for k in range(n):
@@ -235,8 +259,19 @@ def measure(t, scene, a, b):
         out[o + 2 * n - 1] = difference
 
 
+def doubts(name, spec, largest):
+    """Pistons that are slow beside the speed over which the friction of their gears turns round."""
+    fastest = max(largest(f"{one}.velocity")[0] for one in spec.actuators)
+    if spec.efficiency < 1.0 and 0.0 < fastest < WHOLE * spec.turning_speed:
+        yield (
+            f"forces.{name}.turning_speed: its actuators move with at most {fastest:.3g} m/s, "
+            f"and friction of its gears turns round over {spec.turning_speed:g} m/s: it is "
+            f"not whole below {WHOLE:g} times that; give a smaller one"
+        )
+
+
 def no_frames(row):
-    """It acts on pistons only, which are states."""
+    """None: it acts on pistons only, which are states."""
     return frozenset()
 
 
@@ -247,6 +282,7 @@ ELEMENT = Element(
     pack=pack,
     channels=channels(2),  # and so on for more actuators
     acts_on=no_frames,
+    doubts=doubts,
     kernels={"force": force, "gaps": gap, "energy": energy, "measure": measure},
     example="""
 bodies:

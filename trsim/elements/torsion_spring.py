@@ -17,8 +17,9 @@ from trsim.elements.contract import (
     Row,
     kernel,
 )
-from trsim.elements.frames import arm, twist
+from trsim.elements.frames import Along, arm, on_joint, twist
 from trsim.fields import Spec, Unit
+from trsim.kernels.columns import f8
 
 
 class TorsionSpring(Spec):
@@ -37,43 +38,52 @@ class TorsionSpring(Spec):
     damping: Annotated[float, Ge(0), Unit("N*m*s/rad")] = 0.0
 
 
+class Own(Along):
+    """Of one instance."""
+
+    preload: f8
+    stiffness: f8
+    damping: f8
+    drawn: f8  # rad
+
+
 def pack(name, spec, at):
     x = at.coordinate(spec.joint, "angle")
-    return Row(
-        (x.i, x.j, x.entry),
-        (*x.axis_i, spec.preload, spec.stiffness, spec.damping, x.drawn),
-    )
+    return Row(*Own.packed(spec, **on_joint(x), drawn=x.drawn))
 
 
 @kernel
 def force(t, scene, a, b):
-    X, S, con, par, F, zd = scene.X, scene.S, scene.con, scene.par, scene.F, scene.zd
+    X, S, F, zd = scene.X, scene.S, scene.F, scene.zd
     for e in range(a, b):
-        i, j, s = con[e, 0], con[e, 1], con[e, 2]
-        axis = arm(X, i, par[e, 0], par[e, 1], par[e, 2])
-        damping = -par[e, 5] * S[s, 1]
-        tau = par[e, 3] - par[e, 4] * (S[s, 0] - par[e, 6]) + damping
-        twist(F, j, (tau * axis[0], tau * axis[1], tau * axis[2]))
-        twist(F, i, (-tau * axis[0], -tau * axis[1], -tau * axis[2]))
+        own = Own(scene, e)
+        s, axis = own.coordinate, arm(X, own.i, own.axis)
+        damping = -own.damping * S[s, 1]
+        tau = own.preload - own.stiffness * (S[s, 0] - own.drawn) + damping
+        twist(F, own.j, (tau * axis[0], tau * axis[1], tau * axis[2]))
+        twist(F, own.i, (-tau * axis[0], -tau * axis[1], -tau * axis[2]))
         zd[DAMPERS] += damping * S[s, 1]
 
 
 @kernel
 def energy(t, scene, a, b):
-    S, con, par, E = scene.S, scene.con, scene.par, scene.E
+    S, E = scene.S, scene.E
     for e in range(a, b):
-        turn = S[con[e, 2], 0] - par[e, 6]
-        E[SPRINGS] += 0.5 * par[e, 4] * turn * turn - par[e, 3] * turn
+        own = Own(scene, e)
+        turn = S[own.coordinate, 0] - own.drawn
+        E[SPRINGS] += 0.5 * own.stiffness * turn * turn - own.preload * turn
 
 
 @kernel
 def measure(t, scene, a, b):
-    S, con, par, col, out = scene.S, scene.con, scene.par, scene.wanted, scene.out
+    S, col, out = scene.S, scene.wanted, scene.out
     for e in range(a, b):
         if col[e] < 0:
             continue
-        s = con[e, 2]
-        out[col[e]] = par[e, 3] - par[e, 4] * (S[s, 0] - par[e, 6]) - par[e, 5] * S[s, 1]
+        own = Own(scene, e)
+        s = own.coordinate
+        spring = own.preload - own.stiffness * (S[s, 0] - own.drawn)
+        out[col[e]] = spring - own.damping * S[s, 1]
 
 
 ELEMENT = Element(
@@ -82,6 +92,7 @@ ELEMENT = Element(
     spec=TorsionSpring,
     pack=pack,
     channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
+    loads={"torque": "torque"},
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

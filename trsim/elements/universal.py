@@ -3,17 +3,20 @@
     Phi_1..3 = r_j + p_j - r_i - p_i = 0
     Phi_4    = a_i . b_j = 0               [Nikravesh1988]
 
-a is the axis on body i, b the one on body j: the bearings of the cross between them, which has no
-mass.  reaction is the force on body j at the point, world axes; reaction_moment is along a x b.
+a is the axis on body i, u of its triad; b the one on body j, a of its triad: the bearings of the
+cross between them, which has no mass.  reaction is the force on body j at the point, world axes;
+reaction_moment is along a x b.
 """
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Looser, Reach, Row, kernel
-from trsim.elements.frames import arm, perpendicular_row, point_rows
-from trsim.elements.joint import Joint
+from trsim.elements.contract import Reach, Row
+from trsim.elements.frames import points
+from trsim.elements.joint import Joint, held, joint
+from trsim.elements.rows import POINT, Axes, perpendicular
 from trsim.errors import ScenarioError
 from trsim.fields import direction, vector
+from trsim.frame import across
 
 SQUARE = 1e-6  # cosine of the angle between the axes as drawn
 
@@ -52,32 +55,17 @@ def axes(spec):
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     a, b = axes(spec)
-    return Row(
-        (i, j, -1), (*at.local(i, spec.at), *at.local(j, spec.at), *at.axes(i, a), *at.axes(j, b))
-    )
+    places, triad = points(at, i, j, spec.at, spec.at), held(i, j, a, across(b, a), b, at)
+    return Row(*Axes.packed(**places, **triad, drawn=0.0))
 
 
-@kernel
-def constraint(t, scene, a, b):
-    X, con, par = scene.X, scene.con, scene.par
-    for e in range(a, b):
-        i, j = point_rows(scene, e)
-        a_i = arm(X, i, par[e, 6], par[e, 7], par[e, 8])
-        b_j = arm(X, j, par[e, 9], par[e, 10], par[e, 11])
-        perpendicular_row(scene, i, a_i, j, b_j, con[e, 6])
-
-
-ELEMENT = Element(
+ELEMENT = joint(
     key="universal",
-    section="joints",
     spec=Universal,
+    rows=(*POINT, perpendicular("u", "a", "tilt")),
     pack=pack,
     reach=lambda _: Reach(tilts=True),
-    rows=("x", "y", "z", "tilt"),
-    meets=True,
-    changes=lambda _: (Looser(("tilt",), "spherical", "spherical"),),
-    picture="cross",
-    kernels={"constraint": constraint},
+    dear=True,
     example="""
 planar: false
 bodies:

@@ -1,6 +1,7 @@
 """numba, where something must be compiled: our types in its terms, and the machine code it makes.
 
-Records are known by their type, and by `s.name` in compiled code.  Functions are compiled without
+Records are known by their type, and by `s.name` in compiled code, columns of an instance by
+`own = Own(s, e)` and `own.name`.  Functions are compiled without
 the wrappers that let Python call them: their machine code needs nothing but the C library, and can
 be kept in a file (machine.py).
 """
@@ -20,15 +21,24 @@ from numba.core import cgutils
 from numba.core.datamodel import models
 from numba.core.registry import cpu_target
 from numba.core.typing.templates import AttributeTemplate
-from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, register_model
+from numba.extending import (
+    infer_getattr,
+    intrinsic,
+    lower_getattr_generic,
+    lower_setattr_generic,
+    register_model,
+    typeof_impl,
+)
 from numba.np.arrayobj import populate_array
 
+from trsim.kernels.columns import ARRAY, NUMBER, Column, Layout
 from trsim.kernels.lazy import inner
 from trsim.kernels.packed import WORDS
 from trsim.kernels.signatures import Kind, Signature
 from trsim.kernels.way import way
 
 NUMBERS = {"float64": types.float64, "int64": types.int64}
+WORD = ir.IntType(64)
 
 
 class Code(NamedTuple):
@@ -143,29 +153,137 @@ class PackedAttribute(AttributeTemplate):
 def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
     place = typ.index[attr]
     kind, columns = typ.fields[place][1], typ.columns[place]
-    word_type = ir.IntType(64)
-    base = builder.inttoptr(value, ir.PointerType(word_type))
-
-    def word(k: int) -> Any:
-        pointer = builder.gep(base, [ir.Constant(word_type, WORDS * place + k)])
-        loaded = builder.load(pointer)
-        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
-        return loaded
-
+    first = _word(builder, value, WORDS * place)
     if not isinstance(kind, types.Array):
-        return builder.bitcast(word(0), ir.DoubleType()) if kind == types.float64 else word(0)
-    array = context.make_array(kind)(context, builder)
-    shape = [word(1 + k) for k in range(kind.ndim)]
+        return builder.bitcast(first, ir.DoubleType()) if kind == types.float64 else first
+    shape = [_word(builder, value, WORDS * place + 1 + k) for k in range(kind.ndim)]
     if columns:
-        shape[1] = ir.Constant(word_type, columns)
-    size = ir.Constant(word_type, 8)
+        shape[1] = ir.Constant(WORD, columns)
+    return _array(context, builder, kind, first, shape)
+
+
+def _word(builder: Any, value: Any, k: int) -> Any:
+    """The k-th word of a record, which never changes."""
+    base = builder.inttoptr(value, ir.PointerType(WORD))
+    loaded = builder.load(builder.gep(base, [ir.Constant(WORD, k)]))
+    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return loaded
+
+
+def _array(context: Any, builder: Any, kind: Any, address: Any, shape: list[Any]) -> Any:
+    """An array at an address."""
+    array = context.make_array(kind)(context, builder)
+    size = ir.Constant(WORD, 8)
     strides = [size] if kind.ndim == 1 else [builder.mul(shape[1], size), size]
     populate_array(
         array,
-        data=builder.inttoptr(word(0), array.data.type),
+        data=builder.inttoptr(address, array.data.type),
         shape=cgutils.pack_array(builder, shape),
         strides=cgutils.pack_array(builder, strides),
         itemsize=size,
         meminfo=None,
     )
     return array._getvalue()
+
+
+class ColumnsType(types.Type):
+    """The numba type of the columns of an instance, in the tables of a record."""
+
+    def __init__(self, layout: Layout, record: PackedType) -> None:
+        self.record, self.tables = record, [t for t in layout.tables if t in record.index]
+        self.columns = {k: c for k, c in layout.columns.items() if c.table in self.tables}
+        digest = hashlib.sha256(f"{record.name} {self.columns}".encode()).hexdigest()[:8]
+        super().__init__(name=f"{layout.__name__}_{digest}")
+
+    def kind(self, column: Column) -> Any:
+        """The type of a field."""
+        number = types.int64 if column.table == "con" else types.float64
+        if column.form == ARRAY:
+            return types.Array(number, 1, "C")
+        return number if column.form == NUMBER else types.UniTuple(number, column.number)
+
+
+@register_model(ColumnsType)
+class ColumnsModel(models.StructModel):
+    """The record, and where the row begins in each of its tables."""
+
+    def __init__(self, dmm: Any, fe_type: ColumnsType) -> None:
+        rows = [(t, types.CPointer(_entries(fe_type.record, t).dtype)) for t in fe_type.tables]
+        super().__init__(dmm, fe_type, [("record", fe_type.record), *rows])
+
+
+def _entries(record: PackedType, table: str) -> Any:
+    """The type of a table of a record."""
+    return record.fields[record.index[table]][1]
+
+
+@typeof_impl.register(Layout)
+def _typeof(layout: Layout, _: Any) -> Any:
+    return type_of(_at_row(layout))
+
+
+@cache
+def _at_row(layout: Layout) -> Any:
+    """What compiled code takes a class of columns for: Own(record, e)."""
+
+    @intrinsic
+    def at_row(typingctx, record, e):  # type: ignore[no-untyped-def]
+        columns = ColumnsType(layout, record)
+
+        def codegen(context, builder, _, values):  # type: ignore[no-untyped-def]
+            own = cgutils.create_struct_proxy(columns)(context, builder)
+            own.record = values[0]
+            for table in columns.tables:
+                first = WORDS * record.index[table]  # address, rows, columns
+                entry = context.get_value_type(_entries(record, table).dtype)
+                base = builder.inttoptr(_word(builder, values[0], first), entry.as_pointer())
+                begin = builder.mul(values[1], _word(builder, values[0], first + 2))
+                setattr(own, table, builder.gep(base, [begin], inbounds=True))
+            return own._getvalue()
+
+        return columns(record, types.int64), codegen
+
+    return at_row
+
+
+@infer_getattr
+class ColumnsAttribute(AttributeTemplate):
+    """`own.name` has the type of its columns."""
+
+    key = ColumnsType
+
+    def generic_resolve(self, typ: ColumnsType, attr: str) -> types.Type | None:
+        return typ.kind(typ.columns[attr]) if attr in typ.columns else None
+
+
+def _place(context: Any, builder: Any, typ: ColumnsType, value: Any, column: Column, k: int) -> Any:
+    """The address of a column of a field."""
+    own = cgutils.create_struct_proxy(typ)(context, builder, value=value)
+    at = ir.Constant(WORD, column.at + k)
+    return builder.gep(getattr(own, column.table), [at], inbounds=True)
+
+
+@lower_getattr_generic(ColumnsType)
+def _get_column(context: Any, builder: Any, typ: ColumnsType, value: Any, attr: str) -> Any:
+    column = typ.columns[attr]
+    if column.form == ARRAY:
+        size = ir.Constant(WORD, column.number)
+        if not column.number:
+            own = cgutils.create_struct_proxy(typ)(context, builder, value=value)
+            whole = _word(builder, own.record, WORDS * typ.record.index[column.table] + 2)
+            size = builder.sub(whole, ir.Constant(WORD, column.at))
+        first = builder.ptrtoint(_place(context, builder, typ, value, column, 0), WORD)
+        return _array(context, builder, typ.kind(column), first, [size])
+    places = (_place(context, builder, typ, value, column, k) for k in range(column.number))
+    loaded = [builder.load(place) for place in places]
+    if column.form == NUMBER:
+        return loaded[0]
+    return context.make_tuple(builder, typ.kind(column), loaded)
+
+
+@lower_setattr_generic(ColumnsType)
+def _set_column(context: Any, builder: Any, sig: Any, args: Any, attr: str) -> None:
+    typ, column = sig.args[0], sig.args[0].columns[attr]
+    if column.table != "mem":
+        raise TypeError(f"'{attr}': constants of an instance cannot be written")
+    builder.store(args[1], _place(context, builder, typ, args[0], column, 0))

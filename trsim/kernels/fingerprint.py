@@ -20,6 +20,7 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple, NoReturn
 
+from trsim.kernels.columns import Layout
 from trsim.kernels.lazy import COMPILED, UNWRAPPED, Lazy
 from trsim.kernels.signatures import Signature
 
@@ -30,9 +31,9 @@ LOAD_METHOD = opmap.get("LOAD_METHOD", LOAD_ATTR)  # until Python 3.11
 ATTRIBUTE_SHIFT = 0 if "LOAD_METHOD" in opmap else 1  # since 3.12 the last bit tells a method
 # the package's own files that decide what a function becomes
 COMPILER = (
-    "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py", "kernels/numba_own.py",
-    "kernels/numba_quick.py", "kernels/packed.py", "kernels/pipeline.py", "kernels/plain.py",
-    "kernels/signatures.py", "kernels/way.py",
+    "kernels/columns.py", "kernels/compiler.py", "kernels/fingerprint.py", "kernels/lazy.py",
+    "kernels/numba_own.py", "kernels/numba_quick.py", "kernels/packed.py", "kernels/pipeline.py",
+    "kernels/plain.py", "kernels/signatures.py", "kernels/way.py",
 )  # fmt: skip
 # told by their names: they belong to Python, numpy or numba, whose versions are in every key
 OF_OTHERS = frozenset({"builtins", "cmath", "math", "operator", "numpy", "numba"})
@@ -194,6 +195,8 @@ def _value(value: Any, python: Callable, path: str, reached: list[FunctionType])
     kind = type(value)
     if kind in PLAIN:
         return f"{kind.__name__} {value!r}"
+    if isinstance(value, Layout):
+        return repr(value.columns)
     if isinstance(value, Lazy) or (kind is FunctionType and not _name(value)):
         function: Any = value.python if isinstance(value, Lazy) else value
         reached.append(function)

@@ -37,7 +37,7 @@ KINDS = {kind.name: kind for kind in (f8, i8, A1, A2, I1, I2, T2, T3, T6, T9, T1
 
 
 def void(*arguments: Any) -> Signature:
-    """Of a function that returns nothing."""
+    """The signature of a function that returns nothing."""
     return Signature(None, arguments)
 
 

@@ -195,25 +195,29 @@ def add_straight_damping(P, P_dot, n, l, EI_beta, curvature, F):
 
 
 @law
-def add_force(e, v, l, EA, EI, beta, strain, curvature, stretching, F):
+def add_force(e, v, bar, beta, F):
     """F += elastic and damping force of one element.
 
     Parameters
     ----------
     e : (12,)            r_a, r_xa, r_b, r_xb: positions, m, and slopes
     v : (12,)            their rates; of no influence where beta is 0
-    l : float            undeformed length, m
-    EA, EI : float       stiffness against stretching, N, and bending, N*m^2
-    beta : float         damping / stiffness, s; a straight bar's damping ratio is beta omega / 2
-    strain : int         GREEN or ENGINEERING
-    curvature : int      EXACT, GERSTMAYR or PAPER
-    stretching : int     ASSUMED or FULL
+    bar                  what the element is part of, a record of
+        length : float       undeformed, of the element, m
+        EA, EI : float       stiffness against stretching, N, and bending, N*m^2
+        beta : float         damping / stiffness, s; a straight bar's damping ratio is
+                             beta omega / 2
+        strain : int         GREEN or ENGINEERING
+        curvature : int      EXACT, GERSTMAYR or PAPER
+        stretching : int     ASSUMED or FULL
+    beta : float         that of the bar, or 0 for the elastic force alone
     F : (12,)            generalised force, N and N*m, added to
 
     Notes
     -----
     Three Gauss points for the bend.  Where r' vanishes F is not finite.
     """
+    l, EI, curvature = bar.length, bar.EI, bar.curvature
     P = parabola(e, l)
     p = p_dot = products(P, P)
     if beta > 0.0:
@@ -223,7 +227,7 @@ def add_force(e, v, l, EA, EI, beta, strain, curvature, stretching, F):
         add_straight_damping(P, P_dot, -BENDING, l, side, curvature, F)
         add_straight_damping(P, P_dot, 0.0, l, middle, curvature, F)
         add_straight_damping(P, P_dot, BENDING, l, side, curvature, F)
-    x = pulled(p, p_dot, l, EA, beta, strain, stretching)
+    x = pulled(p, p_dot, l, bar.EA, beta, bar.strain, bar.stretching)
     y = bent(p, p_dot, l, EI, beta, curvature)
     m00, m01, m02 = x[0] + y[0], x[1] + y[1], x[2] + y[2]
     m11, m12, m22 = x[3] + y[3], x[4] + y[4], x[5] + y[5]
@@ -232,8 +236,9 @@ def add_force(e, v, l, EA, EI, beta, strain, curvature, stretching, F):
 
 
 @law
-def energies(e, l, EA, EI, strain, curvature, stretching):
+def energies(e, bar):
     """Energy of the stretch and of the bend, J.  Parameters as in `add_force`."""
+    l, curvature = bar.length, bar.curvature
     P = parabola(e, l)
     p = products(P, P)
     u = 1.0 / l
@@ -242,4 +247,5 @@ def energies(e, l, EA, EI, strain, curvature, stretching):
     for n in (-BENDING, BENDING):
         a, b, c = invariants(p, n, u)
         flexed += BENDING_WEIGHT * bend(a, b, c, curvature)[0]
-    return stretching_energy(p, l, EA, strain, stretching), 0.5 * EI * l * flexed
+    stretched = stretching_energy(p, l, bar.EA, bar.strain, bar.stretching)
+    return stretched, 0.5 * bar.EI * l * flexed

@@ -52,17 +52,17 @@ def position(e, l, xi):
 
 
 @law
-def stress(e, l, EA, EI, strain, curvature, xi):
+def stress(e, bar, xi):
     """Axial force EA eps, N, positive in tension, and moment EI kappa >= 0, N*m, at xi.
 
     Parameters as in `cable.add_force`; damping is not counted.  The strain is that of the place:
     at the ends and in the middle of an element also the assumed one.
     """
-    P, u, n = parabola(e, l), 1.0 / l, xi - 0.5
+    P, u, n = parabola(e, bar.length), 1.0 / bar.length, xi - 0.5
     r1, r2 = mixed((1.0, n, n * n), P), mixed((0.0, u, 2.0 * n * u), P)
     a, b = dot(r1, r1), dot(r1, r2)
-    _, _, _, half = bend(a, b, dot(r2, r2), curvature)
+    _, _, _, half = bend(a, b, dot(r2, r2), bar.curvature)
     p = r2
     if half != 0.5:  # not |r''|; the vector does not cancel where the cable is nearly straight
         p = mixed((1.0, -b / a, 0.0), (r2, r1, r1))
-    return EA * stretch(a, strain)[0], EI * sqrt(2.0 * half * dot(p, p))
+    return bar.EA * stretch(a, bar.strain)[0], bar.EI * sqrt(2.0 * half * dot(p, p))

@@ -134,22 +134,23 @@ def add_bending(n, P, l, EI, curvature, G, K):
 
 
 @law
-def add_stiffness(e, l, EA, EI, strain, curvature, stretching, G, K):
+def add_stiffness(e, bar, G, K):
     """K += d2U/de2 of one element, (12, 12), symmetric.
 
     Parameters
     ----------
-    e, l, EA, EI, strain, curvature, stretching    as in `cable.add_force`
-    G : (4, 12)                                    workspace
-    K : (12, 12)                                   added to
+    e, bar               as in `cable.add_force`
+    G : (4, 12)          workspace
+    K : (12, 12)         added to
     """
+    l, EI, curvature = bar.length, bar.EI, bar.curvature
     P = parabola(e, l)
-    if stretching == FULL:
+    if bar.stretching == FULL:
         for k in range(5):
             n, weight = gauss(k)
-            add_axial(n, P, l, weight * l * EA, strain, G, K)
+            add_axial(n, P, l, weight * l * bar.EA, bar.strain, G, K)
     else:
-        add_assumed(P, l, EA, strain, G, K)
+        add_assumed(P, l, bar.EA, bar.strain, G, K)
     add_bending(-BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
     add_bending(0.0, P, l, MIDDLE_OF_3 * l * EI, curvature, G, K)
     add_bending(BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
@@ -202,23 +203,24 @@ def add_bending_damping(n, P, l, EI_beta, curvature, G, C):
 
 
 @law
-def add_damping(e, l, EA, EI, beta, strain, curvature, stretching, G, C):
+def add_damping(e, bar, G, C):
     """C += -dF/de' of one element, (12, 12), symmetric.
 
     Parameters
     ----------
-    e, l, EA, EI, beta, strain, curvature, stretching    as in `cable.add_force`
-    G : (4, 12)                                          workspace
-    C : (12, 12)                                         added to
+    e, bar               as in `cable.add_force`
+    G : (4, 12)          workspace
+    C : (12, 12)         added to
     """
+    l, beta, curvature = bar.length, bar.beta, bar.curvature
     P = parabola(e, l)
-    y = beta * l * EI
-    if stretching == FULL:
+    y = beta * l * bar.EI
+    if bar.stretching == FULL:
         for k in range(5):
             n, weight = gauss(k)
-            add_axial_damping(n, P, l, weight * l * beta * EA, strain, G, C)
+            add_axial_damping(n, P, l, weight * l * beta * bar.EA, bar.strain, G, C)
     else:
-        add_assumed_damping(P, l, beta * EA, strain, G, C)
+        add_assumed_damping(P, l, beta * bar.EA, bar.strain, G, C)
     add_bending_damping(-BENDING, P, l, BENDING_WEIGHT * y, curvature, G, C)
     add_bending_damping(0.0, P, l, MIDDLE_OF_3 * y, curvature, G, C)
     add_bending_damping(BENDING, P, l, BENDING_WEIGHT * y, curvature, G, C)

@@ -20,14 +20,7 @@ from trsim.kernels.lazy import law
 # the word of a scenario -> the code of `friction_force`
 CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}
 
-# what par[o:o+6] holds, in order; the rest of the six is not read
-PARAMETERS = {
-    "none": (),
-    "coulomb": ("mu",),
-    "modified_coulomb": ("mu", "v0", "v1"),  # -, m/s, m/s
-    "sticking": ("mu_s", "mu_k", "v_s", "sigma0", "sigma1"),  # -, -, m/s, 1/m, s/m
-}
-N_PARAMETERS = 6
+N_PARAMETERS = 6  # at most
 
 
 @law
@@ -167,7 +160,7 @@ def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
 
 
 @law
-def friction_force(code, F_n, v_t, w, par, o):
+def friction_force(code, F_n, v_t, w, par):
     """Friction by code: 0 none, 1 coulomb, 2 modified_coulomb, 3 sticking (bristle).
 
     Parameters
@@ -176,17 +169,16 @@ def friction_force(code, F_n, v_t, w, par, o):
     F_n : float          normal force, N
     v_t : float          sliding velocity, m/s
     w : float            bristle deflection, m; read by code 3 only
-    par : (>= o + 6,)    parameters from o on, in the order of `PARAMETERS`
-    o : int              offset
+    par : (N_PARAMETERS) parameters of the law, in the order it takes them; the rest is not read
 
     Returns
     -------
     (float, float)       force on the moving body, N, and w', m/s (0 unless code 3)
     """
     if code == 2:
-        return modified_coulomb(F_n, v_t, par[o], par[o + 1], par[o + 2]), 0.0
+        return modified_coulomb(F_n, v_t, par[0], par[1], par[2]), 0.0
     if code == 3:
-        return bristle(F_n, v_t, w, par[o], par[o + 1], par[o + 2], par[o + 3], par[o + 4])
+        return bristle(F_n, v_t, w, par[0], par[1], par[2], par[3], par[4])
     if code == 1:
-        return coulomb(F_n, v_t, par[o]), 0.0
+        return coulomb(F_n, v_t, par[0]), 0.0
     return 0.0, 0.0

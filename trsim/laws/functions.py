@@ -64,9 +64,10 @@ from trsim.laws.ranges import ranged
 from trsim.laws.tables import akima, akima_table, held_cubic, interval_at, interval_ends
 
 CONSTANT, TABLE, EXPRESSION = 0, 1, 2
-HEAD = 5  # numbers before the sensors of an expression
-OF_TABLE, HELD_OF_TABLE = 4, 3  # numbers before the points of a table; among them what is held
-WIDTH, WATCHED, HELD = 5, 3, 4  # numbers of an operation; among them these
+VALUE = 1  # of a constant
+N_IN, N_OP, SLOTS, RESULT, HEAD = range(1, 6)  # of an expression; HEAD: its first sensor
+VARIABLE, POINTS, HELD_OF_TABLE, OF_TABLE = range(1, 5)  # of a table; OF_TABLE: its first point
+WATCHED, HELD, WIDTH = 3, 4, 5  # of an operation; WIDTH: the next one
 UNWATCHED, BY_TIME, BY_SENSORS = 0, 1, 2
 BETWEEN = 1.6  # of its mean rate: the largest of half a wave is pi/2 of it
 
@@ -124,7 +125,7 @@ class _Code:
         return self.steps.setdefault((code, a, b), ("step", len(self.steps)))
 
     def watched(self):
-        """Of every operation whether it has corners, and what decides when they are met."""
+        """Whether each operation has corners, and what decides when they are met."""
         sensed = set(self.inputs.values())
         out = []
         for (code, a, b), slot in self.steps.items():
@@ -226,41 +227,50 @@ def expression(node, sensors):
 
 
 @law
+def operations(tab, o):
+    """How many operations an expression has, where the first of them stands, and its slot."""
+    n_in = int(tab[o + N_IN])
+    return int(tab[o + N_OP]), o + HEAD + n_in, o + int(tab[o + SLOTS]) + 3 * (1 + n_in)
+
+
+@law
+def operands(tab, o, p):
+    """The code of the operation at p, and its slots a and b."""
+    return int(tab[p]), o + int(tab[p + 1]), o + int(tab[p + 2])
+
+
+@law
 def run(tab, o):
     """Value of an expression whose inputs are in their slots."""
-    n_in, n_op = int(tab[o + 1]), int(tab[o + 2])
-    p = o + HEAD + n_in
-    out = o + int(tab[o + 3]) + 3 * (1 + n_in)
-    for _ in range(n_op):
-        a, b = tab[o + int(tab[p + 1])], tab[o + int(tab[p + 2])]
-        tab[out] = operation(int(tab[p]), a, b, tab[p + HELD])
+    n, p, out = operations(tab, o)
+    for _ in range(n):
+        code, a, b = operands(tab, o, p)
+        tab[out] = operation(code, tab[a], tab[b], tab[p + HELD])
         p += WIDTH
         out += 3
-    return tab[o + int(tab[o + 4])]
+    return tab[o + int(tab[o + RESULT])]
 
 
 @law
 def run_rates(tab, o):
     """Value and two derivatives of an expression whose inputs are in their slots."""
-    n_in, n_op = int(tab[o + 1]), int(tab[o + 2])
-    p = o + HEAD + n_in
-    out = o + int(tab[o + 3]) + 3 * (1 + n_in)
-    for _ in range(n_op):
-        a, b = o + int(tab[p + 1]), o + int(tab[p + 2])
+    n, p, out = operations(tab, o)
+    for _ in range(n):
+        code, a, b = operands(tab, o, p)
         tab[out], tab[out + 1], tab[out + 2] = operation_rates(
-            int(tab[p]), tab[a], tab[a + 1], tab[a + 2],
+            code, tab[a], tab[a + 1], tab[a + 2],
             tab[b], tab[b + 1], tab[b + 2], tab[p + HELD],
         )  # fmt: skip
         p += WIDTH
         out += 3
-    out = o + int(tab[o + 4])
+    out = o + int(tab[o + RESULT])
     return tab[out], tab[out + 1], tab[out + 2]
 
 
 @law
 def looked_up(tab, o, x):
     """Value and two derivatives of a table at x, on the piece it is held on."""
-    held, n = tab[o + HELD_OF_TABLE], int(tab[o + 2])
+    held, n = tab[o + HELD_OF_TABLE], int(tab[o + POINTS])
     if held == FREE:
         return akima(tab, o + OF_TABLE, n, x)
     return held_cubic(tab, o + OF_TABLE, n, x, held)
@@ -269,9 +279,9 @@ def looked_up(tab, o, x):
 @law
 def inputs(tab, o, t, S):
     """Put t and the sensors into their slots, as values."""
-    slot = o + int(tab[o + 3])
+    slot = o + int(tab[o + SLOTS])
     tab[slot] = t
-    for i in range(int(tab[o + 1])):
+    for i in range(int(tab[o + N_IN])):
         tab[slot + 3 * (i + 1)] = S[int(tab[o + HEAD + i]), 0]
 
 
@@ -285,20 +295,19 @@ def hold(tab, o, t, S, which):
     which : int              BY_TIME or BY_SENSORS
     """
     if tab[o] == TABLE:
-        k = int(tab[o + 1])
+        k = int(tab[o + VARIABLE])
         if (which == BY_TIME) == (k < 0):
             x = t if k < 0 else S[k, 0]
-            tab[o + HELD_OF_TABLE] = interval_at(tab, o + OF_TABLE, int(tab[o + 2]), x)
+            tab[o + HELD_OF_TABLE] = interval_at(tab, o + OF_TABLE, int(tab[o + POINTS]), x)
     if tab[o] != EXPRESSION:
         return
     inputs(tab, o, t, S)
-    n_in, p = int(tab[o + 1]), o + HEAD + int(tab[o + 1])
-    out = o + int(tab[o + 3]) + 3 * (1 + n_in)
-    for _ in range(int(tab[o + 2])):
-        code, a, b = int(tab[p]), tab[o + int(tab[p + 1])], tab[o + int(tab[p + 2])]
+    n, p, out = operations(tab, o)
+    for _ in range(n):
+        code, a, b = operands(tab, o, p)
         if tab[p + WATCHED] == which:
-            tab[p + HELD] = branch_at(code, switching(code, a, b))
-        tab[out] = operation(code, a, b, tab[p + HELD])
+            tab[p + HELD] = branch_at(code, switching(code, tab[a], tab[b]))
+        tab[out] = operation(code, tab[a], tab[b], tab[p + HELD])
         p += WIDTH
         out += 3
 
@@ -310,7 +319,7 @@ def hold(tab, o, t, S, which):
 def sensed(tab, o, place):
     """Whether sensors meet a corner."""
     if tab[o] == TABLE:
-        return tab[o + 1] >= 0.0
+        return tab[o + VARIABLE] >= 0.0
     return tab[place - HELD + WATCHED] == BY_SENSORS
 
 
@@ -321,10 +330,9 @@ def corner(tab, o, place, S):
     As `located` left them in the slots.
     """
     if tab[o] == TABLE:
-        k = int(tab[o + 1])
+        k = int(tab[o + VARIABLE])
         return S[k, 0], S[k, 1], abs(S[k, 0])
-    p = place - HELD
-    code, a, b = int(tab[p]), o + int(tab[p + 1]), o + int(tab[p + 2])
+    code, a, b = operands(tab, o, place - HELD)
     if code == ATAN2 or code >= NEG:
         return tab[a], tab[a + 1], abs(tab[a])
     return tab[a] - tab[b], tab[a + 1] - tab[b + 1], abs(tab[a]) + abs(tab[b])
@@ -345,14 +353,14 @@ def ends_of(tab, o, place):
         return branch_ends(int(tab[place - HELD]), held)
     if held == FREE:
         return -math.inf, math.inf
-    return interval_ends(tab, o + OF_TABLE, int(tab[o + 2]), held)
+    return interval_ends(tab, o + OF_TABLE, int(tab[o + POINTS]), held)
 
 
 @law
 def piece_at(tab, o, place, u):
     """The piece that u is on; at a corner the one above."""
     if tab[o] == TABLE:
-        return interval_at(tab, o + OF_TABLE, int(tab[o + 2]), u)
+        return interval_at(tab, o + OF_TABLE, int(tab[o + POINTS]), u)
     return branch_at(int(tab[place - HELD]), u)
 
 
@@ -405,32 +413,33 @@ def enclosed(tab, o, t0, t1, S, seen, box):
     int                      CLEAR; MEETS one, whose u' has one sign meanwhile; UNSURE
     """
     if tab[o] == TABLE:
-        k = int(tab[o + 1])
+        k = int(tab[o + VARIABLE])
         low, high = ends_of(tab, o, o + HELD_OF_TABLE)
         r = seen[k]
         return judged(S[k, 0], r[0], r[1], r[2], r[3], low, high)
     inputs(tab, o, t1, S)
     run(tab, o)
-    n_in, n_op, first = int(tab[o + 1]), int(tab[o + 2]), int(tab[o + 3])
+    n_in, first = int(tab[o + N_IN]), o + int(tab[o + SLOTS])
+    n_op, p, _ = operations(tab, o)
     box[0, 0], box[0, 1], box[0, 2], box[0, 3] = t0, t1, 1.0, 1.0
     for i in range(n_in):
         for c in range(4):
             box[i + 1, c] = seen[int(tab[o + HEAD + i]), c]
     for k in range(1 + n_in + n_op, box.shape[0]):
-        place = o + first + 3 * k
+        place = first + 3 * k
         if place >= tab.size:
             break
         box[k, 0] = box[k, 1] = tab[place]
         box[k, 2] = box[k, 3] = 0.0
-    worst, p = CLEAR, o + HEAD + n_in
+    worst = CLEAR
     for k in range(1 + n_in, 1 + n_in + n_op):
-        code, held = int(tab[p]), tab[p + HELD]
-        slot_a, slot_b = int(tab[p + 1]), int(tab[p + 2])
+        code, slot_a, slot_b = operands(tab, o, p)
+        held = tab[p + HELD]
         x, y = box[(slot_a - first) // 3], box[(slot_b - first) // 3]
         a, b, r0, r1, c, d, q0, q1 = x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3]
         if tab[p + WATCHED] == BY_SENSORS and held != FREE:
             low, high = branch_ends(code, held)
-            u = switching(code, tab[o + slot_a], tab[o + slot_b])
+            u = switching(code, tab[slot_a], tab[slot_b])
             if code == ATAN2 or code >= NEG:
                 worst = max(worst, judged(u, a, b, r0, r1, low, high))
             else:
@@ -446,8 +455,8 @@ def waves(code):
     """Whether a function, as numbers for `tab`, has a sine, a cosine or a tangent."""
     if code[0] != EXPRESSION:
         return False
-    first = HEAD + int(code[1])
-    return any(code[p] in (SIN, COS, TAN) for p in range(first, int(code[3]), WIDTH))
+    first = HEAD + int(code[N_IN])
+    return any(code[p] in (SIN, COS, TAN) for p in range(first, int(code[SLOTS]), WIDTH))
 
 
 @law
@@ -463,25 +472,25 @@ def swing(tab, o, t, length, S0, rate0, S1, rate1):
     t, length : float        s
     S0, rate0, S1, rate1 : (n_s,)   what the sensors show, and its rate, at t and `length` later
     """
-    first, n_in = o + int(tab[o + 3]), int(tab[o + 1])
+    first = o + int(tab[o + SLOTS])
     tab[first], tab[first + 1], tab[first + 2] = t, 1.0, 0.0
-    for i in range(n_in):
+    for i in range(int(tab[o + N_IN])):
         k, slot = int(tab[o + HEAD + i]), first + 3 * (i + 1)
         mean = abs(S1[k] - S0[k]) / length
         # what begins and ends at rest goes faster between
         rate = max(abs(rate0[k]), abs(rate1[k]), BETWEEN * mean)
         tab[slot], tab[slot + 1], tab[slot + 2] = S1[k], rate, 0.0
     run(tab, o)
-    p, out = o + HEAD + n_in, first + 3 * (1 + n_in)
-    for _ in range(int(tab[o + 2])):
-        a, b = o + int(tab[p + 1]), o + int(tab[p + 2])
+    n, p, out = operations(tab, o)
+    for _ in range(n):
+        code, a, b = operands(tab, o, p)
         tab[out], tab[out + 1], tab[out + 2] = swinging(
-            int(tab[p]), tab[out], abs(tab[a]), tab[a + 1], tab[a + 2],
+            code, tab[out], abs(tab[a]), tab[a + 1], tab[a + 2],
             abs(tab[b]), tab[b + 1], tab[b + 2],
         )  # fmt: skip
         p += WIDTH
         out += 3
-    w = tab[o + int(tab[o + 4]) + 2]
+    w = tab[o + int(tab[o + RESULT]) + 2]
     return w if w < math.inf else 0.0
 
 
@@ -502,9 +511,9 @@ def value(tab, o, t, S):
     """
     kind = tab[o]
     if kind == CONSTANT:
-        return tab[o + 1]
+        return tab[o + VALUE]
     if kind == TABLE:
-        k = int(tab[o + 1])
+        k = int(tab[o + VARIABLE])
         return looked_up(tab, o, t if k < 0 else S[k, 0])[0]
     inputs(tab, o, t, S)
     return run(tab, o)
@@ -524,14 +533,14 @@ def value_and_rate(tab, o, t, S):
     """
     kind = tab[o]
     if kind == CONSTANT:
-        return tab[o + 1], 0.0
+        return tab[o + VALUE], 0.0
     if kind == TABLE:
-        k = int(tab[o + 1])
+        k = int(tab[o + VARIABLE])
         f, f_x, _ = looked_up(tab, o, t if k < 0 else S[k, 0])
         return f, f_x if k < 0 else f_x * S[k, 1]
-    slot = o + int(tab[o + 3])
+    slot = o + int(tab[o + SLOTS])
     tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
-    for i in range(int(tab[o + 1])):
+    for i in range(int(tab[o + N_IN])):
         k, slot = int(tab[o + HEAD + i]), slot + 3
         # the second derivative of a sensor is unknown and not asked for
         tab[slot], tab[slot + 1], tab[slot + 2] = S[k, 0], S[k, 1], 0.0
@@ -553,11 +562,11 @@ def motion(tab, o, t):
     """
     kind = tab[o]
     if kind == CONSTANT:
-        return tab[o + 1], 0.0, 0.0
-    if kind == TABLE and tab[o + 1] < 0.0:
+        return tab[o + VALUE], 0.0, 0.0
+    if kind == TABLE and tab[o + VARIABLE] < 0.0:
         return looked_up(tab, o, t)
-    if kind == TABLE or tab[o + 1] > 0.0:
+    if kind == TABLE or tab[o + N_IN] > 0.0:
         return math.nan, math.nan, math.nan
-    slot = o + int(tab[o + 3])
+    slot = o + int(tab[o + SLOTS])
     tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
     return run_rates(tab, o)

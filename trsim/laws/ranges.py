@@ -81,7 +81,7 @@ def over(a, b, c, d):
 
 @law
 def whole_power(a, b, n):
-    """Of a whole number n >= 0."""
+    """Between which numbers x^n lies for a <= x <= b, n >= 0 a whole number."""
     l, h = a**n, b**n
     if n == 0.0:
         return 1.0, 1.0
@@ -94,7 +94,7 @@ def whole_power(a, b, n):
 
 @law
 def powered(a, b, n):
-    """Of any whole number."""
+    """Between which numbers x^n lies for a <= x <= b, n any whole number."""
     if n >= 0.0:
         return whole_power(a, b, n)
     l, h = whole_power(a, b, -n)

@@ -37,7 +37,7 @@ def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "As
     """
     from trsim.report.asked import words
 
-    see_sense(paths, asked)
+    check_asked(paths, asked)
     with made(folder) as folder:
         if Path(paths[0]).is_dir():
             from trsim.report import studies
@@ -71,8 +71,8 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
     return found
 
 
-def see_sense(paths: Sequence[str | PathLike], asked: "Asked") -> None:
-    """See that what was asked for fits what was given; raises UsageError."""
+def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
+    """Check that what was asked for fits what was given; raises UsageError."""
     studies = [path for path in paths if Path(path).is_dir()]
     if studies and len(paths) > 1:
         what = f"{studies[0]} is the folder of a sweep, and is not the only thing given"

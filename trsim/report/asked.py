@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from trsim.errors import UsageError
-from trsim.store.target import fresh, headed, told
+from trsim.store.target import file_errors, fresh, headed
 
 
 class Asked(NamedTuple):
@@ -68,7 +68,7 @@ def file_name(kind: str, word: str) -> str:
 def table(path: Path, titles: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
     """Write rows as CSV, numbers in full."""
     with (
-        told(path),
+        file_errors(path),
         fresh(path, headed(*titles[:2])) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):

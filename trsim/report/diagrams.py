@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from trsim.analyse.bifurcation import Diagram, told
-from trsim.analyse.cases import numeric
-from trsim.analyse.cases import told as because
+from trsim.analyse.bifurcation import Diagram, period_in_words
+from trsim.analyse.cases import numeric, reasons
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown
 from trsim.report.keys import Units, axis, named_value
@@ -32,13 +31,13 @@ def bifurcation(one: Shown, of: Diagram, folder: Path) -> Found:
     titles = ("case", f"{of.over} [{of.units.get(of.over, '-')}]", "period", "x", "y")
     found.files.append(table(folder / f"{name}.csv", titles, rows))
     for each in of.cases:
-        what = f"{of.section}: {told(each.period)}"
+        what = f"{of.section}: {period_in_words(each.period)}"
         found.lines.append(f"{each.case}: {what}, {len(each.x)} points")
         value = float(each.period) if each.period >= 0 else np.nan
         found.values.append(Value(each.case, f"{of.section}: period", value, np.nan, "-"))
     for name in of.why:
         found.values.append(Value(name, f"{of.section}: period", np.nan, np.nan, "-"))
-    found.lines.extend(because(of.why))
+    found.lines.extend(reasons(of.why))
     return found
 
 

@@ -45,10 +45,10 @@ def add(found: Found, run: str, what: str, one: Exponent) -> None:
     """A rate among the numbers and lines of a report."""
     half = one.half if np.isfinite(one.value) else np.nan
     found.values.append(Value(run, what, one.value, half, "1/s"))
-    found.lines.append(f"{run}: {what}: {told(one)}")
+    found.lines.append(f"{run}: {what}: {in_words(one)}")
 
 
-def told(one: Exponent) -> str:
+def in_words(one: Exponent) -> str:
     """A rate, its interval and its region in words; or why there is none."""
     if one.verdict == "undetermined":
         return f"undetermined: {one.reason}"
@@ -69,7 +69,7 @@ def figure(runs: list[Shown], each: list[Exponent], labels: list[str], said: str
     factor, second = runs[0].display("s")
     title = said
     for k, (one, name) in enumerate(zip(each, labels, strict=True)):
-        result = told_short(one)
+        result = in_short(one)
         text = fill(f"{name}: {result}" if name else result, WIDE)
         if not one.time.size:
             a.plot([], [], color=colour(k), label=text)
@@ -88,7 +88,7 @@ def figure(runs: list[Shown], each: list[Exponent], labels: list[str], said: str
     return made
 
 
-def told_short(one: Exponent) -> str:
+def in_short(one: Exponent) -> str:
     """The rate, or the verdict without its reason, which is in the lines of the report."""
     if one.verdict == "grows":
         return f"{short(one.value, 3)} \u00b1 {short(one.half, 2)} 1/s"

@@ -9,7 +9,7 @@ from trsim.units import unit
 
 
 class Units(NamedTuple):
-    """Of swept keys: SI, and as the scenario has them."""
+    """The units of swept keys: SI, and as the scenario has them."""
 
     si: Mapping[str, str]
     written: Mapping[str, str]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.analyse.cases import Numbers, told
+from trsim.analyse.cases import Numbers, reasons
 from trsim.errors import UsageError, known
 from trsim.report.asked import Found, file_name, nothing, table
 from trsim.report.display import Shown, short
@@ -47,7 +47,7 @@ def drawn(study: Any, one: Shown, of: Numbers, over: str | None, folder: Path) -
     rows = [(case.name, case.status, *(case.values[key] for key in grid.keys),
              of.values[case.name]) for case in study.cases]  # fmt: skip
     found.files.append(table(folder / f"{file_name('map', of.word)}.csv", head, rows))
-    found.lines.extend(told(of.why))
+    found.lines.extend(reasons(of.why))
     return found
 
 

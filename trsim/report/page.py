@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from trsim.store.target import HEADER, Kind, fresh, told
+from trsim.store.target import HEADER, Kind, file_errors, fresh
 
 GENERATOR = '<meta name="generator" content="trsim">'
 STRIP = 150  # pixels, the width of a strip of dots
@@ -116,7 +116,7 @@ class Section(NamedTuple):
 def write(path: Path, title: str, lead: Sequence[str], sections: Sequence[Section]) -> Path:
     """Write the page.  Raises FileError where it cannot be written."""
     text = page(title, lead, sections)
-    with told(path), fresh(path, PAGE) as unfinished:
+    with file_errors(path), fresh(path, PAGE) as unfinished:
         unfinished.write_text(text, encoding="utf-8")
     return path
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trsim.scenario.methods import METHODS
-from trsim.store.target import FIGURE, fresh, headed, replaceable, see_writable, told
+from trsim.store.target import FIGURE, check_writable, file_errors, fresh, headed, replaceable
 
 if TYPE_CHECKING:
     from trsim.analyse.precision import Point, Study
@@ -31,9 +31,9 @@ def draw(study: "Study", folder: Path) -> list[Path]:
     return [picture, write(study, folder / f"{NAME}.csv")]
 
 
-def see_room(folder: Path) -> None:
-    """See that both can be written, before anything is measured; raises FileError, UsageError."""
-    see_writable(folder)
+def check_room(folder: Path) -> None:
+    """Check that both can be written, before anything is measured; raises FileError, UsageError."""
+    check_writable(folder)
     replaceable(folder / f"{NAME}.png", FIGURE)
     replaceable(folder / f"{NAME}.csv", TABLE)
 
@@ -41,7 +41,7 @@ def see_room(folder: Path) -> None:
 def write(study: "Study", path: Path) -> Path:
     """The table as CSV, SI units, numbers in full."""
     with (
-        told(path),
+        file_errors(path),
         fresh(path, TABLE) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):

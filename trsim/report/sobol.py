@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.analyse.cases import Numbers, told
+from trsim.analyse.cases import Numbers, reasons
 from trsim.analyse.sobol import Indices, blocks, factors, impossible, indices, named, places
 from trsim.errors import Problems, TrsimError, UsageError
 from trsim.report.asked import Found, Value, file_name, nothing, table
@@ -32,7 +32,7 @@ def sobol(study: Any, one: Shown, of: Numbers, folder: Path) -> Found:
     if not found.files:
         raise wrong[0] if len(wrong) == 1 else Problems(wrong)
     found.lines.extend(f"{error.what}: no Sobol indices of {of.word}" for error in wrong)
-    found.lines.extend(told(of.why))
+    found.lines.extend(reasons(of.why))
     return found
 
 

@@ -12,7 +12,7 @@ from trsim.analyse.cases import (
     no_result,
     numbers,
     numeric,
-    told,
+    reasons,
     unfinished,
     varied,
     without,
@@ -44,7 +44,7 @@ def shown(study: Any) -> Shown:
 
 
 def units(study: Any) -> Units:
-    """Of what was swept."""
+    """The units of what was swept."""
     return Units(study.units, study.written)
 
 
@@ -101,7 +101,7 @@ def outputs(study: Any, one: Shown, of: list[Numbers], over: str | None, folder:
     ]  # fmt: skip
     found.files.append(table(folder / "sweep.csv", titles, rows))
     for each in of:
-        found.lines.extend(told(each.why))
+        found.lines.extend(reasons(each.why))
         with look():
             y = np.array([each.values[name] for name in names])
             drawn = figure(study, one, each.word, each.unit, y, over)

@@ -9,7 +9,7 @@ import numpy as np
 from trsim.report.defaults import Figure, FigureCanvasAgg, matplotlib
 from trsim.report.display import Shown
 from trsim.store.grow import Array
-from trsim.store.target import FIGURE, fresh, told
+from trsim.store.target import FIGURE, file_errors, fresh
 
 CHARACTER = 0.085  # inch: a letter of a title
 WIDTH = 6.3  # inch: the text width of an A4 page
@@ -61,7 +61,7 @@ def panels(
 
 def save(figure: Figure, path: Path) -> Path:
     """Write the PNG, without anything that changes from day to day."""
-    with told(path), fresh(path, FIGURE) as unfinished:
+    with file_errors(path), fresh(path, FIGURE) as unfinished:
         figure.savefig(unfinished, format="png", metadata={"Software": "trsim"})
     return path
 

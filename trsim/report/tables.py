@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim import elements
 from trsim.report.display import Shown, short
 from trsim.report.style import WIDTH, look, panels, save, titled
-from trsim.store.target import fresh, headed, told
+from trsim.store.target import file_errors, fresh, headed
 
 NOISE = 1e-9  # of the largest load of the same unit: rounding
 EVENTS = ("run", "event", "did", "time", "work")  # columns
@@ -55,7 +56,7 @@ def user_events(runs: list[Shown], path: Path) -> list[Path]:
     if not lines:
         return []
     with (
-        told(path),
+        file_errors(path),
         fresh(path, headed(*EVENTS)) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
@@ -98,13 +99,9 @@ def load_name(shown: Shown, element: str, channel: str, extreme: str) -> str:
         loose = any(row.startswith(f"{element}.") for row in shown.run.text("mechanism/not_unique"))
         name = {"reaction": "reaction", "reaction_moment": "moment"}.get(channel, "")
         return f"{name} (not unique)" if name and loose else name
-    names = {"contact_force": "contact force", "torque": "torque", "magnitude": "load"}
-    names["lock.force"] = "lock"
-    if part.section == "drives" or part.type == "spring_damper":
-        names["force"] = "force"
-    if part.type == "limit_stop":
-        names["normal_force"] = "contact force"
-    return names.get(channel, "")
+    if channel == "lock.force":
+        return "lock"
+    return elements.load(part.type).loads.get(channel, "")
 
 
 def stroke_unit(shown: Shown) -> tuple[float, str]:
@@ -116,7 +113,7 @@ def stroke_unit(shown: Shown) -> tuple[float, str]:
 def write(loads: list[Load], path: Path) -> Path:
     """The table as CSV, numbers in full."""
     with (
-        told(path),
+        file_errors(path),
         fresh(path, headed(*Load._fields)) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):

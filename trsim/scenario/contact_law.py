@@ -13,6 +13,8 @@ from pydantic import model_validator
 
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
+from trsim.laws.contact import cylinder_stiffness, damping_factor, hertz_stiffness
+from trsim.laws.friction import CODES, N_PARAMETERS
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
@@ -20,13 +22,15 @@ Length = Annotated[float, Gt(0), Unit("m")]
 Speed = Annotated[float, Gt(0), Unit("m/s")]
 Coefficient = Annotated[float, Ge(0), Unit("-")]
 
-# what a word cannot do without
-FRICTION_NEEDS = {
+# the parameters of a law, in the order it takes them (laws/friction.py)
+STATIC = "static_coefficient"  # the coefficient unless given
+FRICTION_KEYS = {
     "none": (),
     "coulomb": ("coefficient",),
     "modified_coulomb": ("coefficient", "v0", "v1"),
-    "sticking": ("coefficient", "stribeck_speed", "bristle_stiffness"),
+    "sticking": (STATIC, "coefficient", "stribeck_speed", "bristle_stiffness", "bristle_damping"),
 }
+# what a word cannot do without
 STIFFNESS_NEEDS = {
     "internal": ("bearing_radius", "youngs_modulus", "poisson"),
     "paper": ("bearing_radius", "youngs_modulus", "poisson"),
@@ -66,12 +70,20 @@ class Friction(Spec):
 
     @model_validator(mode="after")
     def complete(self) -> "Friction":
-        _needs(self, f"friction law {self.law}", FRICTION_NEEDS[self.law])
+        keys = tuple(key for key in FRICTION_KEYS[self.law] if key != STATIC)
+        _needs(self, f"friction law {self.law}", keys)
         if self.law == "sticking" and self.coefficient == 0.0:
             raise ScenarioError("friction law sticking needs a coefficient > 0")
         if self.v0 is not None and self.v1 is not None and self.v0 >= self.v1:
             raise ScenarioError(f"v0 must be < v1, got {self.v0:g} and {self.v1:g} m/s")
         return self
+
+    @property
+    def numbers(self) -> tuple[int, tuple[float, ...]]:
+        """Code of the law and its N_PARAMETERS numbers."""
+        given = {**dict(self), STATIC: self.static_coefficient or self.coefficient}
+        numbers = [float(given[key]) for key in FRICTION_KEYS[self.law]]
+        return CODES[self.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
 
 
 class ContactLaw(Spec):
@@ -111,3 +123,21 @@ class ContactLaw(Spec):
     def complete(self) -> "ContactLaw":
         _needs(self, f"stiffness {self.stiffness}", STIFFNESS_NEEDS.get(str(self.stiffness), ()))
         return self
+
+    def normal_numbers(self, c: float) -> tuple[float, float, int, float, float]:
+        """K, exponent, form, chi of the law; and the Hertz stiffness it has at a light touch.
+
+        c: radial clearance, m.
+        """
+        E_i, nu_i = self.youngs_modulus, self.poisson
+        E_j = self.journal_youngs_modulus or E_i
+        nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
+        chi = damping_factor(self.normal, self.restitution)
+        if isinstance(self.stiffness, float):
+            return self.stiffness, self.exponent, 0, chi, self.stiffness
+        if self.stiffness == "cylinder":
+            K = cylinder_stiffness(self.width, E_i, nu_i, E_j, nu_j)
+            return K, 1.5, 1, chi, K / c**0.5
+        R_i: Any = self.bearing_radius
+        K = hertz_stiffness(R_i, R_i - c, E_i, nu_i, E_j, nu_j, self.stiffness)
+        return K, self.exponent, 0, chi, K

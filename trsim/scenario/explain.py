@@ -55,7 +55,7 @@ def _element(word: str, section: str, of: dict[str, Any]) -> Page:
         "law": (sys.modules[f"trsim.elements.{word}"].__doc__ or "").strip(),
         "about": description(spec),
         "keys": keys,
-        "coordinate": element.coordinate or None,
+        "coordinates": list(element.coordinates),
         "channels": [_channel(channel) for channel in recorded],
         "example": element.example.strip(),
     }

@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+from trsim.elements.coordinates import named, of_joint, split
 from trsim.errors import ScenarioError, described, known
 from trsim.numbers import number
 
@@ -12,7 +13,7 @@ class Initial(NamedTuple):
     """How the mechanism starts where that is not as drawn and moving with its drives."""
 
     equilibrium: tuple[str, ...] = ()  # joints free in the balance of forces
-    values: dict[str, float] = {}  # joint -> coordinate, rad or m  # noqa: RUF012
+    values: dict[str, float] = {}  # of coordinates of joints, rad or m  # noqa: RUF012
     whole: bool = False  # `equilibrium: all`, of which there may be no joint
 
     @property
@@ -35,7 +36,7 @@ def initial_of(data: Any, info: Any) -> Initial:
         what = f"must be a list of joints, or `{ALL}`"
         raise ScenarioError(what, path=("equilibrium",))
     parameters, values = (info.context or {}).get("parameters"), {}
-    joints = [*info.data.get("joints", ()), "equilibrium"]
+    of, joints = info.data.get("joints", {}), [*info.data.get("joints", ()), "equilibrium"]
     for k, name in enumerate(names):
         if name not in joints[:-1] and "joints" in info.data:
             hint = known(name, joints[:-1])
@@ -46,12 +47,14 @@ def initial_of(data: Any, info: Any) -> Initial:
     for key, value in data.items():
         if key == "equilibrium":
             continue
-        if key not in joints and "joints" in info.data:
+        if split(key, joints)[0] not in joints and "joints" in info.data:
             raise ScenarioError(f"unknown key {described(key)}", known(key, joints), (key,))
         if not isinstance(value, str | int | float):
             raise ScenarioError(f"must be a number, got {described(value)}", path=(key,))
+        has_one = of_joint(split(key, of)[0], of)
+        own = named(key, of, path=(key,))[0] if has_one else key
         try:
-            values[key] = number(value, ("rad", "m"), parameters)
+            values[own] = number(value, ("rad", "m"), parameters)
         except ScenarioError as error:
             raise error.at(key) from None
     return Initial(tuple(names), values, whole)

@@ -36,7 +36,7 @@ KINDS = {"bodies": "bodies", "rows": "constraint rows", "nodes": "nodes of flexi
          "entries": "entries"}  # fmt: skip
 
 
-def over(kind: str, count: int, limit: int, *path: str, how: str = "") -> ScenarioError:
+def too_many(kind: str, count: int, limit: int, *path: str, how: str = "") -> ScenarioError:
     """The error of a mechanism that has too many of a kind."""
     what = f"{count} {KINDS[kind]}{how}: at most {limit} unless `limits` says more"
     hint = f"If they are meant, write `limits: {{{kind}: {count}}}`; it will take its time."
@@ -68,7 +68,7 @@ def before_unfolding(data: dict[str, Any], templates: dict, instances: dict) -> 
             most = max(counts, key=lambda word: counts[word])
             many = f" {counts[most]} of them" if counts[most] < total else ""
             how = f",{many} of instances of {described(most)}"
-            yield over(kind, total, limit, "instances", how=how)
+            yield too_many(kind, total, limit, "instances", how=how)
 
 
 def sizes(scenario: Any) -> Iterator[ScenarioError]:
@@ -77,21 +77,20 @@ def sizes(scenario: Any) -> Iterator[ScenarioError]:
 
     limits = scenario.limits
     if len(scenario.bodies) > limits.bodies:
-        yield over("bodies", len(scenario.bodies), limits.bodies, "bodies")
+        yield too_many("bodies", len(scenario.bodies), limits.bodies, "bodies")
     entries = sum(len(getattr(scenario, section)) for section in SECTIONS)
     if entries > limits.entries:
-        yield over("entries", entries, limits.entries)
-    bars = {name: spec.flexible if spec.type == "rigid_body" else spec
-            for name, spec in scenario.bodies.items()}  # fmt: skip
+        yield too_many("entries", entries, limits.entries)
+    bars = {name: spec.flexible for name, spec in scenario.bodies.items()}
     nodes = {name: bar.elements + 1 for name, bar in bars.items() if bar is not None}
     if sum(nodes.values()) > limits.nodes:
         most = max(nodes, key=lambda name: nodes[name])
         how = f", {nodes[most]} of them of {described(most)}" if len(nodes) > 1 else ""
-        yield over("nodes", sum(nodes.values()), limits.nodes, "bodies", most, how=how)
+        yield too_many("nodes", sum(nodes.values()), limits.nodes, "bodies", most, how=how)
     rows = sum(
         len(elements.load(spec.type).rows)
         for section in ("joints", "drives")
         for spec in getattr(scenario, section).values()
     )
     if rows > limits.rows:
-        yield over("rows", rows, limits.rows, "joints")
+        yield too_many("rows", rows, limits.rows, "joints")

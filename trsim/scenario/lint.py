@@ -8,8 +8,6 @@ from collections.abc import Iterator
 from math import ceil, dist, hypot, inf, pi, sqrt
 from typing import Any
 
-from trsim import elements
-from trsim.elements.clearance_joint import normal_numbers
 from trsim.laws.contact import (
     damping_factor,
     delivered_restitution,
@@ -62,7 +60,7 @@ def _inertias(scenario: Any) -> Iterator[str]:
     for name, body in plausible.rigid(scenario):
         if isinstance(body.inertia, float):
             continue
-        low, middle, high = sorted(_principal(body.inertia))
+        low, middle, high = _principal(body)
         where = f"bodies.{name}.inertia"
         if low < -ROUNDED * high:
             yield (
@@ -78,13 +76,11 @@ def _inertias(scenario: Any) -> Iterator[str]:
             )
 
 
-def _principal(inertia: tuple[float, ...]) -> tuple[float, ...]:
-    if len(inertia) == 3:
-        return inertia
+def _principal(body: Any) -> list[float]:
+    """Principal inertias, the smallest first."""
     import numpy as np
 
-    xx, yy, zz, xy, xz, yz = inertia
-    return tuple(np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).tolist())
+    return np.linalg.eigvalsh(np.reshape(body.tensor[0], (3, 3))).tolist()  # type: ignore[no-any-return]
 
 
 def _sizes(scenario: Any) -> Iterator[str]:
@@ -95,8 +91,7 @@ def _sizes(scenario: Any) -> Iterator[str]:
     size = max((dist(p, everywhere[0]) for p in everywhere), default=0.0)
     slides = plausible.slides(scenario)
     for name, body in plausible.rigid(scenario):
-        about_z = isinstance(body.inertia, float)
-        largest = body.inertia if about_z else max(_principal(body.inertia))
+        largest = max(_principal(body))
         if name in slides or largest <= 0.0:  # does not turn; a point
             continue
         where = f"bodies.{name}"
@@ -193,15 +188,10 @@ def _reduced(scenario: Any, bodies: Any, hinge: Any = None) -> float:
         body = scenario.bodies.get(name)
         if body is None:
             continue  # the ground
-        if body.type == "ancf_cable":
-            mass = body.per_length * body.length
-            inertia = mass * body.length**2 / 12.0
-            centre = tuple(0.5 * (a + b) for a, b in zip(body.start, body.end, strict=True))
-        else:
-            mass, centre = body.mass, body.at
-            inertia = body.inertia if isinstance(body.inertia, float) else body.inertia[2]
+        rigid = body.as_rigid()
+        mass, inertia = rigid.mass, rigid.tensor[0][8]
         if hinge is not None:
-            about = inertia + mass * _away(centre, hinge) ** 2
+            about = inertia + mass * _away(rigid.at, hinge) ** 2
         inverse += 1.0 / (mass if hinge is None else about) if (inertia and mass) else inf
     return 1.0 / inverse if inverse else inf
 
@@ -216,20 +206,10 @@ def _away(place: Any, hinge: Any) -> float:
     return hypot(*(a - along * b / size for a, b in zip(r, hinge.axis, strict=True)))
 
 
-def _stop_mass(scenario: Any, stop: Any) -> float:
-    if stop.joint is None:
-        return _reduced(scenario, (stop.point.body, stop.wall.body))
-    joint = scenario.joints.get(stop.joint)
-    if joint is None:
-        return inf
-    slides = elements.load(joint.type).coordinate == "stroke"
-    return _reduced(scenario, joint.bodies, None if slides else joint)
-
-
 def _all_stops(scenario: Any) -> Iterator[tuple[str, Any, float]]:
     for name, stop in scenario.forces.items():
-        if stop.type == "limit_stop":
-            mass = _stop_mass(scenario, stop)
+        if hasattr(stop, "pressed"):
+            mass = _reduced(scenario, *stop.pressed(scenario.joints))
             if 0.0 < mass < inf:
                 yield name, stop, mass
 
@@ -267,7 +247,7 @@ def _fixed_step(scenario: Any) -> Iterator[str]:
         mass, v = _reduced(scenario, joint.bodies), law.slowest_impact
         if not 0.0 < mass < inf:
             continue
-        _, exponent, _, _, K = normal_numbers(law, joint.clearance)
+        _, exponent, _, _, K = law.normal_numbers(joint.clearance)
         yield from _unresolved(f"joints.{name}", h, hertz_contact_time(mass, K, exponent, v))
         friction = law.friction
         if friction.law == "modified_coulomb" and friction.coefficient:

@@ -18,7 +18,7 @@ from trsim.scenario.names import name_faults, sweep_faults
 from trsim.scenario.scenario import Scenario, suggestion
 from trsim.scenario.text import Tree
 from trsim.scenario.unfold import unfold
-from trsim.units import told
+from trsim.units import units_hint
 
 SHOWN = 30  # problems in one message
 MOST = 200  # problems read from one mapping
@@ -255,7 +255,7 @@ def _missing(one: dict, spec: type[Spec] | None) -> ScenarioError:
 
 def _unit_hint(spec: type[Spec] | None, below: tuple) -> str:
     unit = unit_of(spec, below[0]) if below else None
-    return told(unit.units) if unit else ""
+    return units_hint(unit.units) if unit else ""
 
 
 def unit_of(spec: type[Spec] | None, key: Any) -> Unit | None:

@@ -24,8 +24,8 @@ class Memory:
     def key(
         self, section: str, data: Any, parameters: dict[str, float], scope: Scope | None
     ) -> tuple:
-        """Of a piece of data: its text, the values of the parameters that the text names, and what
-        the text means where it stands."""
+        """What a piece of data depends on: its text, the values of the parameters that the text
+        names, and what the text means where it stands."""
         if id(data) not in self.pieces:
             text = json.dumps(data)
             self.pieces[id(data)] = data, text, sorted(set(self.word.findall(text)))

@@ -77,8 +77,8 @@ def coefficients(scenario: Any) -> Iterator[str]:
 
 
 def rigid(scenario: Any) -> Iterator[tuple[str, Any]]:
-    """The bodies with a mass and an inertia; an ancf_cable has neither."""
-    return ((name, body) for name, body in scenario.bodies.items() if body.type == "rigid_body")
+    """The bodies with an inertia of their own; that of others follows from their section."""
+    return ((name, body) for name, body in scenario.bodies.items() if hasattr(body, "inertia"))
 
 
 def slides(scenario: Any) -> set[str]:
@@ -86,7 +86,7 @@ def slides(scenario: Any) -> set[str]:
     return {
         body
         for joint in scenario.joints.values()
-        if elements.load(joint.type).coordinate == "stroke"
+        if "stroke" in elements.load(joint.type).coordinates
         for body in joint.bodies
     }
 

@@ -26,8 +26,6 @@ from trsim.scenario.text import Tree
 from trsim.scenario.unfolded import Entry, Unfolded
 from trsim.units import quantity
 
-DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}  # section -> type
-
 Seconds = Annotated[float, Gt(0), Unit("s")]
 # s, of a run.  The solver takes what is below 1e-60 (m, m/s, J; NOTHING of solve/march/land.py) for
 # none: 1 m/s^2 moves a body from rest by as much in 1.4e-30 s, and the first step is shorter than a
@@ -69,7 +67,7 @@ def _element(section: str, data: Any, info: Any) -> Any:
 def word(section: str, data: dict) -> str:
     """Which element an entry of a section is."""
     words = [name for name, of in elements.ELEMENTS.items() if of == section]
-    named = data.get("type", DEFAULT.get(section))
+    named = data.get("type", elements.DEFAULT.get(section))
     if named is None:
         near = [key for key in data if edits(key, "type") == 1]
         if near:
@@ -80,9 +78,8 @@ def word(section: str, data: dict) -> str:
     if not isinstance(named, str) or named not in words:
         what = f"unknown type {described(named)}"
         raise ScenarioError(what, known(named, words), ("type",))
-    if named == "revolute" and any(edits(key, "clearance") <= 1 for key in data):
-        return "clearance_joint"
-    return named
+    key, other = elements.BECOMES.get(named, ("", named))
+    return other if key and any(edits(one, key) <= 1 for one in data) else named
 
 
 def _event(data: Any, info: Any) -> Any:
@@ -145,7 +142,7 @@ class SolverSpec(Spec):
     @model_validator(mode="after")
     def consistent(self) -> "SolverSpec":
         if self.end is not None and self.end < SHORTEST:
-            what = f"a run of {self.end:.3g} s is shorter than any motion that can be told"
+            what = f"a run of {self.end:.3g} s is shorter than any motion that can be resolved"
             hint = (
                 "What is below 1e-60 m, m/s or J counts as nothing, and in so short a time a body "
                 f"may move by less: give at least {SHORTEST:g} s, and check the unit."
@@ -296,6 +293,6 @@ def suggestion(name: str, spec: type[Spec], present: dict) -> tuple[str | None, 
     keys = [*spec.model_fields]
     keys += ["extends"] if spec is Scenario else []
     keys += ["type"] if spec.type in elements.ELEMENTS else []
-    keys += ["clearance"] if spec.type == "revolute" else []
+    keys += elements.BECOMES.get(spec.type, ())[:1]
     close = closest(name, [key for key in keys if key not in present]) or closest(name, keys)
     return close, known(name, keys, close)

@@ -13,7 +13,7 @@ from trsim.fields import Spec
 from trsim.scenario.initial import ALL
 from trsim.scenario.load import unit_of
 from trsim.scenario.meanings import description, meanings, specs
-from trsim.scenario.scenario import DEFAULT, Scenario
+from trsim.scenario.scenario import Scenario
 from trsim.scenario.template import SECTIONS
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -101,10 +101,10 @@ def _describe(entry: dict[str, Any], spec: type[Spec]) -> None:
 
 def _typed(entry: dict[str, Any], word: str, section: str) -> None:
     """Add the key `type` that chooses the element."""
-    words = [word, "revolute"] if word == "clearance_joint" else [word]
+    words = [word, *(first for first, (_, other) in elements.BECOMES.items() if other == word)]
     kind = {"description": "which kind of entry", "enum": words}
     entry["properties"] = {"type": kind, **entry["properties"]}
-    if DEFAULT.get(section) != word:
+    if elements.DEFAULT.get(section) != word:
         entry["required"] = ["type", *entry.get("required", ())]
 
 

@@ -8,10 +8,12 @@ locking             `stretching: full` and EA l^2/EI of an element above 100: it
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from math import ceil, dist, hypot, pi, sqrt
 from typing import Any, NamedTuple
 
 from trsim.elements.cable import MOST_ELEMENTS
+from trsim.errors import ScenarioError
 from trsim.scenario import plausible
 
 SOFTEST = 1e4  # Pa: foam, gel
@@ -24,17 +26,15 @@ DIFFERENT = 0.1  # mass or inertia of a bar against what its rigid body says
 
 
 class Bar(NamedTuple):
-    """A flexible bar: where its words stand, its Cable or AncfCable, its numbers."""
+    """A flexible bar: where its words stand, and as it is solved."""
 
     name: str
     where: str
     spec: Any
-    length: float  # m
-    mass: float  # kg
 
     @property
-    def per_length(self) -> float:
-        return self.mass / self.length
+    def length(self) -> float:
+        return float(self.spec.length)
 
 
 def ends(scenario: Any, name: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -45,22 +45,13 @@ def ends(scenario: Any, name: str) -> tuple[tuple[float, ...], tuple[float, ...]
 
 
 def bars(scenario: Any) -> Iterator[Bar]:
-    """All flexible bars that have a length and a mass; the others are refused elsewhere."""
+    """All flexible bars; what makes none is refused elsewhere."""
     for name, body in scenario.bodies.items():
-        if body.type == "ancf_cable":
-            mass = body.per_length * body.length
-            yield Bar(name, f"bodies.{name}", body, body.length, mass)
+        if body.flexible is None:
             continue
-        spec = body.flexible
-        start, end = ends(scenario, name) if spec is not None else ((), ())
-        if start == end:
-            continue
-        length = dist(start, end)
-        mass = body.mass if spec.mass is None else spec.mass
-        if spec.density is not None:
-            mass = spec.density * spec.numbers[0] * length
-        if mass > 0.0:
-            yield Bar(name, f"bodies.{name}.flexible", spec, length, mass)
+        with suppress(ScenarioError):
+            bar = body.bar(*ends(scenario, name))
+            yield Bar(name, f"bodies.{name}" + (".flexible" if bar is not body else ""), bar)
 
 
 def slender(scenario: Any) -> Iterator[str]:
@@ -80,13 +71,14 @@ def _material(bar: Bar) -> Iterator[str]:
             f"{bar.where}.youngs_modulus: {E:.3g} Pa; solids have 10 kPa (foam) to 1 TPa "
             f"(diamond), steel 2.1e+11 Pa: {plausible.prefix(E)}"
         )
-    density = bar.per_length / area
+    density = bar.spec.per_length / area
     if not plausible.LIGHTEST <= density <= plausible.HEAVIEST:
         yield (
-            f"{bar.where}: {bar.mass:.3g} kg on {bar.length:.3g} m of {1e6 * area:.3g} mm^2 are "
-            f"{density:.3g} kg/m^3; steel has 7850: check mass, density and section"
+            f"{bar.where}: {density * area * bar.length:.3g} kg on {bar.length:.3g} m of "
+            f"{1e6 * area:.3g} mm^2 are {density:.3g} kg/m^3; steel has 7850: check mass, density "
+            "and section"
         )
-    omega = pi**2 * sqrt(E * bar.spec.numbers[1] / bar.per_length) / bar.length**2
+    omega = pi**2 * sqrt(E * bar.spec.numbers[1] / bar.spec.per_length) / bar.length**2
     if bar.spec.damping * omega > 2.0:
         yield (
             f"{bar.where}.damping: {bar.spec.damping:.3g} s is {bar.spec.damping * omega / 2:.3g} "
@@ -115,7 +107,7 @@ def _elements(bar: Bar, gravity: float) -> Iterator[str]:
     ratio = bar.length / bar.spec.thickness
     bends = 0.0
     if gravity > 0.0:
-        bends = (bar.spec.youngs_modulus * moment / (bar.per_length * gravity)) ** (1.0 / 3.0)
+        bends = (bar.spec.youngs_modulus * moment / (bar.spec.per_length * gravity)) ** (1.0 / 3.0)
     wanted = ceil(bar.length / bends) if bends > 0.0 else 1
     if n == 1:
         yield (
@@ -161,18 +153,18 @@ def _clearances(scenario: Any, bar: Bar) -> Iterator[str]:
 def _rigid_numbers(scenario: Any, bar: Bar) -> Iterator[str]:
     """The mass and inertia of a rigid body that its bar does not have."""
     body = scenario.bodies[bar.name]
-    if body.type != "rigid_body" or body.mass == 0.0:
+    if body is bar.spec or body.mass == 0.0:
         return
-    if abs(bar.mass / body.mass - 1.0) > DIFFERENT:
+    mass = bar.spec.whole_mass
+    if abs(mass / body.mass - 1.0) > DIFFERENT:
         yield (
-            f"{bar.where}: the bar has {bar.mass:.3g} kg where `mass` says {body.mass:.3g} kg; the "
+            f"{bar.where}: the bar has {mass:.3g} kg where `mass` says {body.mass:.3g} kg; the "
             "bar's counts: correct section or density, or fix a rigid body with the rest to it"
         )
         return
-    inertia = body.inertia if isinstance(body.inertia, float) else body.inertia[2]
-    even = bar.mass * bar.length**2 / 12.0
-    if isinstance(body.inertia, float) and abs(inertia / even - 1.0) > DIFFERENT:
+    even = mass * bar.length**2 / 12.0
+    if not body.tensor[1] and abs(body.inertia / even - 1.0) > DIFFERENT:
         yield (
             f"{bar.where}: an even bar has an inertia of {even:.3g} kg*m^2 where `inertia` says "
-            f"{inertia:.3g} kg*m^2; the bar's counts"
+            f"{body.inertia:.3g} kg*m^2; the bar's counts"
         )

@@ -21,7 +21,7 @@ NOTHING: Any = Field(default_factory=dict)
 
 
 def _later(value: Any, _: Any) -> Any:
-    """As written, its keys checked: its numbers are those of an instance, see unfold.py."""
+    """The mapping as written, its keys checked: its numbers are read in instances (unfold.py)."""
     for key in value if isinstance(value, dict) else ():
         if key not in Placement.model_fields:
             what = f"unknown key {described(key)}"

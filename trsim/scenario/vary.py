@@ -190,7 +190,7 @@ def drawn(one: Drawn, share: float) -> Any:
 
 
 def _related(axes: tuple[Axis, ...]) -> None:
-    """See that every `same as` names a key that varies by itself."""
+    """Check that every `same as` names a key that varies by itself."""
     own = [one.key for one in axes if not one.same_as]
     for one in axes:
         if one.same_as and one.same_as not in own:

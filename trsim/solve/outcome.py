@@ -106,7 +106,7 @@ def settings(scenario: Any, mechanism: Mechanism) -> Array:
     if solver.stabilisation == "baumgarte" and method.explicit and method.adaptive:
         s[rec.H_MAX] = min(s[rec.H_MAX], FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
     s[rec.FIXED_STEP] = 0.0 if method.adaptive else solver.step
-    see_steps(solver, "max_step" if method.adaptive else "step")
+    check_given_steps(solver, "max_step" if method.adaptive else "step")
     if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
         raise ScenarioError(
             f"a step of {solver.step:g} s spans more than {MOST_ROWS} output rows",
@@ -126,7 +126,7 @@ def settings(scenario: Any, mechanism: Mechanism) -> Array:
     return s
 
 
-def see_steps(solver: Any, key: str) -> None:
+def check_given_steps(solver: Any, key: str) -> None:
     """Refuse steps that are given and cannot come to the end; raises ScenarioError."""
     given, least = getattr(solver, key), FINEST * solver.end
     if given and given < least:

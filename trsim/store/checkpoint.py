@@ -160,7 +160,7 @@ def store(path: Path, kept: Checkpoint) -> None:
     digest = hashlib.sha256(body.getbuffer()).hexdigest()
     fresh = path.with_name(path.name + ".new")
     try:
-        own.see(path, CHECKPOINT)
+        own.exists(path, CHECKPOINT)
         with open(own.made(fresh, CHECKPOINT), "wb") as file:
             file.write(f"{MAGIC} {digest}\n".encode())
             file.write(body.getbuffer())
@@ -230,8 +230,8 @@ def _wrong(kept: Checkpoint) -> str:
     return ""
 
 
-def see_like(path: Path, arrays: Arrays, wanted: Mapping[str, NDArray[Any]], rows: bool) -> None:
-    """See that arrays of a checkpoint are those that are wanted.
+def check_like(path: Path, arrays: Arrays, wanted: Mapping[str, NDArray[Any]], rows: bool) -> None:
+    """Check that arrays of a checkpoint are those that are wanted.
 
     rows: their length may be another.  Raises FileError.
     """

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 from trsim.store.read import Run, opened
-from trsim.store.target import TABLE, fresh, told
+from trsim.store.target import TABLE, file_errors, fresh
 
 LETTERS = ("x", "y", "z")
 ROWS = 4096  # rows handled together
@@ -29,7 +29,7 @@ def export(run: Run, names: list[str], target: Path) -> int:
     units = [run.units[places[name][0]] for name in names]
     heads = ["time [s]", *(f"{n} [{u}]" for n, u in zip(names, units, strict=True))]
     with (
-        told(target),
+        file_errors(target),
         fresh(target, TABLE, [run.path]) as unfinished,
         unfinished.open("w", encoding="utf-8", newline="") as out,
     ):

@@ -208,7 +208,7 @@ def provenance(command: str, clock: Clock, outcome: Any, resumed: Sequence[str])
 
 @cache
 def versions() -> dict[str, str]:
-    """Of the packages that have a part in results, as they were installed."""
+    """The versions of the packages that have a part in results, as they were installed."""
     from importlib.metadata import version
 
     used = "numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic"

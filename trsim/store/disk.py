@@ -14,8 +14,8 @@ MORE = 1 << 22  # bytes, more than HDF5 writes at once
 BEGINNING = 1 << 18  # bytes, more than what a file holds before its first row
 
 
-def see_room(part: Path) -> None:
-    """See that a file can be begun: HDF5 ends the process where its first bytes fail."""
+def check_room(part: Path) -> None:
+    """Check that a file can be begun: HDF5 ends the process where its first bytes fail."""
     try:
         with TemporaryFile(dir=part.parent) as file:  # without a name
             file.write(bytes(BEGINNING))
@@ -26,8 +26,8 @@ def see_room(part: Path) -> None:
         raise FileError(what, file=str(part)) from None
 
 
-def see_more(path: Path) -> None:
-    """See that a file can grow; raises OSError."""
+def check_can_grow(path: Path) -> None:
+    """Check that a file can grow; raises OSError."""
     with path.open("ab") as file:
         system.lengthen(file.fileno(), file.tell(), MORE)
 

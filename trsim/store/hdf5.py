@@ -21,7 +21,7 @@ from trsim.store import checkpoint as checkpoints
 from trsim.store import describe, own, peaks, points, tables
 from trsim.store.checkpoint import Checkpoint
 from trsim.store.content import content_hash
-from trsim.store.disk import let_go, see_room, synced
+from trsim.store.disk import check_room, let_go, synced
 from trsim.store.grow import Field, Growing, scales
 from trsim.store.lock import alone
 from trsim.store.read import Run, read
@@ -111,7 +111,7 @@ class Running:
         self.closing = closing
         self.command = ""  # line that began the run
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
-        with self.told():
+        with self.file_errors():
             final.parent.mkdir(parents=True, exist_ok=True)
             if not os.access(final.parent, os.W_OK) or final.is_dir():
                 raise OSError("not a file in a folder that can be written to")
@@ -121,10 +121,10 @@ class Running:
                 (self.fresh, PART),
                 (self.checkpoint, CHECKPOINT),
             ):
-                own.see(path, kind)
+                own.exists(path, kind)
 
     @contextlib.contextmanager
-    def told(self) -> Iterator[None]:
+    def file_errors(self) -> Iterator[None]:
         """Errors of the file system in our words."""
         try:
             yield
@@ -145,10 +145,10 @@ class Running:
         """Store all blocks; the outcome."""
         run = Blocks(blocks)
         for block in run:
-            with self.told():
+            with self.file_errors():
                 self.open()
                 self.take(block)
-        with self.told():
+        with self.file_errors():
             self.open()
         return run.outcome
 
@@ -163,7 +163,7 @@ class Running:
 
     def begun(self, path: Path, kept: Checkpoint | None = None) -> h5py.File:
         """A file with all that has a name, and the rows of a checkpoint; readers may come."""
-        see_room(path)
+        check_room(path)
         os.close(own.made(path, PART))  # HDF5 would follow a link
         file = h5py.File(path, "w", libver=LIBVER, rdcc_nbytes=CACHE)
         try:
@@ -181,9 +181,9 @@ class Running:
         """Be where a run was at a checkpoint, with a fresh part file in place of the old one."""
         if kept is None:
             return
-        checkpoints.see_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
+        checkpoints.check_like(self.checkpoint, kept.extremes, self.extremes, rows=False)
         self.time = self.kept = kept.time
-        with self.told():
+        with self.file_errors():
             file = self.begun(self.fresh, kept)
             file.flush()
             synced(self.fresh)
@@ -267,14 +267,14 @@ class Running:
     def save_last(self, status: str) -> None:
         """A checkpoint before an interrupt ends the run, if there is time for it."""
         if status == INTERRUPTED and self.every and self.state is not None and self.took < HASTE:
-            with contextlib.suppress(FileError), self.told():
+            with contextlib.suppress(FileError), self.file_errors():
                 self.save()
 
     # --- at the end --------------------------------------------------------------------------
 
     def finish(self, status: Status, reason: str, outcome: Any, provenance: dict) -> dict[str, Any]:
         """Add what is known only now, and give the file its name; the summary."""
-        with self.told():
+        with self.file_errors():
             assert self.file is not None  # noqa: S101
             self.flush()
             self.file.close()

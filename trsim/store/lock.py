@@ -14,8 +14,8 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from trsim import system
 from trsim.errors import FileError
-from trsim.store.own import ASIDE, see_open
-from trsim.store.target import HEADER, LOCK, make, told
+from trsim.store.own import ASIDE, check_open
+from trsim.store.target import HEADER, LOCK, file_errors, make
 
 ENDING = ".lock"
 ATTEMPTS, PAUSE = 3, 0.03  # s
@@ -40,7 +40,7 @@ def alone(
 def writing(final: Path) -> Iterator[None]:
     """Hold the lock of a result file.  Raises FileError where another process does."""
     path = _beside(final)
-    with told(final):
+    with file_errors(final):
         make(final.parent)
         handle = _held(path, final)
     try:
@@ -74,7 +74,7 @@ def _held(path: Path, final: Path) -> int:
             raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path))
         handle = os.open(path, os.O_RDWR | os.O_CREAT | system.O_NOFOLLOW, 0o666)
         try:
-            _see_ours(handle, path)
+            _check_ours(handle, path)
             _lock(handle, final)
             if os.path.samestat(os.fstat(handle), os.stat(path)):
                 return handle
@@ -86,10 +86,10 @@ def _held(path: Path, final: Path) -> int:
         os.close(handle)
 
 
-def _see_ours(handle: int, path: Path) -> None:
+def _check_ours(handle: int, path: Path) -> None:
     """Raise FileError where something else has the name of a lock; what is removed is a lock."""
     if os.fstat(handle).st_nlink:  # its last owner may just have removed it
-        see_open(handle, path)
+        check_open(handle, path)
     if not LOCK.fits(system.beginning(handle, HEADER)):
         raise FileError(f"{path} exists and is not a {LOCK.name}", ASIDE, file=str(path))
 

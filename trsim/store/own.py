@@ -16,7 +16,7 @@ from trsim.store.target import BEGINNING, Kind
 ASIDE = "Move it away, or name another file with -o."
 
 
-def see(path: Path, kind: Kind) -> bool:
+def exists(path: Path, kind: Kind) -> bool:
     """Whether there is a file of ours.  Raises FileError where there is anything else."""
     try:
         handle = os.open(path, os.O_RDONLY | system.O_NOFOLLOW | system.O_NONBLOCK)
@@ -26,7 +26,7 @@ def see(path: Path, kind: Kind) -> bool:
         why = "it is a link" if path.is_symlink() else error.strerror
         raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path)) from None
     try:
-        see_open(handle, path)
+        check_open(handle, path)
         start = system.beginning(handle, BEGINNING)
     finally:
         os.close(handle)
@@ -35,7 +35,7 @@ def see(path: Path, kind: Kind) -> bool:
     return True
 
 
-def see_open(handle: int, path: Path) -> None:
+def check_open(handle: int, path: Path) -> None:
     """Raise FileError unless an open file is an ordinary one, known by no second name."""
     found = os.fstat(handle)
     if not stat.S_ISREG(found.st_mode):
@@ -48,7 +48,7 @@ def see_open(handle: int, path: Path) -> None:
 
 def remove(path: Path, kind: Kind) -> None:
     """Remove a file of ours, if it is there.  Raises FileError where there is anything else."""
-    if see(path, kind):
+    if exists(path, kind):
         path.unlink(missing_ok=True)
 
 

@@ -38,7 +38,7 @@ class Magnitudes:
         self.largest = np.zeros((len(self.columns), 2))  # square, time: a root would lose bits
 
     def update(self, rows: Array) -> None:
-        """Of equal ones the first counts, wherever the rows are cut into blocks."""
+        """Take rows; of equal ones the first counts, wherever rows are cut into blocks."""
         for c, largest in zip(self.columns, self.largest, strict=True):
             x, y, z = rows[:, 1 + c.start : 4 + c.start].T
             square = x * x + y * y + z * z

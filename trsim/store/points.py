@@ -110,7 +110,7 @@ def surface(definition: Any) -> str:
 
 
 def dispersion(x: Array, y: Array, alike: bool) -> Dispersion:
-    """Of some points; `alike` says whether x and y have one unit."""
+    """The dispersion of some points; `alike` says whether x and y have one unit."""
     if not len(x):
         return Dispersion(0, np.nan, np.nan, np.nan)
     own = float(np.std(x)), float(np.std(y))

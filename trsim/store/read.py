@@ -19,7 +19,7 @@ from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import Impacts, Points, plain, split, stored
-from trsim.store.sound import Unsound, see_sound
+from trsim.store.sound import Unsound, check_sound
 from trsim.store.tables import MAY_BE_NAN
 
 FORMAT, VERSION = "trsim run", 1
@@ -296,7 +296,7 @@ def _check(file: h5py.File, path: Path) -> None:
     if version > VERSION:
         what = f"{path} has format {version}; this trsim reads up to {VERSION}"
         raise FileError(what, "Use a newer trsim.")
-    see_sound(file)
+    check_sound(file)
 
 
 def _parts(group: h5py.Group) -> dict[str, Part]:

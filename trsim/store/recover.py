@@ -22,11 +22,11 @@ from trsim import child
 from trsim.errors import FileError, unreadable
 from trsim.store import describe, points
 from trsim.store.content import content_hash
-from trsim.store.disk import let_go, see_more, see_room, synced
+from trsim.store.disk import check_can_grow, check_room, let_go, synced
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.salvage import Salvage
-from trsim.store.target import RESULT, fresh, replaceable, told
+from trsim.store.target import RESULT, file_errors, fresh, replaceable
 from trsim.system import end_with_parent
 from trsim.version import __version__
 
@@ -52,7 +52,7 @@ def recover(part: Path, target: Path, patience: float = PATIENCE) -> dict[str, A
         refuse_if_written(part.with_name(part.name.removesuffix(".part")))
     final = replaceable(target, RESULT, [part])
     with writing(final), fresh(final, RESULT, [part]) as unfinished:
-        see_room(final)
+        check_room(final)
         found = _copied(part, unfinished, final, patience)
     return {"file": str(target), "part": str(part), **found}
 
@@ -72,8 +72,8 @@ def _copied(part: Path, unfinished: Path, final: Path, patience: float) -> dict[
     reason = (done.stderr.strip().splitlines() or ["unknown"])[-1][:200]
     if done.returncode == NOT_WRITTEN:
         raise FileError(f"{final}: cannot be written: {reason}", file=str(final))
-    with told(final):  # where it cannot write HDF5 may end the process, too
-        see_more(unfinished)
+    with file_errors(final):  # where it cannot write HDF5 may end the process, too
+        check_can_grow(unfinished)
     if done.returncode < 0:
         name = signal.Signals(-done.returncode).name
         what = f"{part} is damaged: HDF5 was ended by {name} while reading it"

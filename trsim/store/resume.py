@@ -20,7 +20,7 @@ import numpy as np
 
 from trsim import child
 from trsim.errors import FileError
-from trsim.store.checkpoint import ANEW, Checkpoint, see_like
+from trsim.store.checkpoint import ANEW, Checkpoint, check_like
 from trsim.store.checkpoint import beside as checkpoint_of
 from trsim.store.describe import cause
 from trsim.store.grow import Growing
@@ -38,7 +38,7 @@ def refill(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
     """
     if not part.is_file():
         raise FileError(f"{part}: no such file, although its checkpoint is there", ANEW)
-    see_there(part, tables, kept)
+    check_there(part, tables, kept)
     wanted = [(d.name, t.full(kept.rows[t.name])) for t in tables for d in t.datasets]
     with sender(part, wanted) as rows:
         for table in tables:
@@ -51,12 +51,12 @@ def refill(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
             table.n = n
 
 
-def see_there(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
-    """See that a checkpoint tells of all tables, and has the rows of their last chunks."""
+def check_there(part: Path, tables: list[Growing], kept: Checkpoint) -> None:
+    """Check that a checkpoint tells of all tables, and has the rows of their last chunks."""
     like = {d.name: np.empty((0, *d.shape[1:]), d.dtype) for t in tables for d in t.datasets}
     if {t.name for t in tables} != {*kept.rows}:
         raise FileError(f"{beside(part)} does not fit this run: other tables", ANEW)
-    see_like(beside(part), kept.tail, like, rows=True)
+    check_like(beside(part), kept.tail, like, rows=True)
     for table in tables:
         n = kept.rows[table.name] - table.full(kept.rows[table.name])
         if any(len(kept.tail[dataset.name]) != n for dataset in table.datasets):

@@ -103,7 +103,7 @@ class Salvage:
     # --- what a complete run would have said ------------------------------------------------
 
     def _peaks(self) -> None:
-        """Those of the solver if it came so far, otherwise those of the rows."""
+        """The peaks of the solver if it came so far, otherwise those of the rows."""
         if "value" in self.source["peaks"]:
             self.source.copy("peaks", self.file)
             return

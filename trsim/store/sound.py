@@ -51,14 +51,14 @@ class Group(dict[str, Any]):
     def groups(self) -> Iterator["Group"]:
         for name, inner in self.items():
             if not isinstance(inner, Group):
-                raise Unsound(f"{self.path}{told(name)} is no group")
+                raise Unsound(f"{self.path}{printable(name)} is no group")
             yield inner
 
     def want(self, name: str, kind: str, rank: int = 1) -> Item:
         """A dataset that is there and of its kind."""
         found = self.get(name)
         if not isinstance(found, Item) or found.kind != kind or len(found.shape) != rank:
-            raise Unsound(f"{self.path}{told(name)} is not there as {kind}")
+            raise Unsound(f"{self.path}{printable(name)} is not there as {kind}")
         return found
 
     def want_all(self, kinds: dict[str, str], alike: bool = False) -> None:
@@ -68,7 +68,7 @@ class Group(dict[str, Any]):
             raise Unsound(f"the tables in {self.path} differ in length")
 
 
-def see_sound(file: h5py.File) -> None:
+def check_sound(file: h5py.File) -> None:
     """Raises Unsound, or what h5py raises for a file that cannot be read."""
     root = _Walk().group(file.id, "/", 0)
     for name in GROUPS:
@@ -80,7 +80,7 @@ def see_sound(file: h5py.File) -> None:
     _points(file, root)
 
 
-def told(name: str) -> str:
+def printable(name: str) -> str:
     """A name of a file in a message."""
     return name.encode("ascii", "replace").decode()[:80]
 
@@ -96,9 +96,9 @@ class _Walk:
     def group(self, group: h5g.GroupID, path: str, depth: int) -> Group:
         address = h5o.get_info(group).addr
         if address in self.groups or depth > DEEPEST:
-            raise Unsound(f"{told(path)} is a group in itself")
+            raise Unsound(f"{printable(path)} is a group in itself")
         self.groups.add(address)
-        found = Group(told(path))
+        found = Group(printable(path))
         for coded in group:
             self.count += 1
             try:
@@ -108,14 +108,14 @@ class _Walk:
             if self.count > MOST:
                 raise Unsound(f"it has more than {MOST} objects")
             if group.links.get_info(coded).type != h5l.TYPE_HARD:
-                raise Unsound(f"{told(path + name)} is a link to another place")
+                raise Unsound(f"{printable(path + name)} is a link to another place")
             item = h5o.open(group, coded)
             if isinstance(item, h5g.GroupID):
                 found[name] = self.group(item, f"{path}{name}/", depth + 1)
             elif isinstance(item, h5d.DatasetID):
                 found[name] = self.dataset(item, path + name)
             else:
-                raise Unsound(f"{told(path + name)} is neither a group nor a dataset")
+                raise Unsound(f"{printable(path + name)} is neither a group nor a dataset")
         return found
 
     def dataset(self, item: h5d.DatasetID, path: str) -> Item:
@@ -130,21 +130,21 @@ def _item(item: h5d.DatasetID, path: str) -> Item:
     try:
         kind, shape = item.dtype, item.shape
     except (TypeError, ValueError):
-        raise Unsound(f"{told(path)} is of a kind no result has") from None
+        raise Unsound(f"{printable(path)} is of a kind no result has") from None
     text = h5py.check_string_dtype(kind) is not None
     if shape is None or len(shape) > 2 or not (text or kind.kind in "fiub"):
-        raise Unsound(f"{told(path)} is of a kind no result has")
+        raise Unsound(f"{printable(path)} is of a kind no result has")
     plan = item.get_create_plist()
     if plan.get_layout() == h5d.VIRTUAL or plan.get_external_count():
-        raise Unsound(f"{told(path)} is kept in another file")
+        raise Unsound(f"{printable(path)} is kept in another file")
     size = kind.itemsize
     for n in shape:
         size *= n
     if size > ROOM and size > 2 * item.get_storage_size() + ROOM:
-        raise Unsound(f"{told(path)} says to have {shape[0]} rows, which are not in the file")
+        raise Unsound(f"{printable(path)} says to have {shape[0]} rows, which are not in the file")
     for key in (b"units", b"long_name"):
         if h5a.exists(item, key) and not _is_text(h5a.open(item, key)):
-            raise Unsound(f"{told(path)}: its {key.decode()} is no text")
+            raise Unsound(f"{printable(path)}: its {key.decode()} is no text")
     return Item(TEXT if text else NUMBERS, shape)
 
 
@@ -162,7 +162,7 @@ def _is_number(attribute: h5a.AttrID) -> bool:
 def _text(holder: Any, name: str) -> str:
     value = holder.attrs.get(name)
     if not isinstance(value, str):
-        raise Unsound(f"{told(holder.name)}: its {name} is no text")
+        raise Unsound(f"{printable(holder.name)}: its {name} is no text")
     return value
 
 
@@ -170,7 +170,7 @@ def _number(holder: Any, *names: str) -> None:
     for name in names:
         coded = name.encode()
         if not h5a.exists(holder.id, coded) or not _is_number(h5a.open(holder.id, coded)):
-            raise Unsound(f"{told(holder.name)}: its {name} is no number")
+            raise Unsound(f"{printable(holder.name)}: its {name} is no number")
 
 
 def _scalars(holder: Any) -> None:
@@ -178,7 +178,7 @@ def _scalars(holder: Any) -> None:
     for k in range(h5a.get_num_attrs(holder.id)):
         attribute = h5a.open(holder.id, index=k)
         if not _is_text(attribute) and not _is_number(attribute):
-            raise Unsound(f"{told(holder.name)}: {told(repr(attribute.name))} is neither")
+            raise Unsound(f"{printable(holder.name)}: {printable(repr(attribute.name))} is neither")
 
 
 # --- what a result has -----------------------------------------------------------------------
@@ -191,13 +191,13 @@ def _root(file: h5py.File, root: Group) -> None:
     if "content_sha256" in file.attrs:
         _text(file, "content_sha256")
     if file.attrs["status"] not in STATUSES:
-        raise Unsound(f"its status is '{told(file.attrs['status'])}', which no run has")
+        raise Unsound(f"its status is '{printable(file.attrs['status'])}', which no run has")
     root.want("time", NUMBERS)
     for name, item in root.items():
         if isinstance(item, Item) and item.shape:
             kind = TEXT if name.startswith("component.") else NUMBERS
             if item.kind != kind:
-                raise Unsound(f"{told(name)} is not there as {kind}")
+                raise Unsound(f"{printable(name)} is not there as {kind}")
 
 
 def _few(file: h5py.File, root: Group) -> None:
@@ -223,7 +223,7 @@ def _few(file: h5py.File, root: Group) -> None:
         _number(summary, "time", "rows", "events")
     for name, _ in zip(root["summary"], root["summary"].groups(), strict=True):
         if name not in root["steps"]:
-            raise Unsound(f"summary/{told(name)} is of no contact")
+            raise Unsound(f"summary/{printable(name)} is of no contact")
         _number(summary[name], *OF_CONTACT)
 
 
@@ -245,9 +245,9 @@ def _tables(file: h5py.File, root: Group) -> None:
         table.want("time", NUMBERS)
         for name, item in table.items():
             if not isinstance(item, Item) or not item.shape:
-                raise Unsound(f"{table.path}{told(name)} has no rows")
+                raise Unsound(f"{table.path}{printable(name)} has no rows")
             if item.kind != NUMBERS and name not in ("kind", "element", "did", "event"):
-                raise Unsound(f"{table.path}{told(name)} is not there as {NUMBERS}")
+                raise Unsound(f"{table.path}{printable(name)} is not there as {NUMBERS}")
 
 
 def _points(file: h5py.File, root: Group) -> None:

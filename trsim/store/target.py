@@ -36,7 +36,8 @@ def _is_result(start: bytes) -> bool:
 
 
 def _is_part(start: bytes) -> bool:
-    """Also one that was killed early: empty, zeros, or a superblock with no object behind it."""
+    """Whether it begins like a part file, which may have been killed early: empty, zeros, or a
+    superblock with no object behind it."""
     first = start.startswith(SIGNATURE) and not any(start[SIZE:])
     return _is_result(start) or first or not any(start)
 
@@ -73,7 +74,7 @@ def headed(*titles: str) -> Kind:
 
 
 def _is_checkpoint(start: bytes) -> bool:
-    """Also one whose first line is damaged: an archive behind a line with a hash."""
+    """Whether it begins like a checkpoint: an archive behind a line, which may be damaged."""
     return start.startswith(b"trsim checkpoint ") or start[84:88] == b"PK\3\4" or not start
 
 
@@ -97,7 +98,7 @@ def replaceable(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = (
     given: what the command reads.  Raises UsageError where the target is one of these or anything
     but a file of its kind, FileError where it may not be written or cannot be looked at.
     """
-    with told(target):
+    with file_errors(target):
         try:
             found = target.stat()
         except FileNotFoundError:
@@ -121,7 +122,7 @@ def _followed(target: Path) -> Path:
 
 
 @contextmanager
-def told(target: Path) -> Iterator[None]:
+def file_errors(target: Path) -> Iterator[None]:
     """Errors of the file system, told of the file that is written."""
     try:
         yield
@@ -134,14 +135,14 @@ def told(target: Path) -> Iterator[None]:
 def fresh(target: Path, kind: Kind, given: Iterable[str | os.PathLike] = ()) -> Iterator[Path]:
     """An empty file to write; it takes the name of the target at the end, and is gone after an
     error."""
-    with told(target):
+    with file_errors(target):
         make(target.parent)
     final = replaceable(target, kind, given)
-    with told(target):
+    with file_errors(target):
         unfinished = _empty(final)
     try:
         yield unfinished
-        with told(target):
+        with file_errors(target):
             os.replace(unfinished, final)
     finally:
         with suppress(OSError):
@@ -166,9 +167,9 @@ def make(folder: Path) -> None:
         raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR)) from None
 
 
-def see_writable(folder: Path) -> None:
-    """See that files can be made in a folder, which is made where it is not there."""
-    with told(folder):
+def check_writable(folder: Path) -> None:
+    """Check that files can be made in a folder, which is made where it is not there."""
+    with file_errors(folder):
         make(folder)
         with TemporaryFile(dir=folder) as trial:
             trial.write(b"trial")

@@ -11,7 +11,7 @@ from typing import Any
 
 
 class Digests:
-    """Of the data of cases; a piece that cases share is hashed once."""
+    """Digests of the data of cases; a piece that cases share is hashed once."""
 
     def __init__(self, engine: str) -> None:
         self.engine = engine

@@ -30,8 +30,8 @@ AGAIN = "The same `trsim sweep` writes it again."
 LAST = ("attempts", "wall_time", "content_sha256")
 
 
-def see_usable(folder: Path) -> None:
-    """See that a folder is that of a sweep, empty, or not there."""
+def check_usable(folder: Path) -> None:
+    """Check that a folder is that of a sweep, empty, or not there."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"{folder} is not a folder", "Name another one with -o.")
     if (

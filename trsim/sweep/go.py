@@ -10,11 +10,11 @@ from trsim.errors import FileError
 from trsim.store.checkpoint import sources
 from trsim.store.lock import refuse_if_written, writing
 from trsim.store.own import remove
-from trsim.store.target import LOCK, make, told
+from trsim.store.target import LOCK, file_errors, make
 from trsim.sweep.folder import (
+    check_usable,
     read_plan,
     remove_unfinished,
-    see_usable,
     write_index,
     write_plan,
 )
@@ -62,15 +62,15 @@ def go(
     Raises FileError where the folder cannot be written, or is being written by another process;
     UsageError where it is not the folder of a sweep.
     """
-    see_usable(folder)
-    with told(folder):
+    check_usable(folder)
+    with file_errors(folder):
         make(folder / "cases")
     mine = folder / f"ledger{shard.name and '-'}{shard.name}.jsonl"
     with writing(mine):
-        see_alone(plan, folder, shard, mine)
+        check_alone(plan, folder, shard, mine)
         sweep_out(folder, mine)
         write_plan(folder, plan, engine)
-        with told(folder):
+        with file_errors(folder):
             ledger = Ledger(folder, shard.name)
         try:
             yield from _gone_on(plan, folder, engine, run, shard, ledger)
@@ -79,8 +79,8 @@ def go(
             write_index(folder, read_plan(folder), entries(folder))
 
 
-def see_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
-    """See that nobody works in the folder but shards of the same plan.
+def check_alone(plan: Plan, folder: Path, shard: Shard, mine: Path) -> None:
+    """Check that nobody works in the folder but shards of the same plan.
 
     Raises FileError where a process does.
     """
@@ -137,7 +137,7 @@ def _gone_on(
         entry = Entry(case.name, case.digest, engine, ended["status"], ended["reason"],
                       ended.get("attempts", 1), ended.get("content", ""), size, changed,
                       time.time(), ended.get("wall", 0.0), ended.get("summary", {}))  # fmt: skip
-        with told(ledger.path):
+        with file_errors(ledger.path):
             ledger.add(entry)
         known[case.name] = entry
         if time.monotonic() - written > max(WRITTEN, RARELY * took):

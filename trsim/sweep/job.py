@@ -56,7 +56,7 @@ def run(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
 
 
 def brief(summary: dict[str, Any]) -> dict[str, Any]:
-    """Of the summary of a run what a table of runs shows."""
+    """The part of the summary of a run that a table of runs shows."""
     found = {name: summary[name] for name in ("time", "rows", "events")}
     found["warnings"] = len(summary["warnings"])
     found |= {n: summary["statistics"][n] for n in STATISTICS if n in summary["statistics"]}

@@ -44,14 +44,14 @@ class Channel(TypedDict):
 class ElementPage(TypedDict):
     """An element.
 
-    word        after `type:`
-    section     where it stands
-    law         equations and conventions
-    about       what it is
-    keys        what one writes
-    coordinate  of a joint, or null
-    channels    what is recorded
-    example     a scenario that runs
+    word         after `type:`
+    section      where it stands
+    law          equations and conventions
+    about        what it is
+    keys         what one writes
+    coordinates  of a joint, or of a sensor
+    channels     what is recorded
+    example      a scenario that runs
     """
 
     word: str
@@ -59,7 +59,7 @@ class ElementPage(TypedDict):
     law: str
     about: str
     keys: list[Key]
-    coordinate: str | None
+    coordinates: list[str]
     channels: list[Channel]
     example: str
 

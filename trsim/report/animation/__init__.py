@@ -31,7 +31,7 @@ def write(
     """
     from trsim.report.animation.page import whole
     from trsim.store.read import read
-    from trsim.store.target import Kind, fresh, told
+    from trsim.store.target import Kind, file_errors, fresh
 
     made = film(read(path), magnified)
     contents = {"animation.glb": made.glb, "animation.html": whole(made).encode()}
@@ -42,7 +42,7 @@ def write(
     written = []
     for name, data in contents.items():
         target = Path(folder) / name
-        with told(target), fresh(target, kinds[name], [path]) as unfinished:
+        with file_errors(target), fresh(target, kinds[name], [path]) as unfinished:
             unfinished.write_bytes(data)
         written.append(target)
     return written, made.warnings

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from trsim.report.animation import solids, turns
-from trsim.report.animation.drawing import Array, Drawing, Joint, Line
+from trsim.report.animation.drawing import SLIDES, Array, Drawing, Joint, Line
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.solids import Mesh
 from trsim.report.animation.things import SUPPORT, Look, Thing, colours, origin, points, pose
@@ -30,13 +30,13 @@ def shapes(drawn: Drawing, look: Look, body: str) -> list[Mesh]:
     centre = drawn.bodies[body]
     parts = [link(a - centre, b - centre, look.radius, look)
              for a, b in skeleton(drawn, look, body)]  # fmt: skip
-    parts += [block(joint.at - centre, joint.axis, look) for joint in slides(drawn, body)]
+    parts += [slider(joint, look).moved(joint.at - centre) for joint in slides(drawn, body)]
     parts = parts or [block(np.zeros(3), np.array([1.0, 0.0, 0.0]), look)]
     return [lifted(part, look, body) for part in parts]
 
 
 def slides(drawn: Drawing, body: str) -> list[Joint]:
-    return [joint for joint in drawn.joints if joint.picture == "slide" and joint.j == body]
+    return [joint for joint in drawn.joints if joint.picture in SLIDES and joint.j == body]
 
 
 def skeleton(drawn: Drawing, look: Look, body: str) -> list[tuple[Array, Array]]:
@@ -88,6 +88,13 @@ def link(a: Array, b: Array, radius: float, look: Look) -> Mesh:
     return solids.bar(a, b, radius, look.thick, look.normal)
 
 
+def slider(joint: Joint, look: Look) -> Mesh:
+    """What slides: a bead turns all ways on its wire, and a block would not."""
+    if joint.picture == "bead":
+        return solids.ball(1.2 * look.radius)
+    return block(np.zeros(3), joint.axis, look)
+
+
 def block(at: Array, axis: Array, look: Look) -> Mesh:
     """A block that is long along the axis it slides on."""
     if look.normal is None:
@@ -106,7 +113,7 @@ def lifted(mesh: Mesh, look: Look, body: str) -> Mesh:
 def rails(moved: Motion, look: Look) -> Iterator[Thing]:
     """What slides run on, and bushings that are free along one axis."""
     for joint in moved.drawn.joints:
-        if joint.picture == "slide":
+        if joint.picture in SLIDES:
             yield rail(moved, look, joint, joint.at, joint.axis)
     for line in moved.drawn.lines:
         axis = np.zeros(3) if line.slide is None else line.axes[line.slide]

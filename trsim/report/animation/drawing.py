@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.members import members
 from trsim.assemble.orientation import quaternion
-from trsim.elements.bushing import axes as bushing_axes
 from trsim.elements.joint import perpendicular
 from trsim.fields import direction
 from trsim.scenario.load import loads
@@ -19,9 +18,11 @@ Array = NDArray[np.float64]
 GROUND = "ground"
 # what elements are drawn as; other joints, drives and forces are not
 IDEAL_POINTS = ("pin", "ball", "cross", "weld")  # joints that hold two points together
+SLIDES = ("slide", "sleeve", "bead")  # joints along whose axis a body slides
 SPATIAL = ("ball", "cross")  # joints that let a body leave a plane
 STIFF = ("slide", "weld")  # joints that let no body turn against the other
-JOINTS = (*IDEAL_POINTS, "slide", "journal")
+LOOSE = (*SPATIAL, "bead")  # joints that keep no axis
+JOINTS = (*IDEAL_POINTS, *SLIDES, "journal")
 LINES = ("cylinder", "coil", "block")  # forces and drives that have a place
 
 
@@ -85,12 +86,11 @@ def drawing(run: Run) -> Drawing:
     scenario = loads(run.text("scenario/resolved"))
     bodies, axes, bars, thickness, lost = {}, {}, {}, {}, []
     for name, spec in members(scenario).items():
-        flexible = spec.type == "ancf_cable"
-        nodes = spec.elements + 1 if flexible else 0
+        nodes = spec.elements + 1 if spec.flexible else 0
         channels = [f"{name}.node{k}.position" for k in range(nodes)] or [f"{name}.position"]
         if any(channel not in run.units for channel in channels):
             lost.append(name)
-        elif flexible:
+        elif spec.flexible:
             part = np.linspace(0.0, 1.0, nodes)[:, None]
             bars[name] = (1.0 - part) * np.array(spec.start) + part * np.array(spec.end)
             thickness[name] = spec.thickness
@@ -138,7 +138,7 @@ def lines(drawn: Drawing) -> tuple[Line, ...]:
             continue
         axes, slide = np.eye(3), None
         if picture == "block":
-            axes, free = np.array(bushing_axes(spec)), np.flatnonzero(np.equal(spec.stiffness, 0.0))
+            axes, free = np.array(spec.axes), np.flatnonzero(np.equal(spec.stiffness, 0.0))
             slide = int(free[0]) if len(free) == 1 else None
         first, second = (spec.at, spec.at) if picture == "block" else spec.points
         ends = np.array(first), np.array(second)

@@ -8,7 +8,7 @@ from trsim import elements
 from trsim.fields import direction
 from trsim.report.animation import solids, turns
 from trsim.report.animation.bodies import arm, lifted
-from trsim.report.animation.drawing import GROUND, SPATIAL, Array, Joint
+from trsim.report.animation.drawing import GROUND, SLIDES, SPATIAL, Array, Joint
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.things import (
     JOURNAL,
@@ -28,7 +28,7 @@ PLAUSIBLE = 0.35, 1.6  # radii of bearings that are drawn to scale, of the half 
 def pins(moved: Motion, look: Look) -> Iterator[Thing]:
     """What holds bodies together at ideal joints."""
     for joint in moved.drawn.joints:
-        if joint.picture in ("slide", "journal"):
+        if joint.picture in (*SLIDES, "journal"):
             continue
         holder = joint.j if joint.j in moved.turns else joint.i
         place, turn = moved.point(holder, joint.at), moved.turn(holder)
@@ -55,7 +55,7 @@ def spanned(joint: Joint, look: Look) -> tuple[float, Array]:
 
 
 def middle(joint: Joint, look: Look) -> Array:
-    """Of the layers of the two bodies, from the point of the joint."""
+    """The middle of the layers of the two bodies, from the point of the joint."""
     if look.normal is None or joint.picture in SPATIAL:
         return np.zeros(3)
     return 0.5 * (look.height(joint.i) + look.height(joint.j)) * look.normal
@@ -97,7 +97,7 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
     """The ground, where joints stand on it."""
     r = look.radius
     for joint in moved.drawn.joints:
-        if GROUND not in (joint.i, joint.j) or joint.picture == "slide":
+        if GROUND not in (joint.i, joint.j) or joint.picture in SLIDES:
             continue
         if look.normal is not None:
             outline = r * np.array([[-2.0, -3.4], [2.0, -3.4], [0.8, 0.6], [-0.8, 0.6]])

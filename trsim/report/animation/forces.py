@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim import elements
+from trsim.elements.coordinates import split
 from trsim.report.animation import solids, turns
 from trsim.report.animation.drawing import Array, Joint
 from trsim.report.animation.fittings import journal
@@ -82,6 +83,7 @@ def stop_point(moved: Motion, spec: object) -> tuple[str, Array]:
     point, name = spec.point, spec.joint  # type: ignore[attr-defined]
     if point is not None:
         return point.body, np.array(point.at)
+    name, _ = split(name, moved.drawn.scenario.joints)
     joint = next((one for one in moved.drawn.joints if one.name == name), None)
     return (joint.j, joint.at) if joint is not None else ("", np.zeros(3))
 
@@ -97,7 +99,7 @@ def contact(moved: Motion, joint: Joint, look: Look, magnified: float) -> Array:
 
 
 def largest(vectors: Array, rows: NDArray[np.int64]) -> Array:
-    """Of the rows since the frame before, the vector that is longest; (frames, 3)."""
+    """The longest vector of the rows since the frame before; (frames, 3)."""
     sizes = np.sum(vectors**2, axis=1)
     first = np.concatenate([[0], rows[:-1] + 1])
     return np.stack([vectors[a + int(sizes[a : b + 1].argmax())]

@@ -7,7 +7,7 @@ import numpy as np
 from trsim.errors import UsageError
 from trsim.report.animation import bodies, fittings, lines
 from trsim.report.animation.bodies import LONG
-from trsim.report.animation.drawing import Array, Drawing
+from trsim.report.animation.drawing import SLIDES, Array, Drawing
 from trsim.report.animation.forces import arrows
 from trsim.report.animation.glb import glb
 from trsim.report.animation.motion import Motion, motion
@@ -87,7 +87,7 @@ def outermost(moved: Motion, sizes: Look) -> Array:
     places = [*moved.places.values(), *(line.reshape(-1, 3) for line in moved.nodes.values())]
     for joint in moved.drawn.joints:
         places += [moved.point(body, joint.at) for body in (joint.i, joint.j)]
-        if joint.picture == "slide":
+        if joint.picture in SLIDES:
             places += beyond(moved.point(joint.j, joint.at), joint.axis, sizes)
     for line in moved.drawn.lines:
         first, second = moved.point(line.i, line.ends[0]), moved.point(line.j, line.ends[1])

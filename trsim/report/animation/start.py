@@ -5,7 +5,7 @@ body to body, the smallest turn that brings its joint's point to where it must b
 Gauss-Newton on
 
     x_i + Q_i (s_i + e) - x_j - Q_j s_j = 0         points, e the recorded eccentricity
-    Q_i a - Q_j a = 0                               axes of hinges; all axes of slides and welds
+    Q_i a - Q_j a = 0                               axes of hinges and sleeves; all of slides, welds
     Q_i a . Q_j w = 0                               axes of universal joints
 
 with Q the turn of a body since it was drawn; what the joints leave free stays as drawn.
@@ -15,7 +15,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from trsim.report.animation.drawing import GROUND, SPATIAL, STIFF, Array, Drawing, Joint
+from trsim.report.animation.drawing import GROUND, LOOSE, SLIDES, STIFF, Array, Drawing, Joint
 from trsim.report.animation.turns import STILL, of_vector, product, shortest, turned
 
 CLOSED = 1e-9  # residual, of the size of the mechanism
@@ -66,14 +66,14 @@ class Problem:
     def equations(self, joint: Joint) -> list[tuple[Array, Array, Array]]:
         """Vectors c, a, b of c + Q_i a - Q_j b = 0."""
         found = []
-        if joint.picture != "slide":
+        if joint.picture not in SLIDES:
             play = self.plays.get(joint.name, np.zeros(3))
             gap = self.base(joint.i, joint.at) - self.base(joint.j, joint.at)
             one = gap, self.arm(joint.i, joint.at) + play, self.arm(joint.j, joint.at)
             found.append(tuple(v / self.drawn.size for v in one))
         if joint.picture in STIFF:
             found += [(np.zeros(3), axis, axis) for axis in joint.axes]
-        elif joint.picture not in SPATIAL:
+        elif joint.picture not in LOOSE:
             found.append((np.zeros(3), joint.axis, joint.axis))
         return found  # type: ignore[return-value]
 

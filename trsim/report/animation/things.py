@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.report.animation.drawing import GROUND, SPATIAL, Array, Drawing
+from trsim.report.animation.drawing import GROUND, SLIDES, SPATIAL, Array, Drawing
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.solids import Mesh
 from trsim.report.animation.turns import STILL
@@ -46,7 +46,7 @@ class Look:
         return 1.2 * self.thick
 
     def height(self, body: str) -> float:
-        """Of the layer of a body above the plane."""
+        """The height of the layer of a body above the plane."""
         return self.layers.get(body, 0) * self.pitch
 
     def front(self, one: str, other: str) -> float:
@@ -77,11 +77,11 @@ def upward(drawn: Drawing) -> Array:
 def ends(drawn: Drawing, body: str) -> list[Array]:
     """Different points of a body that joints hold, as drawn."""
     return different(drawn, [joint.at for joint in drawn.joints if body in (joint.i, joint.j)
-                             and joint.picture != "slide"])  # fmt: skip
+                             and joint.picture not in SLIDES])  # fmt: skip
 
 
 def points(drawn: Drawing, body: str) -> list[Array]:
-    """Those, and where lines act on the body."""
+    """The places of `ends`, and where lines act on the body."""
     pairs = [(line.i, line.ends[0]) for line in drawn.lines]
     pairs += [(line.j, line.ends[1]) for line in drawn.lines]
     return different(drawn, [*ends(drawn, body), *(at for name, at in pairs if name == body)])
@@ -104,7 +104,7 @@ def plane(drawn: Drawing) -> Array | None:
     hinges = [joint.axis for joint in drawn.joints if joint.picture in ("pin", "journal")]
     normal = hinges[0] if hinges else np.array([0.0, 0.0, 1.0])
     normal = normal * np.sign(normal[np.abs(normal).argmax()])  # towards who looks
-    slides = [joint.axis for joint in drawn.joints if joint.picture == "slide"]
+    slides = [joint.axis for joint in drawn.joints if joint.picture in SLIDES]
     heights = [joint.at @ normal for joint in drawn.joints]
     heights += [end @ normal for line in drawn.lines for end in line.ends]
     level = np.ptp(heights) < 1e-6 * drawn.size if heights else True

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
-from trsim.elements.prescribed import ENTRY
+from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.locked import locked
@@ -53,7 +53,7 @@ def refuse_no_number(mechanism: Mechanism, y: Array, mem: Array) -> None:
     )
 
 
-def told(scenario: Any, mechanism: Mechanism, r: Record) -> str:
+def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on, where the law of an element ends just ahead; else empty."""
     if not np.all(np.isfinite(r.y)):
         return ""
@@ -77,7 +77,7 @@ def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
         length = instance.row.length
         if length == 0.0:
             continue
-        stroke = float(w.S[instance.row.con[ENTRY], 0])
+        stroke = float(w.S[AnyDrive.of(instance.row).coordinate, 0])
         if length + stroke < SHORT * length:
             return (
                 f"{scenario.entry(instance.section, instance.name)}: a stroke of {stroke:.4g} m "
@@ -91,7 +91,7 @@ def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     t = float(r.clock[rec.T])
     return (
         collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
-        or told(scenario, mechanism, r)
+        or end_of_law(scenario, mechanism, r)
         or drawn_in(scenario, mechanism, r.y)
         or locked(mechanism, t, r.y)
     )

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,8 @@ from trsim.assemble.equations import gaps, poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import against_rates
-from trsim.elements.clearance_joint import R_B, C
+from trsim.elements.contract import ContactNumbers
+from trsim.elements.rows import Axes
 from trsim.elements.scene import Scene, scene
 from trsim.laws.contact import hertz_contact_time
 from trsim.solve.diagnose.linearised import Linearised
@@ -65,17 +67,18 @@ def contact_scales(
     unit = {column.name: column.unit for column in mechanism.columns}
     for c, e in enumerate(mechanism.model.contact.tolist()):
         instance = mechanism.instances[e]
-        K, n, alone, clearance, slowest, *_ = w.contact_par[c].tolist()
+        own = ContactNumbers(w, c)
+        K, n, alone = float(own.stiffness), float(own.exponent), float(own.mass)
         d, slope = float(begun.depth[c]), instance.row.contact.slope
-        if clearance < np.inf:
+        if own.clearance < np.inf:
             poses(w, begun.y)
-            inverse, sliding = journal(w, e, linear.twists, bool(closed[e]))
+            inverse, sliding = journal(w, e, instance, linear.twists, bool(closed[e]))
         else:
             inverse, sliding = along(w, begun.y, e, instance, linear.twists), 0.0
         free = inverse * alone > IMMOVABLE
         mass = 1.0 / inverse if free else np.inf
         k, force = n * K * d ** (n - 1.0), K * d**n
-        v = slowest or SLOWEST
+        v = float(own.slowest_impact) or SLOWEST
         yield ContactScale(
             name=instance.name,
             closed=bool(closed[e]),
@@ -95,20 +98,24 @@ def along(w: Scene, y: Array, e: int, instance: Instance, twists: Array) -> floa
     return float(np.sum((gap_gradient(w, y, instance, e) @ twists) ** 2))
 
 
-def journal(w: Scene, e: int, twists: Array, closed: bool) -> tuple[float, float]:
+def journal(
+    w: Scene, e: int, instance: Instance, twists: Array, closed: bool
+) -> tuple[float, float]:
     """Inverse masses of a journal in its bearing, along the normal and along the tangent, 1/kg.
 
     The largest over the directions in which it may touch; where it touches, that one.
     """
-    i, j = w.con[e, 0], w.con[e, 1]
+    own = Axes(w, e)
+    i, j = own.i, own.j
     R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-    p_i, p_j = R_i @ w.par[e, 0:3], R_j @ w.par[e, 3:6]
-    u, v, a = (R_i @ w.par[e, 6 + 3 * k : 9 + 3 * k] for k in range(3))
+    p_i, p_j = R_i @ own.p_i, R_j @ own.p_j
+    u, v, a = (R_i @ axis for axis in (own.u_i, own.w_i, own.a_i))
     d = w.X[j, :3] + p_j - w.X[i, :3] - p_i
     angles = pi * np.arange(DIRECTIONS) / DIRECTIONS
     if closed:
         angles = np.array([np.arctan2(v @ d, u @ d)])
-    reach = w.par[e, R_B] - w.par[e, C]
+    contact: Any = instance.row.contact
+    reach = contact.radius - contact.clearance
     normal = tangent = 0.0
     for angle in angles:
         for sign in (1.0,) if closed else (1.0, -1.0):

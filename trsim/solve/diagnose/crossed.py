@@ -130,7 +130,7 @@ def compared(a: Place, b: Place) -> tuple[bool, int]:
 
 
 def distance(w: Scene, a: Place, b: Place) -> float:
-    """By how much directions of rows change between two places, about."""
+    """About how much the directions of rows change between two places."""
     moved = np.abs(b.y - a.y)[: w.n_q]
     return float(np.max(moved / coordinate_units(w), initial=0.0))
 
@@ -175,7 +175,7 @@ def slope(w: Scene, y: Array) -> Array:
 
 
 def of_branches(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
-    """That a run changed its branch where branches nearly meet."""
+    """Tell that a run changed its branch where branches nearly meet."""
     if r is None or not r.count[rec.CROSSED]:
         return
     t, many = float(r.clock[rec.CROSSED_T]), int(r.count[rec.CROSSED])

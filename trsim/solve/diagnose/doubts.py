@@ -4,8 +4,7 @@ start      a position or a velocity is not the one that was given
 contacts   pressed in by more than their law is made for: a half width of the contact of half the
            radius, a^2 = d R_i R_j / c = (R/2)^2 or d = c/4, and a twentieth of the radius
 bars       strained by more than a linear law holds                                    strained.py
-bushings   turned to half a turn, beyond which theirs is the one from the other side
-shafts     that moved too slowly for the friction of their gears to be whole
+elements   what they say themselves: a bushing turned to half a turn, gears that hardly moved
 meshes     of bars bent further than their elements follow                           mesh_error.py
 turns      too fast for a fixed step
 sizes      of bodies so far apart that the smallest may turn as it likes                sizes.py
@@ -21,7 +20,7 @@ rows       that were left out as redundant are open, though not so far that the 
 """
 
 from collections.abc import Iterator
-from math import degrees, pi
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,6 @@ from trsim import elements
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import undecided
 from trsim.assemble.reduce import world_rates
-from trsim.elements.bushing import TURN
 from trsim.elements.contract import STORED
 from trsim.elements.scene import PROJECTION, scene
 from trsim.scenario.methods import METHODS
@@ -61,8 +59,6 @@ MOVED, TURNED = 1e-4, 1e-3  # of the mechanism's size, rad: more than the digits
 VELOCITIES = (("velocity", "m/s", slice(3)), ("angular_velocity", "rad/s", slice(3, 6)))
 CHANGED = 1e-3  # of a speed that was given
 OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
-WHOLE = 10.0  # turning speeds: from here on friction of gears is whole to half a per cent
-NEXT_TO_HALF = 0.1  # rad: so near to half a turn a bushing is told
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
 GIVEN = 1e-2  # of it: more done by projection says so too
@@ -79,8 +75,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *unread(scenario),
         *of_start(scenario, mechanism, outcome.start),
         *of_contacts(scenario, mechanism, outcome.peaks),
-        *of_bushings(mechanism, outcome.peaks),
-        *of_shafts(scenario, mechanism, outcome.peaks),
+        *of_elements(scenario, mechanism, outcome.peaks),
         *of_meshes(scenario, mechanism, outcome.bent),
         *of_bars(scenario, mechanism, outcome.peaks),
         *of_turns(scenario, outcome),
@@ -176,36 +171,23 @@ def of_contacts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
             )
 
 
-def of_bushings(mechanism: Mechanism, peaks: Array) -> Iterator[str]:
-    """Bushings whose moment jumps, or is about to: turns in space cannot be counted."""
+def of_elements(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
+    """What elements themselves say, by the largest sizes of channels in the run."""
     model, column = mechanism.model, {c.name: c.start for c in mechanism.columns}
+    vectors = model.vector.tolist()
+
+    def largest(channel: str) -> tuple[float, float]:
+        """The largest size of a channel, and when; nothing of one that is not recorded."""
+        start = column.get(channel, -1)
+        if start in vectors:
+            start = model.n_out + vectors.index(start)
+        high, at, low, then = peaks[start, :4].tolist() if start >= 0 else (0.0,) * 4
+        return (high, at) if high >= -low else (-low, then)
+
     for instance in mechanism.instances:
-        if not instance.element.judged(instance.row):
-            continue
-        at = model.vector.tolist().index(column[f"{instance.name}.{TURN}"])
-        angle, when = peaks[model.n_out + at, :2].tolist()
-        if angle > pi - NEXT_TO_HALF:
-            yield (
-                f"forces.{instance.name}: turned by {degrees(angle):.4g} deg at {when:.4g} s; from "
-                "half a turn on its moment is that of the turn from the other side, since turns "
-                "about any axis cannot be counted: a torsion_spring on a hinge counts them"
-            )
-
-
-def of_shafts(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
-    """Shafts whose pistons are slow beside the speed over which their friction turns round."""
-    column = {c.name: c.start for c in mechanism.columns}
-    for name, shaft in scenario.forces.items():
-        if shaft.type != "sync_shaft" or shaft.efficiency == 1.0:
-            continue
-        speeds = peaks[[column[f"{one}.velocity"] for one in shaft.actuators]]
-        fastest = float(np.abs(speeds[:, [0, 2]]).max())
-        if 0.0 < fastest < WHOLE * shaft.turning_speed:
-            yield (
-                f"forces.{name}.turning_speed: its actuators move with at most {fastest:.3g} m/s, "
-                f"and friction of its gears turns round over {shaft.turning_speed:g} m/s: it is "
-                f"not whole below {WHOLE:g} times that; give a smaller one"
-            )
+        entries = getattr(scenario, instance.section, {})
+        if instance.name in entries:
+            yield from instance.element.doubts(instance.name, entries[instance.name], largest)
 
 
 def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:

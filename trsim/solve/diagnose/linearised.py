@@ -33,7 +33,7 @@ from trsim.assemble.reduce import (
     moves,
     world_rates,
 )
-from trsim.elements.contract import FLIGHT, N_BOOK, PHASE
+from trsim.elements.contract import FLIGHT, N_BOOK, PHASE, ContactNumbers
 from trsim.elements.scene import Model, Scene, scene
 from trsim.errors import ModelError
 from trsim.solve.start.consistent import Start
@@ -211,7 +211,8 @@ class Probe:
         work.mem[work.contact[~pressed], PHASE] = FLIGHT
         depths = work.gap[work.contact[pressed], 0].tolist()
         self.length = min([REACH * work.size, *(PRESSED * d for d in depths)])
-        slowest = [v for v in work.contact_par[:, 4].tolist() if v > 0.0]
+        at = ContactNumbers.columns["slowest_impact"].at
+        slowest = [v for v in work.contact_par[:, at].tolist() if v > 0.0]
         self.speed = min([REACH * begun.speed, FASTEST, *(PRESSED * v for v in slowest)])
         parts = np.abs(self.twists @ self.ways).reshape(work.n - 1, 6, self.ways.shape[1])
         points = np.maximum(parts[:, :3].max(axis=1), work.size * parts[:, 3:].max(axis=1))

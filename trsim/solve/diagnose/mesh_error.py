@@ -106,8 +106,7 @@ def mesh_errors(scenario: Any, mechanism: Mechanism, y: Array) -> Iterator[MeshE
     """
     for name, beam in mechanism.beams.items():
         n = beam.nodes - 1
-        body = scenario.bodies[name]
-        spec = body if body.type == "ancf_cable" else body.flexible
+        spec = scenario.bodies[name].flexible
         if n > MOST or spec.stretching == "full" or not np.all(np.isfinite(y)):
             continue
         strain, curvature = STRAINS[spec.strain], CURVATURES[spec.curvature]

@@ -69,8 +69,7 @@ def of_bars(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[str]:
     """Bars whose largest strain in a run is beyond that of their law."""
     column = {c.name: c.start for c in mechanism.columns}
     for name, beam in mechanism.beams.items():
-        body = scenario.bodies[name]
-        half = 0.5 * (body if body.type == "ancf_cable" else body.flexible).thickness
+        half = 0.5 * scenario.bodies[name].flexible.thickness
         kinds = (
             ("axial_force", 1.0 / beam.stiffness, "along"),
             ("bending_moment", half / beam.bending, "at its surface by bending"),

@@ -10,7 +10,8 @@ def of_hinges(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
     """Each of them as the run ended, and what to do."""
     if r is None:
         return
-    for (section, name), joint in mechanism.stages.without_hinge(r.stage):
+    for (section, name), angle in mechanism.stages.without_hinge(r.stage):
+        joint = angle.joint
         what = f"drives.{name}:" if section == "drives" else f"joints.{joint}: its lock"
         yield (
             f"{what} holds nothing once an event has released the hinge '{joint}': apart, it has "

@@ -13,7 +13,7 @@ from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
 from trsim.elements.contract import SINCE, Row
-from trsim.elements.prescribed import ENTRY, MOTION, OWN_STATE, STATE, rates_at
+from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
@@ -56,7 +56,7 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> A
         try:
             work, line[rec.EVENT_WORK] = turned(mechanism, work, r, b, setting, event)
         except ModelError as error:
-            ended = "failed", told(event, error)
+            ended = "failed", failure(event, error)
             break
         if event.end and ended is None:
             ended = event.status, why_ended(mechanism, b, event, t)
@@ -78,7 +78,7 @@ def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
     return f"{said}: {', '.join(forces)}" if forces else said
 
 
-def told(event: UserEvent, error: ModelError) -> str:
+def failure(event: UserEvent, error: ModelError) -> str:
     """Why an event could not be carried out."""
     section, name = error.path if len(error.path) == 2 else ("", "")
     if section == "drives":
@@ -139,13 +139,13 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
     name = mechanism.stages.switches.names[n][1]
     e, instance = instance_of(mechanism, "drives", name)
     t, first = float(r.clock[rec.T]), work.n_q + work.n_v
-    old, new = int(work.con[e, STATE]), int(model.con[e, STATE])
+    old, new = int(AnyDrive(work, e).state), int(AnyDrive(model, e).state)
     if new >= 0:
         if before == LOOSE:
-            r.y[first + new] = work.S[instance.row.con[ENTRY], 0]
+            r.y[first + new] = work.S[AnyDrive(work, e).coordinate, 0]
         elif old < 0:
             since = t - float(r.mem[e, SINCE])
-            r.y[first + new] = rates_at(work.tab, int(work.con[e, MOTION]), since)[0]
+            r.y[first + new] = rates_at(work.tab, int(AnyDrive(work, e).motion), since)[0]
     slip = instance.row.slip
     if slip >= 0:
         if before == LOOSE:
@@ -160,13 +160,14 @@ def take_along(work: Scene, r: Record, row: Row) -> None:
     """The piston of an actuator that takes hold again is where its end is, and as fast: its speed,
     not yet less that of the motion."""
     first = work.n_q + work.n_v
-    r.y[first + row.piston], r.y[first + row.slip] = work.S[row.con[ENTRY]]
+    r.y[first + row.piston], r.y[first + row.slip] = work.S[AnyDrive.of(row).coordinate]
 
 
 def prescribed_rate(model: Any, e: int, since: float) -> float:
     """Of the motion drive e follows, that long after its begin."""
-    f, f_dot, _ = rates_at(model.tab, int(model.con[e, MOTION]), since)
-    return f if model.con[e, STATE] >= 0 else f_dot
+    own = AnyDrive(model, e)
+    f, f_dot, _ = rates_at(model.tab, int(own.motion), since)
+    return f if own.state >= 0 else f_dot
 
 
 def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64]) -> None:
@@ -174,8 +175,8 @@ def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64
     for n, (section, name) in enumerate(mechanism.stages.switches.names):
         if section == "locks" and r.stage[n] == HELD and before[n] != HELD:
             _, lock = instance_of(mechanism, SECTION, lock_name(name))
-            place = work.n_q + work.n_v + lock.row.con[OWN_STATE]
-            r.y[place] = work.S[lock.row.con[ENTRY], 0]
+            own = AnyDrive.of(lock.row)
+            r.y[work.n_q + work.n_v + own.state] = work.S[own.coordinate, 0]
 
 
 def project(mechanism: Any, work: Scene, r: Record) -> None:

@@ -19,7 +19,8 @@ from trsim.assemble.features import (
 )
 from trsim.assemble.outputs import measure
 from trsim.assemble.projection import project_positions, project_velocities
-from trsim.elements.contract import FIRST_ROW, SCENE, SINCE, compiled
+from trsim.elements.contract import SCENE, SINCE, compiled
+from trsim.elements.prescribed import AnyDrive
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.packed import f8
@@ -55,7 +56,6 @@ from trsim.solve.march.record import (
 from trsim.solve.march.samples import restart
 from trsim.solve.march.works import LONG
 
-ROW = FIRST_ROW  # of con of a drive: its constraint row, or -1
 MEET = types.int64(SCENE, RECORD, BUFFERS, f8, f8)
 call_meet = caller(MEET)
 
@@ -130,7 +130,7 @@ def looked_at(s, r, t, t1):
         for k in range(passed(s, n, t), passed(s, n, t1)):
             place, rate = s.jump[s.feature[n, FIRST] + k]
             jumped = jumped or place != 0.0 or rate != 0.0
-            if place != 0.0 and s.con[e, ROW] >= 0:
+            if place != 0.0 and AnyDrive(s, e).row >= 0:
                 r.count[TORN], r.clock[TORN_BY] = 1 + e, place
     return jumped
 
@@ -153,7 +153,7 @@ def jolt(s, r, b, t, t1):
         project_velocities(s, b.y1)
     for n in range(s.feature.shape[0]):
         e, rate = s.feature[n, DRIVE], 0.0
-        if e < 0 or s.con[e, ROW] < 0:
+        if e < 0 or AnyDrive(s, e).row < 0:
             continue
         for k in range(passed(s, n, t), passed(s, n, t1)):
             rate += s.jump[s.feature[n, FIRST] + k, RATE_JUMP]
@@ -162,7 +162,7 @@ def jolt(s, r, b, t, t1):
             r.count[EVENT_ROWS] += 1
             line[EVENT_TIME], line[EVENT_KIND], line[EVENT_ROW] = t1, JOLT, e
             line[EVENT_SPEED], line[EVENT_ANGLE] = rate, nan
-            line[EVENT_IMPULSE] = -s.x[s.con[e, ROW]]
+            line[EVENT_IMPULSE] = -s.x[AnyDrive(s, e).row]
 
 
 @internal

@@ -13,7 +13,7 @@ sqrt(a length), or that length per run.  A fall would get there; a stiff spring 
 
 import numpy as np
 
-from trsim.elements.contract import IMPACT_SPEED, SCENE, compiled
+from trsim.elements.contract import IMPACT_SPEED, SCENE, ContactNumbers, compiled
 from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
@@ -48,10 +48,11 @@ def felt(s, r):
     """
     speed = 1e300
     for c in range(s.contact.size):
-        depth, first, chi = r.gap[c, 0], r.mem[s.contact[c], IMPACT_SPEED], s.contact_par[c, 6]
+        own, depth, first = ContactNumbers(s, c), r.gap[c, 0], r.mem[s.contact[c], IMPACT_SPEED]
+        chi = own.damping
         if depth > 0.0 and first > 0.0 and chi > 0.0:
-            share = (depth / max(r.impact[c], depth)) ** s.contact_par[c, 1]
-            speed = min(speed, s.contact_par[c, 5] * first / (chi * share))
+            share = (depth / max(r.impact[c], depth)) ** own.exponent
+            speed = min(speed, own.arm * first / (chi * share))
     return speed
 
 
@@ -104,9 +105,9 @@ def units(s, r):
     unit longer than bodies reach."""
     length, speed = 1e300, 1e300
     for c in range(s.contact.size):
-        K, n, mass = s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2]
-        arm = s.contact_par[c, 5]
-        depth = min(r.impact[c], s.contact_par[c, 3], s.reach / arm)
+        own = ContactNumbers(s, c)
+        K, n, mass, arm = own.stiffness, own.exponent, own.mass, own.arm
+        depth = min(r.impact[c], own.clearance, s.reach / arm)
         if depth <= 0.0:
             continue
         length = min(length, depth * arm)

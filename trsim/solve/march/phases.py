@@ -11,8 +11,8 @@ from trsim.elements.contract import (
     IMPACT_SPEED,
     PHASE,
     SCENE,
-    I,
-    J,
+    ContactNumbers,
+    Pair,
     compiled,
 )
 from trsim.kernels.packed import A1
@@ -82,7 +82,8 @@ def change_phases(s, r, b, setting, t1):
         if b.corner_root[c] <= first + SAME:
             e = s.contact[c]
             s.mem[e, BRANCH] = s.corner[e, 1]
-            r.stale[s.con[e, I]] = r.stale[s.con[e, J]] = 1
+            pair = Pair(s, e)
+            r.stale[pair.i] = r.stale[pair.j] = 1
             r.count[CORNERS] += 1
     touched = fire(s, r, b, first) > 0
     h, were_closed = 1e300, closed(s, r)
@@ -105,14 +106,16 @@ def change_phases(s, r, b, setting, t1):
         if s.contact_angle[c] >= 0 and s.wanted[e] >= 0:
             line[EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
         if onset:
-            speed = max(r.gap[c, 1], s.contact_par[c, 4])
+            own = ContactNumbers(s, c)
+            speed = max(r.gap[c, 1], own.slowest_impact)
             r.mem[e, IMPACT_SPEED] = speed
             look(s, c)
             if s.contact_state[c] >= 0:
                 r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
             speed = max(speed, 1e-12)
-            h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
-                                  speed, setting[STEP_ERROR]))  # fmt: skip
+            h = min(
+                h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting[STEP_ERROR])
+            )
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
     are_closed = closed(s, r)
@@ -157,7 +160,7 @@ def latch(s, r):
         if r.gap[c, 0] <= 0.0:
             r.mem[e, IMPACT_SPEED] = 0.0
         elif r.mem[e, IMPACT_SPEED] == 0.0:
-            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], s.contact_par[c, 4])
+            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], ContactNumbers(s, c).slowest_impact)
 
 
 @internal

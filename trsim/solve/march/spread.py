@@ -25,7 +25,7 @@ import numpy as np
 
 from trsim.assemble.dense import inverse
 from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, UNKNOWN
-from trsim.elements.contract import I, J
+from trsim.elements.contract import Pair
 from trsim.elements.frames import (
     arm,
     centripetal,
@@ -202,7 +202,8 @@ def spread_of(s, r, b, kind, e, sign, low, high, h):
         return -1.0, -1.0
     if kind == CLOCK:
         return 1.0, 0.0
-    i, j, length = s.con[e, I], s.con[e, J], (high - low) * h
+    own, length = Pair(s, e), (high - low) * h
+    i, j = own.i, own.j
     n = r.count[DEGREE] + 1
     first_j = fill_curve(s, b, n, i, 0)
     cut(b.curve, n, fill_curve(s, b, n, j, first_j), low, high)
@@ -218,7 +219,7 @@ def from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j):
     if kind == ANGLE:
         turn = spin_i + spin_j
         return turn, bend_i + bend_j + spin_i * turn
-    _, p_i, _, p_j = two_points(s.X, s.con, s.par, e)
+    _, p_i, _, p_j = two_points(s, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
     return from_points(s, kind, e, sign, length, bend, spin_i, round_i)
@@ -227,8 +228,8 @@ def from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j):
 @internal
 def from_points(s, kind, e, sign, length, bend, spin_i, round_i):
     """Bounds of |g'| and -sign g'' of a stroke or a distance, with |d''| <= bend."""
-    V, i, j = s.V, s.con[e, I], s.con[e, J]
-    _, p_i, _, p_j = two_points(s.X, s.con, s.par, e)
+    V = s.V
+    i, p_i, j, p_j = two_points(s, e)
     d = separation(s.X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
     v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
@@ -305,7 +306,7 @@ def point_at_stage(s, b, k, f, p):
     if s.d == 3:
         turn = (0.0, 0.0, K[k, v + 2])
     else:
-        turn = arm(X, f, K[k, v + 3], K[k, v + 4], K[k, v + 5])
+        turn = arm(X, f, (K[k, v + 3], K[k, v + 4], K[k, v + 5]))
     c, e = cross(turn, p), centripetal(s.V, f, p)
     return a0 + c[0] + e[0], a1 + c[1] + e[1], a2 + c[2] + e[2]
 
@@ -316,8 +317,8 @@ def apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j):
 
     Arms and spins are those at the end of the step, and what they turn by in it is added.
     """
-    i, j, worst = s.con[e, I], s.con[e, J], 0.0
-    _, p_i, _, p_j = two_points(s.X, s.con, s.par, e)
+    i, p_i, j, p_j = two_points(s, e)
+    worst = 0.0
     if flat(s, i) and flat(s, j):
         return SAFETY * apart_in_plane(s, b, i, p_i, j, p_j) + slack_of(
             s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j
@@ -377,7 +378,8 @@ def spread_of_stages(s, r, b, kind, e, sign, h):
         return -1.0, -1.0
     if kind == CLOCK:
         return 1.0, 0.0
-    i, j = s.con[e, I], s.con[e, J]
+    own = Pair(s, e)
+    i, j = own.i, own.j
     spin_i, bend_i = at_stages(s, r, b, i)
     spin_j, bend_j = at_stages(s, r, b, j)
     if kind == ANGLE:

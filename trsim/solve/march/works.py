@@ -72,7 +72,7 @@ def exchanged(s, r, b):
 
 
 @internal
-def told(s, r, b, t, h, middle):
+def note_error(s, r, b, t, h, middle):
     """Estimate the error of the works of a fixed step; kept for the sum over the run.
 
     Two steps of the same length and their Simpson sums S are one of twice the length: of smooth

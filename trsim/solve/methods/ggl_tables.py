@@ -161,14 +161,14 @@ def beam_entries(model: Model, start: Any, row: Any, in_group: Any) -> Any:
 
 def state_rows(mechanism: Mechanism, model: Model) -> list[tuple[int, int]]:
     """Constraint rows of drives by velocity: row, and the unknown of w that holds the place."""
-    from trsim.elements.prescribed import STATE
+    from trsim.elements.prescribed import AnyDrive
 
     found = []
     for e, instance in enumerate(mechanism.instances):
         if instance.section in ("drives", "events"):
-            row, state = int(model.con[e, 3]), int(model.con[e, STATE])
-            if 0 <= row < model.m and state >= 0:
-                found.append((row, model.n_v + state - N_BOOK))
+            own = AnyDrive(model, e)
+            if 0 <= own.row < model.m and own.state >= 0:
+                found.append((int(own.row), model.n_v + int(own.state) - N_BOOK))
     return found
 
 

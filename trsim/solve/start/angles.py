@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
-from trsim.elements.prescribed import ENTRY, OWN_MOTION, OWN_STATE, K, rates_at
+from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import scene, workspace
 
 Array = NDArray[np.float64]
@@ -41,11 +41,13 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
     y = y.copy()
     sign_of = {int(entry): int(sign) for entry, _, _, sign in model.turn}
     for instance in mechanism.instances:
-        row = instance.row
-        if instance.section != "drives" or row.is_force or row.con[OWN_STATE] >= 0:
+        if instance.section != "drives" or instance.row.is_force:
             continue
-        (i, j), entry = row.con[:2], row.con[ENTRY]
-        place, _, _ = rates_at(model.tab, row.con[OWN_MOTION], 0.0)
+        own = AnyDrive.of(instance.row)
+        if own.state >= 0:
+            continue
+        entry = own.coordinate
+        place, _, _ = rates_at(model.tab, own.motion, 0.0)
         if not isfinite(place):
             continue  # refused where the drive is first evaluated
         if entry in model.wound:
@@ -54,7 +56,7 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
             work = workspace(model)
             poses(work, y)
             turns = round((place - float(work.S[entry, 0])) / (2.0 * pi)) * sign_of[entry]
-            frames, way = behind(mechanism, i, j)
+            frames, way = behind(mechanism, own.i, own.j)
             for f in frames if turns else ():
                 y[3 * (f - 1) + 2] += way * turns * 2.0 * pi
     return y
@@ -93,15 +95,16 @@ def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float
         row, rest = instance.row, resting.get(instance.name)
         if instance.section != "drives" or not row.is_force or rest is None:
             continue
-        if rest.con[OWN_STATE] >= 0:
-            f = float(y[model.n_q + model.n_v + rest.con[OWN_STATE]])
+        own, held_by = AnyDrive.of(row), AnyDrive.of(rest)
+        if held_by.state >= 0:
+            f = float(y[model.n_q + model.n_v + held_by.state])
         else:
-            f, _, _ = rates_at(model.tab, rest.con[OWN_MOTION], 0.0)
-        gap = f - float(w.S[rest.con[ENTRY], 0])
-        if row.con[OWN_STATE] >= 0:
-            found[row.con[OWN_STATE]] = gap
+            f, _, _ = rates_at(model.tab, held_by.motion, 0.0)
+        gap = f - float(w.S[held_by.coordinate, 0])
+        if own.state >= 0:
+            found[own.state] = gap
         if row.piston >= 0:
-            found[row.piston] = gap * rest.par[K] / row.par[K]
+            found[row.piston] = gap * held_by.stiffness / own.stiffness
     return found
 
 

@@ -84,7 +84,7 @@ def add_stretch(e: Array, l: float, law: Law, strain: Array, F: Array, K: Array)
 
 
 def stretched(a: Array, strain: int) -> tuple[Array, Array]:
-    """As `cable_stretch.stretch`."""
+    """Strain of a = r'.r' and 2 d eps / da, as `cable_stretch.stretch`."""
     if strain == GREEN:
         return 0.5 * (a - 1.0), np.ones_like(a)
     s = np.sqrt(a)

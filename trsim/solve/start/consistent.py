@@ -17,7 +17,7 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian, largest_reaction
-from trsim.assemble.switches import LIMITS
+from trsim.assemble.switches import LIMITS, hold
 from trsim.elements.contract import (
     BRANCH,
     CONTACT,
@@ -27,7 +27,9 @@ from trsim.elements.contract import (
     PHASE,
     UNLOCATED,
     WHOLE,
+    ContactNumbers,
 )
+from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.blame import refuse_no_number
@@ -104,7 +106,7 @@ def not_closed(scenario: Any, mechanism: Mechanism, phi: Array) -> ModelError:
 def check_names(scenario: Any, initial: Any) -> None:
     """Joints given a value under `initial` have a coordinate to set."""
     for name in initial.values:
-        if not elements.load(scenario.joints[name].type).coordinate:
+        if not of_joint(split(name, scenario.joints)[0], scenario.joints):
             raise ModelError(
                 f"joint '{name}' has no coordinate to set",
                 "name a revolute or a prismatic joint",
@@ -244,15 +246,13 @@ def by_ideal_joints(
 
 def holding_drives(scenario: Any, initial: Any) -> dict[str, Any]:
     """The scenario's drives at rest, those of the joints of `initial` replaced by rigid holds."""
-    from trsim.elements.drive import Drive
-
-    moved = {n for n, d in scenario.drives.items() if getattr(d, "joint", "") in initial.values}
+    joints = scenario.joints
+    moved = {
+        n for n, d in scenario.drives.items()
+        if called(getattr(d, "joint", ""), joints) in initial.values
+    }  # fmt: skip
     drives = {n: d.at_rest() for n, d in scenario.drives.items() if n not in moved}
-    context: dict[str, Any] = {"parameters": {}}
-    for name in initial.values:
-        hold = {"joint": name, "velocity": 0.0}
-        drives[f"hold {name}"] = Drive.model_validate(hold, context=context)
-    return drives
+    return drives | {f"hold {name}": hold(name) for name in initial.values}
 
 
 def approach(
@@ -320,7 +320,8 @@ def phases(model: Model, y: Array, located: bool) -> Array:
     for c, e in enumerate(model.contact):
         closed = w.gap[e, 0] > 0.0
         mem[e, PHASE] = (CONTACT if closed else FLIGHT) if located else UNLOCATED
-        mem[e, IMPACT_SPEED] = max(model.contact_par[c, 4], 0.0) if closed else 0.0
+        slowest = ContactNumbers(model, c).slowest_impact
+        mem[e, IMPACT_SPEED] = max(slowest, 0.0) if closed else 0.0
     return mem
 
 

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses, stiffnesses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import moves
-from trsim.elements.ancf_cable import BENDING, BETA, STIFFNESS
 from trsim.elements.scene import Scene, carried
 
 Array = NDArray[np.float64]
@@ -19,7 +18,8 @@ Array = NDArray[np.float64]
 def softened_bars(mechanism: Mechanism, work: Scene, s: float) -> Scene:
     """The scene with bars of 1 / s of their stiffness."""
     par = work.par.copy()
-    par[np.ix_(bars(mechanism), [STIFFNESS, BENDING])] /= s
+    for e in bars(mechanism):
+        par[e, list(mechanism.instances[e].element.elastic)] /= s
     return carried(work, work.replaced(par=par))
 
 
@@ -28,7 +28,8 @@ def bars_alone(mechanism: Mechanism, work: Scene) -> Scene:
     own = work.stiffness[:, 1:].tolist()
     rows = [row for row in work.force.tolist() if row[1:] in own]
     par = work.par.copy()
-    par[bars(mechanism), BETA] = 0.0
+    for e in bars(mechanism):
+        par[e, list(mechanism.instances[e].element.viscous)] = 0.0
     return carried(work, work.replaced(force=np.array(rows, np.int64).reshape(-1, 3), par=par))
 
 
@@ -41,7 +42,7 @@ def without_bars(work: Scene) -> Scene:
 
 def bars(mechanism: Mechanism) -> list[int]:
     """Rows of the flexible bars among the elements."""
-    return [e for e, i in enumerate(mechanism.instances) if i.element.key == "ancf_cable"]
+    return [e for e, i in enumerate(mechanism.instances) if i.element.elastic]
 
 
 def elastic_stiffness(work: Scene, y: Array) -> Array:
@@ -65,13 +66,10 @@ def acted_on(mechanism: Mechanism, at_rest: bool = False) -> NDArray[np.int64]:
     model = mechanism.model
     frames = set[int]()
     for instance in mechanism.instances:
-        if instance.section in ("joints", "drives", "sensors", "forces", "events"):
+        own = instance.section in ("bodies", "")
+        damped = not at_rest and any(instance.row.par[c] > 0.0 for c in instance.element.viscous)
+        if damped or not own:
             frames |= instance.element.acts_on(instance.row)
-        elif at_rest:
-            continue
-        elif instance.element.key == "ancf_cable" and instance.row.par[BETA] > 0.0:
-            first, nodes = instance.row.con[:2]
-            frames |= set(range(first, first + nodes))
     acted = np.zeros((model.n - 1, 6), bool)
     acted[[f - 1 for f in {*range(1, model.n_r), *frames} - {0}]] = True
     return np.flatnonzero(acted.ravel() & moves(model, model.d == 3))

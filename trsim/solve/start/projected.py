@@ -121,5 +121,5 @@ def largest(x: Array) -> float:
 
 
 def worst(x: Array, names: list[str] | tuple[str, ...]) -> str:
-    """Whose the largest is; nobody's where all are zero."""
+    """The name of the largest; empty where all are zero."""
     return names[int(np.argmax(x))] if len(x) and np.max(x) > 0.0 else ""

@@ -86,7 +86,7 @@ def softened(mechanism: Mechanism, y: Array) -> tuple[Array, float]:
 
 
 def drawn_on(way: list[tuple[float, Array]], s: float) -> Array:
-    """Where the polynomial through the last equilibria is at s."""
+    """The value at s of the polynomial through the last equilibria."""
     found = np.zeros_like(way[0][1])
     for a, y in way:
         found += y * prod((s - b) / (a - b) for b, _ in way if b != a)
@@ -94,7 +94,7 @@ def drawn_on(way: list[tuple[float, Array]], s: float) -> Array:
 
 
 def growth(turns: int, failed: bool) -> float:
-    """Of a step after one that took so many turns of Newton's method.
+    """How much longer the step is after one that took so many turns of Newton's method.
 
     Where it is nearly too long, twice as long would be tried in vain each time.
     """

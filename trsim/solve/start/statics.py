@@ -16,7 +16,7 @@ from trsim.assemble.dense import least_squares, length, product, spaces, symmetr
 from trsim.assemble.equations import forces, poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import along_rates, closest, displaced, jacobian, moves
-from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED
+from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED, ContactNumbers
 from trsim.elements.scene import Model, Scene, workspace
 from trsim.errors import ModelError
 
@@ -86,9 +86,15 @@ def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Arra
     return np.asarray(0.5 * (K + K.T))
 
 
+def clearances(model: Model) -> list[float]:
+    """Of the journals in their bearings, m."""
+    found = model.contact_par[:, ContactNumbers.columns["clearance"].at].tolist()
+    return [c for c in found if np.isfinite(c)]
+
+
 def probe(model: Model) -> float:
     """Step of the differences, m and rad: far below every clearance."""
-    gaps = [c for c in model.contact_par[:, 3].tolist() if np.isfinite(c)]
+    gaps = clearances(model)
     return min([1e-9 * model.size, *(1e-5 * c for c in gaps)])
 
 
@@ -109,7 +115,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
     model = workspace(mechanism.model)
     y, _ = closest(model, 0.0, y)
     free, mass = moves(model, model.d == 3), mass_matrix(model, y)
-    gaps = [c for c in model.contact_par[:, 3] if np.isfinite(c)]
+    gaps = clearances(model)
     reach = min([0.2 * c for c in gaps], default=0.02 * model.size)
     patience = PATIENCE + 2.0 * max(gaps, default=0.0) / reach
     push, scale, load = 0.0, 1e-300, 1e-300

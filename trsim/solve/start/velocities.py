@@ -25,8 +25,8 @@ from trsim.assemble.reduce import (
     weights,
     world_rates,
 )
-from trsim.elements.bushing import ROTATIONAL, STIFFNESS
-from trsim.elements.prescribed import rates_at
+from trsim.elements.coordinates import of_joint
+from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
 from trsim.solve.start.angles import follow
@@ -73,8 +73,8 @@ def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) ->
     """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
     joints = scenario.joints.items() if not given(scenario) else ()
     playing = frozenset(n for n, s in joints if elements.load(s.type).ideal)
-    with_coordinate = [n for n in named if elements.load(scenario.joints[n].type).coordinate]
-    if not playing and not mechanism.beams and {*with_coordinate} <= {*mechanism.coordinates}:
+    wanted = {own for n in named for own in of_joint(n, scenario.joints)}
+    if not playing and not mechanism.beams and wanted <= {*mechanism.coordinates}:
         return mechanism
     return assemble(scenario, playing, coordinates=named, stiff=True, planar=mechanism.planar)
 
@@ -90,10 +90,10 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
     wishes = compliant_drives(ideal, y_ideal)
-    wishes += [(gradient, 0.0) for gradient in (bushings(ideal, y_ideal) if held else ())]
+    wishes += [(gradient, 0.0) for gradient in (of_springs(ideal, y_ideal) if held else ())]
     if named:
         wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
-        moving = [ideal.coordinates[n] for n in named if n in ideal.coordinates]
+        moving = [x for n in named for x in ideal.coordinates.values() if x.joint == n]
         wishes += [(rate_of_entry(model, y_ideal, x.entry, (x.i, x.j)), 0.0) for x in moving]
     scale = weights(model)
     kept = independent(J * scale, [gradient * scale for gradient, _ in wishes])
@@ -149,29 +149,29 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
     for instance in mechanism.instances:
         if instance.section != "drives" or not instance.row.is_force:
             continue
-        i, j, entry, state, _, offset = instance.row.con[:6]
-        f, f_dot, _ = rates_at(mechanism.model.tab, offset, 0.0)
-        gradient = rate_of_entry(mechanism.model, y, entry, (i, j))
-        found.append((gradient, f if state >= 0 else f_dot))
+        own = AnyDrive.of(instance.row)
+        f, f_dot, _ = rates_at(mechanism.model.tab, own.motion, 0.0)
+        gradient = rate_of_entry(mechanism.model, y, own.coordinate, (own.i, own.j))
+        found.append((gradient, f if own.state >= 0 else f_dot))
     return found
 
 
-def bushings(mechanism: Mechanism, y: Array) -> list[Array]:
-    """Gradients of the rates of what bushings hold: along and about their stiff directions."""
+def of_springs(mechanism: Mechanism, y: Array) -> list[Array]:
+    """Gradients of the rates of what springs hold: along and about their stiff directions."""
     w = workspace(mechanism.model)
     poses(w, y)
     found = []
     for instance in mechanism.instances:
-        if instance.element.key != "bushing":
+        if instance.element.springs is None:
             continue
         i, j = instance.row.con[:2]
-        par = np.array(instance.row.par)
+        axes, place, along, about = map(np.array, instance.element.springs(instance.row))
         R_i, R_j = (w.X[f, 3:].reshape(3, 3) for f in (i, j))
-        place = w.X[j, :3] + product(R_j, par[3:6])
-        for k, a in enumerate(product(par[6:15].reshape(3, 3), R_i.T)):
-            if par[STIFFNESS + k] > 0.0:
+        place = w.X[j, :3] + product(R_j, place)
+        for k, a in enumerate(product(axes, R_i.T)):
+            if along[k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a, [place - w.X[f, :3] for f in (i, j)]))
-            if par[ROTATIONAL + k] > 0.0:
+            if about[k] > 0.0:
                 found.append(twist_row(w.n, (i, j), a))
     return found
 

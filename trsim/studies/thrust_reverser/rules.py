@@ -70,7 +70,7 @@ def verdict(surely: bool, surely_not: bool) -> str:
 
 
 def bounded(holds: Any, surely: bool, surely_not: bool) -> str:
-    """Of a bound; holds (members): whether it is kept by each, surely: what the interval says."""
+    """The verdict on a bound; holds: whether members keep it, surely: what the interval says."""
     return verdict(surely and bool(holds.all()), surely_not and not holds.any())
 
 

@@ -38,7 +38,7 @@ class Member:
 
     @property
     def stroke(self) -> Array:
-        """Of the fairing, m: runs that start elsewhere are compared at equal strokes."""
+        """The stroke of the fairing, m: runs that start elsewhere are compared at equal strokes."""
         return self.channel("stroke")
 
     @cached_property

@@ -86,7 +86,7 @@ class Near(NamedTuple):
 
 
 class Apart(NamedTuple):
-    """Of three cases the first and the last are nearer to each other than either to the second."""
+    """The first and the last of three cases are nearer to each other than to the second."""
 
     words: str = "first and third nearer to each other than either to the second"
 

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from trsim.report.page import Cell, Ensembles, Line, Table
-from trsim.store.target import fresh, headed, told
+from trsim.store.target import file_errors, fresh, headed
 from trsim.studies.thrust_reverser.claims.claim import INDEPENDENT, WORTH
 from trsim.studies.thrust_reverser.figures.drawing import Drawn
 from trsim.studies.thrust_reverser.judge import Row, Source
@@ -36,7 +36,7 @@ def write(rows: Sequence[Row], folder: Path) -> list[Path]:
 
 def table(path: Path, head: Sequence[str], lines: Iterable[Sequence[object]]) -> Path:
     with (
-        told(path),
+        file_errors(path),
         fresh(path, headed(*head)) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):

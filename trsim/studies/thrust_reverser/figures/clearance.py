@@ -13,7 +13,7 @@ from trsim.studies.thrust_reverser.figures.drawing import (
     section,
     those,
     timed,
-    told,
+    with_legend,
 )
 from trsim.studies.thrust_reverser.runs import Runs
 
@@ -52,7 +52,7 @@ def overview(runs: Runs, cases: Cases) -> Any:
     forces(axes[2, 1], shown, "B", "f")
     timed(axes[2])
     figure.align_ylabels()
-    return told(figure, axes[0, 0], shown)
+    return with_legend(figure, axes[0, 0], shown)
 
 
 def figure_10(runs: Runs) -> Any:
@@ -63,7 +63,7 @@ def figure_10(runs: Runs) -> Any:
         letters = "ab" if joint == "A" else "cd"
         journal(row[0], shown, joint, letters[0], f"phase diagram at {joint}")
         section(row[1], shown, f"{joint}_orbit", letters[1], f"Poincar\u00e9 section at {joint}")
-    return told(figure, axes[0, 0], shown)
+    return with_legend(figure, axes[0, 0], shown)
 
 
 FIGURES = (

@@ -183,7 +183,7 @@ def timed(axes: Sequence[Any]) -> None:
         a.set_xlabel("time (s)")
 
 
-def told(figure: Any, axes: Any, runs: Sequence[Shown], most: int = 3) -> Any:
+def with_legend(figure: Any, axes: Any, runs: Sequence[Shown], most: int = 3) -> Any:
     """The figure, with its legend below, in the order of the runs, `most` to a line."""
     lines, names = axes.get_legend_handles_labels()
     found = dict(zip(names, lines, strict=True))

@@ -114,7 +114,7 @@ def arc(points: list[Array]) -> Array:
 
 
 def numbers(axes: Any, canvas: Canvas, moved: Motion) -> None:
-    """Of the actuators, and of the chains at their supports."""
+    """The numbers of the actuators, and of the chains at their supports."""
     joints = {joint.name: joint.at for joint in moved.drawn.joints}
     for n in ACTUATORS:
         back, eye = (np.array(p) for p in moved.drawn.scenario.drives[f"actuator_{n}"].points)

@@ -3,7 +3,7 @@
 from typing import Any
 
 from trsim.report.style import DASHES, colour, panels
-from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, those, told
+from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, those, with_legend
 from trsim.studies.thrust_reverser.runs import Runs
 
 MESHES = (("8 elements", "pendulum_8"), ("16 elements", "pendulum_16"))
@@ -25,7 +25,7 @@ def figure_7(runs: Runs) -> Any:
     axes[1].set_ylabel("y (m)")
     lettered(axes[0], "a", "tip, z over x")
     lettered(axes[1], "b", "middle, y over time")
-    return told(figure, axes[0], shown)
+    return with_legend(figure, axes[0], shown)
 
 
 FIGURES = (

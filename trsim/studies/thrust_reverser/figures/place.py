@@ -18,7 +18,7 @@ from trsim.studies.thrust_reverser.figures.drawing import (
     plane,
     those,
     timed,
-    told,
+    with_legend,
 )
 from trsim.studies.thrust_reverser.runs import Runs
 
@@ -35,7 +35,7 @@ def figure_11(runs: Runs) -> Any:
         curves(a, shown, channel, letter)
     timed(axes[1])
     figure.align_ylabels()
-    return told(figure, axes[0, 0], shown)
+    return with_legend(figure, axes[0, 0], shown)
 
 
 def figure_12(runs: Runs) -> Any:

@@ -14,7 +14,7 @@ from trsim.studies.thrust_reverser.figures.drawing import (
     section,
     those,
     timed,
-    told,
+    with_legend,
 )
 from trsim.studies.thrust_reverser.figures.place import door
 from trsim.studies.thrust_reverser.runs import Runs
@@ -40,7 +40,7 @@ def overview(runs: Runs, cases: Cases) -> Any:
     axes[2, 1].set_xlim(*ENLARGED)
     timed(axes[2])
     figure.align_ylabels()
-    return told(figure, axes[0, 0], shown)
+    return with_legend(figure, axes[0, 0], shown)
 
 
 def figure_19(runs: Runs) -> Any:

@@ -4,7 +4,7 @@ from typing import Any
 
 from trsim.report.display import Shown
 from trsim.report.style import COLOURS, colour, panels, thinned
-from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, those, timed, told
+from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, those, timed, with_legend
 from trsim.studies.thrust_reverser.runs import Runs
 
 ACTUATORS = (1, 2, 3)
@@ -72,7 +72,7 @@ def of_each(shown: list[Shown], shades: list[str], dashes: str) -> Any:
         a.margins(x=0.01)
         lettered(a, letter, f"actuator {k}")
     timed(axes[-1])
-    return told(figure, axes[0, 0], shown, 5)
+    return with_legend(figure, axes[0, 0], shown, 5)
 
 
 FIGURES = (

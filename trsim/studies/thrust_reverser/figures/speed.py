@@ -15,7 +15,7 @@ from trsim.studies.thrust_reverser.figures.drawing import (
     orbit,
     section,
     those,
-    told,
+    with_legend,
 )
 from trsim.studies.thrust_reverser.runs import Runs
 
@@ -78,7 +78,7 @@ def figure_17(runs: Runs) -> Any:
     figure, (axes,) = panels(1, 2, height=3.3)
     for a, joint, letter in zip(axes, "AB", "ab", strict=True):
         section(a, shown, f"{joint}_orbit", letter, f"Poincar\u00e9 section at {joint}")
-    return told(figure, axes[0], shown)
+    return with_legend(figure, axes[0], shown)
 
 
 FIGURES = (

@@ -1,0 +1,59 @@
+"""Coordinates of joints by name: `hinge`; of a joint with two `slide.angle`, `slide.stroke`."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from trsim import elements
+from trsim.errors import ScenarioError, known
+
+
+def split(reference: str, joints: Any) -> tuple[str, str]:
+    """The joint that is meant and which of its coordinates, where that is said; all texts."""
+    joint, _, which = reference.rpartition(".")
+    return (joint, which) if reference not in joints and joint in joints else (reference, "")
+
+
+def of_joint(joint: str, joints: Mapping[str, Any]) -> dict[str, str]:
+    """The coordinates of a joint, by what they are called; of others none."""
+    there = elements.load(joints[joint].type).coordinates if joint in joints else ()
+    return {joint if len(there) == 1 else f"{joint}.{one}": one for one in there}
+
+
+def named(
+    reference: str, joints: Mapping[str, Any], kind: str = "", path: tuple = ("joint",)
+) -> tuple[str, str, str]:
+    """What the coordinate is called that is meant, its joint and its kind.
+
+    kind: what it must be.  Raises ScenarioError where it is none, or may be several.
+    """
+    joint, which = split(reference, joints)
+    if joint not in joints:
+        raise ScenarioError(f"no joint named '{reference}'", known(reference, joints), path)
+    there, word = of_joint(joint, joints), joints[joint].type
+    if not there:
+        raise ScenarioError(
+            f"joint '{joint}' ({word}) has no coordinate",
+            "name a revolute or a prismatic joint",
+            path,
+        )
+    if which and which not in there.values():
+        raise ScenarioError(f"joint '{joint}' has no {which}", known(reference, there), path)
+    fits = [(name, own) for name, own in there.items() if which in ("", own) and kind in ("", own)]
+    if not fits:
+        raise ScenarioError(
+            f"joint '{joint}' has a {which or ' and a '.join(there.values())}, not an {kind}",
+            "name a revolute joint" if kind == "angle" else "name a prismatic joint",
+            path,
+        )
+    if len(fits) > 1:
+        what = f"joint '{joint}' has several coordinates"
+        raise ScenarioError(what, f"name one of them: {', '.join(there)}", path)
+    return fits[0][0], joint, fits[0][1]
+
+
+def called(reference: str, joints: Mapping[str, Any]) -> str:
+    """What the coordinate is called that is meant; the reference itself where it is none."""
+    try:
+        return named(reference, joints)[0]
+    except ScenarioError:
+        return reference

@@ -1,0 +1,178 @@
+"""Joints as lists of rows: what each row holds, and the kernels made of them.
+
+A joint stands between the triads u, w, a of body i and of body j, which coincide as drawn, at two
+points that coincide too (JointPar of joint.py).  Its rows are, first one of
+
+    POINT          three rows: the points coincide
+    along          Phi = u_i . d = 0            d from the point on i to the point on j
+
+and then
+
+    perpendicular  Phi = u_i . a_j = 0          [Nikravesh1988]
+
+A row holds a displacement along one of u, w, a (written u, w, a) or a turn about one (U, W, A);
+those of a point are along the world axes (x, y, z).  Names that begin with tilt or turn are those
+of angles.  Coordinates of a joint, of which some may be there:
+
+    angle          of the triad of body j against that of body i about a_i, unwrapped
+    stroke         a_i . d
+"""
+
+from functools import cache
+from math import atan2
+from typing import NamedTuple
+
+from trsim.elements.contract import FIRST_ROW, Pair, kernel
+from trsim.elements.frames import (
+    TwoPoints,
+    along_row,
+    arm,
+    dot,
+    helper,
+    nearest_branch,
+    perpendicular_row,
+    point_rows,
+    spin,
+    stroke,
+    two_points,
+)
+from trsim.kernels.columns import V3, f8
+
+
+class Axes(TwoPoints):
+    """Of one instance of a joint."""
+
+    u_i: V3  # triad u, w, a in the axes of body i: a = u x w, the axis
+    w_i: V3
+    a_i: V3
+    u_j: V3  # u and a in the axes of body j
+    a_j: V3
+    drawn: f8  # rad: joint angle as drawn
+
+
+class JointRow(NamedTuple):
+    """A constraint row of a joint, by the axes of its triads."""
+
+    name: str
+    holds: str  # u, w, a: a displacement along it; U, W, A: a turn about it; x, y, z: of a point
+    of_i: str = ""  # axis of body i; of a point none
+    of_j: str = ""  # axis of body j; of a turn
+
+
+def along(axis: str, name: str) -> JointRow:
+    """The point on j stays in the plane through the point on i across an axis of i."""
+    return JointRow(name, axis, axis)
+
+
+def perpendicular(of_i: str, of_j: str, name: str) -> JointRow:
+    """An axis of i and an axis of j stay perpendicular: no turn about the third one."""
+    [third] = {*"uwa"} - {of_i, of_j}
+    return JointRow(name, third.upper(), of_i, of_j)
+
+
+POINT = tuple(JointRow(axis, axis) for axis in "xyz")
+ACROSS = (along("u", "across 1"), along("w", "across 2"))
+TILTS = (perpendicular("u", "a", "tilt 1"), perpendicular("w", "a", "tilt 2"))
+TURN = perpendicular("w", "u", "turn")
+
+
+@cache
+def constraint_of(rows):
+    """The kernel that fills a list of rows, six at most; those of a point count as one."""
+    fills = [fill_of(row, FIRST_ROW + k) for k, row in enumerate(rows) if row.of_i]
+    fills = [point_rows, *fills] if rows[:3] == POINT else fills
+    one, two, three, four, five, six = (*fills, *(nothing,) * (6 - len(fills)))
+
+    @kernel
+    def constraint(t, scene, a, b):
+        for e in range(a, b):
+            one(scene, e)
+            two(scene, e)
+            three(scene, e)
+            four(scene, e)
+            five(scene, e)
+            six(scene, e)
+
+    return constraint
+
+
+@helper
+def nothing(scene, e):
+    """Where a joint has no more rows."""
+
+
+def fill_of(row, column):
+    """What fills a row whose index stands in a column of con."""
+    c = Axes.columns[f"{row.of_i}_i"].at
+    o = Axes.columns[f"{row.of_j}_j"].at if row.of_j else -1
+
+    @helper
+    def turn(scene, e):
+        k = scene.con[e, column]
+        if k >= 0:
+            X, own = scene.X, Pair(scene, e)
+            u, w = arm(X, own.i, axis(scene, e, c)), arm(X, own.j, axis(scene, e, o))
+            perpendicular_row(scene, own.i, u, own.j, w, k)
+
+    @helper
+    def slide(scene, e):
+        k = scene.con[e, column]
+        if k >= 0:
+            i, p_i, j, p_j = two_points(scene, e)
+            along_row(scene, i, p_i, arm(scene.X, i, axis(scene, e, c)), j, p_j, k)
+
+    return turn if row.of_j else slide
+
+
+@helper
+def axis(scene, e, c):
+    """What stands in the columns of par from c on."""
+    return scene.par[e, c], scene.par[e, c + 1], scene.par[e, c + 2]
+
+
+@helper
+def write_angle(scene, e, s):
+    """The angle of instance e and its rate, as entry s of S."""
+    X, V, S, own = scene.X, scene.V, scene.S, Axes(scene, e)
+    i, j = own.i, own.j
+    o_i, o_j = spin(V, i), spin(V, j)
+    # of rigid bodies in a plane what comes in is the angle itself
+    if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
+        u, w, u_j = arm(X, i, own.u_i), arm(X, i, own.w_i), arm(X, j, own.u_j)
+        angle = atan2(dot(w, u_j), dot(u, u_j)) + own.drawn
+        S[s, 0] = nearest_branch(angle, S[s, 0])
+    turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
+    S[s, 1] = dot(arm(X, i, own.a_i), turn)
+
+
+@helper
+def write_stroke(scene, e, s):
+    """The stroke of instance e and its rate, as entry s of S."""
+    own = Axes(scene, e)
+    scene.S[s, 0], scene.S[s, 1] = stroke(scene, e, arm(scene.X, own.i, own.a_i))
+
+
+WRITERS = {"angle": write_angle, "stroke": write_stroke}
+
+
+@cache
+def coordinate_of(coordinates, n_rows):
+    """The kernel of the coordinates of a joint with so many rows."""
+    first, last = WRITERS[coordinates[0]], WRITERS[coordinates[-1]]
+    c, o = column_of(0, n_rows), column_of(len(coordinates) - 1, n_rows)
+
+    @kernel
+    def coordinate(t, scene, a, b):
+        con = scene.con
+        for e in range(a, b):
+            if con[e, c] >= 0:
+                first(scene, e, con[e, c])
+            if o != c and con[e, o] >= 0:
+                last(scene, e, con[e, o])
+
+    return coordinate
+
+
+def column_of(k: int, n_rows: int) -> int:
+    """Column of con with the k-th coordinate of a joint; behind its rows but for the first."""
+    return Pair.columns["coordinate"].at if k == 0 else FIRST_ROW + n_rows + k - 1
