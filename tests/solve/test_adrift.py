@@ -87,14 +87,24 @@ def of_plate(r):
     return np.abs(r["plate.angular_acceleration"][:, 2]).max() / RATE**2
 
 
-@pytest.mark.parametrize(("rates", "first"), [(22, 1e-5), (24, 1e-4), (24, 1e-6), (25, 1e-4)])
-def test_what_accelerations_feel_of_open_joints_is_told(rates, first):
+def test_what_accelerations_feel_of_open_joints_is_told():
     """At delta from where branches meet what is open by e is felt by e / delta^3; where steps end
     decides how near they come to that place."""
-    r = turned(2, RATE, *drifting(rates), "output.every=0.0005", f"solver.first_step={first}")
-    (said,) = of_drift(r.scenario, r.mechanism, r.outcome.record)
-    (stated,) = map(float, re.findall(r"change accelerations by (\S+) of the largest", said))
-    assert 100 * 1e-8 < of_plate(r) < 2 * stated < 1e-2
+    told = 0
+    for rates in (22, 24, 25):
+        for first in (1e-6, 1e-5, 1e-4):
+            ways = (*drifting(rates), "output.every=0.0005", f"solver.first_step={first}")
+            r = turned(2, RATE, *ways, fails=None)
+            said = list(of_drift(r.scenario, r.mechanism, r.outcome.record))
+            if r.outcome.status == "failed":
+                continue  # it says so
+            if not said:
+                assert of_plate(r) < 100 * 1e-8
+                continue
+            (stated,) = re.findall(r"change accelerations by (\S+) of the largest", said[0])
+            assert of_plate(r) < 2 * float(stated) < 1e-2
+            told += of_plate(r) > 100 * 1e-8
+    assert told > 2  # else nothing was tested
 
 
 @pytest.mark.parametrize("first", [1e-6, 1e-5, 1e-4, 1e-3])

