@@ -129,6 +129,7 @@ def changes(instance: Instance, stress: Stress, at: Addresses) -> Iterator[Chang
         return
     types, element = joint_types(), instance.element
     holds = dict(zip(element.rows, held(instance, at), strict=False))
+    holds.pop(instance.row.unheld, None)
     own = {stress.rows[r].axis: r for r in stress.inside if stress.rows[r].element == instance.name}
     may = [axis for axis in own if holds.get(axis, "x") not in "xyz"]
     for number in range(len(own) - 1, 0, -1):
