@@ -35,7 +35,7 @@ def test_dense_output_is_that_of_the_end_as_it_was(late):
     text, _ = torsion_pendulum(solver="end: 0.01, tolerance: 1e-8, method: dop853")
     ended = run(text)
     r, s = ended.outcome.record, scene(ended.mechanism.model)
-    setting, t, h = settings(ended.scenario, ended.mechanism), r.clock[rec.T], 0.02
+    setting, t, h = settings(ended.scenario, ended.mechanism), r.t, 0.02
     b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
     method = method_row(dense=dop853.dense.address(), last=dop853.LAST)
     b.weight[:] = 1.0

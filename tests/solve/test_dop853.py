@@ -83,8 +83,8 @@ def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z,
     setting, h = settings(ended.scenario, ended.mechanism), z / RATE
     b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
     r.y[:] = ended.outcome.start.y
-    r.clock[rec.T], r.clock[rec.GAIN] = 0.0, SLOW
-    r.clock[rec.VIBRATION], r.clock[rec.DECAY] = SLOW**2, RATE
+    r.t, r.top_acceleration = 0.0, SLOW
+    r.vibration, r.decay = SLOW**2, RATE
     derivative(s, 0.0, r.y, r.yd)
     weigh(s, r, b, setting, h)
     b.K[0] = r.yd

@@ -20,7 +20,13 @@ from numba.core import cgutils
 from numba.core.datamodel import models
 from numba.core.registry import cpu_target
 from numba.core.typing.templates import AttributeTemplate
-from numba.extending import infer_getattr, intrinsic, lower_getattr_generic, register_model
+from numba.extending import (
+    infer_getattr,
+    intrinsic,
+    lower_getattr_generic,
+    lower_setattr_generic,
+    register_model,
+)
 from numba.np.arrayobj import populate_array
 
 from trsim.kernels.lazy import inner
@@ -116,7 +122,10 @@ class PackedType(types.Type):
         self.fields = tuple((field, numba_type(inner)) for field, inner in kind.fields)
         self.columns = tuple(inner.columns for _, inner in kind.fields)
         self.index = {field: k for k, (field, _) in enumerate(self.fields)}
+        # a number that changes: its array among the fields, and which of its entries
+        self.entries = {name: (self.index[holder], k) for name, holder, k in kind.entries}
         listed = ",".join(f"{field}:{inner.name}" for field, inner in kind.fields)
+        listed += "".join(f",{name}={holder}[{k}]" for name, holder, k in kind.entries)
         digest = hashlib.sha256(listed.encode()).hexdigest()[:8]  # it stands in every symbol
         super().__init__(name=f"{kind.name}_{digest}")
 
@@ -136,29 +145,53 @@ class PackedAttribute(AttributeTemplate):
     key = PackedType
 
     def generic_resolve(self, typ: PackedType, attr: str) -> types.Type | None:
+        if attr in typ.entries:
+            return typ.fields[typ.entries[attr][0]][1].dtype
         return typ.fields[typ.index[attr]][1] if attr in typ.index else None
+
+
+def _word(builder: Any, value: Any, k: int) -> Any:
+    """The k-th word of a record, which never changes."""
+    word_type = ir.IntType(64)
+    base = builder.inttoptr(value, ir.PointerType(word_type))
+    loaded = builder.load(builder.gep(base, [ir.Constant(word_type, k)]))
+    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return loaded
+
+
+def _entry(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
+    """Where a number that changes is."""
+    place, k = typ.entries[attr]
+    number = context.get_data_type(typ.fields[place][1].dtype)
+    array = builder.inttoptr(_word(builder, value, WORDS * place), ir.PointerType(number))
+    return builder.gep(array, [ir.Constant(ir.IntType(64), k)])
+
+
+@lower_setattr_generic(PackedType)
+def _setattr(context: Any, builder: Any, sig: Any, arguments: Any, attr: str) -> None:
+    typ, (value, number) = sig.args[0], arguments
+    if attr not in typ.entries:
+        raise TypeError(f"{typ.name}: '{attr}' does not change")
+    builder.store(number, _entry(context, builder, typ, value, attr))
 
 
 @lower_getattr_generic(PackedType)
 def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
+    if attr in typ.entries:
+        return builder.load(_entry(context, builder, typ, value, attr))
     place = typ.index[attr]
     kind, columns = typ.fields[place][1], typ.columns[place]
-    word_type = ir.IntType(64)
-    base = builder.inttoptr(value, ir.PointerType(word_type))
 
     def word(k: int) -> Any:
-        pointer = builder.gep(base, [ir.Constant(word_type, WORDS * place + k)])
-        loaded = builder.load(pointer)
-        loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
-        return loaded
+        return _word(builder, value, WORDS * place + k)
 
     if not isinstance(kind, types.Array):
         return builder.bitcast(word(0), ir.DoubleType()) if kind == types.float64 else word(0)
     array = context.make_array(kind)(context, builder)
     shape = [word(1 + k) for k in range(kind.ndim)]
     if columns:
-        shape[1] = ir.Constant(word_type, columns)
-    size = ir.Constant(word_type, 8)
+        shape[1] = ir.Constant(ir.IntType(64), columns)
+    size = ir.Constant(ir.IntType(64), 8)
     strides = [size] if kind.ndim == 1 else [builder.mul(shape[1], size), size]
     populate_array(
         array,

@@ -194,7 +194,7 @@ def first_step(scenario: Any, record: Record) -> float:
     """The first step of a run, s: as given, or from the units of the error norm."""
     if scenario.solver.first_step:
         return float(scenario.solver.first_step)
-    length, speed = record.clock[rec.LENGTH], max(record.clock[rec.SPEED], record.clock[rec.MOST])
+    length, speed = record.length, max(record.speed, record.speed_cap)
     return step_of(length, speed, scenario.solver.tolerance, scenario.solver.end)
 
 
@@ -229,8 +229,6 @@ def new_record(
         turning=np.zeros_like(model.branch),
         gap=np.zeros((len(model.contact) + len(model.watch), 2)),
         corner=np.zeros(len(model.contact)),
-        clock=np.zeros(rec.N_CLOCK),
-        count=np.zeros(rec.N_COUNT, np.int64),
         peak=np.zeros((rec.N_PEAK, model.n_out + len(model.vector))),
         firm=np.ones((2, model.n_out + len(model.vector))),
         book=np.zeros((1 + N_STORED, 2)),
@@ -261,27 +259,26 @@ def new_record(
         swing=np.zeros((2, model.n_v + model.n_z - N_BOOK)),
         worked=np.zeros((2, N_WORKED)),
     )
-    record.clock[rec.WEAKEST] = 1.0
-    record.clock[rec.LENGTH], record.clock[rec.MOST] = begun.length, begun.speed
-    record.clock[rec.SPEED] = record.clock[rec.MET] = begun.moving
-    record.clock[rec.EXCHANGED] = LEAST * float(np.sum(model.mass)) * begun.speed**2
+    record.weakest = 1.0
+    record.length, record.speed_cap = begun.length, begun.speed
+    record.speed = record.top_speed = begun.moving
+    record.exchanged = LEAST * float(np.sum(model.mass)) * begun.speed**2
     return record
 
 
 def emptied(r: Record, b: rec.Buffers, recorded: Array | None = None) -> Block:
     """What the buffers hold, and what user events recorded; they count as empty afterwards."""
     block = Block(
-        b.rows[: r.count[rec.ROWS]],
-        b.steps[: r.count[rec.STEP_ROWS]],
-        b.events[: r.count[rec.EVENT_ROWS]],
-        float(r.clock[rec.T]),
-        float(r.clock[rec.H]),
-        int(r.count[rec.EVENTS]),
+        b.rows[: r.rows],
+        b.steps[: r.step_rows],
+        b.events[: r.event_rows],
+        float(r.t),
+        float(r.h),
+        int(r.events),
         np.zeros((0, 1 + b.rows.shape[1])) if recorded is None else recorded,
-        b.points[: r.count[rec.POINT_ROWS]],
+        b.points[: r.point_rows],
     )
-    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS, rec.POINT_ROWS):
-        r.count[counter] = 0
+    r.rows = r.step_rows = r.event_rows = r.point_rows = 0
     return block
 
 
@@ -300,9 +297,9 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
 
 def leapt(mechanism: Mechanism, r: Record) -> str:
     """Which drive would have taken the mechanism to another place in no time."""
-    instance = mechanism.instances[int(r.count[rec.TORN]) - 1]
+    instance = mechanism.instances[int(r.torn) - 1]
     unit = "rad" if instance.row.turns else "m"
-    by, t = r.clock[rec.TORN_BY], r.clock[rec.T]
+    by, t = r.torn_by, r.t
     return (
         f"drives.{instance.name}: the prescribed position jumps by {by:.6g} {unit} at t = {t:.9g} "
         "s, which no mechanism can follow: let it go there in a time of its own, as "
@@ -312,11 +309,11 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
 
 def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why what a run comes to is no motion of the mechanism, in words; empty where it is one."""
-    if r.count[rec.TORN]:
+    if r.torn:
         return leapt(mechanism, r)
-    if r.count[rec.OPENED]:
+    if r.opened:
         return opened(scenario, mechanism, r)
-    return lost_its_way(scenario, mechanism, r) if r.count[rec.LOST] else ""
+    return lost_its_way(scenario, mechanism, r) if r.lost else ""
 
 
 def whose(mechanism: Mechanism, c: int) -> str:
@@ -335,35 +332,35 @@ def whose(mechanism: Mechanism, c: int) -> str:
 
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
     """Counts, residuals and the energy book's error."""
-    book, least = float(r.clock[rec.LARGEST_ENERGY]), NOTHING * natural(work, begun)
+    book, least = float(r.largest_energy), NOTHING * natural(work, begun)
     scale = max(book, of_what_is_locked(r, work, begun), least, 1e-300)
-    redundant = float(r.clock[rec.WORST_OPEN])
+    redundant = float(r.worst_open)
     held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
-    unprojected = 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size
+    unprojected = 0.0 if held else float(r.worst_phi) / work.size
     return {
-        "steps": int(r.count[rec.STEPS]),
-        "rejected_steps": int(r.count[rec.REJECTED]),
+        "steps": int(r.steps),
+        "rejected_steps": int(r.rejected),
         "evaluations": int(work.status[1]),
         "factorisations": int(work.status[2]),
-        "dense_outputs": int(r.count[rec.DENSE_BUILT]),
-        "events": int(r.count[rec.EVENTS]),
-        "unproved_searches": int(r.count[rec.UNPROVED]),
-        "corners": int(r.count[rec.CORNERS]),
-        "method_switches": int(r.count[rec.SWITCHES]),
-        "jacobians": int(r.count[rec.JACOBIANS]),
-        "newton_iterations": int(r.count[rec.ITERATIONS]),
-        "position_residual": float(r.clock[rec.WORST_PHI]),
-        "velocity_residual": float(r.clock[rec.WORST_PHI_DOT]),
+        "dense_outputs": int(r.dense_built),
+        "events": int(r.events),
+        "unproved_searches": int(r.unproved),
+        "corners": int(r.corners_met),
+        "method_switches": int(r.method_switches),
+        "jacobians": int(r.jacobians),
+        "newton_iterations": int(r.iterations),
+        "position_residual": float(r.worst_phi),
+        "velocity_residual": float(r.worst_phi_dot),
         "start_position_residual": begun.moved,
         "start_force_residual": begun.residual,
-        "energy_residual": float(r.clock[rec.LARGEST_RESIDUAL]),
-        "energy_residual_relative": float(r.clock[rec.LARGEST_RESIDUAL]) / scale,
-        "work_error_relative": float(r.clock[rec.WORK_ERROR] / max(r.clock[rec.EXCHANGED], 1e-300)),
-        "work_of_projection": float(r.clock[rec.WORK_PROJECTION]),
-        "work_of_projection_relative": abs(float(r.clock[rec.WORK_PROJECTION])) / scale,
+        "energy_residual": float(r.largest_residual),
+        "energy_residual_relative": float(r.largest_residual) / scale,
+        "work_error_relative": float(r.work_error / max(r.exchanged, 1e-300)),
+        "work_of_projection": float(r.work_projection),
+        "work_of_projection_relative": abs(float(r.work_projection)) / scale,
         "joints_open_relative": max(redundant, unprojected),
         "redundant_open_relative": redundant,
-        "redundant_open_rate": float(r.clock[rec.WORST_OPEN_RATE]),
+        "redundant_open_rate": float(r.worst_open_rate),
         **rounding(r),
         "integration_cpu": cpu,
     }
@@ -371,7 +368,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
 
 def rounding(r: Record) -> dict[str, float]:
     """What rounding made of a step, of what the tolerance allows; where it was more."""
-    rounded = float(r.clock[rec.ROUNDED])
+    rounded = float(r.rounded)
     return {"rounding_of_tolerance": rounded} if rounded > 1.0 else {}
 
 

@@ -49,35 +49,12 @@ from trsim.solve.march.phases import change_phases, latch
 from trsim.solve.march.record import (
     BEHIND,
     BUFFERS,
-    DENSE_BUILT,
-    ENERGY_0,
     EVERY,
     FIXED_STEP,
-    HISTORY,
-    JACOBIAN,
-    LARGEST_ENERGY,
-    LARGEST_RESIDUAL,
-    LENGTH,
     LOCATE,
-    MOST,
-    NEXT_JACOBIAN,
-    NEXT_ROW,
-    OFF,
-    OFF_RATE,
-    PAST_H,
     RECORD,
-    ROWS,
-    SAME_TIME,
-    SPEED,
     STEP_ERROR,
-    STEP_ROWS,
-    STEPS,
     T_END,
-    WEAK,
-    WORK_PROJECTION,
-    WORST_PHI,
-    WORST_PHI_DOT,
-    T,
 )
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
@@ -122,10 +99,10 @@ def complete(s, r, b, setting, method, h, built):
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
     (accelerations inside it are not right; the same).
     """
-    last, t = method[LAST_AT], r.clock[T]
+    last, t = method[LAST_AT], r.t
     b.moved[0] = 0.0
     t1 = reached(setting, t + h)
-    worst, worst_rate = r.clock[WORST_PHI], r.clock[WORST_PHI_DOT]
+    worst, worst_rate = r.worst_phi, r.worst_phi_dot
     projected = land(s, r, b, t1, b.y1, b.K[last])
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
@@ -137,16 +114,16 @@ def complete(s, r, b, setting, method, h, built):
         return undone(r, worst, worst_rate, WOUND)
     event = corner = False
     if method[SEARCH_AT] > 0 or method[CORNERS_AT] > 0:
-        before, theta = r.count[DENSE_BUILT], NOTHING
+        before, theta = r.dense_built, NOTHING
         if method[CORNERS_AT] > 0:
             theta = call_search(method[CORNERS_AT], s, r, b, setting, method, t, h, built)
             if theta == UNCERTAIN:
                 return undone(r, worst, worst_rate, STRAYED)
-            built = 1 if r.count[DENSE_BUILT] > before else built
+            built = 1 if r.dense_built > before else built
         other = NOTHING
         if method[SEARCH_AT] > 0:
             other = call_search(method[SEARCH_AT], s, r, b, setting, method, t, h, built)
-            built = 1 if r.count[DENSE_BUILT] > before else built
+            built = 1 if r.dense_built > before else built
         event, corner = sooner(b, theta, other)
         theta = min(theta, other)
         if theta < 1.0:
@@ -162,12 +139,12 @@ def complete(s, r, b, setting, method, h, built):
                 copy_to(b.y1, b.y2)
                 t1 = reached(setting, t + theta * h)
                 projected = land(s, r, b, t1, b.y1, b.K[last])
-    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+    measure(s, t1, b.y1, r.work_projection + projected, r.energy_0)
     copy_to(b.out, s.out)
     b.firm[1] = firmness(s)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
-    inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.count[NEXT_ROW], t1)
+    inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.next_row, t1)
     unseen = not inside and t1 - t > LONG * setting[T_END]
     if built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
         build(s, r, b, method, t, h)
@@ -175,10 +152,10 @@ def complete(s, r, b, setting, method, h, built):
     if inside and loose(s, r, b, setting, method, t, h):
         return undone(r, worst, worst_rate, LOOSE)
     if due(r, setting, t1):
-        first = r.count[ROWS]
+        first = r.rows
         if not rows_until(s, r, b, setting, method, t, h, t1, projected):
             return WORTHLESS
-        for k in range(first, r.count[ROWS]):
+        for k in range(first, r.rows):
             row, b.firm[0] = b.rows[k], b.row_firm[k]
             built = call_sample(
                 method[SAMPLE_AT], s, r, b, setting, method, t, h, row[0], row[1:], projected, built
@@ -204,8 +181,8 @@ def complete(s, r, b, setting, method, h, built):
     if method[IMPLICIT_AT] > 0:
         for k in range(r.past.shape[0]):
             copy_to(r.past[k], b.P[k])
-        r.clock[PAST_H], r.count[HISTORY] = h, BEHIND
-        r.count[JACOBIAN] = r.count[NEXT_JACOBIAN]
+        r.past_h, r.history = h, BEHIND
+        r.jacobian = r.next_jacobian
     if setting[LOCATE] == 0.0:
         latch(s, r)
     outcome = SMOOTH_STEP
@@ -228,8 +205,8 @@ def strayed(s, r, setting, h):
     if setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
         return False
     far = FAR * setting[STEP_ERROR]
-    return r.clock[OFF] > far * s.size or r.clock[OFF_RATE] > far * max(
-        r.clock[SPEED], r.clock[MOST], s.size / setting[T_END]
+    return r.off > far * s.size or r.off_rate > far * max(
+        r.speed, r.speed_cap, s.size / setting[T_END]
     )
 
 
@@ -250,7 +227,7 @@ def leaked(s, r, b, setting, h, t1, projected):
     before, after = kinetic(s, r.y), kinetic(s, b.y1)
     if h > BRIEF * setting[T_END] and abs(projected) > THROWN * max(before, after):
         return True
-    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+    measure(s, t1, b.y1, r.work_projection + projected, r.energy_0)
     lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
@@ -260,7 +237,7 @@ def leaked(s, r, b, setting, h, t1, projected):
 @internal
 def undone(r, worst, worst_rate, why):
     """`why` a trial step is not accepted; residuals met on it are none of the run."""
-    r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+    r.worst_phi, r.worst_phi_dot = worst, worst_rate
     return why
 
 
@@ -310,7 +287,7 @@ def exact(s, r, b, setting, method, t, h, theta):
         if b.root[c] <= theta:
             gap_of = c
     h1, before = theta * h, 1e300
-    close = max(PRECISE * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
+    close = max(PRECISE * setting[STEP_ERROR] * r.length, ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0, 0.0, 0.0
@@ -348,7 +325,7 @@ def exact(s, r, b, setting, method, t, h, theta):
 @internal
 def last_of_its_kind(s, r, setting, method, t, t1):
     """Whether what follows on this step has other equations, or nothing follows."""
-    if t1 >= setting[T_END] or r.count[WEAK] > 0:
+    if t1 >= setting[T_END] or r.weak > 0:
         return True
     if setting[LOCATE] == 0.0 and s.contact.size > 0:  # `latch` changes them in any step
         return True
@@ -366,33 +343,33 @@ def look_inside(s, r, b, setting, method, t, h, at, projected):
 def accept(s, r, b, t1, projected, last):
     """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
     s.status[3] = 0
-    stays = t1 - r.clock[T] <= SMALLEST * 2.2e-16 * t1
-    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if stays else 0
-    r.clock[T] = t1
-    r.clock[WORK_PROJECTION] += projected
+    stays = t1 - r.t <= SMALLEST * 2.2e-16 * t1
+    r.same_time = r.same_time + 1 if stays else 0
+    r.t = t1
+    r.work_projection += projected
     copy_to(r.y, b.y1)
     copy_to(r.yd, b.K[last])
     copy_table(r.gap, b.gap1)
     copy_to(r.corner, b.corner1)
     copy_to(r.branch, b.branch1)
     copy_to(r.turning, b.turning1)
-    r.count[STEPS] += 1
+    r.steps += 1
     for c in range(s.contact.size):
         e = s.contact[c]
         if r.mem[e, PHASE] != FLIGHT and r.gap[c, 0] > 0.0:
             grow(s, r, c)
             if s.wanted[e] >= 0 and b.steps.shape[1] > 2:
-                line = b.steps[r.count[STEP_ROWS]]
+                line = b.steps[r.step_rows]
                 line[0], line[1] = t1, e
                 for k in range(line.size - 2):
                     line[2 + k] = b.out[s.wanted[e] + k] if s.wanted[e] + k < s.n_out else 0.0
-                r.count[STEP_ROWS] += 1
+                r.step_rows += 1
     if s.column_energy >= 0:
         exchanged(s, r, b)
         for c in range(s.column_energy, s.n_out - 1):
             size = abs(b.out[c])
             if c == s.column_energy + 1 + GRAVITY:  # counted from the origin, wherever that is
                 size = max(ORIGIN * size, r.book[1 + GRAVITY, 1] - r.book[1 + GRAVITY, 0])
-            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], size)
+            r.largest_energy = max(r.largest_energy, size)
         residual = abs(b.out[s.n_out - 1])
-        r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
+        r.largest_residual = max(r.largest_residual, residual)

@@ -6,7 +6,6 @@ from trsim.kernels.vectors import clear_table, copy_to, internal
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
 from trsim.solve.march.earlier import this_step
 from trsim.solve.march.land import evaluate_inside
-from trsim.solve.march.record import DENSE_BUILT, ENERGY_0
 from trsim.solve.march.samples import firmness
 
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
@@ -20,7 +19,7 @@ OF_FOUR, OF_SIX = (0.0, 2.0 / 3.0, -1.0 / 6.0, 0.0), (0.0, 0.75, -0.3, 0.05)
 def build(s, r, b, method, t, h):
     """The dense output of the step of length h, into b.P, and count it."""
     fill(s, r, b, method, t, h)
-    r.count[DENSE_BUILT] += 1
+    r.dense_built += 1
 
 
 @internal
@@ -106,4 +105,4 @@ def measure_at(s, r, b, interpolate, step, at, theta):
     y, P, _, work, projected = step
     call_interpolate(interpolate, P, y, theta, b.y2)
     evaluate_inside(s, r, at, b.y2, b.rough[0], b.rough[1])
-    measure(s, at, b.y2, work + theta * projected, r.clock[ENERGY_0])
+    measure(s, at, b.y2, work + theta * projected, r.energy_0)

@@ -22,7 +22,7 @@ from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.corners import any_left, corner_root
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.record import LENGTH, STEP_ERROR, UNPROVED
+from trsim.solve.march.record import STEP_ERROR
 from trsim.solve.march.spread import spread, spread_at_stages
 
 NONE = 2.0  # a root beyond the step
@@ -119,7 +119,7 @@ def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_h
 @internal
 def hides(s, r, setting, c, M, length):
     """Whether a part of a step is so short that what it may hide does not count."""
-    depth = max(HIDDEN * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
+    depth = max(HIDDEN * setting[STEP_ERROR] * r.length, ROUNDING * s.size)
     if s.travel[c, 0] == ANGLE:
         depth /= s.reach
     return M >= 0.0 and 0.125 * M * length**2 < depth
@@ -160,7 +160,7 @@ def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate)
             high = min(end, low + step)
             continue
         high = 0.5 * (low + high)
-    r.count[UNPROVED] += 1
+    r.unproved += 1
     return NONE
 
 

@@ -9,7 +9,7 @@ from trsim.kernels.packed import A1
 from trsim.kernels.vectors import internal
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.own_rows import cosine, keep_roots, keep_rows, look_at, own
-from trsim.solve.march.record import MEETINGS, RECORD, T
+from trsim.solve.march.record import RECORD
 
 MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
 APART = 1e-2  # pivots that do not take part
@@ -29,7 +29,7 @@ def meet(s, r, b, t1, last, start, end, k):
     the step and the rates there, brought to the constraints.  That place is left in b.rough[0];
     branches meet where no other pivot is small that is not zero too.
     """
-    place, h = b.rough[0], t1 - r.clock[T]
+    place, h = b.rough[0], t1 - r.t
     bracket = (start, s.kept_roots[0, k], end, -s.kept_roots[1, k], 0.0)
     about = min(s.kept_roots[0, k], s.kept_roots[1, k])
     for n in range(NEARER):
@@ -82,7 +82,7 @@ def inside(y0, yd0, y1, yd1, h, x, y):
 @compiled(types.int64(SCENE, RECORD, A1, A1))
 def known(s, r, y0, y1):
     """Whether branches meet, as was found out before, between two states."""
-    many = min(r.count[MEETINGS], r.meeting.shape[0])
+    many = min(r.n_meetings, r.meeting.shape[0])
     most = AROUND * apart(s, y0, y1, 1e300) if many > 0 else 0.0
     for k in range(many):
         first = apart(s, r.meeting[k], y0, most)

@@ -31,17 +31,7 @@ from trsim.errors import ModelError
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import LOOK
 from trsim.solve.march.record import (
-    APART,
-    APART_T,
-    FIRED,
     HELD_TO,
-    OPEN_INDEX,
-    OPEN_ROW,
-    OPENED,
-    WEAK,
-    WEAKEST,
-    WORST_OPEN,
-    WORST_OPEN_RATE,
     Record,
 )
 
@@ -76,8 +66,8 @@ def look(s, r, b, setting, t, y, step):
     told, worst = max(TOLD * setting[HELD_TO], LEAST_TOLD), 0.0
     for k in range(s.redundant.shape[0]):
         worst = max(worst, opening(s, s.m + k))
-        r.clock[WORST_OPEN_RATE] = max(r.clock[WORST_OPEN_RATE], rate(s, s.m + k))
-    r.clock[WORST_OPEN] = max(r.clock[WORST_OPEN], worst)
+        r.worst_open_rate = max(r.worst_open_rate, rate(s, s.m + k))
+    r.worst_open = max(r.worst_open, worst)
     if worst <= (told if step == 1 else setting[HELD_TO]):
         return 0
     copy_to(b.y2, y)
@@ -86,11 +76,11 @@ def look(s, r, b, setting, t, y, step):
         left = opening(s, s.m + k)
         if left <= max(told, bound):
             continue
-        if left > r.clock[APART]:
-            r.clock[APART], r.clock[APART_T] = left, t
-            r.count[OPEN_ROW], r.count[OPEN_INDEX] = s.redundant[k, ROW], s.redundant[k, INDEX]
+        if left > r.apart:
+            r.apart, r.apart_t = left, t
+            r.open_row, r.open_index = s.redundant[k, ROW], s.redundant[k, INDEX]
         if left > setting[HELD_TO]:
-            r.count[OPENED] = 1
+            r.opened = 1
     return 1
 
 
@@ -98,12 +88,12 @@ def look(s, r, b, setting, t, y, step):
 def look_at_pivots(s, r):
     """Ask for other rows where those of the solve come to depend on each other."""
     smallest = smallest_pivot(s)
-    if smallest < FEEBLE and smallest <= FALLEN * r.clock[WEAKEST]:
-        r.clock[WEAKEST] = smallest
-        r.count[WEAK] = 1
-    r.clock[WEAKEST] = max(r.clock[WEAKEST], smallest)
-    if r.count[WEAK] > 0:
-        r.count[FIRED] += 1
+    if smallest < FEEBLE and smallest <= FALLEN * r.weakest:
+        r.weakest = smallest
+        r.weak = 1
+    r.weakest = max(r.weakest, smallest)
+    if r.weak > 0:
+        r.fired += 1
 
 
 @internal
@@ -153,7 +143,7 @@ def opened(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 def apart(mechanism: Mechanism, r: Record) -> str:
     """`opened` of a row that is open by more than is told; empty where none is."""
-    if r.clock[APART] == 0.0:
+    if r.apart == 0.0:
         return ""
     instance, axis, by = worst(mechanism, r)
     return (
@@ -165,9 +155,9 @@ def apart(mechanism: Mechanism, r: Record) -> str:
 
 def worst(mechanism: Mechanism, r: Record) -> tuple[Instance, str, str]:
     """The redundant row that was most open: of which element, its name, how far and when."""
-    e, index = int(r.count[OPEN_ROW]), int(r.count[OPEN_INDEX])
+    e, index = int(r.open_row), int(r.open_index)
     instance = mechanism.instances[e]
-    by = f"{size(mechanism, e, index, float(r.clock[APART]))} at t = {r.clock[APART_T]:.6g} s"
+    by = f"{size(mechanism, e, index, float(r.apart))} at t = {r.apart_t:.6g} s"
     return instance, instance.element.rows[index], by
 
 

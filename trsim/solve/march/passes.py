@@ -27,7 +27,7 @@ from trsim.solve.march.own_rows import (
     look_at,
     turned_round,
 )
-from trsim.solve.march.record import BUFFERS, KEPT, LAST_WAY, MEETINGS, PASSED, RECORD, T
+from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.march.turns import fastest_in_loops
 
 LONGEST = 0.2  # rad, or of the mechanism's size: of a part of a step
@@ -47,21 +47,21 @@ def note_passes(s, r, b, t1, last):
 
     last: the row of b.K with its derivative.
     """
-    t = r.clock[T]
+    t = r.t
     h = t1 - t
     if not h > 0.0:
         return
-    if r.count[KEPT] == 0:
+    if r.kept == 0:
         look_at(s, t, r.y)
         keep_roots(s, s.root[1])
         keep_rows(s, begun_in(r))
-        r.clock[LAST_WAY], r.count[KEPT] = 0.0, 1
+        r.last_way, r.kept = 0.0, 1
     way = h * max(fastest_in_loops(s, r.y), fastest_in_loops(s, b.y1))
-    if may_turn(s, s.root, way, r.clock[LAST_WAY]):
+    if may_turn(s, s.root, way, r.last_way):
         look_at_parts(s, r, b, t1, last, way)
     for k in range(s.root.shape[1]):
         s.root[0, k], s.root[1, k] = s.root[1, k], s.root[2, k]
-    r.clock[LAST_WAY], r.count[KEPT] = way, 3 - r.count[KEPT]
+    r.last_way, r.kept = way, 3 - r.kept
 
 
 @internal
@@ -70,8 +70,8 @@ def look_at_parts(s, r, b, t1, last, way):
 
     Places inside are those of the cubic; where one of both ends of a part, on the constraints.
     """
-    y0, y1, t, h = b.part[0], b.part[1], r.clock[T], t1 - r.clock[T]
-    n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.clock[LAST_WAY]
+    y0, y1, t, h = b.part[0], b.part[1], r.t, t1 - r.t
+    n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.last_way
     for k in range(s.first.size):
         roots[0, k], roots[1, k], roots[2, k] = s.root[0, k], s.root[1, k], s.root[2, k]
     one, other = begun_in(r), ends_in(r)
@@ -104,7 +104,7 @@ def look_at_parts(s, r, b, t1, last, way):
 def keep_inside(s, r, b, last, h, x, place):
     """Keep the rows at the part x of the step, on the cubic."""
     inside(r.y, r.yd, b.y1, b.K[last], h, x, b.part[1])
-    look_at(s, r.clock[T] + x * h, b.part[1])
+    look_at(s, r.t + x * h, b.part[1])
     keep_rows(s, place)
 
 
@@ -152,7 +152,7 @@ def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
 
     Where that is because branches meet, the place is kept instead.
     """
-    t, h = r.clock[T], t1 - r.clock[T]
+    t, h = r.t, t1 - r.t
     look_at(s, t + start * h, y0)
     keep_rows(s, 0)
     keep_roots(s, s.kept_roots[0])
@@ -163,8 +163,8 @@ def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
     if k < 0:
         return
     if s.redundant.shape[0] == 0 and meet(s, r, b, t1, last, start, end, k):
-        copy_to(r.meeting[r.count[MEETINGS] % r.meeting.shape[0]], b.rough[0])
-        r.count[MEETINGS] += 1
+        copy_to(r.meeting[r.n_meetings % r.meeting.shape[0]], b.rough[0])
+        r.n_meetings += 1
         return
     note(r, t + start * h, t + end * h, y0, y1)
 
@@ -172,12 +172,12 @@ def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
 @internal
 def note(r, t0, t1, y0, y1):
     """A line in r.passed: times, states and branches of angles."""
-    if r.count[PASSED] == r.passed.shape[0]:
+    if r.n_passed == r.passed.shape[0]:
         return
-    line, n = r.passed[r.count[PASSED]], y0.size
+    line, n = r.passed[r.n_passed], y0.size
     line[0], line[1] = t0, t1
     for k in range(n):
         line[2 + k], line[2 + n + k] = y0[k], y1[k]
     for k in range(r.branch.size):
         line[2 + 2 * n + k] = r.branch[k]
-    r.count[PASSED] += 1
+    r.n_passed += 1

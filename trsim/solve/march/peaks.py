@@ -30,20 +30,12 @@ from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
 from trsim.solve.march.record import (
     BUFFERS,
-    EARLIER_BUILT,
-    EARLIER_H,
-    ENERGY_0,
     MISSED,
-    NEWEST,
     PEAK_MAX,
     PEAK_MIN,
     POINTS,
     RECORD,
-    SAMPLES,
-    STEPS,
     T_END,
-    UNSEEN,
-    T,
 )
 from trsim.solve.march.samples import (
     NOT_LAID,
@@ -84,14 +76,14 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
         gather(s, b.full, values, b.inside[0])
         known_extremes(s, r, b, at)
         return built
-    if r.count[SAMPLES] > 0 and at <= r.sampled[r.count[NEWEST]]:
+    if r.n_samples > 0 and at <= r.sampled[r.newest]:
         return built
     own = push(s, r, b, at, values)
     known_extremes(s, r, b, at)
     if own:
-        if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 2:
+        if r.unseen > 0 and r.n_samples > 2:
             built = between(s, r, b, setting, method, t, h, 1, projected, built)
-        r.count[UNSEEN] = 1
+        r.unseen = 1
     return built
 
 
@@ -99,9 +91,9 @@ def sample(s, r, b, setting, method, t, h, at, values, projected, built):
 def finish(s, r, b, setting, method, t, h, projected, built):
     """Take what lies between the two newest samples into the extremes: no sample follows that they
     have to do with.  Arguments and what is returned as of `sample`."""
-    if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 1:
+    if r.unseen > 0 and r.n_samples > 1:
         built = between(s, r, b, setting, method, t, h, 0, projected, built)
-    r.count[UNSEEN] = 0
+    r.unseen = 0
     return built
 
 
@@ -112,15 +104,15 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
     ahead: samples that are newer than the later of them.
     """
     share, now, last = setting[MISSED], r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
-    earlier = r.sampled[older(r, ahead + 1)] < r.clock[T]
+    earlier = r.sampled[older(r, ahead + 1)] < r.t
     if earlier:
-        h, ready = r.clock[EARLIER_H], r.count[EARLIER_BUILT]
+        h, ready = r.earlier_h, r.earlier_built
     else:
         ready = built
     b.found[0], b.laid[0] = 0.0, NOT_LAID
-    inner = max(ENDS - r.count[SAMPLES], 1)
-    last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
-    if (r.count[SAMPLES] <= YOUNG and h * r.count[STEPS] >= TINY * t) or (ahead == 0 and last_one):
+    inner = max(ENDS - r.n_samples, 1)
+    last_one = r.sampled[r.newest] >= setting[T_END]
+    if (r.n_samples <= YOUNG and h * r.steps >= TINY * t) or (ahead == 0 and last_one):
         if ready == 0 and not last_one:
             guess(s, r, b, method, h, inner, projected, earlier)
         else:
@@ -219,7 +211,7 @@ def look(s, r, b, method, h, place, projected, built, earlier):
     if built == 0 and earlier:
         build_earlier(s, r, b, method)
     elif built == 0:
-        build(s, r, b, method, r.clock[T], h)
+        build(s, r, b, method, r.t, h)
     k, t = int(b.found[0]), step[2]
     place = min(place, t + h)
     measure_in(s, r, b, method[INTERPOLATE_AT], step, place, (place - t) / h)
@@ -251,6 +243,6 @@ def guess(s, r, b, method, h, inner, projected, earlier):
         for k in range(b.y2.size):
             b.y2[k] = y0[k] + way * (y1[k] - y0[k]) + h * u * v * (v * yd0[k] - u * yd1[k])
         evaluate_inside(s, r, t + u * h, b.y2, b.rough[0], b.rough[1])
-        measure(s, t + u * h, b.y2, work + u * done, r.clock[ENERGY_0])
+        measure(s, t + u * h, b.y2, work + u * done, r.energy_0)
         gather(s, b.full, s.out, b.inside[i])
         b.found[0], b.found[1 + i] = i + 1.0, t + u * h

@@ -3,125 +3,7 @@
 import numpy as np
 
 from trsim.elements.scene import Model
-from trsim.kernels.packed import A1, A2, I1, I2, T14, Packed
-
-# clock: floating-point state of the march
-(
-    T,  # s
-    H,  # s, the step to try next
-    LENGTH,  # m, unit of the error norm: the smallest gap or penetration that matters
-    SPEED,  # m/s, its unit for velocities, of the next step
-    MET,  # m/s, the largest speed so far     norm.py
-    MOST,  # m/s, more is no unit for velocities
-    WORK_PROJECTION,  # J, given to the mechanism by projecting back to the constraints
-    ENERGY_0,  # J, total energy at the start
-    WORST_PHI,  # m or rad, largest constraint residual met at an accepted point
-    WORST_PHI_DOT,
-    LARGEST_ENERGY,  # J, largest entry of the energy book so far: the scale of its residual
-    LARGEST_RESIDUAL,  # J
-    LAST_EVENT,  # s
-    PAST_H,  # s, length of the step whose polynomial is in `past`
-    PAST_ERROR,  # error of the last step, for the controller; 0 after an event
-    OLD_H,  # s, its length
-    FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
-    CONTRACTION,  # of the matrix at hand, as far as it was measured
-    NEWTON_RATE,  # contraction of the last Newton iterations
-    JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
-    EXPLICIT_RATE,  # 1/s, how much the derivative changes with the state; 0: not known     auto.py
-    EXCHANGED,  # J, largest work, or range of an energy, so far: the scale of works     works.py
-    WORK_TRIAL,  # J, error of the works in the last trial step, as estimated
-    WORK_ERROR,  # J, the sum of those accepted
-    WORST_OPEN,  # of the mechanism's size or rad, largest opening of a redundant row  openings.py
-    WORST_OPEN_RATE,  # the same per second
-    APART,  # the same of rows that are open by more than the rest is
-    APART_T,  # s, when
-    WEAKEST,  # pivot of a row, of its diagonal: at the last look at which rows to solve
-    TORN_BY,  # m or rad
-    OFF,  # m or rad, largest constraint residual at the end of the last trial step
-    OFF_RATE,
-    NOISY,  # 1/s, rounding of steps in units of the tolerance              rounding.py
-    NOISY_AT,  # the entry of y that has it
-    PASSING,  # 1: it was seen where rows nearly depended on each other
-    ROUNDED,  # largest rounding of an accepted step in these units, and the entry that had it
-    ROUNDED_AT,
-    ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
-    LONGEST,  # s, the longest step since then, see LOOKED
-    LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
-    CROSSED_T,  # s, when the run first changed its branch                         crossed.py
-    GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
-    BLUR,  # m/s^2, error of accelerations the last trial was not held for    accelerations.py
-    EXCESS,  # m/s^2, the same where it was more than its share, rounding or not
-    BLUR_W,  # rad/s, how fast what it consists of turns, 0: not known
-    BLURRED,  # m/s^2, the largest of accepted steps
-    BLURRED_W,  # rad/s, of the longest of them, and its length
-    BLURRED_H,
-    BLURRED_SUM,  # m/s^2, of all that were more than their share
-    EARLIER_T,  # s, where the step began that is kept in `earlier`                earlier.py
-    EARLIER_H,  # s, its length
-    EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
-    EARLIER_PROJECTED,
-    FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
-    FREE_SINCE,  # s, when they last opened
-    CHOSEN_T,  # s, when rows were last chosen anew                                   anew.py
-    FELT,  # of rows open where branches nearly meet, in accelerations                adrift.py
-    FELT_T,  # s, when
-    VIBRATION,  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known    stiffness.py
-    DECAY,  # 1/s, of the fastest decay
-    STEP_TURN,  # rad, the most a body turned by in a fixed step                        rk4.py
-    N_CLOCK,
-) = range(62)
-
-# count: integer state of the march
-(
-    STEPS,
-    REJECTED,
-    EVENTS,
-    CORNERS,  # of laws, met
-    NEXT_ROW,  # index of the next output time
-    ROWS,  # filled rows of the buffers
-    STEP_ROWS,
-    EVENT_ROWS,
-    DENSE_BUILT,
-    AFTER_REJECTION,  # 1 the last trial was rejected, 2 because it was not finite
-    SAME_TIME,  # events in a row without time passing
-    METHOD,  # which of the methods makes the steps
-    SWITCHES,  # changes of method
-    STIFF,  # steps in a row that looked stiff to an explicit method, or not to an implicit one
-    NOT_STIFF,  # steps in a row that speak against it
-    HISTORY,  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
-    JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
-    NEXT_JACOBIAN,  # its state once the last trial is accepted: OLD, or NO_JACOBIAN
-    JACOBIANS,  # made so far
-    ITERATIONS,  # of Newton, so far
-    CRAWLED,  # trial steps in a row that were vanishingly short
-    FIRED,  # user events at the end of the last step, not yet acted on
-    POINT_ROWS,
-    WEAK,  # 1: rows of the solve nearly depend on each other, others may not      openings.py
-    OPENED,  # 1: a redundant row is open beyond its bound
-    OPEN_ROW,  # element row e and row of it that APART is of
-    OPEN_INDEX,
-    JOLTS,  # jumps of the rate of a rigid drive
-    LOST,  # 1: without projection, rows are open by as much as branches are apart     adrift.py
-    TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
-    UNPROVED,  # searches for an event in a step that gave up
-    DEGREE,  # of the polynomials in `net`
-    LOOKED,  # steps when rounding was looked at last    rounding.py
-    NEXT_LOOK,  # steps when stiffness is to be looked at again, and how far apart   stiffness.py
-    APART_LOOKS,
-    OF_RATES,  # 1: it was rates that were looked at
-    FAILED,  # and how many trials were rejected then
-    NEWEST,  # which of the last samples of the channels is the newest, and how many there are
-    SAMPLES,
-    KEPT,  # 0: no rows are known where the step begins; 1, 2: they are kept in one of two places
-    PASSED,  # ways noted that are still to be examined
-    MEETINGS,  # places known where branches meet
-    CROSSED,  # how often the run changed its branch
-    UNSEEN,  # 1: between the two newest samples no extremes were looked for yet
-    FREED,  # 1: the step ended where the last closed contact opened
-    EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
-    CHOSEN,  # how often rows were chosen anew with next to no time between
-    N_COUNT,
-) = range(48)
+from trsim.kernels.packed import A1, A2, F8, I1, I2, I8, T14, Packed
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -179,8 +61,6 @@ class Record(Packed):
     turning: A1  # (n_s) rates of S at y
     gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
     corner: A1  # (n_contacts) how far each has left the branch of its law at y
-    clock: A1
-    count: I1
     peak: A2  # (N_PEAK, n_c) extremes of channels and magnitudes
     firm: A2  # (2, n_c) the least pivot of rows where each was taken, 1 in open chains   samples.py
     book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
@@ -197,7 +77,7 @@ class Record(Packed):
     stale: I1  # (n) frames whose columns of `by_rate` a corner made old
     lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
     pivot: I2  # (2, n_w)
-    past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
+    past: A2  # (dense rows, n_y) dense output of a step, see `history`
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
     held: A1  # (corners) what functions are held on                            features.py
     sight: A1  # (n_sensed) what the sensors that meet corners show at y
@@ -213,6 +93,118 @@ class Record(Packed):
     crossed: A1  # (n_y) where the run first changed its branch
     swing: A2  # (2, n_w) how it vibrates, and how it decays              stiffness.py
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
+    clock: A1  # the numbers that change
+    t: F8  # s
+    h: F8  # s, the step to try next
+    length: F8  # m, unit of the error norm: the smallest gap or penetration that matters
+    speed: F8  # m/s, its unit for velocities, of the next step
+    top_speed: F8  # m/s, the largest speed so far  norm.py
+    speed_cap: F8  # m/s, more is no unit for velocities
+    work_projection: F8  # J, given to the mechanism by projecting back to the constraints
+    energy_0: F8  # J, total energy at the start
+    worst_phi: F8  # m or rad, largest constraint residual met at an accepted point
+    worst_phi_dot: F8
+    largest_energy: F8  # J, largest entry of the energy book so far: the scale of its residual
+    largest_residual: F8  # J
+    last_event: F8  # s
+    past_h: F8  # s, length of the step whose polynomial is in `past`
+    past_error: F8  # error of the last step, for the controller; 0 after an event
+    old_h: F8  # s, its length
+    factored_h: F8  # s, the step size `lu` belongs to; 0 for none
+    contraction: F8  # of the matrix at hand, as far as it was measured
+    newton_rate: F8  # contraction of the last Newton iterations
+    jacobian_rate: F8  # 1/s, largest eigenvalue of the Jacobian; negative: not known
+    explicit_rate: F8  # 1/s, how much the derivative changes with the state; 0: not known  auto.py
+    exchanged: F8  # J, largest work, or range of an energy, so far: the scale of works  works.py
+    work_trial: F8  # J, error of the works in the last trial step, as estimated
+    work_error: F8  # J, the sum of those accepted
+    worst_open: (
+        F8  # of the mechanism's size or rad, opening of a redundant row  openings.py
+    )
+    worst_open_rate: F8  # the same per second
+    apart: F8  # the same of rows that are open by more than the rest is
+    apart_t: F8  # s, when
+    weakest: F8  # pivot of a row, of its diagonal: at the last look at which rows to solve
+    torn_by: F8  # m or rad
+    off: F8  # m or rad, largest constraint residual at the end of the last trial step
+    off_rate: F8
+    noisy: F8  # 1/s, rounding of steps in units of the tolerance  rounding.py
+    noisy_at: F8  # the entry of y that has it
+    passing: F8  # 1: it was seen where rows nearly depended on each other
+    rounded: F8  # largest rounding of an accepted step in these units, and the entry that had it
+    rounded_at: F8
+    rounded_by: F8  # and how much it was, m, rad, m/s or rad/s
+    longest: F8  # s, the longest step since then, see `looked`
+    last_way: F8  # rad, or of the mechanism's size: how far the last step went, 0: none  passes.py
+    crossed_t: F8  # s, when the run first changed its branch  crossed.py
+    top_acceleration: F8  # m/s^2, the largest acceleration so far  generalized_alpha.py
+    blur: F8  # m/s^2, error of accelerations the last trial was not held for  accelerations.py
+    excess: F8  # m/s^2, the same where it was more than its share, rounding or not
+    blur_w: F8  # rad/s, how fast what it consists of turns, 0: not known
+    blurred: F8  # m/s^2, the largest of accepted steps
+    blurred_w: F8  # rad/s, of the longest of them, and its length
+    blurred_h: F8
+    blurred_sum: F8  # m/s^2, of all that were more than their share
+    earlier_t: F8  # s, where the step began that is kept in `earlier`  earlier.py
+    earlier_h: F8  # s, its length
+    earlier_work: F8  # J, `work_projection` there, and what projection gave in it
+    earlier_projected: F8
+    free_h: F8  # s, the step to try next when a contact last closed while all were open  phases.py
+    free_since: F8  # s, when they last opened
+    chosen_t: F8  # s, when rows were last chosen anew  anew.py
+    felt: F8  # of rows open where branches nearly meet, in accelerations  adrift.py
+    felt_t: F8  # s, when
+    vibration: F8  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known  stiffness.py
+    decay: F8  # 1/s, of the fastest decay
+    step_turn: F8  # rad, the most a body turned by in a fixed step  rk4.py
+    count: I1  # and the whole ones
+    steps: I8
+    rejected: I8
+    events: I8
+    corners_met: I8  # corners of laws, met
+    next_row: I8  # index of the next output time
+    rows: I8  # filled rows of the buffers
+    step_rows: I8
+    event_rows: I8
+    dense_built: I8
+    after_rejection: I8  # 1 the last trial was rejected, 2 because it was not finite
+    same_time: I8  # events in a row without time passing
+    method: I8  # which of the methods makes the steps
+    method_switches: I8  # changes of method
+    stiff: I8  # steps in a row that looked stiff to an explicit method, or not to an implicit one
+    not_stiff: I8  # steps in a row that speak against it
+    history: I8  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
+    jacobian: I8  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
+    next_jacobian: I8  # its state once the last trial is accepted: OLD, or NO_JACOBIAN
+    jacobians: I8  # made so far
+    iterations: I8  # of Newton, so far
+    crawled: I8  # trial steps in a row that were vanishingly short
+    fired: I8  # user events at the end of the last step, not yet acted on
+    point_rows: I8
+    weak: I8  # 1: rows of the solve nearly depend on each other, others may not  openings.py
+    opened: I8  # 1: a redundant row is open beyond its bound
+    open_row: I8  # element row e and row of it that `apart` is of
+    open_index: I8
+    n_jolts: I8  # jumps of the rate of a rigid drive
+    lost: I8  # 1: without projection, rows are open by as much as branches are apart  adrift.py
+    torn: I8  # 1 + row of the rigid drive whose place has jumped: the run ends
+    unproved: I8  # searches for an event in a step that gave up
+    degree: I8  # of the polynomials in `net`
+    looked: I8  # steps when rounding was looked at last  rounding.py
+    next_look: I8  # steps when stiffness is to be looked at again, and how far apart  stiffness.py
+    apart_looks: I8
+    of_rates: I8  # 1: it was rates that were looked at
+    failed: I8  # and how many trials were rejected then
+    newest: I8  # which of the last samples of the channels is the newest, and how many there are
+    n_samples: I8
+    kept: I8  # 0: no rows are known where the step begins; 1, 2: they are kept in one of two places
+    n_passed: I8  # ways noted that are still to be examined
+    n_meetings: I8  # places known where branches meet
+    crossings: I8  # how often the run changed its branch
+    unseen: I8  # 1: between the two newest samples no extremes were looked for yet
+    freed: I8  # 1: the step ended where the last closed contact opened
+    earlier_built: I8  # 1: `stages` holds the dense output of the earlier step, not its stages
+    chosen: I8  # how often rows were chosen anew with next to no time between
 
 
 POINTS = 6  # samples of every channel that are kept: see peaks.py
@@ -336,9 +328,9 @@ def fresh_buffers(
 def crowded(r: Record, b: Buffers) -> bool:
     """Whether a buffer is half full: time to empty them."""
     filled = (
-        (ROWS, b.rows), (STEP_ROWS, b.steps), (EVENT_ROWS, b.events), (POINT_ROWS, b.points)
+        (r.rows, b.rows), (r.step_rows, b.steps), (r.event_rows, b.events), (r.point_rows, b.points)
     )  # fmt: skip
-    return any(2 * r.count[counter] > len(buffer) for counter, buffer in filled)
+    return any(2 * number > len(buffer) for number, buffer in filled)
 
 
 def copy(record: Record) -> dict[str, np.ndarray]:

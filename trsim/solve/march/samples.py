@@ -22,14 +22,11 @@ from trsim.assemble.linear import smallest_pivot
 from trsim.kernels.vectors import internal
 from trsim.solve.march.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
 from trsim.solve.march.record import (
-    NEWEST,
     PEAK_MAX,
     PEAK_MAX_T,
     PEAK_MIN,
     PEAK_MIN_T,
     POINTS,
-    SAMPLES,
-    UNSEEN,
 )
 
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
@@ -50,7 +47,7 @@ def restart(s, r, b, t):
     known_extremes(s, r, b, t)
     for c in range(s.sought.size):
         r.slope[0, c] = r.sample[0, c]
-    r.count[NEWEST], r.count[SAMPLES], r.count[UNSEEN], r.sampled[0] = 0, 1, 0, t
+    r.newest, r.n_samples, r.unseen, r.sampled[0] = 0, 1, 0, t
 
 
 @internal
@@ -59,11 +56,11 @@ def push(s, r, b, at, values):
 
     One that is too near to the newest takes its place.
     """
-    head, known = r.count[NEWEST], r.count[SAMPLES]
+    head, known = r.newest, r.n_samples
     own = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[older(r, 1)])
     if own:
-        r.count[NEWEST], r.count[SAMPLES] = (head + 1) % POINTS, min(known + 1, POINTS)
-    new = r.count[NEWEST]
+        r.newest, r.n_samples = (head + 1) % POINTS, min(known + 1, POINTS)
+    new = r.newest
     gather(s, b.full, values, r.sample[new])
     r.sampled[new] = at
     if own:
@@ -76,14 +73,14 @@ def push(s, r, b, at, values):
 @internal
 def older(r, k):
     """Where in the ring the sample is that is k older than the newest."""
-    return (r.count[NEWEST] + POINTS - k) % POINTS
+    return (r.newest + POINTS - k) % POINTS
 
 
 @internal
 def take(r, b):
     """Divided differences of all channels with a new sample: f[t0], f[t0, t1], ... newest first."""
-    n, now, inverse = r.count[SAMPLES], r.sample[r.count[NEWEST]], b.node[3]
-    at = r.sampled[r.count[NEWEST]]
+    n, now, inverse = r.n_samples, r.sample[r.newest], b.node[3]
+    at = r.sampled[r.newest]
     for k in range(1, n):
         inverse[k] = 1.0 / (at - r.sampled[older(r, k)])
     d, before = r.slope, b.bound[0]
@@ -101,9 +98,9 @@ def take(r, b):
 @internal
 def anew(r, b):
     """The divided differences made again, where the newest sample was replaced."""
-    head, known = r.count[NEWEST], r.count[SAMPLES]
+    head, known = r.newest, r.n_samples
     for k in range(known):
-        r.count[NEWEST], r.count[SAMPLES] = (head + POINTS + 1 - known + k) % POINTS, k + 1
+        r.newest, r.n_samples = (head + POINTS + 1 - known + k) % POINTS, k + 1
         take(r, b)
 
 
@@ -160,7 +157,7 @@ def firmness(s):
 def nodes(r, b, ahead):
     """Fill the times of b.node for polynomials between two neighbours; how many there are."""
     times, found = b.node[0], int(b.found[0])
-    n = min(r.count[SAMPLES] + found, POINTS)
+    n = min(r.n_samples + found, POINTS)
     times[0], times[1] = r.sampled[older(r, ahead)], r.sampled[older(r, ahead + 1)]
     for k in range(2, min(2 + found, n)):
         times[k] = b.found[k - 1]
@@ -172,7 +169,7 @@ def nodes(r, b, ahead):
 @internal
 def other(r, ahead, k):
     """Where in the ring the k-th node is, k >= 2: first the sample ahead, then those before."""
-    return r.count[NEWEST] if k == 1 + ahead else older(r, k)
+    return r.newest if k == 1 + ahead else older(r, k)
 
 
 @internal
@@ -256,7 +253,7 @@ def through(r, b, ahead, c, sign):
         differences(b, n)
         doubt(b, n, 1.0)
         return n
-    n, surer = min(r.count[SAMPLES] + found, POINTS), 1.0
+    n, surer = min(r.n_samples + found, POINTS), 1.0
     if ahead == 0 or turns(r, ahead, c) or turns(r, ahead + 1, c):
         surer = TURNED
     if b.laid[0] != found:
@@ -283,7 +280,7 @@ def through(r, b, ahead, c, sign):
 @internal
 def turns(r, k, c):
     """Whether channel c turns back at the sample that is k older than the newest."""
-    if k < 1 or k + 1 >= r.count[SAMPLES]:
+    if k < 1 or k + 1 >= r.n_samples:
         return False
     here = r.sample[older(r, k), c]
     return (here - r.sample[older(r, k - 1), c]) * (here - r.sample[older(r, k + 1), c]) > 0.0

@@ -55,21 +55,18 @@ from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import (
     DECADES,
     END_RATE,
-    ENERGY_0,
     FAR,
     KNOWN,
     LAST,
     LEAST,
     NEXT,
     ON,
-    POINT_ROWS,
     POINT_SECTION,
     POINT_TIME,
     POINT_X,
     POINT_Y,
     RATE,
     SWINGS,
-    WORK_PROJECTION,
 )
 from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
 
@@ -124,9 +121,9 @@ def point(s, r, b, k, t, values):
     x, y = values[s.section[k, X]], values[s.section[k, Y]]
     if t < s.section_at[k, AFTER] or not (isfinite(x) and isfinite(y)):
         return
-    line = b.points[r.count[POINT_ROWS]]
+    line = b.points[r.point_rows]
     line[POINT_TIME], line[POINT_SECTION], line[POINT_X], line[POINT_Y] = t, k, x, y
-    r.count[POINT_ROWS] += 1
+    r.point_rows += 1
 
 
 # --- touches and instants --------------------------------------------------------------------
@@ -160,7 +157,7 @@ def latest(t1):
 @internal
 def strobes(s, r, b, k, interpolate, t, h, t1, projected):
     """The points of a stroboscopic section; a step longer than the buffer is none, see room."""
-    while r.count[POINT_ROWS] < b.points.shape[0]:
+    while r.point_rows < b.points.shape[0]:
         at = instant(s, r, k)
         if at > latest(t1):
             break
@@ -193,7 +190,7 @@ def ends_known(s, r, b, t, t1, last, built, event):
         if crosses_after(s, k, t1):
             asked = event == 0
             lost = lost or r.section[k, KNOWN] == 0.0
-    scratch, done, energy_0 = b.P[0], r.clock[WORK_PROJECTION], r.clock[ENERGY_0]
+    scratch, done, energy_0 = b.P[0], r.work_projection, r.energy_0
     if built > 0:
         scratch = b.K[1]
     if lost:

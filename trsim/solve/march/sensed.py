@@ -67,12 +67,9 @@ from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import (
     BUFFERS,
     FIXED_STEP,
-    LENGTH,
     RECORD,
     STEP_ERROR,
     T_END,
-    UNPROVED,
-    H,
 )
 from trsim.solve.march.spread import fill_net, spread_of, spread_of_stages
 
@@ -174,7 +171,7 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
             L, M = spread_of(s, r, b, kind, s.sensed[k, INSTANCE], 1.0, low, high, h)
             see(s, b, k, L, M, length)
-            depth = max(HIDDEN * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
+            depth = max(HIDDEN * setting[STEP_ERROR] * r.length, ROUNDING * s.size)
             if kind == ANGLE:
                 depth /= s.reach
             seen = b.seen[s.sensed[k, ENTRY]]
@@ -184,7 +181,7 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
             high = 0.5 * (low + high)
             continue
         if found == UNSURE and not hidden and short:
-            r.count[UNPROVED] += 1
+            r.unproved += 1
             if again:
                 return UNCERTAIN
         if found != CLEAR:
@@ -198,7 +195,7 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
         low, high = high, min(1.0, high + step)
         for k in range(s.sensed.shape[0]):
             b.shown[k, 0] = b.shown[k, 1]
-    r.count[UNPROVED] += 1
+    r.unproved += 1
     return UNCERTAIN if again else NONE
 
 
@@ -338,7 +335,7 @@ def ease(s, r, b, t1):
     most = 1.0  # of the velocities, in units of the tolerance
     for c in range(s.n_q, s.n_q + s.n_v):
         most = max(most, abs(r.y[c]) * b.weight[c])
-    h = r.clock[H]
+    h = r.h
     for _ in range(HALVINGS):
         for c in range(r.y.size):
             b.y2[c] = r.y[c] + (h * r.yd[c] if c < s.n_q else 0.0)
@@ -353,8 +350,8 @@ def ease(s, r, b, t1):
             break
         h *= 0.25
     evaluate(s, t1, r.y, r.yd)
-    shorter = h < r.clock[H]
-    r.clock[H] = h
+    shorter = h < r.h
+    r.h = h
     return int(shorter)
 
 
@@ -376,7 +373,7 @@ def chatters(s, r, b, setting, n, t1):
     for k in range(s.sensed.shape[0]):
         own = abs(s.S[s.sensed[k, ENTRY], 1])
         fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
-    allowed = setting[STEP_ERROR] * r.clock[LENGTH]
+    allowed = setting[STEP_ERROR] * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
     if chatter[TIMES] > OFTEN:

@@ -44,7 +44,6 @@ from trsim.solve.march.calls import (
     call_control,
     call_interpolate,
 )
-from trsim.solve.march.record import DEGREE
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
@@ -72,7 +71,7 @@ def fill_net(s, r, b, method):
     """b.net[k] = k-th control points of q over the step, less q at its beginning."""
     degree, net = method[DEGREE_AT], b.net
     n = degree + 1
-    r.count[DEGREE] = degree
+    r.degree = degree
     if method[CONTROL_AT] > 0:
         call_control(method[CONTROL_AT], b.P, net)
         return
@@ -203,7 +202,7 @@ def spread_of(s, r, b, kind, e, sign, low, high, h):
     if kind == CLOCK:
         return 1.0, 0.0
     i, j, length = s.con[e, I], s.con[e, J], (high - low) * h
-    n = r.count[DEGREE] + 1
+    n = r.degree + 1
     first_j = fill_curve(s, b, n, i, 0)
     cut(b.curve, n, fill_curve(s, b, n, j, first_j), low, high)
     spin_i, bend_i = turning(s, r, b, n, i, 0, length)

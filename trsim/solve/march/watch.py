@@ -14,7 +14,7 @@ from trsim.assemble.switches import LIMITS
 from trsim.assemble.travel import CLOCK
 from trsim.kernels.vectors import internal
 from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays
-from trsim.solve.march.record import EVENTS, FIRED, JUST_NOW, SIDE, TIMES
+from trsim.solve.march.record import JUST_NOW, SIDE, TIMES
 from trsim.solve.march.spread import spread_at_stages
 
 BELOW, AT, ABOVE = -1.0, 0.0, 1.0
@@ -156,6 +156,6 @@ def fire(s, r, b, first):
             r.watch[k, TIMES] += 1.0
             r.watch[k, JUST_NOW] = 1.0
             fired += 1
-    r.count[EVENTS] += fired
-    r.count[FIRED] = fired
+    r.events += fired
+    r.fired = fired
     return fired

@@ -23,26 +23,13 @@ from trsim.kernels.vectors import all_finite, clear, internal
 from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import (
-    AFTER_REJECTION,
     AHEAD,
     BEHIND,
-    CONTRACTION,
-    FACTORED_H,
     FRESH,
-    GAIN,
-    HISTORY,
-    ITERATIONS,
-    JACOBIAN,
-    LENGTH,
-    NEWTON_RATE,
-    NEXT_JACOBIAN,
     NO_HISTORY,
     NO_JACOBIAN,
     NO_RATES,
     OLD,
-    OLD_H,
-    PAST_H,
-    SPEED,
     STEP_ERROR,
 )
 from trsim.solve.march.rounding import jitter, noted, to_look
@@ -79,22 +66,22 @@ HALVE = NO_STEP  # Newton failed: take about half the step
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
-    corner = r.count[JACOBIAN] == NO_RATES
+    corner = r.jacobian == NO_RATES
     for attempt in range(3):
-        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.jacobian == OLD):
             jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
-            r.clock[CONTRACTION] = 1.0
-            r.clock[FACTORED_H] = 0.0
+            r.contraction = 1.0
+            r.factored_h = 0.0
         elif attempt > 0:
             return HALVE
-        if r.clock[FACTORED_H] != h and not factorised(s, r, h):
-            r.clock[FACTORED_H] = 0.0
+        if r.factored_h != h and not factorised(s, r, h):
+            r.factored_h = 0.0
             return HALVE
         guess(s, r, b, h)
         converged = newton(s, r, b, t, h)
         if converged > 0:
             break
-        if converged < 0 and r.count[JACOBIAN] == FRESH:
+        if converged < 0 and r.jacobian == FRESH:
             return np.inf
         if corner:  # the step is too long for the new branch, more often than its matrix too old
             return hidden(s, r, b, setting, t, h)
@@ -106,16 +93,16 @@ def step(s, r, b, setting, t, h):
     error = estimate(s, r, b, setting, t, h)
     # a shorter step from the same state, to an event or after a rejection, begins on this one
     collocation(b.K, r.y, b.y1, r.past)
-    r.clock[PAST_H], r.count[HISTORY] = h, AHEAD
+    r.past_h, r.history = h, AHEAD
     # where the state moves on its matrix is good for as long as Newton is quick
-    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    r.next_jacobian = OLD if r.newton_rate < QUICK else NO_JACOBIAN
     return error
 
 
 @internal
 def hidden(s, r, b, setting, t, h):
     """HALVE: Newton failed.  If it is rounding that it could not go below, it is not asked to."""
-    if to_look(r, h) and r.clock[FACTORED_H] == h:
+    if to_look(r, h) and r.factored_h == h:
         jitter(s, r, b, setting, t, b.K[F], b.K[F + 1])
         corrected(s, r, b.K[F], b.K[DW], GAMMA / h)
         noted(s, r, setting, b.K[F], h)
@@ -127,7 +114,7 @@ def factorised(s, r, h):
     """Factors of mu - by_rate - by_place / mu for the real and the complex mu."""
     n = active(s)
     if n == 0:
-        r.clock[FACTORED_H] = h
+        r.factored_h = h
         return True
     real, re, im = r.lu[:n], r.lu[n : 2 * n], r.lu[2 * n :]
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
@@ -146,7 +133,7 @@ def factorised(s, r, h):
         return False
     if not factorise_complex(re, im, r.pivot[1], n):
         return False
-    r.clock[FACTORED_H] = h
+    r.factored_h = h
     return True
 
 
@@ -155,10 +142,10 @@ def guess(s, r, b, h):
     """Start Newton from the polynomial of the step before, drawn on, or from that of a longer
     trial of this one; W = T^-1 Z."""
     K, n = b.K, r.y.size
-    if r.count[HISTORY] != NO_HISTORY:
-        ahead = 1.0 if r.count[HISTORY] == AHEAD else 0.0
+    if r.history != NO_HISTORY:
+        ahead = 1.0 if r.history == AHEAD else 0.0
         for i in range(3):
-            theta = C[i] * h / r.clock[PAST_H] - ahead
+            theta = C[i] * h / r.past_h - ahead
             for c in range(n):
                 K[Z + i, c] = ahead * r.past[3, c] + polynomial(r.past, c, theta)
     else:
@@ -181,10 +168,10 @@ def newton(s, r, b, t, h):
     counted, floor = resolution(r, weight, h)
     kappa, before = max(KAPPA, floor), 0.0
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
-    expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8
-    r.clock[CONTRACTION] = expected
+    expected = max(r.contraction, SHARPEST) ** 0.8
+    r.contraction = expected
     for iteration in range(MOST_ITERATIONS):
-        r.count[ITERATIONS] += 1
+        r.iterations += 1
         for i in range(3):
             for k in range(n):
                 b.y1[k] = r.y[k] + K[Z + i, k]
@@ -215,12 +202,12 @@ def newton(s, r, b, t, h):
             return -1
         verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
         if iteration > 0:
-            r.clock[CONTRACTION] = rate
+            r.contraction = rate
         elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
             return 1
         if verdict == FAILS:
             return 0
-        r.clock[NEWTON_RATE] = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
+        r.newton_rate = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
         if verdict != GOES_ON:
             return 1
         before = moved
@@ -282,7 +269,7 @@ def estimate(s, r, b, setting, t, h):
     corrected(s, r, e, K[DW], GAMMA / h)
     booked = of_works(s, r, b, setting, h)
     error = norm(e, weight)
-    if error >= 1.0 and (r.count[HISTORY] != BEHIND or r.count[AFTER_REJECTION] > 0):
+    if error >= 1.0 and (r.history != BEHIND or r.after_rejection > 0):
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
@@ -304,17 +291,17 @@ def of_accelerations(s, r, b, setting, h):
     it: there what was filtered counts as well.
     """
     K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
-    r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
+    r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
     for c in range(s.n_q + s.n_v):
         K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]
         K[F + 2, c] = TURNED[0] * K[Z, c] + TURNED[1] * K[Z + 1, c] + TURNED[2] * K[Z + 2, c]
         if c >= s.n_q:  # at the end of the step
             rate = LEAVING[0] * K[Z, c] + LEAVING[1] * K[Z + 1, c] + LEAVING[2] * K[Z + 2, c]
             most = max(most, s.scale[c] * abs(rate) / h)
-    length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
+    length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     off = bent = 0.0
-    moved, begins = 1e-300, r.count[HISTORY] != BEHIND and r.clock[OLD_H] == 0.0
+    moved, begins = 1e-300, r.history != BEHIND and r.old_h == 0.0
     for _ in range(1, s.n_r):
         x = w = placed = turned = bare = 0.0
         for c in range(q, q + of_q):

@@ -21,16 +21,8 @@ from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import DENSE
 from trsim.solve.march.record import (
-    AFTER_REJECTION,
-    HISTORY,
-    ITERATIONS,
-    JACOBIAN,
-    NEWTON_RATE,
-    NEXT_JACOBIAN,
     NO_JACOBIAN,
     OLD,
-    PAST_ERROR,
-    PAST_H,
     STEP_ERROR,
 )
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
@@ -88,7 +80,7 @@ STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, A1, f8, f8)
 def step(s, r, b, setting, t, h):
     stabilised = True
     for attempt in range(3):
-        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.jacobian == OLD):
             sparse_jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
         elif not stabilised:
             return HALVE
@@ -113,7 +105,7 @@ def step(s, r, b, setting, t, h):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
     error = estimate(s, r, b, setting, t, h)
     quick = QUICK if b.made[TURNS] > 0.0 else QUICK_FIXED
-    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < quick else NO_JACOBIAN
+    r.next_jacobian = OLD if r.newton_rate < quick else NO_JACOBIAN
     return error
 
 
@@ -148,8 +140,8 @@ def work_of_drives(s, r, b, t, h):
 def guess_multipliers(s, r, b, t, h):
     """lam of the stages from the parabola of the step before, or as it is now; mu = 0."""
     K = b.K
-    if r.count[HISTORY] > 0:
-        ratio = h / r.clock[PAST_H]
+    if r.history > 0:
+        ratio = h / r.past_h
         for i in range(3):
             theta = 1.0 + C[i] * ratio
             for k in range(s.m):
@@ -182,12 +174,12 @@ def newton(s, r, b, setting, t, h, stabilised):
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
     # errors as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is
     # small
-    made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
+    made = r.past_error if r.past_error > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
     wanted = max(min(KAPPA, sqrt(setting[STEP_ERROR])) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
-        r.count[ITERATIONS] += 1
+        r.iterations += 1
         if stabilised:
             sound = residuals(s, r, b, t, h)
         else:
@@ -209,7 +201,7 @@ def newton(s, r, b, setting, t, h, stabilised):
             return 1
         if iteration > 0:
             rate = moved / before if before > 0.0 else 0.0
-            r.clock[NEWTON_RATE] = rate
+            r.newton_rate = rate
             left = MOST_ITERATIONS - 1 - iteration
             less = moved / (1.0 - rate) if rate < 1.0 else moved  # times rate: what is left
             if rate < 1.0 and less * rate < wanted:
@@ -241,7 +233,7 @@ def estimate(s, r, b, setting, t, h):
         error = norm(e, weight)
         if turn == 0:
             booked = of_works(s, r, b, setting, h)
-        if turn > 0 or error < 1.0 or (r.count[HISTORY] > 0 and r.count[AFTER_REJECTION] == 0):
+        if turn > 0 or error < 1.0 or (r.history > 0 and r.after_rejection == 0):
             break
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]

@@ -108,13 +108,13 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     )
     clock0 = time.process_time()
     begin(s, r, b, setting)
-    r.clock[rec.H] = first_step(scenario, r)
+    r.h = first_step(scenario, r)
     status: Ended = "done"
     reason = ""
     limit, crawled = scenario.solver.max_steps or 2**62, 0
     finer = 1.0
     solver = restarted(scenario, s, r, b, setting, finer)
-    while r.clock[rec.T] < setting[rec.T_END]:
+    while r.t < setting[rec.T_END]:
         reason = stopped(solver)
         if reason:
             status = "failed"
@@ -124,7 +124,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         before = finer
         finer = min(of_accelerations(scenario, s, r, b, setting, h, before), EASED * before)
         if finer < TOO_LONG * before:
-            r.clock[rec.H] = 0.3 * h
+            r.h = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer)
             continue
         outcome = complete(s, r, b, setting, method, h, 1)
@@ -132,8 +132,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             status, reason = "failed", "a value is not finite"
             break
         if outcome in (STRAYED, WOUND):
-            r.clock[rec.H] = 0.3 * h
-            solver = restarted(scenario, s, r, b, setting, finer, float(r.clock[rec.H]))
+            r.h = 0.3 * h
+            solver = restarted(scenario, s, r, b, setting, finer, float(r.h))
             continue
         if untrue(scenario, mechanism, r):
             status = "failed"
@@ -144,20 +144,20 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             status = "failed"
             break
         changed = s
-        if r.count[rec.WEAK]:
+        if r.weak:
             s = anew(mechanism, s, r, b, setting)
         if outcome == SMOOTH_STEP and s is changed:
             nudge(solver, r)
-            r.clock[rec.H] = h
-            if r.clock[rec.MOST] > 0.0:
+            r.h = h
+            if r.speed_cap > 0.0:
                 solver.atol = allowed(scenario, s, r, b, setting, finer)
             solver.atol[books(s)] = unit_of_works(r, setting)
-        elif r.clock[rec.T] < setting[rec.T_END]:
+        elif r.t < setting[rec.T_END]:
             solver = restarted(scenario, s, r, b, setting, finer)
-        if r.count[rec.STEPS] >= limit and r.clock[rec.T] < setting[rec.T_END]:
+        if r.steps >= limit and r.t < setting[rec.T_END]:
             status, reason = "failed", f"more than {limit} steps"
             break
-        if crowded(r, b) or r.count[rec.STEPS] % 2000 == 0:
+        if crowded(r, b) or r.steps % 2000 == 0:
             yield emptied(r, b)
     yield emptied(r, b)
     cpu = time.process_time() - clock0
@@ -166,8 +166,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         at = mechanism.in_stage(r.stage, r.left_out)
         reason = untrue(scenario, mechanism, r) or why(scenario, at, r) or reason
     bends = Bends(mechanism)
-    bends.look(float(r.clock[rec.T]), r.y)
-    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak.T.copy(), r, begun,
+    bends.look(float(r.t), r.y)
+    return Outcome(status, reason, float(r.t), numbers, r.peak.T.copy(), r, begun,
                    bent=bends.states)  # fmt: skip
 
 
@@ -210,9 +210,9 @@ def restarted(
     method = scenario.solver.method
     make = getattr(scipy.integrate, method.split(":", 1)[1])
     more = {} if METHODS[method].explicit else {"jac": jacobian}
-    t = float(r.clock[rec.T])
+    t = float(r.t)
     until = next_time(s, t, setting[rec.T_END])
-    first = min(float(r.clock[rec.H]), until - t)
+    first = min(float(r.h), until - t)
     longest = min(most, setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
     return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
                 max_step=longest, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
@@ -221,7 +221,7 @@ def restarted(
 def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
     """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
     weigh(s, r, b, setting)
-    outside = 1e6 * setting[rec.STEP_ERROR] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    outside = 1e6 * setting[rec.STEP_ERROR] * max(r.largest_energy, 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
     absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
     absolute[books(s)] = unit_of_works(r, setting)
@@ -240,8 +240,8 @@ def of_accelerations(
     if not held.python(s):
         return 1.0
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
-    length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
-    r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
+    length, speed = float(r.length), float(r.speed)
+    r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
     weight = b.weight * setting[rec.STEP_ERROR]
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
     third = THIRD @ b.P[:, rates] * weight[rates]
@@ -263,8 +263,8 @@ def books(s: Scene) -> slice:
 
 def unit_of_works(r: Record, setting: Array) -> float:
     """The error allowed to a work, J; see works.py."""
-    allowed = setting[rec.STEP_ERROR] * r.clock[rec.EXCHANGED]
-    return max(float(allowed), ROUNDING * float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
+    allowed = setting[rec.STEP_ERROR] * r.exchanged
+    return max(float(allowed), ROUNDING * float(r.largest_energy), 1e-300)
 
 
 def hand_over(solver: Any, b: Buffers) -> None:
