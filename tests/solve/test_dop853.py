@@ -14,6 +14,7 @@ from trsim.solve.march import record as rec
 from trsim.solve.march.accelerations import share
 from trsim.solve.march.calls import FIELDS, INTERPOLATE_AT, SAMPLE_AT, method_row
 from trsim.solve.march.norm import weights
+from trsim.solve.march.record import SETTINGS
 from trsim.solve.methods import dop853
 from trsim.solve.outcome import settings
 
@@ -36,7 +37,7 @@ def stage(K, y, h, s, out):
     dop853.stage(K, y, h, s, out)
 
 
-@compiled(types.void(SCENE, rec.RECORD, rec.BUFFERS, A1, f8))
+@compiled(types.void(SCENE, rec.RECORD, rec.BUFFERS, SETTINGS, f8))
 def weigh(s, r, b, setting, h):
     weights(s, r, b, setting, h)
 
@@ -90,6 +91,6 @@ def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z,
     b.K[0] = r.yd
     estimate = dop853.step(s, r, b, setting, 0.0, h)
     missed = RATE * abs(b.y1[s.n_q + 1] - v * exp(-z))
-    allowed = setting[rec.TOLERANCE] * SLOW * share.python(setting, h)
+    allowed = setting.tolerance * SLOW * share.python(setting, h)
     assert missed > 10.0 * allowed  # so it must be refused
     assert estimate > 0.2 * missed / allowed

@@ -9,11 +9,11 @@ import pytest
 from trsim.assemble.equations import derivative
 from trsim.elements.contract import BRANCH, CONTACT, PHASE, SCENE, WHOLE, compiled
 from trsim.elements.scene import scene
-from trsim.kernels.packed import A1
 from trsim.kernels.signatures import void
 from trsim.scenario.load import load
 from trsim.solve.march import record as rec
 from trsim.solve.march.norm import weights
+from trsim.solve.march.record import SETTINGS
 from trsim.solve.methods import radau
 from trsim.solve.outcome import settings
 
@@ -26,7 +26,7 @@ AT = 1e-6  # m/s: so near to a corner, whose speeds are 1e-4 and 1e-3
 SHORT = 1e-9  # s: a step that Newton's method cannot fail
 
 
-@compiled(void(SCENE, rec.RECORD, rec.BUFFERS, A1))
+@compiled(void(SCENE, rec.RECORD, rec.BUFFERS, SETTINGS))
 def weighed(s, r, b, setting):
     """The weights of the error norm at the state of the record."""
     weights(s, r, b, setting, r.h)

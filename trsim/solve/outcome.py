@@ -17,7 +17,7 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
 from trsim.solve.march.openings import held_to, look, may_open, opened
-from trsim.solve.march.record import Record
+from trsim.solve.march.record import Record, Settings
 from trsim.solve.march.works import LEAST, N_WORKED
 from trsim.solve.start.consistent import Start
 from trsim.statuses import Ended
@@ -81,7 +81,7 @@ def fastest_feedback(model: Any) -> float:
     return alpha + sqrt(alpha**2 - beta**2) if alpha > beta else beta
 
 
-def settings(scenario: Any, mechanism: Mechanism) -> Array:
+def settings(scenario: Any, mechanism: Mechanism) -> Settings:
     """The constants of the march.
 
     The error of a run grows like tolerance^0.75..0.88 where each step keeps to the tolerance.  So
@@ -94,36 +94,39 @@ def settings(scenario: Any, mechanism: Mechanism) -> Array:
         raise ScenarioError(
             "a run needs `solver: {end: ...}`", "for example `end: 1 s`", ("solver", "end")
         )
-    s = np.zeros(rec.N_SETTINGS)
-    s[rec.T_END] = solver.end
-    s[rec.TOLERANCE] = solver.tolerance
-    s[rec.STEP_ERROR] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
-    s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
-    s[rec.H_MAX] = solver.max_step or solver.end or 1.0
+    every = output.every or solver.end / 1000.0 or 1.0
+    longest = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:
         # what is smooth and short between two stages of a long step would not be seen at all
-        s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
+        longest = min(longest, max(solver.end / LOOKS, 1e-300), LOOK_ROWS * every)
     if solver.stabilisation == "baumgarte" and method.explicit and method.adaptive:
-        s[rec.H_MAX] = min(s[rec.H_MAX], FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
-    s[rec.FIXED_STEP] = 0.0 if method.adaptive else solver.step
+        longest = min(longest, FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
+    fixed = 0.0 if method.adaptive else solver.step
     see_steps(solver, "max_step" if method.adaptive else "step")
-    if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
+    if fixed > MOST_ROWS * every:
         raise ScenarioError(
             f"a step of {solver.step:g} s spans more than {MOST_ROWS} output rows",
             "make `output: {every: ...}` longer or the step shorter",
             ("output", "every"),
         )
-    if s[rec.EVERY] < 1e-9 * solver.end:
+    if every < 1e-9 * solver.end:
         raise ScenarioError(
-            f"{solver.end / s[rec.EVERY]:.0e} output rows",
+            f"{solver.end / every:.0e} output rows",
             "`every` is the time between two rows; at most 1e9 rows are written",
             ("output", "every"),
         )
-    s[rec.MISSED] = MISSED * solver.tolerance
-    s[rec.HELD_TO] = held_to(solver.tolerance)
-    s[rec.CHOOSES] = float(method.chooses)
-    s[rec.LOCATE] = float(solver.locates and len(mechanism.model.contact) > 0)
-    return s
+    return Settings(
+        t_end=solver.end,
+        step_error=SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION,
+        h_max=longest,
+        every=every,
+        fixed_step=fixed,
+        locate=int(solver.locates and len(mechanism.model.contact) > 0),
+        chooses=int(method.chooses),
+        missed=MISSED * solver.tolerance,
+        held_to=held_to(solver.tolerance),
+        tolerance=solver.tolerance,
+    )
 
 
 def see_steps(solver: Any, key: str) -> None:
@@ -137,7 +140,7 @@ def see_steps(solver: Any, key: str) -> None:
         )
 
 
-def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
+def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
     """The addresses of what only some runs need, by its field of a row of methods (calls.py).
 
     What a run does not need is not compiled.
@@ -157,7 +160,7 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
         found["look"] = look_at_drift.address()
     elif may_open(mechanism):
         found["look"] = look.address()
-    if setting[rec.LOCATE] > 0.0 or len(model.watch):
+    if setting.locate > 0 or len(model.watch):
         from trsim.solve.march.search import search
 
         found["search"] = search.address()
@@ -170,13 +173,13 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
     return found
 
 
-def most_points(mechanism: Mechanism, setting: Array) -> int:
+def most_points(mechanism: Mechanism, setting: Settings) -> int:
     """How many points of sections one step may add; a step spans a buffer of rows at most.
 
     Raises ScenarioError where that is no buffer any more.
     """
-    spanned = FEWEST_ROWS + setting[rec.FIXED_STEP] / setting[rec.EVERY]
-    longest = min(setting[rec.T_END], spanned * setting[rec.EVERY])
+    spanned = FEWEST_ROWS + setting.fixed_step / setting.every
+    longest = min(setting.t_end, spanned * setting.every)
     most = 0
     for section in mechanism.sections:
         own = longest / section.every + 2.0 if section.every else CROSSINGS

@@ -23,7 +23,7 @@ from trsim.solve.march.calls import FIELDS
 from trsim.solve.march.checkpoint import State, begun_at, put_back, state
 from trsim.solve.march.features import put_back as put_back_held
 from trsim.solve.march.loop import begin, march, method_table
-from trsim.solve.march.record import Record, fresh_buffers
+from trsim.solve.march.record import Record, Settings, fresh_buffers
 from trsim.solve.outcome import (
     CRAWLS,
     Block,
@@ -123,15 +123,15 @@ def compiled(
 ) -> Generator[Block, None, Outcome]:
     """The march of march.py with a compiled method, or an explicit and an implicit one."""
     setting = settings(scenario, mechanism)
-    located = setting[rec.LOCATE] > 0.0
+    located = setting.locate > 0
     if checkpoint:
         begun = begun_at(checkpoint, mechanism, scene(mechanism.model))
     else:
         begun = start(scenario, mechanism, located)
     work, left_out = begun_with(mechanism, begun)
     width = int(np.max(work.contact_width, initial=0))
-    spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
-    if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
+    spanned = int(np.ceil(setting.fixed_step / setting.every))
+    if setting.fixed_step > 0.0 and not scenario.solver.force and not checkpoint:
         from trsim.solve.diagnose.scales import scales
 
         check_step(scenario, scales(scenario, mechanism, begun))
@@ -206,7 +206,7 @@ def compiled(
 
 
 def ending(
-    reason: int, limit: int, setting: Array, scenario: Any, mechanism: Mechanism, work: Scene,
+    reason: int, limit: int, setting: Settings, scenario: Any, mechanism: Mechanism, work: Scene,
     r: Record,
 ) -> tuple[Ended, str]:  # fmt: skip
     """Status and reason of a run that no event ended."""
@@ -215,7 +215,7 @@ def ending(
         return ("failed", text) if text else ("done", "")
     if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT):
         return "failed", untrue(scenario, mechanism, r)
-    if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
+    if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting.fixed_step > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:
         reason = CONTRADICTORY

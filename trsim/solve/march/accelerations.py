@@ -20,10 +20,6 @@ stiff, of places and rates.
 from math import sqrt
 
 from trsim.kernels.vectors import internal
-from trsim.solve.march.record import (
-    T_END,
-    TOLERANCE,
-)
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
 ROUNDED = 5e-16  # of the mechanism's size, and of speeds: what places and rates are rounded to
@@ -76,7 +72,7 @@ def in_units(s, r, setting, h, off, most, mean, times):
     well.
     """
     most = max(most, sqrt(mean) * r.speed / FURTHEST)
-    allowed = times * setting[TOLERANCE] * most
+    allowed = times * setting.tolerance * most
     error = off / allowed if allowed > 0.0 else 0.0
     return error if error <= 1.0 else off / max(allowed, rounded(s, r, sqrt(mean) * h))
 
@@ -85,7 +81,7 @@ def in_units(s, r, setting, h, off, most, mean, times):
 def share(setting, h):
     """What a step h may be off by, times the tolerance: of a vibration errors add up, step by step,
     to RUN of a run of many; not less than ONE in a step."""
-    return max(ONE, min(ALLOWED, RUN * h / setting[T_END]))
+    return max(ONE, min(ALLOWED, RUN * h / setting.t_end))
 
 
 @internal
@@ -94,14 +90,14 @@ def doubted(s, r, setting, h, off, most, w):
 
     w: rad/s, how fast what the error consists of turns, 0 where it is not known.
     """
-    if off > ALLOWED * setting[TOLERANCE] * most and off > rounded(s, r, w * h):
+    if off > ALLOWED * setting.tolerance * most and off > rounded(s, r, w * h):
         r.blur, r.blur_w = off, w
 
 
 @internal
 def exceeded(r, setting, h, off, most):
     """Note what accelerations are off by where it is more than their share, rounding or not."""
-    if off > share(setting, h) * setting[TOLERANCE] * most:
+    if off > share(setting, h) * setting.tolerance * most:
         r.excess = off
 
 

@@ -18,7 +18,7 @@ from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.phases import settle
-from trsim.solve.march.record import Buffers, Record
+from trsim.solve.march.record import Buffers, Record, Settings
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -35,7 +35,7 @@ class Acted(NamedTuple):
     ended: tuple[Ended, str] | None  # status and reason, where the run ends here
 
 
-def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> Acted:
+def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -> Acted:
     """Do what the events at the end of the last step say, in the order of the file.
 
     Leaves a line for each among the events; the channels are those before anything changed.
@@ -88,7 +88,7 @@ def told(event: UserEvent, error: ModelError) -> str:
 
 
 def turned(
-    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array, event: UserEvent
+    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings, event: UserEvent
 ) -> tuple[Scene, float]:
     """The scene of the stage an event leads to, with the record brought to it; the work done, J.
 

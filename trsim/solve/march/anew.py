@@ -11,7 +11,6 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import close_positions, project_positions, project_velocities
 from trsim.elements.scene import Model, Scene, carried, scene
 from trsim.errors import FileError
-from trsim.solve.march import record as rec
 from trsim.solve.march.checkpoint import ANEW, UNFIT
 from trsim.solve.march.openings import FEEBLE
 from trsim.solve.march.phases import settle
@@ -91,7 +90,7 @@ def anew(
 def stuck(r: Record, setting: Any) -> bool:
     """Whether rows come to depend on each other wherever a run goes: it would not reach its end."""
     t = float(r.t)
-    soon = t - r.chosen_t < NO_TIME * setting[rec.T_END]
+    soon = t - r.chosen_t < NO_TIME * setting.t_end
     r.chosen, r.chosen_t = r.chosen + 1 if soon else 1, t
     return bool(r.chosen > MANY)
 

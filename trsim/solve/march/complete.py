@@ -10,7 +10,7 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.packed import I1, f8, i8
 from trsim.kernels.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.march.accelerations import held
 from trsim.solve.march.calls import (
@@ -46,16 +46,7 @@ from trsim.solve.march.output_rows import at_end, due, rows_until
 from trsim.solve.march.passes import call_passes
 from trsim.solve.march.peaks import call_finish, call_sample
 from trsim.solve.march.phases import change_phases, latch
-from trsim.solve.march.record import (
-    BEHIND,
-    BUFFERS,
-    EVERY,
-    FIXED_STEP,
-    LOCATE,
-    RECORD,
-    STEP_ERROR,
-    T_END,
-)
+from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.march.turns import too_far
@@ -84,7 +75,7 @@ SETTLED = 100.0  # times these: what rounding of a step and of the time may leav
 SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
 
 #                       scene   record  buffers  settings method h built
-COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+COMPLETE = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, i8)
 call_complete = caller(COMPLETE)
 
 
@@ -144,8 +135,8 @@ def complete(s, r, b, setting, method, h, built):
     b.firm[1] = firmness(s)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
-    inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.next_row, t1)
-    unseen = not inside and t1 - t > LONG * setting[T_END]
+    inside = due(r, setting, t1) and not at_end(setting.every * r.next_row, t1)
+    unseen = not inside and t1 - t > LONG * setting.t_end
     if built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
         build(s, r, b, method, t, h)
         built = 1
@@ -183,7 +174,7 @@ def complete(s, r, b, setting, method, h, built):
             copy_to(r.past[k], b.P[k])
         r.past_h, r.history = h, BEHIND
         r.jacobian = r.next_jacobian
-    if setting[LOCATE] == 0.0:
+    if setting.locate == 0:
         latch(s, r)
     outcome = SMOOTH_STEP
     if event:
@@ -202,18 +193,18 @@ def complete(s, r, b, setting, method, h, built):
 def strayed(s, r, setting, h):
     """Whether a smooth prescribed motion went on between the stages of a step as none of them saw:
     its end is far from the constraints."""
-    if setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
+    if setting.fixed_step > 0.0 or h <= BRIEF * setting.t_end:
         return False
-    far = FAR * setting[STEP_ERROR]
+    far = FAR * setting.step_error
     return r.off > far * s.size or r.off_rate > far * max(
-        r.speed, r.speed_cap, s.size / setting[T_END]
+        r.speed, r.speed_cap, s.size / setting.t_end
     )
 
 
 @internal
 def loose(s, r, b, setting, method, t, h):
     """Whether accelerations inside the step are not right, though those at its end are."""
-    if method[INSIDE_AT] == 0 or setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
+    if method[INSIDE_AT] == 0 or setting.fixed_step > 0.0 or h <= BRIEF * setting.t_end:
         return False
     return held(s) and call_step(method[INSIDE_AT], s, r, b, setting, t, h) > 1.0
 
@@ -222,16 +213,16 @@ def loose(s, r, b, setting, method, t, h):
 def leaked(s, r, b, setting, h, t1, projected):
     """Whether energy went astray in a step past a place where branches of the motion meet, or the
     projection took or gave much of it, as from one branch to the other."""
-    if setting[FIXED_STEP] > 0.0:
+    if setting.fixed_step > 0.0:
         return False
     before, after = kinetic(s, r.y), kinetic(s, b.y1)
-    if h > BRIEF * setting[T_END] and abs(projected) > THROWN * max(before, after):
+    if h > BRIEF * setting.t_end and abs(projected) > THROWN * max(before, after):
         return True
     measure(s, t1, b.y1, r.work_projection + projected, r.energy_0)
     lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
-    return lost > LEAK * max(setting[STEP_ERROR], OF_LIMITS) * max(before, after)
+    return lost > LEAK * max(setting.step_error, OF_LIMITS) * max(before, after)
 
 
 @internal
@@ -261,8 +252,8 @@ def sooner(b, corner, event):
 @internal
 def reached(setting, t):
     """t, or the end of the run where no step would be left before it."""
-    left = setting[T_END] - t
-    return t if left > 2.0 * SMALLEST * 2.2e-16 * setting[T_END] else setting[T_END]
+    left = setting.t_end - t
+    return t if left > 2.0 * SMALLEST * 2.2e-16 * setting.t_end else setting.t_end
 
 
 @internal
@@ -287,12 +278,12 @@ def exact(s, r, b, setting, method, t, h, theta):
         if b.root[c] <= theta:
             gap_of = c
     h1, before = theta * h, 1e300
-    close = max(PRECISE * setting[STEP_ERROR] * r.length, ROUNDING * s.size)
+    close = max(PRECISE * setting.step_error * r.length, ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0, 0.0, 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
-        if setting[FIXED_STEP] == 0.0 and not error <= 1.0:
+        if setting.fixed_step == 0.0 and not error <= 1.0:
             return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
@@ -311,7 +302,7 @@ def exact(s, r, b, setting, method, t, h, theta):
         if rate == 0.0 or not abs(gap) < NEARER * before:
             return (h1, 0.0, projected) if abs(gap) <= SETTLED * close else (0.0, 0.0, 0.0)
         late, before = gap / rate, abs(gap)
-        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[STEP_ERROR]) * h1
+        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting.step_error) * h1
         if near and gap_of < s.contact.size:
             move_end(b, last, late)
             projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])
@@ -325,11 +316,11 @@ def exact(s, r, b, setting, method, t, h, theta):
 @internal
 def last_of_its_kind(s, r, setting, method, t, t1):
     """Whether what follows on this step has other equations, or nothing follows."""
-    if t1 >= setting[T_END] or r.weak > 0:
+    if t1 >= setting.t_end or r.weak > 0:
         return True
-    if setting[LOCATE] == 0.0 and s.contact.size > 0:  # `latch` changes them in any step
+    if setting.locate == 0 and s.contact.size > 0:  # `latch` changes them in any step
         return True
-    return method[MEET_AT] > 0 and t1 >= next_instant(s, t, setting[T_END])
+    return method[MEET_AT] > 0 and t1 >= next_instant(s, t, setting.t_end)
 
 
 @internal

@@ -22,7 +22,6 @@ from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.corners import any_left, corner_root
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.record import STEP_ERROR
 from trsim.solve.march.spread import spread, spread_at_stages
 
 NONE = 2.0  # a root beyond the step
@@ -119,7 +118,7 @@ def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_h
 @internal
 def hides(s, r, setting, c, M, length):
     """Whether a part of a step is so short that what it may hide does not count."""
-    depth = max(HIDDEN * setting[STEP_ERROR] * r.length, ROUNDING * s.size)
+    depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
     if s.travel[c, 0] == ANGLE:
         depth /= s.reach
     return M >= 0.0 and 0.125 * M * length**2 < depth

@@ -8,15 +8,7 @@ longer than the time to the next.
 from math import nan
 
 from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
-from trsim.assemble.features import (
-    BEHIND,
-    DRIVE,
-    FIRST,
-    PISTON,
-    RATE_JUMP,
-    call_hold,
-    passed,
-)
+from trsim.assemble.features import BEHIND, DRIVE, FIRST, PISTON, RATE_JUMP, call_hold, passed
 from trsim.assemble.outputs import measure
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.elements.contract import FIRST_ROW, SCENE, SINCE, compiled

@@ -9,7 +9,7 @@ from math import isfinite
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
-from trsim.kernels.packed import A1, I2, i8
+from trsim.kernels.packed import I2, i8
 from trsim.kernels.vectors import clear_table, copy_to, internal
 from trsim.solve.march.accelerations import blurred
 from trsim.solve.march.calls import (
@@ -50,11 +50,8 @@ from trsim.solve.march.record import (
     CRAWLED_MOST,
     CRAWLING,
     DONE,
-    EVERY,
     FASTEST,
-    FIXED_STEP,
     FULL,
-    H_MAX,
     LEAPT,
     LOAD,
     NOT_FINITE,
@@ -64,9 +61,8 @@ from trsim.solve.march.record import (
     PEAK_MAX,
     PEAK_MIN,
     RECORD,
-    STEP_ERROR,
+    SETTINGS,
     STEP_TOO_SMALL,
-    T_END,
     TOO_FAST,
     WINDS,
 )
@@ -127,7 +123,7 @@ def method_table(method, **called):
     )
 
 
-@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
+@compiled(types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I2, i8))
 def march(s, r, b, setting, methods, most):
     """Advance the record until it is done, a buffer is full, or `most` steps were accepted, or
     twice as many tried.
@@ -138,7 +134,7 @@ def march(s, r, b, setting, methods, most):
     ADRIFT, CRAWL, LEAPT or WINDS.
     """
     accepted = tried = 0
-    while r.t < setting[T_END]:
+    while r.t < setting.t_end:
         if full(s, r, b):
             return FULL
         if accepted >= most or tried >= 2 * most:
@@ -150,7 +146,7 @@ def march(s, r, b, setting, methods, most):
         if method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
             call_look_stiff(method[STIFF_AT], s, r, b)
         h = next_step(s, r, b, setting, method)
-        if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
+        if h < SMALLEST * 2.2e-16 * max(abs(t), setting.t_end * 1e-3):
             return NOT_FINITE if r.after_rejection == 2 else STEP_TOO_SMALL
         if crawls(r, setting, h):
             return CRAWL
@@ -163,29 +159,29 @@ def march(s, r, b, setting, methods, most):
         r.blur = r.excess = 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
-            error *= min(1.0, setting[STEP_ERROR] / OF_LIMITS)
+            error *= min(1.0, setting.step_error / OF_LIMITS)
         if not (error <= 1.0):
             r.rejected += 1
             if error < NO_STEP and to_look(r, h):
                 call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             r.after_rejection = 1 if isfinite(error) else 2
-            if setting[FIXED_STEP] > 0.0:
+            if setting.fixed_step > 0.0:
                 return NOT_FINITE
             shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
             r.h = h * (shorter if isfinite(error) else 0.1)
             continue
-        if setting[FIXED_STEP] == 0.0 and overdue(r, h):
+        if setting.fixed_step == 0.0 and overdue(r, h):
             call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             continue
         outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
         if outcome == WORTHLESS:
-            if setting[FIXED_STEP] > 0.0:
+            if setting.fixed_step > 0.0:
                 return NOT_FINITE
             r.rejected += 1
             r.after_rejection = 2
             r.h = 0.1 * h
             continue
-        if outcome == WOUND and setting[FIXED_STEP] > 0.0:
+        if outcome == WOUND and setting.fixed_step > 0.0:
             return WINDS
         if outcome in (STRAYED, WOUND, LOOSE):
             r.rejected += 1
@@ -223,7 +219,7 @@ def march(s, r, b, setting, methods, most):
 @internal
 def crawls(r, setting, h):
     """Whether step after step is so short that 10^11 of them would be needed."""
-    short = setting[FIXED_STEP] == 0.0 and h < CRAWLING * setting[T_END]
+    short = setting.fixed_step == 0.0 and h < CRAWLING * setting.t_end
     r.crawled = r.crawled + 1 if short else 0
     return r.crawled > CRAWLED_MOST
 
@@ -257,10 +253,10 @@ def next_step(s, r, b, setting, method):
     It never spans more output times than the buffer has room for, and ends where the time meets a
     corner of a function.  Of an explicit method it stays where what is stiff dies out.
     """
-    left = next_instant(s, r.t, setting[T_END]) - r.t
-    most = min(setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
-    if setting[FIXED_STEP] > 0.0:
-        return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
+    left = next_instant(s, r.t, setting.t_end) - r.t
+    most = min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
+    if setting.fixed_step > 0.0:
+        return left if left < setting.fixed_step * (1.0 + 1e-9) else setting.fixed_step
     if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
         most = min(most, longest_turn(s, r))
     if method[STIFF_AT] > 0 and r.vibration > 0.0 and smooth(s, r):
@@ -274,7 +270,7 @@ def next_step(s, r, b, setting, method):
 @internal
 def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
-    if setting[FIXED_STEP] > 0.0:
+    if setting.fixed_step > 0.0:
         return
     power, error = 1.0 / method[ESTIMATE_AT], max(error, 1e-8)
     factor = min(LONGER, max(0.3, AIM * error**-power))
@@ -308,12 +304,12 @@ def shorten(r, setting, h):
     the step's beginning.  Both branches could then send the motion back to the other for ever; in
     a step that resolves it one of them does not.
     """
-    shortest = 100.0 * SMALLEST * 2.2e-16 * setting[T_END]
-    if setting[FIXED_STEP] == 0.0:
+    shortest = 100.0 * SMALLEST * 2.2e-16 * setting.t_end
+    if setting.fixed_step == 0.0:
         r.h = min(r.h, max(SHORTEN * h, shortest))
 
 
-@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+@compiled(types.void(SCENE, RECORD, BUFFERS, SETTINGS))
 def begin(s, r, b, setting):
     """First row, energy and gaps of a record whose y and mem were just set."""
     evaluate_all(s, r, setting, 0.0)

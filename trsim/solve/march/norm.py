@@ -18,9 +18,8 @@ from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.kernels import signatures as types
-from trsim.kernels.packed import A1
 from trsim.kernels.vectors import internal
-from trsim.solve.march.record import BUFFERS, RECORD, STEP_ERROR
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 
 
 @internal
@@ -32,7 +31,7 @@ def weights(s, r, b, setting, h):
     """
     if r.top_speed < r.speed_cap:
         follow(s, r, h)
-    length, tolerance = r.length, setting[STEP_ERROR]
+    length, tolerance = r.length, setting.step_error
     speed = min(r.speed, felt(s, r))
     for c in range(b.weight.size):
         b.weight[c] = weighed(s, length, speed, tolerance, c)
@@ -116,7 +115,7 @@ def units(s, r):
         r.length, r.speed, r.speed_cap = length, speed, 0.0
 
 
-@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+@compiled(types.void(SCENE, RECORD, BUFFERS, SETTINGS))
 def weigh(s, r, b, setting):
     """`weights`, for solvers outside."""
     weights(s, r, b, setting, r.h)

@@ -30,10 +30,7 @@ from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import LOOK
-from trsim.solve.march.record import (
-    HELD_TO,
-    Record,
-)
+from trsim.solve.march.record import Record
 
 Array = NDArray[np.float64]
 
@@ -63,12 +60,12 @@ def look(s, r, b, setting, t, y, step):
     """
     if step == 1:
         look_at_pivots(s, r)
-    told, worst = max(TOLD * setting[HELD_TO], LEAST_TOLD), 0.0
+    told, worst = max(TOLD * setting.held_to, LEAST_TOLD), 0.0
     for k in range(s.redundant.shape[0]):
         worst = max(worst, opening(s, s.m + k))
         r.worst_open_rate = max(r.worst_open_rate, rate(s, s.m + k))
     r.worst_open = max(r.worst_open, worst)
-    if worst <= (told if step == 1 else setting[HELD_TO]):
+    if worst <= (told if step == 1 else setting.held_to):
         return 0
     copy_to(b.y2, y)
     bound = AS_THE_OTHERS * closed(s, t, b.y2)
@@ -79,7 +76,7 @@ def look(s, r, b, setting, t, y, step):
         if left > r.apart:
             r.apart, r.apart_t = left, t
             r.open_row, r.open_index = s.redundant[k, ROW], s.redundant[k, INDEX]
-        if left > setting[HELD_TO]:
+        if left > setting.held_to:
             r.opened = 1
     return 1
 

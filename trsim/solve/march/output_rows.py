@@ -3,13 +3,12 @@
 from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.calls import INTERPOLATE_AT, LOOK_AT, call_look
 from trsim.solve.march.dense_output import measure_inside
-from trsim.solve.march.record import EVERY
 
 
 @internal
 def due(r, setting, t1):
     """Whether an output time lies at or before t1."""
-    return setting[EVERY] * r.next_row <= t1 * (1.0 + 1e-15)
+    return setting.every * r.next_row <= t1 * (1.0 + 1e-15)
 
 
 @internal
@@ -26,7 +25,7 @@ def rows_until(s, r, b, setting, method, t, h, t1, projected):
     """
     rows, next_row = r.rows, r.next_row
     while r.rows < b.rows.shape[0]:
-        t_o = setting[EVERY] * r.next_row
+        t_o = setting.every * r.next_row
         if t_o > t1 * (1.0 + 1e-15):
             break
         row = b.rows[r.rows]

@@ -28,15 +28,7 @@ from trsim.solve.march.dense_output import build, measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
 from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
-from trsim.solve.march.record import (
-    BUFFERS,
-    MISSED,
-    PEAK_MAX,
-    PEAK_MIN,
-    POINTS,
-    RECORD,
-    T_END,
-)
+from trsim.solve.march.record import BUFFERS, PEAK_MAX, PEAK_MIN, POINTS, RECORD, SETTINGS
 from trsim.solve.march.samples import (
     NOT_LAID,
     aside,
@@ -58,10 +50,10 @@ GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middl
 TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
 
 #                     scene  record  buffers setting method t  h   at values projected built
-SAMPLE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, A1, f8, i8)
+SAMPLE = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, f8, f8, A1, f8, i8)
 call_sample = caller(SAMPLE)
 #                     scene  record  buffers setting method t  h   projected built
-FINISH = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, i8)
+FINISH = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, f8, f8, i8)
 call_finish = caller(FINISH)
 
 
@@ -103,7 +95,7 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
 
     ahead: samples that are newer than the later of them.
     """
-    share, now, last = setting[MISSED], r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
+    share, now, last = setting.missed, r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
     earlier = r.sampled[older(r, ahead + 1)] < r.t
     if earlier:
         h, ready = r.earlier_h, r.earlier_built
@@ -111,7 +103,7 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
         ready = built
     b.found[0], b.laid[0] = 0.0, NOT_LAID
     inner = max(ENDS - r.n_samples, 1)
-    last_one = r.sampled[r.newest] >= setting[T_END]
+    last_one = r.sampled[r.newest] >= setting.t_end
     if (r.n_samples <= YOUNG and h * r.steps >= TINY * t) or (ahead == 0 and last_one):
         if ready == 0 and not last_one:
             guess(s, r, b, method, h, inner, projected, earlier)

@@ -5,17 +5,7 @@ import numpy as np
 from trsim.assemble.equations import corners, evaluate, gaps, poses
 from trsim.assemble.features import call_hold
 from trsim.assemble.outputs import measure
-from trsim.elements.contract import (
-    BRANCH,
-    CONTACT,
-    IMPACT_SPEED,
-    PHASE,
-    SCENE,
-    I,
-    J,
-    compiled,
-)
-from trsim.kernels.packed import A1
+from trsim.elements.contract import BRANCH, CONTACT, IMPACT_SPEED, PHASE, SCENE, I, J, compiled
 from trsim.kernels.signatures import void
 from trsim.kernels.vectors import internal
 from trsim.laws.functions import BY_SENSORS, BY_TIME
@@ -31,14 +21,13 @@ from trsim.solve.march.record import (
     EVENT_SPEED,
     EVENT_TIME,
     EVENT_WORK,
-    LOCATE,
     NO_HISTORY,
     NO_JACOBIAN,
     NO_RATES,
     ONSET,
     RECORD,
     SEPARATION,
-    STEP_ERROR,
+    SETTINGS,
 )
 from trsim.solve.march.samples import restart
 from trsim.solve.march.watch import fire, watch
@@ -95,7 +84,7 @@ def change_phases(s, r, b, setting, t1):
                 r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
             speed = max(speed, 1e-12)
             h = min(h, hertz_step(s.contact_par[c, 0], s.contact_par[c, 1], s.contact_par[c, 2],
-                                  speed, setting[STEP_ERROR]))  # fmt: skip
+                                  speed, setting.step_error))  # fmt: skip
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
     are_closed = closed(s, r)
@@ -161,7 +150,7 @@ def evaluate_all(s, r, setting, t):
     watch(s, t, r.gap)
     for k in range(s.n_s):
         r.branch[k], r.turning[k] = s.S[k, 0], s.S[k, 1]
-    if setting[LOCATE] > 0.0:
+    if setting.locate > 0:
         for c in range(s.contact.size):
             look(s, c)
         evaluate(s, t, r.y, r.yd)
@@ -170,7 +159,7 @@ def evaluate_all(s, r, setting, t):
             r.corner[c] = s.corner[s.contact[c], 0]
 
 
-@compiled(void(SCENE, RECORD, BUFFERS, A1))
+@compiled(void(SCENE, RECORD, BUFFERS, SETTINGS))
 def settle(s, r, b, setting):
     """Go on with other equations: nothing that was learnt from the old ones counts any more."""
     evaluate_all(s, r, setting, r.t)

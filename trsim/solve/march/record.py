@@ -3,25 +3,10 @@
 import numpy as np
 
 from trsim.elements.scene import Model
-from trsim.kernels.packed import A1, A2, F8, I1, I2, I8, T14, Packed
+from trsim.kernels.packed import A1, A2, F8, I1, I2, I8, T14, Packed, f8, i8
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
-
-# settings: constants of the march
-(
-    T_END,
-    STEP_ERROR,  # what a step may err by, made of the tolerance in `settings` of solve/outcome.py
-    H_MAX,
-    EVERY,  # s between output rows
-    FIXED_STEP,  # s, 0 where the method controls its step
-    LOCATE,  # 1: contact onset and separation are located
-    CHOOSES,  # 1: between two methods, by the fastest motion
-    MISSED,  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
-    HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
-    TOLERANCE,  # as it is written
-    N_SETTINGS,
-) = range(11)
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
@@ -48,6 +33,21 @@ FOUND = 200  # places between two samples where extremes are looked for
     EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
+
+
+class Settings(Packed):
+    """The constants of the march."""
+
+    t_end: f8
+    step_error: f8  # what a step may err by, made of the tolerance: see `settings` of outcome.py
+    h_max: f8
+    every: f8  # s between output rows
+    fixed_step: f8  # s, 0 where the method controls its step
+    locate: i8  # 1: contact onset and separation are located
+    chooses: i8  # 1: between two methods, by the fastest motion
+    missed: f8  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
+    held_to: f8  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
+    tolerance: f8  # as it is written
 
 
 class Record(Packed):
@@ -118,9 +118,7 @@ class Record(Packed):
     exchanged: F8  # J, largest work, or range of an energy, so far: the scale of works  works.py
     work_trial: F8  # J, error of the works in the last trial step, as estimated
     work_error: F8  # J, the sum of those accepted
-    worst_open: (
-        F8  # of the mechanism's size or rad, opening of a redundant row  openings.py
-    )
+    worst_open: F8  # of the mechanism's size or rad, of a redundant row  openings.py
     worst_open_rate: F8  # the same per second
     apart: F8  # the same of rows that are open by more than the rest is
     apart_t: F8  # s, when
@@ -268,7 +266,7 @@ class Buffers(Packed):
     met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
 
 
-RECORD, BUFFERS = Record.kind, Buffers.kind
+SETTINGS, RECORD, BUFFERS = Settings.kind, Record.kind, Buffers.kind
 
 
 def fresh_buffers(

@@ -29,15 +29,11 @@ from trsim.assemble.linear import SOUND
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8
+from trsim.kernels.packed import I1, f8
 from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.calls import NO_STEP, call_step
 from trsim.solve.march.norm import weight_of
-from trsim.solve.march.record import (
-    BUFFERS,
-    RECORD,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 
 EPS = 2.2e-16
 APART = 32  # steps between two looks
@@ -49,7 +45,7 @@ MANY, MOST = 6, 3  # steps to a failure, of one step the second and the first: o
 PART = 0.1  # of the tolerance: below, rounding does not show in the error of a step
 
 #                         scene  record  buffers  setting step h
-LOOK_CLOSER = types.void(SCENE, RECORD, BUFFERS, A1, I1, f8)
+LOOK_CLOSER = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8)
 call_look_closer = caller(LOOK_CLOSER)
 
 
@@ -79,8 +75,8 @@ def look_closer(s, r, b, setting, method, h):
 def beside(s, r, setting, y, moved, sign):
     """moved <- y with every entry moved by its last bit, or to the other side with the sign -1."""
     for c in range(y.size):
-        weight = weight_of(s, r, setting[STEP_ERROR], c)
-        unit = 1.0 / (weight * setting[STEP_ERROR]) if weight > 0.0 else 0.0
+        weight = weight_of(s, r, setting.step_error, c)
+        unit = 1.0 / (weight * setting.step_error) if weight > 0.0 else 0.0
         d = sign * EPS * max(abs(y[c]), unit)
         # neighbours in ways of their own
         moved[c] = y[c] + (d if (c * c + c // 2) % 4 < 2 else -d)
@@ -140,7 +136,7 @@ def largest(s, r, setting):
     """The largest noise in units of the tolerance per second."""
     r.noisy = 0.0
     for c in range(r.noise.size):
-        noisy = r.noise[c] * weight_of(s, r, setting[STEP_ERROR], c)
+        noisy = r.noise[c] * weight_of(s, r, setting.step_error, c)
         if noisy > r.noisy:
             r.noisy, r.noisy_at = noisy, c
 

@@ -21,13 +21,7 @@ from math import sqrt
 from trsim.assemble.linear import smallest_pivot
 from trsim.kernels.vectors import internal
 from trsim.solve.march.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
-from trsim.solve.march.record import (
-    PEAK_MAX,
-    PEAK_MAX_T,
-    PEAK_MIN,
-    PEAK_MIN_T,
-    POINTS,
-)
+from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, POINTS
 
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known

@@ -9,7 +9,6 @@ from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import INTERPOLATE_AT, LAST_AT, SEARCH, STAGES_AT
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.events import NONE, SAME, any_change, first_change
-from trsim.solve.march.record import LOCATE
 from trsim.solve.march.spread import fill_net
 from trsim.solve.march.watch import crossing, may_cross
 
@@ -43,14 +42,14 @@ def to_search(s, r, b, setting, h, stages):
     for k in range(s.watch.shape[0]):
         if may_cross(s, r, b, k, h, stages):
             return True
-    return setting[LOCATE] > 0.0 and any_change(s, r, b, h, stages)
+    return setting.locate > 0 and any_change(s, r, b, h, stages)
 
 
 @internal
 def earliest(s, r, b, setting, t, h, interpolate):
     """Fill b.root for contacts and user events; the first, corners of laws included."""
     first = NONE
-    if setting[LOCATE] > 0.0:
+    if setting.locate > 0:
         first = first_change(s, r, b, setting, t, h, interpolate)
     else:
         for c in range(s.contact.size):

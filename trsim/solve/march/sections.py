@@ -44,11 +44,7 @@ from trsim.assemble.sections import (
 )
 from trsim.elements.contract import FLIGHT, PHASE, compiled
 from trsim.kernels.vectors import internal
-from trsim.solve.march.calls import (
-    INTERPOLATE_AT,
-    LAST_AT,
-    SECTIONS,
-)
+from trsim.solve.march.calls import INTERPOLATE_AT, LAST_AT, SECTIONS
 from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME
 from trsim.solve.march.illinois import between, narrowed

@@ -37,7 +37,7 @@ from trsim.assemble.travel import ANGLE
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.packed import I1, f8, i8
 from trsim.kernels.vectors import internal
 from trsim.laws.functions import (
     CLEAR,
@@ -64,13 +64,7 @@ from trsim.solve.march.calls import (
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.features import keep, other_side
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.record import (
-    BUFFERS,
-    FIXED_STEP,
-    RECORD,
-    STEP_ERROR,
-    T_END,
-)
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread_of, spread_of_stages
 
 NONE, UNCERTAIN = 2.0, 3.0  # no corner in the step; a step too long to be certain
@@ -86,7 +80,7 @@ LAST, TIMES, FAR = range(3)  # of r.chatter
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
-TURN = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, i8)
 BEYOND = types.float64(SCENE, BUFFERS, f8)
 call_turn, call_beyond = caller(TURN), caller(BEYOND)
 
@@ -114,7 +108,7 @@ def corners_ahead(s, r, b, setting, method, t, h, built):
     if built == 0:
         build(s, r, b, method, t, h)
     fill_net(s, r, b, method)
-    again = setting[FIXED_STEP] == 0.0  # a shorter step can be had
+    again = setting.fixed_step == 0.0  # a shorter step can be had
     first = first_corner(s, r, b, setting, t, h, method[INTERPOLATE_AT], again)
     if first >= 1.0:
         if s.status[1] > evaluations:
@@ -171,7 +165,7 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
             L, M = spread_of(s, r, b, kind, s.sensed[k, INSTANCE], 1.0, low, high, h)
             see(s, b, k, L, M, length)
-            depth = max(HIDDEN * setting[STEP_ERROR] * r.length, ROUNDING * s.size)
+            depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
             if kind == ANGLE:
                 depth /= s.reach
             seen = b.seen[s.sensed[k, ENTRY]]
@@ -187,7 +181,7 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
         if found != CLEAR:
             first = roots(s, r, b, t, h, interpolate, low, high)
             if first <= 1.0:
-                unseen = first < SEEN and first * h > BRIEF * setting[T_END]
+                unseen = first < SEEN and first * h > BRIEF * setting.t_end
                 return UNCERTAIN if again and unseen and leaves_brief(s, b) else first
         if high >= 1.0:
             return NONE
@@ -373,7 +367,7 @@ def chatters(s, r, b, setting, n, t1):
     for k in range(s.sensed.shape[0]):
         own = abs(s.S[s.sensed[k, ENTRY], 1])
         fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
-    allowed = setting[STEP_ERROR] * r.length
+    allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
     if chatter[TIMES] > OFTEN:

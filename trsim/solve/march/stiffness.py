@@ -25,10 +25,7 @@ from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.record import (
-    BUFFERS,
-    RECORD,
-)
+from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.methods.displacements import active, displace, w_index
 
 FIRST, OFTEN, SELDOM = 3, 4, 32

@@ -17,10 +17,6 @@ that the works in them are none: a load that jumps does so at one point of time.
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import N_STORED
 from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.record import (
-    STEP_ERROR,
-    T_END,
-)
 
 # of what a step is held to, which is a fifth to a twentieth of the tolerance asked for: see
 # `settings` in outcome.py
@@ -41,9 +37,9 @@ def works(r, setting, h, worst, size):
     worst: the largest error of a work in the step, J; size: the largest energy it moves, J.
     """
     r.work_trial = worst
-    if abs(h) <= SHORTEST * setting[T_END]:
+    if abs(h) <= SHORTEST * setting.t_end:
         return 0.0
-    allowed = WIDER * setting[STEP_ERROR] * max(r.exchanged, size)
+    allowed = WIDER * setting.step_error * max(r.exchanged, size)
     return worst / max(allowed, ROUNDING * r.largest_energy, 1e-300)
 
 

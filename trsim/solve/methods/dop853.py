@@ -25,7 +25,6 @@ from trsim.solve.march.accelerations import (
     unknown,
 )
 from trsim.solve.march.calls import CONTROL, DENSE, INTERPOLATE, STEP
-from trsim.solve.march.record import STEP_ERROR
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import dop853_tableau as tableau
 
@@ -128,7 +127,7 @@ def of_accelerations(s, r, b, setting, h):
     Inside a step that holds more than FAR rad the dense output is off by more than its end.  What
     rounding makes of stages is told, and not held.
     """
-    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
+    K, weight, tolerance = b.K, b.weight, setting.step_error
     combined(K, OF_PLACES, 0, s.n_q, K[PLACES])
     r.top_acceleration = most = largest(s, K[0], r.top_acceleration)
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
@@ -220,7 +219,7 @@ def inside(scene, r, b, setting, t, h):
         places += (LEFT * b.P[6, c] * b.weight[c]) ** 2
     for c in range(scene.n_q, scene.n_q + scene.v_node):
         rates += (LEFT * b.P[6, c] * b.weight[c]) ** 2
-    length, speed = setting[STEP_ERROR] * r.length, setting[STEP_ERROR] * r.speed
+    length, speed = setting.step_error * r.length, setting.step_error * r.speed
     if sqrt(places) * length < ROUNDED * scene.size:
         return 0.0
     ww = stiffness(r, h)

@@ -20,12 +20,7 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.accelerations import FURTHEST, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
-from trsim.solve.march.record import (
-    FRESH,
-    NO_JACOBIAN,
-    OLD,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import FRESH, NO_JACOBIAN, OLD
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import hermite
 from trsim.solve.methods.dense_lu import factorise_real, solve_real
@@ -229,14 +224,14 @@ def accelerated(s, r, b, setting, h, ratio, further):
             bend = max(4.0 * abs(by - 2.0 * (K[SCRATCH, c] - r.yd[c])), UNKNOWN * abs(by))
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
-    off, strict = setting[STEP_ERROR] * r.speed * bent / 12.0, 0.0
+    off, strict = setting.step_error * r.speed * bent / 12.0, 0.0
     if held(s):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
         units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
         strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.speed**2 / r.length)  # at the largest speed
-    return max(strict, min(off / (setting[STEP_ERROR] * turned), further)) if turned > 0.0 else 0.0
+    return max(strict, min(off / (setting.step_error * turned), further)) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)

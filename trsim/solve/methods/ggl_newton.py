@@ -23,7 +23,6 @@ from trsim.assemble.linear import factorise, substitute
 from trsim.assemble.schur import hub_mass, hub_rows
 from trsim.elements.contract import N_BOOK
 from trsim.kernels.vectors import clear, copy_to, internal
-from trsim.solve.march.record import CHOOSES
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index, width_of
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times
 from trsim.solve.methods.ggl_jacobian import fastest
@@ -47,7 +46,7 @@ def sparse_factors(s, r, b, setting, h, g, a, c):
         b.made[MADE_OF], b.made[MADE_FOR] = r.jacobians, 0.0
         b.made[RESISTED] = 1.0 if some(r.at_rate) else 0.0
         b.made[TURNS] = 1.0 if some_of(r.at_turn) else 0.0
-        if setting[CHOOSES] > 0.0:
+        if setting.chooses > 0:
             r.jacobian_rate = fastest(s, r, b)
     if b.made[MADE_FOR] == h:
         return True

@@ -13,13 +13,7 @@ smallest penetration that matters.
 from trsim.assemble.equations import evaluate
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.norm import weight_of
-from trsim.solve.march.record import (
-    FRESH,
-    NO_JACOBIAN,
-    NO_RATES,
-    OLD,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import FRESH, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.methods.displacements import active, displace, frame_of, place_of, w_index
 
 PART = 3e-4  # of an entry's unit: the step of a difference
@@ -38,7 +32,7 @@ def jacobian(s, r, b, setting, t, trial, rates):
     After a corner of friction only the columns of by_rate are new that belong to the bodies which
     rub there: the law has no jump, and what is left of the others is good enough.
     """
-    n_w, tolerance = active(s), setting[STEP_ERROR]
+    n_w, tolerance = active(s), setting.step_error
     places = r.jacobian != NO_RATES
     for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed

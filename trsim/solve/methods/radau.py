@@ -22,16 +22,7 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, internal
 from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
-from trsim.solve.march.record import (
-    AHEAD,
-    BEHIND,
-    FRESH,
-    NO_HISTORY,
-    NO_JACOBIAN,
-    NO_RATES,
-    OLD,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import jitter, noted, to_look
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods.dense_lu import (
@@ -290,7 +281,7 @@ def of_accelerations(s, r, b, setting, h):
     a first step, which may be of any length, the filter of the estimate may have left nothing of
     it: there what was filtered counts as well.
     """
-    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
+    K, weight, tolerance = b.K, b.weight, setting.step_error
     r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
     for c in range(s.n_q + s.n_v):
         K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]

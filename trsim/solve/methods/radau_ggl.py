@@ -16,15 +16,11 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import DRIVES, SCENE, compiled
-from trsim.kernels.packed import A1, f8
+from trsim.kernels.packed import f8
 from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import DENSE
-from trsim.solve.march.record import (
-    NO_JACOBIAN,
-    OLD,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import NO_JACOBIAN, OLD, SETTINGS
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
 from trsim.solve.methods.ggl_jacobian import sparse_jacobian
 from trsim.solve.methods.ggl_newton import TURNS, solved, sparse_factors
@@ -73,7 +69,7 @@ DENSE_ROWS = KEPT + 3
 DENSE_DEGREE = 3
 
 #                   scene  record  buffers  setting t h
-STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, A1, f8, f8)
+STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, SETTINGS, f8, f8)
 
 
 @compiled(STEP)
@@ -176,7 +172,7 @@ def newton(s, r, b, setting, t, h, stabilised):
     # small
     made = r.past_error if r.past_error > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
-    wanted = max(min(KAPPA, sqrt(setting[STEP_ERROR])) * made, floor) if strict else enough
+    wanted = max(min(KAPPA, sqrt(setting.step_error)) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
