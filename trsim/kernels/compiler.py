@@ -34,7 +34,7 @@ from trsim.kernels.packed import WORDS
 from trsim.kernels.signatures import Kind, Signature
 from trsim.kernels.way import way
 
-NUMBERS = {"float64": types.float64, "int64": types.int64}
+NUMBERS = {"float64": types.float64, "int64": types.int64, "complex128": types.complex128}
 
 
 class Code(NamedTuple):
@@ -191,7 +191,7 @@ def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str)
     shape = [word(1 + k) for k in range(kind.ndim)]
     if columns:
         shape[1] = ir.Constant(ir.IntType(64), columns)
-    size = ir.Constant(ir.IntType(64), 8)
+    size = ir.Constant(ir.IntType(64), kind.dtype.bitwidth // 8)
     strides = [size] if kind.ndim == 1 else [builder.mul(shape[1], size), size]
     populate_array(
         array,

@@ -28,6 +28,8 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     f8 = F8 = float
     i8 = I8 = int
     A1 = NDArray[np.float64]
+    C1 = NDArray[np.complex128]
+    C2 = NDArray[np.complex128]
     A2 = NDArray[np.float64]
     T2 = NDArray[np.float64]
     T3 = NDArray[np.float64]
@@ -38,11 +40,28 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     I1 = NDArray[np.int64]
     I2 = NDArray[np.int64]
 else:  # and to compiled code
-    from trsim.kernels.signatures import A1, A2, F8, I1, I2, I8, T2, T3, T6, T9, T12, T14, f8, i8
+    from trsim.kernels.signatures import (
+        A1,
+        A2,
+        C1,
+        C2,
+        F8,
+        I1,
+        I2,
+        I8,
+        T2,
+        T3,
+        T6,
+        T9,
+        T12,
+        T14,
+        f8,
+        i8,
+    )
 
 __all__ = [
-    "A1", "A2", "F8", "I1", "I2", "I8", "T2", "T3", "T6", "T9", "T12", "T14", "WORDS", "Packed",
-    "f8", "i8",
+    "A1", "A2", "C1", "C2", "F8", "I1", "I2", "I8", "T2", "T3", "T6", "T9", "T12", "T14", "WORDS",
+    "Packed", "f8", "i8",
 ]  # fmt: skip
 
 WORDS = 3  # per field
@@ -51,8 +70,8 @@ HOLDERS = {"F8": "clock", "I8": "count"}  # the arrays of numbers that change
 
 
 class Packed:
-    """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, f8 or i8, or
-    with T2 to T14, tables of so many columns.
+    """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, C1, C2, f8
+    or i8, or with T2 to T14, tables of so many columns.
 
     F8 and I8 are numbers that change: entries of the record's arrays `clock` (A1) and `count` (I1),
     in the order they are declared in.

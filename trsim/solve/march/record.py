@@ -3,7 +3,7 @@
 import numpy as np
 
 from trsim.elements.scene import Model
-from trsim.kernels.packed import A1, A2, F8, I1, I2, I8, T14, Packed, f8, i8
+from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8, i8
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -75,7 +75,8 @@ class Record(Packed):
     by_place: A2  # (n_w, n_v) w' against displacements
     by_rate: A2  # (n_w, n_w) w' against w
     stale: I1  # (n) frames whose columns of `by_rate` a corner made old
-    lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
+    lu: A2  # (n_w, n_w) factors of the real system
+    lu_pair: C2  # (n_w, n_w) and of the complex one
     pivot: I2  # (2, n_w)
     past: A2  # (dense rows, n_y) dense output of a step, see `history`
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
@@ -233,6 +234,7 @@ class Buffers(Packed):
     y1: A1
     y2: A1
     weight: A1
+    pair: C1  # (n_y) right-hand side of the complex system of an implicit method
     rough: A2  # (3, n_y) a state and the end of a step from it, while it is made again
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts + n_w, 2)
@@ -289,6 +291,7 @@ def fresh_buffers(
         y1=np.zeros(n_y),
         y2=np.zeros(n_y),
         weight=np.zeros(n_y),
+        pair=np.zeros(n_y, complex),
         rough=np.zeros((3, n_y)),
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts + watched, 2)),

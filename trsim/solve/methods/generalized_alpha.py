@@ -86,7 +86,7 @@ def step(s, r, b, setting, t, h):
 def factorised(s, r, h):
     """Factors of (1 - a_m) - (1 - a_f) (h gamma by_rate + h^2 beta by_place)."""
     n = active(s)
-    A, f = r.lu[:n], 1.0 - A_F
+    A, f = r.lu, 1.0 - A_F
     for i in range(n):
         for k in range(n):
             B = r.by_place[i, k] if k < s.n_v else 0.0
@@ -139,7 +139,7 @@ def newton(s, r, b, t, h):
                 - (1.0 - A_M) * K[B1, c]
                 - A_M * r.past[FILTERED, c]
             )
-        solve_real(r.lu[:n_w], r.pivot[0], K[SCRATCH], n_w)
+        solve_real(r.lu, r.pivot[0], K[SCRATCH], n_w)
         moved = 0.0
         for i in range(n_w):
             c = w_index(s, i)

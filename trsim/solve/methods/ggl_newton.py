@@ -26,12 +26,7 @@ from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index, width_of
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times
 from trsim.solve.methods.ggl_jacobian import fastest
-from trsim.solve.methods.sparse_lu import (
-    factorise_sparse,
-    factorise_sparse_complex,
-    solve_sparse,
-    solve_sparse_complex,
-)
+from trsim.solve.methods.sparse_lu import factorise_sparse, factorise_sparse_complex, solve_sparse
 
 # b.made: number of the Jacobian, step size of the factors, whether loads depend on rates, and rows
 # of constraints on places
@@ -51,9 +46,9 @@ def sparse_factors(s, r, b, setting, h, g, a, c):
     if b.made[MADE_FOR] == h:
         return True
     assembled(s, r, b, g, 0.0)
-    real = factorise_sparse(b, b.value[0], b.real_l, b.real_u, b.real_d, b.work[0])
+    real = factorise_sparse(b, b.value, b.real_l, b.real_u, b.real_d, b.side[0])
     assembled(s, r, b, a, c)
-    pair = factorise_sparse_complex(b, b.value, b.complex_l, b.complex_u, b.complex_d, b.work)
+    pair = factorise_sparse_complex(b, b.value, b.complex_l, b.complex_u, b.complex_d, b.pair)
     b.made[MADE_FOR] = h if real >= 0 and pair >= 0 else 0.0
     return real >= 0 and pair >= 0
 
@@ -109,25 +104,20 @@ def schur(s, r, b):
 @internal
 def assembled(s, r, b, a, c):
     """The entries of the constrained system for a + i c into b.value, row by row."""
-    re, im = b.value[0], b.value[1]
     for k in range(active(s)):
         for e in range(b.column_start[k], b.column_start[k + 1]):
             if k < s.n_v:
-                re[b.entry[e]] = (a * a - c * c) * b.mass[e] - a * r.at_rate[e] - r.at_place[e]
-                im[b.entry[e]] = 2.0 * a * c * b.mass[e] - c * r.at_rate[e]
+                re = (a * a - c * c) * b.mass[e] - a * r.at_rate[e] - r.at_place[e]
+                im = 2.0 * a * c * b.mass[e] - c * r.at_rate[e]
             else:
-                re[b.entry[e]] = a * b.mass[e] - r.at_rate[e]
-                im[b.entry[e]] = c * b.mass[e]
+                re, im = a * b.mass[e] - r.at_rate[e], c * b.mass[e]
+            b.value[b.entry[e]] = complex(re, im)
     for f in range(1, s.n):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for k in range(width_of(s, f)):
-                re[b.entry_row[p, k]] = r.at_rows[p, k]
-                re[b.entry_across[p, k]] = r.at_rows[p, k]
-                im[b.entry_row[p, k]] = 0.0
-                im[b.entry_across[p, k]] = 0.0
+                b.value[b.entry_row[p, k]] = b.value[b.entry_across[p, k]] = r.at_rows[p, k]
     for k in range(b.entry_state.size):
-        re[b.entry_state[k]] = r.at_state[k]
-        im[b.entry_state[k]] = 0.0
+        b.value[b.entry_state[k]] = r.at_state[k]
 
 
 @internal
@@ -200,7 +190,11 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
         solve_sparse(b, b.real_l, b.real_u, b.real_d, b.side[0])
         clear(b.side[1])
     else:
-        solve_sparse_complex(b, b.complex_l, b.complex_u, b.complex_d, b.side[0], b.side[1])
+        for k in range(b.pair.size):
+            b.pair[k] = complex(b.side[0, k], b.side[1, k])
+        solve_sparse(b, b.complex_l, b.complex_u, b.complex_d, b.pair)
+        for k in range(b.pair.size):
+            b.side[0, k], b.side[1, k] = b.pair[k].real, b.pair[k].imag
     for k in range(s.n_v):
         dx[k], dy[k] = b.side[0, b.rank[k]], b.side[1, b.rank[k]]
         x[k] -= a * dx[k] - c * dy[k]  # r_x - (a + i c) dx

@@ -14,8 +14,8 @@ from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, C, 
 
 # rows of K after those of radau.py, three each: lam of the stages, mu, right-hand sides and
 # increments of Phi and Phi'; three rows that stay zero
-LAM, MU, RP, RR, NIL = 14, 17, 20, 23, 26
-STAGES = 29
+LAM, MU, RP, RR, NIL = 13, 16, 19, 22, 25
+STAGES = 28
 
 
 @internal

@@ -28,6 +28,7 @@ from trsim.solve.march.works import first_work, works
 from trsim.solve.methods.dense_lu import (
     factorise_complex,
     factorise_real,
+    quotient,
     solve_complex,
     solve_real,
 )
@@ -37,13 +38,13 @@ from trsim.solve.methods.newton import FAILS, GOES_ON, NEXT_TO_NOTHING, judged, 
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 
 ESTIMATE = 4  # the error estimate falls with h^4
-STAGES = 14
+STAGES = 13
 LAST = 2
 DENSE_ROWS = 4
 DENSE_DEGREE = 3
 IMPLICIT = True
 
-Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
+Z, W, F, DW = 3, 6, 9, 12  # rows of K: three each of Z, W, F; one of scratch
 # second differences over the stages: of what Z is, and of its rate times h; that rate at the end
 BENT = np.array([1.0 / ((C[0] - C[1]) * (C[0] - 1.0)), 1.0 / ((C[1] - C[0]) * (C[1] - 1.0)),
     1.0 / ((1.0 - C[0]) * (1.0 - C[1]))])  # fmt: skip
@@ -107,7 +108,7 @@ def factorised(s, r, h):
     if n == 0:
         r.factored_h = h
         return True
-    real, re, im = r.lu[:n], r.lu[n : 2 * n], r.lu[2 * n :]
+    real, pair = r.lu, r.lu_pair
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
     size = a * a + c * c
     by_g, by_a, by_c = 1.0 / g, a / size, c / size
@@ -115,14 +116,12 @@ def factorised(s, r, h):
         for k in range(n):
             B = r.by_place[i, k] if k < s.n_v else 0.0
             real[i, k] = -r.by_rate[i, k] - B * by_g
-            re[i, k] = -r.by_rate[i, k] - B * by_a
-            im[i, k] = B * by_c
+            pair[i, k] = complex(-r.by_rate[i, k] - B * by_a, B * by_c)
         real[i, i] += g
-        re[i, i] += a
-        im[i, i] += c
+        pair[i, i] += complex(a, c)
     if not factorise_real(real, r.pivot[0], n):
         return False
-    if not factorise_complex(re, im, r.pivot[1], n):
+    if not factorise_complex(pair, r.pivot[1], n):
         return False
     r.factored_h = h
     return True
@@ -179,7 +178,7 @@ def newton(s, r, b, t, h):
             K[F + 1, k] = u - (a * w1 - c * w2)
             K[F + 2, k] = v - (c * w1 + a * w2)
         corrected(s, r, K[F], K[DW], g)
-        corrected_pair(s, r, K[F + 1], K[F + 2], K[DX], K[DW], a, c)
+        corrected_pair(s, r, K[F + 1], K[F + 2], b.pair, complex(a, c))
         moved = 0.0
         for i in range(3):
             for k in range(n):
@@ -215,7 +214,7 @@ def corrected(s, r, f, w, mu):
         x = twisted(s, r, k, f) / mu
         for i in range(n):
             w[i] += r.by_place[i, k] * x
-    solve_real(r.lu[:n], r.pivot[0], w, n)
+    solve_real(r.lu, r.pivot[0], w, n)
     for q in range(s.n_q):
         f[q] = (f[q] + moved_by(s, r.y, q, w)) / mu
     for i in range(n):
@@ -225,27 +224,24 @@ def corrected(s, r, f, w, mu):
 
 
 @internal
-def corrected_pair(s, r, f, g, x, w, a, c):
-    """f + i g <- (a + i c - J)^-1 (f + i g) with the complex factors; x, w: scratch."""
-    n, size = active(s), a * a + c * c
+def corrected_pair(s, r, f, g, w, mu):
+    """f + i g <- (mu - J)^-1 (f + i g) with the complex factors; w: scratch."""
+    n = active(s)
     for i in range(n):
-        x[i], w[i] = f[w_index(s, i)], g[w_index(s, i)]
+        w[i] = complex(f[w_index(s, i)], g[w_index(s, i)])
     for k in range(s.n_v):
-        p, q = twisted(s, r, k, f), twisted(s, r, k, g)
-        u, v = (p * a + q * c) / size, (q * a - p * c) / size  # (p + i q) / (a + i c)
+        x = quotient(complex(twisted(s, r, k, f), twisted(s, r, k, g)), mu)
         for i in range(n):
-            x[i] += r.by_place[i, k] * u
-            w[i] += r.by_place[i, k] * v
-    solve_complex(r.lu[n : 2 * n], r.lu[2 * n :], r.pivot[1], x, w, n)
+            w[i] += complex(r.by_place[i, k] * x.real, r.by_place[i, k] * x.imag)
+    solve_complex(r.lu_pair, r.pivot[1], w, n)
     for q in range(s.n_q):
-        u, v = f[q] + moved_by(s, r.y, q, x), g[q] + moved_by(s, r.y, q, w)
-        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+        x = quotient(complex(f[q], g[q]) + moved_by(s, r.y, q, w), mu)
+        f[q], g[q] = x.real, x.imag
     for i in range(n):
-        f[w_index(s, i)], g[w_index(s, i)] = x[i], w[i]
-    for k in range(N_BOOK):
-        q = s.n_q + s.n_v + k
-        u, v = f[q], g[q]
-        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+        f[w_index(s, i)], g[w_index(s, i)] = w[i].real, w[i].imag
+    for q in range(s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK):
+        x = quotient(complex(f[q], g[q]), mu)
+        f[q], g[q] = x.real, x.imag
 
 
 @internal
