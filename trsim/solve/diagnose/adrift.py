@@ -33,7 +33,7 @@ LITTLE, TOLD = 1e-3, 10.0
 
 
 @compiled(LOOK)
-def look_at_drift(s, r, b, setting, t, y, step):
+def look_at_drift(s, r, b, setting, t, step):
     """`look` of openings.py, whether the run has lost its way at the end of a step, and what
     accelerations feel of open rows."""
     felt = 0
@@ -44,11 +44,11 @@ def look_at_drift(s, r, b, setting, t, y, step):
         if worst > AS_FAR * pivot and worst > AS_FAR * plain(s):
             r.lost = 1
         felt = int(DOUBTFUL < pivot <= NEARLY and worst > LITTLE * s.tolerance)
-    went = look(s, r, b, setting, t, y, step)
+    went = look(s, r, b, setting, t, step)
     if felt > 0:
         if went > 0:
-            evaluate(s, t, y, b.rough[1])
-        feel(s, r, b, t, y)
+            evaluate(s, t, b.y1, b.rough[1])
+        feel(s, r, b, t)
     return max(felt, went)
 
 
@@ -61,14 +61,14 @@ def plain(s):
 
 
 @internal
-def feel(s, r, b, t, y):
+def feel(s, r, b, t):
     """Into the record by how much accelerations, which are those of the last evaluation, would be
     others with the rows closed: of the largest, or of the square of the fastest rate so far."""
     kept = b.rough[2]
     for f in range(1, s.n_r):
         for c in range(s.d):
             kept[s.d * (f - 1) + c] = s.free[f, c]
-    copy_to(b.y2, y)
+    copy_to(b.y2, b.y1)
     closed(s, t, b.y2)
     poses_and_rows(s, t, b.y2)
     project_velocities(s, b.y2)

@@ -12,18 +12,18 @@ from trsim.solve.march.samples import older
 
 
 @internal
-def this_step(r, b, projected):
+def this_step(r, b):
     """The step at hand."""
-    return r.y, b.P, r.t, r.work_projection, projected
+    return r.y, b.P, r.t, r.work_projection, b.projected
 
 
 @internal
-def either_step(r, b, projected, earlier):
+def either_step(r, b, earlier):
     """The step that was kept, or the one at hand."""
     if earlier:
         t, work, done = r.earlier_t, r.earlier_work, r.earlier_projected
         return r.earlier[0], r.stages, t, work, done
-    return this_step(r, b, projected)
+    return this_step(r, b)
 
 
 @internal
@@ -35,7 +35,7 @@ def ends(r, b, method, earlier):
 
 
 @internal
-def keep_step(r, b, method, h, projected, built):
+def keep_step(r, b, method):
     """Keep the step at hand, which is about to be accepted, if extremes in it are still looked for.
 
     It is the one that the newest two samples lie in: not a step so short that its end took the
@@ -48,11 +48,11 @@ def keep_step(r, b, method, h, projected, built):
     copy_to(r.earlier[1], b.y1)
     copy_to(r.earlier[2], r.yd)
     copy_to(r.earlier[3], b.K[method[LAST_AT]])
-    r.earlier_t, r.earlier_h = t, h
-    r.earlier_work, r.earlier_projected = r.work_projection, projected
-    r.earlier_built = built
-    source = b.P if built > 0 else b.K
-    rows = method[STAGES_AT] if built == 0 and method[STAGES_AT] > 0 else source.shape[0]
+    r.earlier_t, r.earlier_h = t, b.h
+    r.earlier_work, r.earlier_projected = r.work_projection, b.projected
+    r.earlier_built = b.built
+    source = b.P if b.built > 0 else b.K
+    rows = method[STAGES_AT] if b.built == 0 and method[STAGES_AT] > 0 else source.shape[0]
     for k in range(min(rows, r.stages.shape[0])):
         copy_to(r.stages[k], source[k])
 

@@ -173,7 +173,8 @@ def march(s, r, b, setting, methods, most):
         if setting.fixed_step == 0.0 and overdue(r, h):
             call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             continue
-        outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
+        b.h, b.built = h, 0
+        outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method)
         if outcome == WORTHLESS:
             if setting.fixed_step > 0.0:
                 return NOT_FINITE
@@ -206,7 +207,7 @@ def march(s, r, b, setting, methods, most):
         if methods.shape[0] > 1:
             choose(s, r, b, h, outcome == WITH_EVENT)
             if methods[r.method, STEP_AT] != method[STEP_AT]:  # another reads its own steps
-                call_finish(method[FINISH_AT], s, r, b, setting, method, t, h, 0.0, 0)
+                call_finish(method[FINISH_AT], s, r, b, setting, method)
         elif method[STAGES_AT] > 0 and s.contact.size > 0:  # dop853
             calm(s, r, b, h, outcome == WITH_EVENT)
         if r.same_time > MAX_SAME_TIME:

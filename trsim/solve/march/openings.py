@@ -51,10 +51,11 @@ REMEDY = (
 
 
 @compiled(LOOK)
-def look(s, r, b, setting, t, y, step):
-    """Note the openings of the redundant rows at (t, y), which the last evaluation was at.
+def look(s, r, b, setting, t, step):
+    """Note the openings of the redundant rows at t, which the last evaluation was at.
 
-    step: 1 at the end of a step, 0 inside, where interpolation may open them to what is told.
+    step: 1 at the end of a step, b.y1; 0 inside, at b.y2, where interpolation may open them to what
+    is told.
 
     Leaves other poses in the workspace, and b.y2 changed, where it returns 1; else 0.
     """
@@ -67,7 +68,8 @@ def look(s, r, b, setting, t, y, step):
     r.worst_open = max(r.worst_open, worst)
     if worst <= (told if step == 1 else setting.held_to):
         return 0
-    copy_to(b.y2, y)
+    if step == 1:
+        copy_to(b.y2, b.y1)
     bound = AS_THE_OTHERS * closed(s, t, b.y2)
     for k in range(s.redundant.shape[0]):
         left = opening(s, s.m + k)

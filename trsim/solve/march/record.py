@@ -248,12 +248,9 @@ class Buffers(Packed):
     along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
-    doubt: A1  # (1) what stands for the last divided difference in its error
-    laid: A1  # (1) how many places were found when those were made
     bound: A2  # (2, n_k) of channels between two samples: see `bounds` of samples.py
     part: A2  # (2, n_y) both ends of a part of a step                            passes.py
     mean: A2  # (2, n_out) channels where rows of the solve depend on each other
-    moved: A1  # (1) 1: the end of the step was moved on along its tangent
     unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
@@ -266,6 +263,17 @@ class Buffers(Packed):
     box: A2  # (slots, 4) ranges of the parts of a function
     before: A1  # (corners) what functions were held on in the last step
     met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
+    clock: A1  # the numbers that change
+    t: F8  # s, where the step at hand begins
+    h: F8  # s, its length; what its dense output is made with
+    t1: F8  # s, its end
+    projected: F8  # J, what the projection there gave
+    doubt: F8  # what stands for the last divided difference in the error of a polynomial
+    count: I1  # and the whole ones
+    interpolate: I8  # address of what evaluates the dense output
+    built: I8  # 1: P holds it
+    moved: I8  # 1: the end of the step was moved on along its tangent
+    laid: I8  # how many places were found when a lattice was laid
 
 
 SETTINGS, RECORD, BUFFERS = Settings.kind, Record.kind, Buffers.kind
@@ -305,12 +313,9 @@ def fresh_buffers(
         along=np.zeros(1 + PARTS),
         lattice=np.zeros((POINTS, 1 + PARTS)),
         inverse=np.zeros((POINTS, POINTS)),
-        doubt=np.zeros(1),
-        laid=np.zeros(1),
         bound=np.zeros((2, len(model.kin))),
         part=np.zeros((2, n_y)),
         mean=np.zeros((2, model.n_out)),
-        moved=np.zeros(1),
         unmoved=np.zeros((3, n_y)),
         root=np.zeros(contacts + watched),
         corner_root=np.zeros(contacts),

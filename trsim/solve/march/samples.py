@@ -26,7 +26,7 @@ from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T,
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
 AWAY = 0.1  # of the way to the next known place
-NOT_LAID = -1.0
+NOT_LAID = -1
 LEAST = 1e-300  # not to divide zero by zero
 # times the error of a polynomial next to a sample where its channel turns back, or that no sample
 # follows: on which side of it must be plain
@@ -243,18 +243,18 @@ def through(r, b, ahead, c, sign):
         n = around_best(b, found, c, sign)
         lay(b, n)
         invert(b, n)
-        b.laid[0] = NOT_LAID
+        b.laid = NOT_LAID
         differences(b, n)
         doubt(b, n, 1.0)
         return n
     n, surer = min(r.n_samples + found, POINTS), 1.0
     if ahead == 0 or turns(r, ahead, c) or turns(r, ahead + 1, c):
         surer = TURNED
-    if b.laid[0] != found:
+    if b.laid != found:
         lay(b, nodes(r, b, ahead))
         if found > 0:
             invert(b, n)
-        b.laid[0] = found
+        b.laid = found
     values[0], values[1] = sign * r.sample[end, c], sign * r.sample[start, c]
     if found == 0:  # as `take` and `bounds` have them
         slope[0], slope[1] = values[0], sign * b.bound[0, c]

@@ -64,7 +64,7 @@ def starting_side(r, c, k):
 
 
 @internal
-def may_cross(s, r, b, k, h, stages):
+def may_cross(s, r, b, k, stages):
     """Whether the step must be searched for event k, as far as is known without looking."""
     c = s.contact.size + k
     if r.watch[k, TIMES] >= s.watch[k, MOST]:
@@ -82,25 +82,26 @@ def may_cross(s, r, b, k, h, stages):
         return False
     if stages == 0:
         return True
-    L, M = spread_at_stages(s, r, b, c, side, h)
-    return not stays(f0 + band, r0, f1 + band, r1, L, M, h, s.kink[c])
+    L, M = spread_at_stages(s, r, b, c, side)
+    return not stays(f0 + band, r0, f1 + band, r1, L, M, b.h, s.kink[c])
 
 
 @internal
-def departure(s, r, b, setting, t, h, c, side, band, end, interpolate):
+def departure(s, r, b, setting, c, way, end):
     """The side on which g first leaves the band it is in, and a place in the step beyond it.
 
-    What rested on the value has a rate that is rounding, so no side is to be taken from it.  The
-    place is less than 0 where g stays in the band.
+    way: the side it is on, and the band.  What rested on the value has a rate that is rounding, so
+    no side is to be taken from it.  The place is less than 0 where g stays in the band.
     """
+    side, band = way
     g, rate = side * r.gap[c, 0], side * r.gap[c, 1]
-    one = leaves(s, r, b, setting, t, h, c, side, band, 0.0, g, rate, end, interpolate)
-    other = leaves(s, r, b, setting, t, h, c, -side, band, 0.0, -g, -rate, end, interpolate)
+    one = leaves(s, r, b, setting, c, way, (0.0, g, rate), end)
+    other = leaves(s, r, b, setting, c, (-side, band), (0.0, -g, -rate), end)
     return (side, one) if other < 0.0 or 0.0 <= one <= other else (-side, other)
 
 
 @internal
-def crossing(s, r, b, setting, t, h, k, end, interpolate):
+def crossing(s, r, b, setting, k, end):
     """Where event k first happens in the step, as theta in (0, end]; NONE if it does not.
 
     A crossing in the direction that is not asked for is passed, and the next one looked for.
@@ -111,20 +112,20 @@ def crossing(s, r, b, setting, t, h, k, end, interpolate):
     side, low = starting_side(r, c, k), 0.0
     g, rate = r.gap[c, 0], r.gap[c, 1]
     if r.watch[k, SIDE] == AT and abs(g) <= band:
-        side, low = departure(s, r, b, setting, t, h, c, side, band, end, interpolate)
+        side, low = departure(s, r, b, setting, c, (side, band), end)
         if low < 0.0 or low >= end:
             return NONE
-        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        g, rate = inside(s, r, b, c, low)
     for passed in range(PASSED):
         if side * g <= 0.0:
             at = r.watch[k, SIDE] == AT or passed > 0
             left = -1.0
             if at or side * rate >= 0.0:
-                left = leaves(s, r, b, setting, t, h, c, side, band if at else 0.0, low, side * g,
-                              side * rate, end, interpolate)  # fmt: skip
+                start = (low, side * g, side * rate)
+                left = leaves(s, r, b, setting, c, (side, band if at else 0.0), start, end)
             if left < 0.0:
                 # on the value, or inside its band, and on to the other side
-                ahead, _ = inside(s, b.P, r.y, t, h, end, c, b.y2, interpolate)
+                ahead, _ = inside(s, r, b, c, end)
                 if at or (side * rate >= 0.0 and side * ahead >= -band):
                     return NONE
                 if want == 0 or want == -side:
@@ -132,15 +133,14 @@ def crossing(s, r, b, setting, t, h, k, end, interpolate):
                 side, g = -side, 0.0
                 continue
             low = left
-            g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+            g, rate = inside(s, r, b, c, low)
         if low >= end:
             break
-        root = fall(s, r, b, setting, t, h, c, side, band, low, side * g, side * rate, end,
-                    interpolate)  # fmt: skip
+        root = fall(s, r, b, setting, c, (side, band), (low, side * g, side * rate), end)
         if root > end or want == 0 or want == -side:
             return root
         side, low = -side, root
-        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        g, rate = inside(s, r, b, c, low)
         if side * g > 0.0:
             g = 0.0  # on the value, whatever rounding says
     return NONE

@@ -127,7 +127,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             r.h = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer)
             continue
-        outcome = complete(s, r, b, setting, method, h, 1)
+        b.h, b.built = h, 1
+        outcome = complete(s, r, b, setting, method)
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break
