@@ -14,7 +14,7 @@ from trsim.assemble.elimination import Elimination, elimination
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import Model
-from trsim.kernels.packed import A1, A2, C1, I1, I2
+from trsim.kernels.packed import A1, A2, C1, F8, I1, I2, I8
 from trsim.solve.march.record import Buffers, Record
 
 
@@ -53,7 +53,6 @@ class SparseBuffers(Buffers):
     lower_start: I1
     lower: I1
     # numbers
-    made: A1  # see ggl_newton.py
     across: A2  # (slots, 6) M^-1 B^T
     schur: A1  # factors of B M^-1 B^T
     value: C1  # (entries)
@@ -70,6 +69,10 @@ class SparseBuffers(Buffers):
     slope: A2  # (2, n_v)
     move: A2  # (2, n_v)
     mu: A2  # (2, n_x) of rows, and of hubs
+    made_for: F8  # s, the step size of the factors; 0: none
+    made_of: I8  # number of the Jacobian they are made of
+    resisted: I8  # 1: loads depend on rates
+    turns: I8  # 1: rows of constraints depend on places
 
 
 def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
@@ -89,7 +92,7 @@ def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
 
 def buffers(dense: Buffers, mechanism: Mechanism, model: Model) -> SparseBuffers:
     """Buffers with the pattern of a stage of the mechanism, whose model is given."""
-    own = {name: getattr(dense, name) for name, _ in Buffers.kind.fields}
+    own = {name: array for name, array in dense.arrays().items() if name not in dense.sizes}
     found = nodes(mechanism)
     return SparseBuffers(**{**own, **tables(found, mechanism, model)})
 
@@ -298,7 +301,6 @@ def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]
         **{name: np.zeros(n_w) for name in ("pull", "pull0")},
         "real_d": np.zeros(N),
         "value": np.zeros(n_entries, complex),
-        "made": np.zeros(4),
         "rate0": np.zeros(m),
         "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),
