@@ -38,11 +38,12 @@ GUESS = 4.0  # of the bends seen at its ends: what is taken for a bound where th
 
 
 @internal
-def stays(f0, r0, f1, r1, L, M, length, kink):
-    """Whether f cannot reach zero between two ends where it is positive, with the rates r.
+def stays(start, end, bounds, length, kink):
+    """Whether f cannot reach zero between two ends where it is positive: f and its rate at each.
 
-    L < 0: no bounds are known; what is seen of f'' is taken for one, enlarged.
+    bounds: L, M.  L < 0: none are known; what is seen of f'' is taken for one, enlarged.
     """
+    (f0, r0), (f1, r1), (L, M) = start, end, bounds
     if L >= 0.0 and f0 + f1 > L * length:
         return True
     # the least f'' with which these ends go together
@@ -141,7 +142,7 @@ def fall(s, r, b, setting, c, way, start, end):
         if high == 1.0:
             g1, rate = b.gap1[c, 0], b.gap1[c, 1]
         f1, r1, length = sign * g1, sign * rate, (high - low) * b.h
-        L, M = spread(s, r, b, c, sign, low, high)
+        L, M = spread(s, r, b, c, sign, (low, high))
         short = high - low < FINEST or (
             hides(s, r, setting, c, M, length) and not through(f0, f1, L, length, s.kink[c])
         )
@@ -151,7 +152,7 @@ def fall(s, r, b, setting, c, way, start, end):
                 return bracketed_root(s, r, b, c, (at_low, sign * f_at_low), (high, g1))
         elif short or (
             (M >= 0.0 or high - low <= PART)
-            and stays(f0 + beyond, r0, f1 + beyond, r1, L, M, length, s.kink[c])
+            and stays((f0 + beyond, r0), (f1 + beyond, r1), (L, M), length, s.kink[c])
         ):
             if high >= end:
                 return NONE
@@ -184,7 +185,7 @@ def leaves(s, r, b, setting, c, way, start, end):
         if rate > 0.0 or trial == 0:
             reach, M = end, inf
             for _ in range(HALVINGS):
-                L, M = spread(s, r, b, c, sign, at, reach)
+                L, M = spread(s, r, b, c, sign, (at, reach))
                 # not as far as to its other branch: bounds hold on one
                 if inf > M and not f0 + L * (reach - at) * b.h > s.kink[c]:
                     break
@@ -243,8 +244,8 @@ def may_change(s, r, b, c, stages):
     f1, r1 = sign * b.gap1[c, 0], sign * b.gap1[c, 1]
     if f1 <= 0.0 or stages == 0:
         return True
-    L, M = spread_at_stages(s, r, b, c, sign)
-    return not stays(max(f0, 0.0), r0, f1, r1, L, M, b.h, s.kink[c])
+    bounds = spread_at_stages(s, r, b, c, sign)
+    return not stays((max(f0, 0.0), r0), (f1, r1), bounds, b.h, s.kink[c])
 
 
 @internal

@@ -90,7 +90,7 @@ def between(s, r, b, setting, method, ahead):
     ahead: samples that are newer than the later of them.
     """
     share, now, last = setting.missed, r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
-    b.found[0], b.laid[0] = 0.0, NOT_LAID
+    b.n_found, b.laid = 0, NOT_LAID
     inner = max(ENDS - r.n_samples, 1)
     last_one = r.sampled[r.newest] >= setting.t_end
     plain = length(r, b, ahead) * r.steps >= TINY * b.t
@@ -104,9 +104,9 @@ def between(s, r, b, setting, method, ahead):
         high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
         beyond = b.bound[1, c]
         above, below = max(now[c], last[c]), min(now[c], last[c])
-        for k in range(int(b.found[0])):
+        for k in range(b.n_found):
             above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
-        beyond += above - below if b.found[0] > 0.0 else 0.0
+        beyond += above - below if b.n_found > 0 else 0.0
         if above + beyond <= high and below - beyond >= low:
             continue
         enough = share * max(high - low, SMALL * r.largest[s.kin[c]] / s.lever[c])
@@ -114,19 +114,19 @@ def between(s, r, b, setting, method, ahead):
         falls = low > s.least[c] and below - beyond < low - enough
         if not (rises or falls):
             continue
-        if b.found[0] == 0.0 or (ready(r, b, ahead) and b.found[0] <= POINTS - 2):
+        if b.n_found == 0 or (ready(r, b, ahead) and b.n_found <= POINTS - 2):
             up, down = reached(s, r, b, ahead, c, enough)
             rises, falls = rises and up, falls and down
             if not (rises or falls):
                 continue
         if not ready(r, b, ahead):
-            if b.found[0] == 0.0:
+            if b.n_found == 0:
                 guess(s, r, b, method, ahead, inner)
             up, down = guessed(s, r, b, ahead, c)
             rises, falls = rises and up, falls and down
             if not (rises or falls):
                 continue
-            b.found[0], b.laid[0] = 0.0, NOT_LAID
+            b.n_found, b.laid = 0, NOT_LAID
             look_within(s, r, b, method, ahead, inner)
         if rises:
             search(s, r, b, method, ahead, c, 1.0, enough)
@@ -196,7 +196,7 @@ def search(s, r, b, method, ahead, c, sign, enough):
         if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
             extreme(r, o, place, sign * said, b.firm[0])
             break
-        if int(b.found[0]) + 1 >= b.found.size:
+        if b.n_found >= b.found.size:
             break
         look(s, r, b, method, ahead, place)
 
@@ -211,12 +211,12 @@ def look(s, r, b, method, ahead, place):
             build_earlier(s, r, b, method)
         else:
             build(s, r, b, method)
-    k, t = int(b.found[0]), step[2]
+    k, t = b.n_found, step[2]
     place = min(place, t + h)
     measure_in(s, r, b, step, place, (place - t) / h)
     gather(s, b.full, s.out, b.inside[k])
     known_extremes(s, r, b, place)
-    b.found[0], b.found[1 + k] = k + 1.0, place
+    b.n_found, b.found[k] = k + 1, place
 
 
 @internal
@@ -243,4 +243,4 @@ def guess(s, r, b, method, ahead, inner):
         evaluate_inside(s, r, t + u * h, b.y2, b.rough[0], b.rough[1])
         measure(s, t + u * h, b.y2, work + u * done, r.energy_0)
         gather(s, b.full, s.out, b.inside[i])
-        b.found[0], b.found[1 + i] = i + 1.0, t + u * h
+        b.n_found, b.found[i] = i + 1, t + u * h

@@ -80,7 +80,7 @@ def doubt(b, n, surer):
     """
     slope, size = b.node[2], b.node[4]
     b.doubt = surer * abs(slope[n - 1])
-    if n < ENOUGH or b.found[0] > 0.0:
+    if n < ENOUGH or b.n_found > 0:
         return
     third, second = abs(slope[n - 3]) * size[n - 3], abs(slope[n - 2]) * size[n - 2]
     last = abs(slope[n - 1]) * size[n - 1]

@@ -243,7 +243,7 @@ class Buffers(Packed):
     firm: A1  # (2) the least pivot of rows where channels were measured last, and at the step's end
     row_firm: A1  # (n) the same of every output row
     inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
-    found: A1  # (1 + FOUND) how often, and when
+    found: A1  # (FOUND) when, see `n_found`
     node: A2  # (5, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), factors
     along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
@@ -273,7 +273,8 @@ class Buffers(Packed):
     interpolate: I8  # address of what evaluates the dense output
     built: I8  # 1: P holds it
     moved: I8  # 1: the end of the step was moved on along its tangent
-    laid: I8  # how many places were found when a lattice was laid
+    n_found: I8  # places between two samples that were looked at                peaks.py
+    laid: I8  # how many there were when a lattice was laid
 
 
 SETTINGS, RECORD, BUFFERS = Settings.kind, Record.kind, Buffers.kind
@@ -308,7 +309,7 @@ def fresh_buffers(
         firm=np.ones(2),
         row_firm=np.ones(max(1024, 2 * step_rows + 16)),
         inside=np.zeros((FOUND, len(model.kin))),
-        found=np.zeros(1 + FOUND),
+        found=np.zeros(FOUND),
         node=np.zeros((5, POINTS)),
         along=np.zeros(1 + PARTS),
         lattice=np.zeros((POINTS, 1 + PARTS)),

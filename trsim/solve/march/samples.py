@@ -150,11 +150,11 @@ def firmness(s):
 @internal
 def nodes(r, b, ahead):
     """Fill the times of b.node for polynomials between two neighbours; how many there are."""
-    times, found = b.node[0], int(b.found[0])
+    times, found = b.node[0], b.n_found
     n = min(r.n_samples + found, POINTS)
     times[0], times[1] = r.sampled[older(r, ahead)], r.sampled[older(r, ahead + 1)]
     for k in range(2, min(2 + found, n)):
-        times[k] = b.found[k - 1]
+        times[k] = b.found[k - 2]
     for k in range(2 + found, n):
         times[k] = r.sampled[other(r, ahead, k - found)]
     return n
@@ -211,8 +211,8 @@ def known_place(b, start, end, place):
     near = NEAR * (end - start)
     if place - start < near or end - place < near:
         return True
-    for k in range(int(b.found[0])):  # noqa: SIM110 - a generator does not compile
-        if abs(b.found[1 + k] - place) < near:
+    for k in range(b.n_found):  # noqa: SIM110 - a generator does not compile
+        if abs(b.found[k] - place) < near:
             return True
     return False
 
@@ -221,8 +221,8 @@ def known_place(b, start, end, place):
 def aside(b, start, end, place):
     """A place away from one that is known, towards the further of the two known ones next to it."""
     near, low, high = NEAR * (end - start), start, end
-    for k in range(int(b.found[0])):
-        x = b.found[1 + k]
+    for k in range(b.n_found):
+        x = b.found[k]
         low = x if low < x < place - near else low
         high = x if place + near < x < high else high
     return place + AWAY * ((high if high - place > place - low else low) - place)
@@ -235,7 +235,7 @@ def through(r, b, ahead, c, sign):
     The last node is what the polynomial may do without.  Where more was found than it can go
     through, it goes through the places around the best one, the two next to it first.
     """
-    found, values, slope = int(b.found[0]), b.node[1], b.node[2]
+    found, values, slope = b.n_found, b.node[1], b.node[2]
     end, start = older(r, ahead), older(r, ahead + 1)
     if found > POINTS - 2:
         values[0], values[1] = sign * r.sample[end, c], sign * r.sample[start, c]
@@ -288,15 +288,15 @@ def around_best(b, found, c, sign):
     place, best = (end, last) if last > first else (start, first)
     for k in range(found):
         if sign * b.inside[k, c] > best:
-            place, best = b.found[1 + k], sign * b.inside[k, c]
+            place, best = b.found[k], sign * b.inside[k, c]
     low, high = start, end
     for k in range(found):
-        x = b.found[1 + k]
+        x = b.found[k]
         low = x if low < x < place else low
         high = x if place < x < high else high
     n = 0
     for k in range(-2, found):
-        x = end if k == -2 else start if k == -1 else b.found[1 + k]
+        x = end if k == -2 else start if k == -1 else b.found[k]
         value = last if k == -2 else first if k == -1 else sign * b.inside[k, c]
         # those of the interval first, then the others by their distance to its middle
         at = min(n, POINTS)

@@ -163,7 +163,7 @@ def first_corner(s, r, b, setting):
         for k in range(s.sensed.shape[0]):
             kind = s.sensed[k, KIND]
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
-            L, M = spread_of(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, low, high)
+            L, M = spread_of(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
             see(s, b, k, L, M, length)
             depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
             if kind == ANGLE:

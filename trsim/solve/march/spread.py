@@ -187,26 +187,26 @@ def apart(s, b, n, i, j, first_j, length):
 
 
 @internal
-def spread(s, r, b, c, sign, low, high):
-    """Bounds L of |g'| and M of -sign g'' on a part of the step, of entry c.
+def spread(s, r, b, c, sign, part):
+    """Bounds L of |g'| and M of -sign g'' on a part of the step, from theta to theta, of entry c.
 
     The poses are those of one end of the part.  Both are negative where there are none.
     """
-    return spread_of(s, r, b, s.travel[c], sign, low, high)
+    return spread_of(s, r, b, s.travel[c], sign, part)
 
 
 @internal
-def spread_of(s, r, b, what, sign, low, high):
+def spread_of(s, r, b, what, sign, part):
     """`spread` of a quantity: its kind, and the instance between whose frames and points it is."""
     kind, e = what[0], what[1]
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:
         return 1.0, 0.0
-    i, j, length = s.con[e, I], s.con[e, J], (high - low) * b.h
+    i, j, length = s.con[e, I], s.con[e, J], (part[1] - part[0]) * b.h
     n = r.degree + 1
     first_j = fill_curve(s, b, n, i, 0)
-    cut(b.curve, n, fill_curve(s, b, n, j, first_j), low, high)
+    cut(b.curve, n, fill_curve(s, b, n, j, first_j), part[0], part[1])
     of_i, of_j = turning(s, r, b, i, 0, length), turning(s, r, b, j, first_j, length)
     if kind == ANGLE:
         return of_angle(of_i, of_j)

@@ -82,8 +82,8 @@ def may_cross(s, r, b, k, stages):
         return False
     if stages == 0:
         return True
-    L, M = spread_at_stages(s, r, b, c, side)
-    return not stays(f0 + band, r0, f1 + band, r1, L, M, b.h, s.kink[c])
+    bounds = spread_at_stages(s, r, b, c, side)
+    return not stays((f0 + band, r0), (f1 + band, r1), bounds, b.h, s.kink[c])
 
 
 @internal

@@ -125,13 +125,20 @@ def assembled(s, r, b, mu):
 
 
 @internal
-def multipliers(s, r, b, part, rates, x, places, y, a, c):
-    """b.mu[part] <- S^-1 (rates + B x - (a places - c y)), its real or its imaginary part."""
-    mu = b.mu[part]
+def multipliers(s, r, b, sides, mu, parts):
+    """b.mu <- S^-1 (u + i w + B (x + i y) - mu (p + i q)), x and y in b.slope.
+
+    parts: 1 where there is no imaginary one.
+    """
+    _, _, p, q, u, w = sides
+    clear(b.mu[1])
     for j in range(s.m):
-        mu[j] = rates[j] - (a * places[j] - c * y[j])
-    add_product(s, r.at_rows, 1.0, x, mu)
-    substitute(s, b.schur, mu)
+        b.mu[0, j] = u[j] - (mu.real * p[j] - mu.imag * q[j])
+        if parts > 1:
+            b.mu[1, j] = w[j] - (mu.real * q[j] + mu.imag * p[j])
+    for part in range(parts):
+        add_product(s, r.at_rows, 1.0, b.slope[part], b.mu[part])
+        substitute(s, b.schur, b.mu[part])
 
 
 @internal
@@ -142,10 +149,12 @@ def with_states(s, r, b, rates, f, sign):
 
 
 @internal
-def loaded(s, r, b, f, x, y, a, c, side):
-    """side <- rows of w of f + Re((a + i c) M u) - (f_v, g_v) x, u = x + i y, in rank order."""
-    n_w = active(s)
-    for i in range(n_w):
+def loaded(s, r, b, part, f, mu):
+    """b.side[part] <- rows of w of f + the part of mu M (x + i y) - (f_v, g_v) times that of
+    (x + i y), in rank order; x and y in b.move."""
+    x, y, side = b.move[part], b.move[1 - part], b.side[part]
+    a, c = mu.real, mu.imag if part == 0 else -mu.imag
+    for i in range(active(s)):
         side[b.rank[i]] = f[w_index(s, i)]
     u, weighed = b.pull, b.pull0
     for k in range(s.n_v):
@@ -175,11 +184,7 @@ def solved(s, r, b, sides, mu, held):
         x[k], y[k] = twisted(s, r, k, f), twisted(s, r, k, g)
     with_states(s, r, b, u, f, 1.0)
     with_states(s, r, b, w, g, 1.0)
-    multipliers(s, r, b, 0, u, x, p, q, a, c)
-    if c != 0.0:
-        multipliers(s, r, b, 1, w, y, q, p, a, -c)
-    else:
-        clear(b.mu[1])
+    multipliers(s, r, b, sides, mu, 2 if c != 0.0 else 1)
     with_states(s, r, b, u, f, -1.0)
     with_states(s, r, b, w, g, -1.0)
     dx, dy = b.move[0], b.move[1]  # u = r_x - M^-1 B^T dmu for now
@@ -188,8 +193,8 @@ def solved(s, r, b, sides, mu, held):
     across(s, r.at_rows, b.across, b.mu[0], dx)
     if c != 0.0:
         across(s, r.at_rows, b.across, b.mu[1], dy)
-        loaded(s, r, b, g, dy, dx, a, -c, b.side[1])
-    loaded(s, r, b, f, dx, dy, a, c, b.side[0])
+        loaded(s, r, b, 1, g, mu)
+    loaded(s, r, b, 0, f, mu)
     for j in range(s.m):
         b.side[0, b.rank[n_w + j]], b.side[1, b.rank[n_w + j]] = p[j], q[j]
     if c == 0.0:
@@ -217,16 +222,15 @@ def corrected_multipliers(s, r, b, sides, mu, held):
     """u + i w <- dmu of the velocities as found; p + i q <- dlam with what that changes."""
     _, _, p, q, u, w = sides
     a, c = mu.real, mu.imag
-    n_w, x, y = active(s), b.slope[0], b.slope[1]
+    n_w, parts = active(s), 2 if c != 0.0 else 1
     for j in range(s.m):
         k = b.rank[n_w + j]
         p[j] = b.side[0, k] + a * b.mu[0, j] - c * b.mu[1, j]
         q[j] = b.side[1, k] + a * b.mu[1, j] + c * b.mu[0, j]
     add_product(s, r.at_turn, -held, b.move[0], u)
-    multipliers(s, r, b, 0, u, x, u, w, 0.0, 0.0)
-    if c != 0.0:
+    if parts > 1:
         add_product(s, r.at_turn, -held, b.move[1], w)
-        multipliers(s, r, b, 1, w, y, u, w, 0.0, 0.0)
+    multipliers(s, r, b, sides, complex(0.0, 0.0), parts)
     for j in range(s.m):
         u[j], w[j] = b.mu[0, j], b.mu[1, j]
         p[j] -= a * u[j] - c * w[j]
