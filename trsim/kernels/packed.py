@@ -25,8 +25,10 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     import numpy as np
     from numpy.typing import NDArray
 
-    f8 = F8 = float
-    i8 = I8 = int
+    f8 = float
+    F8 = float
+    i8 = int
+    I8 = int
     A1 = NDArray[np.float64]
     C1 = NDArray[np.complex128]
     C2 = NDArray[np.complex128]
