@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.elements.contract import compiled
-from trsim.kernels.packed import A1, F8, I1, I8, Packed, f8
+from trsim.kernels.packed import A1, C1, C2, F8, I1, I8, Packed, f8
 from trsim.kernels.signatures import float64, void
 
 
@@ -23,6 +23,21 @@ class Alarm(Clock):
 
     at: F8
     rings: I8
+
+
+class Waves(Packed):
+    """Complex numbers."""
+
+    A: C2
+    x: C1
+
+
+@compiled(void(Waves.kind, C1))
+def turned(w, out):
+    for i in range(w.x.size):
+        out[i] = complex(w.A[i, 0].imag, 0.0)
+        for k in range(w.x.size):
+            out[i] += w.A[i, k] * w.x[k]
 
 
 @compiled(float64(Clock.kind, f8))
@@ -86,6 +101,14 @@ def test_those_of_a_record_made_of_another():
     assert not hasattr(other, "rings")
     with pytest.raises(TypeError, match="clock: 2 numbers instead of 3"):
         fresh(Alarm, clock=other.clock)
+
+
+def test_complex_arrays():
+    rng = np.random.default_rng(1)
+    A, x = rng.normal(size=(3, 3, 2)).view(complex)[..., 0], rng.normal(size=6).view(complex)
+    out = np.empty(3, complex)
+    turned(Waves(A=A, x=x), out)
+    assert out == pytest.approx(A[:, 0].imag + A @ x, rel=1e-14)
 
 
 @pytest.mark.parametrize(

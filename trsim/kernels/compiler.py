@@ -122,12 +122,14 @@ class PackedType(types.Type):
         self.fields = tuple((field, numba_type(inner)) for field, inner in kind.fields)
         self.columns = tuple(inner.columns for _, inner in kind.fields)
         self.index = {field: k for k, (field, _) in enumerate(self.fields)}
-        # a number that changes: its array among the fields, and which of its entries
+        # a number that changes: place of its array, and which of its entries
         self.entries = {name: (self.index[holder], k) for name, holder, k in kind.entries}
         listed = ",".join(f"{field}:{inner.name}" for field, inner in kind.fields)
         listed += "".join(f",{name}={holder}[{k}]" for name, holder, k in kind.entries)
         digest = hashlib.sha256(listed.encode()).hexdigest()[:8]  # it stands in every symbol
         super().__init__(name=f"{kind.name}_{digest}")
+        self.types = dict(self.fields)
+        self.types |= {name: self.types[holder].dtype for name, holder, _ in kind.entries}
 
 
 @register_model(PackedType)
@@ -145,9 +147,7 @@ class PackedAttribute(AttributeTemplate):
     key = PackedType
 
     def generic_resolve(self, typ: PackedType, attr: str) -> types.Type | None:
-        if attr in typ.entries:
-            return typ.fields[typ.entries[attr][0]][1].dtype
-        return typ.fields[typ.index[attr]][1] if attr in typ.index else None
+        return typ.types.get(attr)
 
 
 def _word(builder: Any, value: Any, k: int) -> Any:
@@ -162,8 +162,8 @@ def _word(builder: Any, value: Any, k: int) -> Any:
 def _entry(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
     """Where a number that changes is."""
     place, k = typ.entries[attr]
-    number = context.get_data_type(typ.fields[place][1].dtype)
-    array = builder.inttoptr(_word(builder, value, WORDS * place), ir.PointerType(number))
+    number = ir.PointerType(context.get_data_type(typ.types[attr]))
+    array = builder.inttoptr(_word(builder, value, WORDS * place), number)
     return builder.gep(array, [ir.Constant(ir.IntType(64), k)])
 
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections import Counter
+from operator import setitem
 from typing import TYPE_CHECKING, Any
 
 from trsim.kernels.lazy import PYTHON
@@ -114,9 +115,7 @@ class Packed:
             if like is not None:
                 self._share(like, words)
             else:
-                kinds = dict(self.kind.fields)
-                zeros = {h: np.zeros(n, kinds[h].dtype) for h, n in self.sizes.items()}
-                values = zeros | values
+                values = {name: np.zeros(n) for name, n in self.sizes.items()} | values
             self._make(room or {}, words)
             for name, value in values.items():
                 self._take(name, value, words)
@@ -182,14 +181,10 @@ class Packed:
 
 def _entry(holder: str, k: int) -> property:
     """A number that changes, for Python."""
-
-    def read(self: Packed) -> Any:
-        return getattr(self, holder)[k]
-
-    def write(self: Packed, value: float) -> None:
-        getattr(self, holder)[k] = value
-
-    return property(read, write)
+    return property(
+        lambda record: getattr(record, holder)[k],
+        lambda record, value: setitem(getattr(record, holder), k, value),
+    )
 
 
 def _fits(value: Any, kind: Kind) -> bool:

@@ -225,8 +225,7 @@ def new_record(
     model.branch[:] = begun.branch
     record = Record(
         y=begun.y.copy(),
-        yd=np.zeros_like(begun.y),
-        noise=np.zeros_like(begun.y),
+        **{name: np.zeros_like(begun.y) for name in ("yd", "noise", "crossed")},
         mem=model.mem,
         branch=model.branch,
         turning=np.zeros_like(model.branch),
@@ -239,13 +238,11 @@ def new_record(
         earlier=np.zeros((4 if len(model.kin) else 0, begun.y.size)),
         stages=np.zeros((rows if len(model.kin) else 0, begun.y.size)),
         largest=np.zeros(len(model.kin)),
-        sample=np.zeros((rec.POINTS, len(model.kin))),
-        slope=np.zeros((rec.POINTS, len(model.kin))),
+        **{name: np.zeros((rec.POINTS, len(model.kin))) for name in ("sample", "slope")},
         impact=begun.depth.copy(),
         by_place=np.zeros((n_w, n_v)),
-        by_rate=np.zeros((n_w, n_w)),
         stale=np.zeros(model.n, np.int64),
-        lu=np.zeros((n_w, n_w)),
+        **{name: np.zeros((n_w, n_w)) for name in ("by_rate", "lu")},
         lu_pair=np.zeros((n_w, n_w), complex),
         pivot=np.zeros((2, n_w), np.int64),
         past=np.zeros((past_rows, begun.y.size)),
@@ -259,7 +256,6 @@ def new_record(
         jolt=np.zeros((rec.JOLTS_KEPT, 5)),
         passed=np.zeros((passes, 2 + 2 * begun.y.size + len(model.branch))),
         meeting=np.zeros((rec.MEETINGS_KEPT if passes else 0, begun.y.size)),
-        crossed=np.zeros_like(begun.y),
         swing=np.zeros((2, model.n_v + model.n_z - N_BOOK)),
         worked=np.zeros((2, N_WORKED)),
     )

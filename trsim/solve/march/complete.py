@@ -147,7 +147,9 @@ def complete(s, r, b, setting, method):
             call_sample(method[SAMPLE_AT], s, r, b, setting, method, row[0], row[1:])
     if unseen:
         for k in range(1, LOOKS):
-            look_inside(s, r, b, setting, method, b.t + k / LOOKS * (t1 - b.t))
+            at = b.t + k / LOOKS * (t1 - b.t)
+            measure_inside(s, r, b, at, (at - b.t) / b.h)
+            call_sample(method[SAMPLE_AT], s, r, b, setting, method, at, s.out)
     b.firm[0] = b.firm[1]
     call_sample(method[SAMPLE_AT], s, r, b, setting, method, t1, b.out)
     if event or corner or last_of_its_kind(s, r, b, setting, method):
@@ -311,13 +313,6 @@ def last_of_its_kind(s, r, b, setting, method):
     if setting.locate == 0 and s.contact.size > 0:  # `latch` changes them in any step
         return True
     return method[MEET_AT] > 0 and b.t1 >= next_instant(s, b.t, setting.t_end)
-
-
-@internal
-def look_inside(s, r, b, setting, method, at):
-    """A sample inside the step, for the extremes."""
-    measure_inside(s, r, b, at, (at - b.t) / b.h)
-    call_sample(method[SAMPLE_AT], s, r, b, setting, method, at, s.out)
 
 
 @internal

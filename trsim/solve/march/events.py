@@ -88,16 +88,21 @@ def inside(s, r, b, c, theta):
     poses(s, b.y2)
     t = b.t + theta * b.h
     if c >= s.contact.size:
-        entry, value = s.watch[c - s.contact.size, 0], s.watch_at[c - s.contact.size, 0]
-        if entry <= LIMITS:
-            call_one(s, s.gaps, t, LIMITS - entry)
-            return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]
-        if entry < 0:
-            return t - value, 1.0
-        return s.S[entry, 0] - value, s.S[entry, 1]
-    e = s.contact[c]
-    call_one(s, s.gaps, t, e)
-    return s.gap[e, 0], s.gap[e, 1]
+        return watched(s, t, c - s.contact.size)
+    call_one(s, s.gaps, t, s.contact[c])
+    return s.gap[s.contact[c], 0], s.gap[s.contact[c], 1]
+
+
+@internal
+def watched(s, t, k):
+    """The k-th user event: what it looks at less its value, and the rate, at the scene's poses."""
+    entry, value = s.watch[k, 0], s.watch_at[k, 0]
+    if entry <= LIMITS:
+        call_one(s, s.gaps, t, LIMITS - entry)
+        return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]
+    if entry < 0:
+        return t - value, 1.0
+    return s.S[entry, 0] - value, s.S[entry, 1]
 
 
 @internal
@@ -142,7 +147,7 @@ def fall(s, r, b, setting, c, way, start, end):
         if high == 1.0:
             g1, rate = b.gap1[c, 0], b.gap1[c, 1]
         f1, r1, length = sign * g1, sign * rate, (high - low) * b.h
-        L, M = spread(s, r, b, c, sign, (low, high))
+        L, M = spread(s, r, b, s.travel[c], sign, (low, high))
         short = high - low < FINEST or (
             hides(s, r, setting, c, M, length) and not through(f0, f1, L, length, s.kink[c])
         )
@@ -185,7 +190,7 @@ def leaves(s, r, b, setting, c, way, start, end):
         if rate > 0.0 or trial == 0:
             reach, M = end, inf
             for _ in range(HALVINGS):
-                L, M = spread(s, r, b, c, sign, (at, reach))
+                L, M = spread(s, r, b, s.travel[c], sign, (at, reach))
                 # not as far as to its other branch: bounds hold on one
                 if inf > M and not f0 + L * (reach - at) * b.h > s.kink[c]:
                     break
@@ -244,7 +249,7 @@ def may_change(s, r, b, c, stages):
     f1, r1 = sign * b.gap1[c, 0], sign * b.gap1[c, 1]
     if f1 <= 0.0 or stages == 0:
         return True
-    bounds = spread_at_stages(s, r, b, c, sign)
+    bounds = spread_at_stages(s, r, b, s.travel[c], sign)
     return not stays((max(f0, 0.0), r0), (f1, r1), bounds, b.h, s.kink[c])
 
 

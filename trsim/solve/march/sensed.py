@@ -64,7 +64,7 @@ from trsim.solve.march.dense_output import build
 from trsim.solve.march.features import keep, other_side
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
-from trsim.solve.march.spread import fill_net, spread_of, spread_of_stages
+from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 
 NONE, UNCERTAIN = 2.0, 3.0  # no corner in the step; a step too long to be certain
 SAME = 1e-12  # of a step: corners nearer to each other are met at once
@@ -100,7 +100,7 @@ def corners_ahead(s, r, b, setting, method):
     if b.built == 0 and method[STAGES_AT] > 0:
         for k in range(s.sensed.shape[0]):
             what = (s.sensed[k, KIND], s.sensed[k, INSTANCE])
-            L, M = spread_of_stages(s, r, b, what, 1.0)
+            L, M = spread_at_stages(s, r, b, what, 1.0)
             see(s, b, k, L, M, b.h)
         if verdict(s, b, b.t, b.t + b.h) == CLEAR:
             return NONE
@@ -163,7 +163,7 @@ def first_corner(s, r, b, setting):
         for k in range(s.sensed.shape[0]):
             kind = s.sensed[k, KIND]
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
-            L, M = spread_of(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
+            L, M = spread(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
             see(s, b, k, L, M, length)
             depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
             if kind == ANGLE:

@@ -187,17 +187,12 @@ def apart(s, b, n, i, j, first_j, length):
 
 
 @internal
-def spread(s, r, b, c, sign, part):
-    """Bounds L of |g'| and M of -sign g'' on a part of the step, from theta to theta, of entry c.
+def spread(s, r, b, what, sign, part):
+    """Bounds L of |g'| and M of -sign g'' on a part of the step, from theta to theta.
 
-    The poses are those of one end of the part.  Both are negative where there are none.
+    what: the kind of the quantity, and the instance between whose frames and points it is.  The
+    poses are those of one end of the part.  Both are negative where there are none.
     """
-    return spread_of(s, r, b, s.travel[c], sign, part)
-
-
-@internal
-def spread_of(s, r, b, what, sign, part):
-    """`spread` of a quantity: its kind, and the instance between whose frames and points it is."""
     kind, e = what[0], what[1]
     if kind == UNKNOWN:
         return -1.0, -1.0
@@ -362,14 +357,8 @@ def slack_of(s, b, f, p, motion):
 
 
 @internal
-def spread_at_stages(s, r, b, c, sign):
+def spread_at_stages(s, r, b, what, sign):
     """`spread` over the whole step, from its stages; the poses are those of its end."""
-    return spread_of_stages(s, r, b, s.travel[c], sign)
-
-
-@internal
-def spread_of_stages(s, r, b, what, sign):
-    """`spread_at_stages` of a quantity, see `spread_of`."""
     kind, e = what[0], what[1]
     if kind == UNKNOWN:
         return -1.0, -1.0

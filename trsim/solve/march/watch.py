@@ -9,11 +9,9 @@ turns the motion round or stops it there, and not where g touches the value and 
 In the tables of gaps and of roots the watched sensors follow the contacts.
 """
 
-from trsim.assemble.equations import call_one
-from trsim.assemble.switches import LIMITS
 from trsim.assemble.travel import CLOCK
 from trsim.kernels.vectors import internal
-from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays
+from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched
 from trsim.solve.march.record import JUST_NOW, SIDE, TIMES
 from trsim.solve.march.spread import spread_at_stages
 
@@ -26,18 +24,8 @@ PASSED = 1000  # crossings in the other direction that one step may have
 @internal
 def watch(s, t, gap):
     """Put g and its rate into the last rows of a table of gaps, at the poses of the scene."""
-    first = s.contact.size
     for k in range(s.watch.shape[0]):
-        entry = s.watch[k, ENTRY]
-        if entry <= LIMITS:
-            call_one(s, s.gaps, t, LIMITS - entry)
-            gap[first + k, 0] = s.gap[LIMITS - entry, 0]
-            gap[first + k, 1] = s.gap[LIMITS - entry, 1]
-        elif entry < 0:
-            gap[first + k, 0], gap[first + k, 1] = t - s.watch_at[k, VALUE], 1.0
-        else:
-            gap[first + k, 0] = s.S[entry, 0] - s.watch_at[k, VALUE]
-            gap[first + k, 1] = s.S[entry, 1]
+        gap[s.contact.size + k, 0], gap[s.contact.size + k, 1] = watched(s, t, k)
 
 
 @internal
@@ -70,19 +58,15 @@ def may_cross(s, r, b, k, stages):
     if r.watch[k, TIMES] >= s.watch[k, MOST]:
         return False
     side, band = starting_side(r, c, k), s.watch_at[k, BAND]
-    f0, r0, f1, r1 = (
-        side * r.gap[c, 0],
-        side * r.gap[c, 1],
-        side * b.gap1[c, 0],
-        side * b.gap1[c, 1],
-    )
+    f0, r0 = side * r.gap[c, 0], side * r.gap[c, 1]
+    f1, r1 = side * b.gap1[c, 0], side * b.gap1[c, 1]
     if f1 < 0.0 or (f1 == 0.0 and r1 < 0.0):
         return r.watch[k, SIDE] != AT or -f1 > band
     if s.travel[c, 0] == CLOCK:
         return False
     if stages == 0:
         return True
-    bounds = spread_at_stages(s, r, b, c, side)
+    bounds = spread_at_stages(s, r, b, s.travel[c], side)
     return not stays((f0 + band, r0), (f1 + band, r1), bounds, b.h, s.kink[c])
 
 
