@@ -31,7 +31,7 @@ def test_what_stays_stiff_stays_implicit():
     r = run(DAMPED.format(force="200*t", end=1, more=""))
     taken, given_back = changes(r)
     assert len(taken) == 1 and len(given_back) == 0
-    assert r.outcome.record.count[rec.METHOD] == IMPLICIT
+    assert r.outcome.record.method == IMPLICIT
 
 
 def test_it_is_given_back_where_steps_are_short_anyway():
@@ -41,7 +41,7 @@ def test_it_is_given_back_where_steps_are_short_anyway():
     taken, given_back = changes(r)
     assert taken[0] < 0.5
     assert len(given_back) >= 1 and 0.5 < given_back[0] < 0.51
-    assert r.outcome.record.count[rec.METHOD] == EXPLICIT
+    assert r.outcome.record.method == EXPLICIT
 
 
 @pytest.mark.parametrize("at", [0.4, 0.6])

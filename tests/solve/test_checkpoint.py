@@ -8,8 +8,6 @@ from trsim.assemble.assemble import assemble
 from trsim.elements.scene import scene
 from trsim.scenario.load import loads
 from trsim.solve import simulate as module
-from trsim.solve.march.record import KEPT as LAST_ROWS
-from trsim.solve.march.record import T
 from trsim.solve.simulate import simulate
 
 SPATIAL = (
@@ -96,13 +94,13 @@ def test_nothing_but_the_record_lasts(sets, monkeypatch):
     unbroken, outcome = blocks(sets)
 
     def forgetful(s, r, b, *rest):
-        if r.clock[T] > 0.0:
+        if r.t > 0.0:
             for name, array in scene(s).arrays().items():
                 if name not in KEPT:
                     getattr(s, name)[...] = array
             for array in b.arrays().values():
-                array[...] = np.nan
-            r.count[LAST_ROWS] = 0  # as of a run put back: what passes.py knows is in the scene
+                array[...] = 7 if array.dtype == int else np.nan
+            r.kept = 0  # as of a run put back: what passes.py knows is in the scene
         return march(s, r, b, *rest)
 
     march = module.march

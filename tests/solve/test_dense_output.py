@@ -18,10 +18,10 @@ from ..mechanisms import torsion_pendulum
 from ..runs import run
 
 
-@compiled(void(SCENE, rec.RECORD, rec.BUFFERS, I1, f8, f8))
-def built(s, r, b, method, t, h):
+@compiled(void(SCENE, rec.RECORD, rec.BUFFERS, I1))
+def built(s, r, b, method):
     """The dense output of the step at hand."""
-    build(s, r, b, method, t, h)
+    build(s, r, b, method)
 
 
 @compiled(void(SCENE, rec.RECORD, rec.BUFFERS, f8))
@@ -35,15 +35,16 @@ def test_dense_output_is_that_of_the_end_as_it_was(late):
     text, _ = torsion_pendulum(solver="end: 0.01, tolerance: 1e-8, method: dop853")
     ended = run(text)
     r, s = ended.outcome.record, scene(ended.mechanism.model)
-    setting, t, h = settings(ended.scenario, ended.mechanism), r.clock[rec.T], 0.02
+    setting, t, h = settings(ended.scenario, ended.mechanism), r.t, 0.02
     b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
     method = method_row(dense=dop853.dense.address(), last=dop853.LAST)
     b.weight[:] = 1.0
+    b.t, b.h = t, h
     derivative(s, t, r.y, b.K[0])
     dop853.step(s, r, b, setting, t, h)
     derivative(s, t + h, b.y1, b.K[dop853.LAST])
     end, rate = b.y1.copy(), b.K[dop853.LAST].copy()
-    built(s, r, b, method, t, h)
+    built(s, r, b, method)
     before = b.P.copy()
     assert np.abs(before).max() > 0.0
 
@@ -52,6 +53,6 @@ def test_dense_output_is_that_of_the_end_as_it_was(late):
     derivative(s, t + h - late, b.y1, b.K[dop853.LAST])
     there = b.K[dop853.LAST].copy()
     assert not np.array_equal(there, rate)
-    built(s, r, b, method, t, h)
+    built(s, r, b, method)
     np.testing.assert_array_equal(b.P, before)
     np.testing.assert_array_equal(b.K[dop853.LAST], there)

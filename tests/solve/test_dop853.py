@@ -14,6 +14,7 @@ from trsim.solve.march import record as rec
 from trsim.solve.march.accelerations import share
 from trsim.solve.march.calls import FIELDS, INTERPOLATE_AT, SAMPLE_AT, method_row
 from trsim.solve.march.norm import weights
+from trsim.solve.march.record import SETTINGS
 from trsim.solve.methods import dop853
 from trsim.solve.outcome import settings
 
@@ -36,7 +37,7 @@ def stage(K, y, h, s, out):
     dop853.stage(K, y, h, s, out)
 
 
-@compiled(types.void(SCENE, rec.RECORD, rec.BUFFERS, A1, f8))
+@compiled(types.void(SCENE, rec.RECORD, rec.BUFFERS, SETTINGS, f8))
 def weigh(s, r, b, setting, h):
     weights(s, r, b, setting, h)
 
@@ -83,13 +84,13 @@ def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z,
     setting, h = settings(ended.scenario, ended.mechanism), z / RATE
     b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
     r.y[:] = ended.outcome.start.y
-    r.clock[rec.T], r.clock[rec.GAIN] = 0.0, SLOW
-    r.clock[rec.VIBRATION], r.clock[rec.DECAY] = SLOW**2, RATE
+    r.t, r.top_acceleration = 0.0, SLOW
+    r.vibration, r.decay = SLOW**2, RATE
     derivative(s, 0.0, r.y, r.yd)
     weigh(s, r, b, setting, h)
     b.K[0] = r.yd
     estimate = dop853.step(s, r, b, setting, 0.0, h)
     missed = RATE * abs(b.y1[s.n_q + 1] - v * exp(-z))
-    allowed = setting[rec.TOLERANCE] * SLOW * share.python(setting, h)
+    allowed = setting.tolerance * SLOW * share.python(setting, h)
     assert missed > 10.0 * allowed  # so it must be refused
     assert estimate > 0.2 * missed / allowed

@@ -44,10 +44,10 @@ def tried(formulation, h, weight, again):
         b = ggl_tables.buffers(b, mechanism, mechanism.model)
     b.weight[:] = 0.0
     b.weight[s.n_q] = weight
-    derivative(s, r.clock[rec.T], r.y, r.yd)
-    r.count[rec.JACOBIAN], r.count[rec.HISTORY] = rec.NO_JACOBIAN, rec.NO_HISTORY
-    r.count[rec.AFTER_REJECTION] = again
-    assert method.step(s, r, b, setting, r.clock[rec.T], h) != radau.HALVE
+    derivative(s, r.t, r.y, r.yd)
+    r.jacobian, r.history = rec.NO_JACOBIAN, rec.NO_HISTORY
+    r.after_rejection = again
+    assert method.step(s, r, b, setting, r.t, h) != radau.HALVE
     return b.K[radau.F, s.n_q], r.y[s.n_q]
 
 

@@ -116,7 +116,7 @@ def ended(text, *sets):
 def test_the_ends_of_steps_are_on_the_constraints(text, sets):
     mechanism, outcome = ended(text, *sets, *GGL, "solver.tolerance=1e-9")
     s, y = scene(mechanism.model), outcome.record.y
-    t, yd = float(outcome.record.clock[rec.T]), np.zeros(len(outcome.record.y))
+    t, yd = float(outcome.record.t), np.zeros(len(outcome.record.y))
     derivative(s, t, y, yd)
     assert np.abs(s.phi).max() < 1e-14 * max(1.0, s.size)
     rates = jacobian(s, t, y)

@@ -53,7 +53,7 @@ def test_what_projection_gives_is_the_change_of_energy(planar, joint, z):
         y, yd, out = r.y.copy(), np.empty(r.y.size), np.empty(3)
         torn = rng.normal(size=model.n_q)
         y[: model.n_q] += 1e-6 * torn / np.linalg.norm(torn)
-        landed(s, r, b, r.clock[rec.T], y, yd, out)
+        landed(s, r, b, r.t, y, yd, out)
         before, given, after = out
         changes.append(after - before)
         # its forces, some 30 N, work along a micrometre; what is left out is of second order
@@ -74,8 +74,8 @@ def test_places_and_velocities_keep_to_the_rows(planar, joint, z, torn):
     for _ in range(5):
         y, yd, out = r.y.copy(), np.empty(r.y.size), np.empty(3)
         y[: model.n_q] += torn * rng.normal(size=model.n_q)
-        landed(s, r, b, r.clock[rec.T], y, yd, out)
-        derivative(s, r.clock[rec.T], y, yd)
+        landed(s, r, b, r.t, y, yd, out)
+        derivative(s, r.t, y, yd)
         assert np.abs(s.V).max() > 0.5
         assert project_velocities(s, y.copy()) < 1e-13 * np.abs(s.V).max()
-        assert np.abs(jacobian(model, r.clock[rec.T], y)[0]).max() < 1e-12 * model.size
+        assert np.abs(jacobian(model, r.t, y)[0]).max() < 1e-12 * model.size

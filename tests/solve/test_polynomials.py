@@ -47,7 +47,7 @@ class Drawn:
         self.times = np.array([0.7, 0.3, *rng.permutation(more)[: n - 2]])
         self.p = Polynomial(rng.normal(size=n))
         self.b.node[0, :n], self.b.node[1, :n] = self.times, self.p(self.times)
-        self.b.doubt[0] = 0.0
+        self.b.doubt = 0.0
         self.lattice = self.p(0.3 + 0.4 * np.arange(PARTS + 1) / PARTS)
         self.many = self.p(np.linspace(0.3, 0.7, 20_001))
         self.bend = np.abs(np.diff(self.lattice, 2)).max()
@@ -96,7 +96,7 @@ def test_doubt_is_on_top(seed, n):
     """What stands for the last divided difference adds to the top, as its product says."""
     one = Drawn(seed, n)
     doubted = Drawn(seed, n)
-    doubted.b.doubt[0] = 0.5
+    doubted.b.doubt = 0.5
     x = np.linspace(0.3, 0.7, 20_001)
     product = np.prod([x - t for t in one.times[: n - 1]], axis=0)
     many = one.many + 0.5 * np.abs(product)

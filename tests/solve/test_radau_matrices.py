@@ -9,11 +9,11 @@ import pytest
 from trsim.assemble.equations import derivative
 from trsim.elements.contract import BRANCH, CONTACT, PHASE, SCENE, WHOLE, compiled
 from trsim.elements.scene import scene
-from trsim.kernels.packed import A1
 from trsim.kernels.signatures import void
 from trsim.scenario.load import load
 from trsim.solve.march import record as rec
 from trsim.solve.march.norm import weights
+from trsim.solve.march.record import SETTINGS
 from trsim.solve.methods import radau
 from trsim.solve.outcome import settings
 
@@ -26,10 +26,10 @@ AT = 1e-6  # m/s: so near to a corner, whose speeds are 1e-4 and 1e-3
 SHORT = 1e-9  # s: a step that Newton's method cannot fail
 
 
-@compiled(void(SCENE, rec.RECORD, rec.BUFFERS, A1))
+@compiled(void(SCENE, rec.RECORD, rec.BUFFERS, SETTINGS))
 def weighed(s, r, b, setting):
     """The weights of the error norm at the state of the record."""
-    weights(s, r, b, setting, r.clock[rec.H])
+    weights(s, r, b, setting, r.h)
 
 
 class Stopped(NamedTuple):
@@ -42,7 +42,7 @@ class Stopped(NamedTuple):
 
     @property
     def t(self):
-        return self.record.clock[rec.T]
+        return self.record.t
 
     def step(self, h):
         """Try a step; returns its error."""
@@ -50,7 +50,7 @@ class Stopped(NamedTuple):
 
     def by_rate(self, state):
         """by_rate as a step makes it that finds the Jacobian in this state."""
-        self.record.count[rec.JACOBIAN] = state
+        self.record.jacobian = state
         assert self.step(SHORT) < radau.HALVE
         return self.record.by_rate.copy()
 
@@ -63,7 +63,7 @@ def stopped(steps):
     setting = settings(scenario, ended.mechanism)
     b = rec.fresh_buffers(s, r.y.size, radau.STAGES, radau.DENSE_ROWS, 16)
     weighed(s, r, b, setting)
-    derivative(s, r.clock[rec.T], r.y, r.yd)
+    derivative(s, r.t, r.y, r.yd)
     return Stopped(s, r, b, setting)
 
 
@@ -71,7 +71,7 @@ def stopped(steps):
 def to_corner():
     """Steps to a corner of friction, while Radau is at work."""
     for steps in range(LATER, LATER + 20):
-        if stopped(steps).record.count[rec.JACOBIAN] == rec.NO_RATES:
+        if stopped(steps).record.jacobian == rec.NO_RATES:
             return steps
     raise AssertionError("no corner in twenty steps of sticking and slipping")
 
@@ -101,7 +101,7 @@ def test_columns_of_those_bodies_are_all_that_a_branch_changes(at_corner):
     derivative(s, at_corner.t, r.y, r.yd)
     r.stale[s.con[e, :2]] = 1
     after = at_corner.by_rate(rec.NO_RATES)
-    assert r.count[rec.JACOBIAN] == rec.OLD
+    assert r.jacobian == rec.OLD
     assert not r.stale.any()
     whole = at_corner.by_rate(rec.NO_JACOBIAN)
     assert np.abs(whole - before).max() > 0.01 * np.abs(whole).max()
@@ -111,18 +111,18 @@ def test_columns_of_those_bodies_are_all_that_a_branch_changes(at_corner):
 def test_a_shorter_step_begins_on_the_longer_one(at_corner):
     """One or two iterations instead of more, to the same end."""
     r, b = at_corner.record, at_corner.buffers
-    r.count[rec.JACOBIAN], r.count[rec.HISTORY] = rec.NO_JACOBIAN, rec.NO_HISTORY
+    r.jacobian, r.history = rec.NO_JACOBIAN, rec.NO_HISTORY
     h = 3e-6
     assert at_corner.step(h) <= 1.0
-    assert r.count[rec.HISTORY] == rec.AHEAD
-    assert r.clock[rec.PAST_H] == h
+    assert r.history == rec.AHEAD
+    assert r.past_h == h
     found = []
     for history in (rec.AHEAD, rec.NO_HISTORY):
-        r.count[rec.HISTORY], r.clock[rec.CONTRACTION] = history, 1.0
-        kept, before = r.past.copy(), r.count[rec.ITERATIONS]
+        r.history, r.contraction = history, 1.0
+        kept, before = r.past.copy(), r.iterations
         at_corner.step(0.6 * h)
-        found.append((r.count[rec.ITERATIONS] - before, b.y1.copy()))
-        r.past[:], r.clock[rec.PAST_H] = kept, h
+        found.append((r.iterations - before, b.y1.copy()))
+        r.past[:], r.past_h = kept, h
     (few, end), (many, other) = found
     print(f"{few} iterations, {many} from nothing")
     assert few < many

@@ -5,7 +5,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from trsim.solve.diagnose.doubts import doubts
-from trsim.solve.march.record import ROUNDED_BY
 from trsim.solve.outcome import whose
 
 from ..linkages import four_bar
@@ -62,7 +61,7 @@ def test_a_needle(method, small):
     assert "angular velocity of 'rod'" in told and "larger tolerance" in told
     # the rod is where it must be, as nearly as is told; how it turned about itself nobody can say
     off = np.abs(2.0 * r["rod.position"][-1] - end_of_needle(r)).max()
-    told = r.outcome.record.clock[ROUNDED_BY]
+    told = r.outcome.record.rounded_by
     assert off < told < 1e-3
     assert off < 1e-7 or (method != "radau" and small == "1e-12")  # there chance makes up to 9e-7
 

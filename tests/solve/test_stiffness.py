@@ -12,8 +12,6 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from trsim.solve.march import record as rec
-
 from ..runs import run
 from ..sizes import size
 
@@ -129,11 +127,11 @@ def test_what_moves_on_together(method, damped, beside):
 def test_the_fastest_is_found(seed, damped):
     """w^2 and c are about the largest eigenvalues of M^-1 K and M^-1 C: never less by much."""
     text, (M, C, K), *_ = drawn(seed, damped)
-    clock = run(text, "solver.method=dop853").outcome.record.clock
+    r = run(text, "solver.method=dop853").outcome.record
     inverse = np.diag(1.0 / np.diag(M))
     ww, c = (np.linalg.eigvals(inverse @ X).max() for X in (K, C))
-    assert clock[rec.VIBRATION] == pytest.approx(ww, rel=0.1)
-    assert clock[rec.DECAY] == pytest.approx(c, rel=0.1, abs=1e-5 * np.sqrt(ww))  # by rounding
+    assert r.vibration == pytest.approx(ww, rel=0.1)
+    assert r.decay == pytest.approx(c, rel=0.1, abs=1e-5 * np.sqrt(ww))  # by rounding
 
 
 PAIR = """
@@ -187,4 +185,4 @@ def test_rows_that_nearly_depend_on_each_other_are_not_stiff():
 
     What changes velocities off the rows is no damping; rounding is 1e-16 over a nudge of 1e-7.
     """
-    assert run(NEARLY_FLAT).outcome.record.clock[rec.DECAY] < 1e-6
+    assert run(NEARLY_FLAT).outcome.record.decay < 1e-6

@@ -76,13 +76,12 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
     Raises ScenarioError, ModelError, and UsageError where a pattern fits no channel.
     """
     from trsim.assemble.assemble import assemble
-    from trsim.solve.march.record import H_MAX
     from trsim.solve.outcome import settings
 
     full = changed(scenario, "output", channels=("*",))
     mechanism = assemble(full)
     # the same largest step, whatever the rows
-    longest = settings(changed(full, "solver", method="auto"), mechanism)[H_MAX]
+    longest = settings(changed(full, "solver", method="auto"), mechanism).h_max
     full = changed(full, "solver", max_step=float(longest))
     lean = changed(full, "output", every=scenario.solver.end, channels=())
     names = [mechanism.instances[e].name for e in mechanism.model.contact]

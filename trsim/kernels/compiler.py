@@ -37,7 +37,7 @@ from trsim.kernels.packed import WORDS
 from trsim.kernels.signatures import Kind, Signature
 from trsim.kernels.way import way
 
-NUMBERS = {"float64": types.float64, "int64": types.int64}
+NUMBERS = {"float64": types.float64, "int64": types.int64, "complex128": types.complex128}
 WORD = ir.IntType(64)
 
 
@@ -126,9 +126,14 @@ class PackedType(types.Type):
         self.fields = tuple((field, numba_type(inner)) for field, inner in kind.fields)
         self.columns = tuple(inner.columns for _, inner in kind.fields)
         self.index = {field: k for k, (field, _) in enumerate(self.fields)}
+        # a number that changes: place of its array, and which of its entries
+        self.entries = {name: (self.index[holder], k) for name, holder, k in kind.entries}
         listed = ",".join(f"{field}:{inner.name}" for field, inner in kind.fields)
+        listed += "".join(f",{name}={holder}[{k}]" for name, holder, k in kind.entries)
         digest = hashlib.sha256(listed.encode()).hexdigest()[:8]  # it stands in every symbol
         super().__init__(name=f"{kind.name}_{digest}")
+        self.types = dict(self.fields)
+        self.types |= {name: self.types[holder].dtype for name, holder, _ in kind.entries}
 
 
 @register_model(PackedType)
@@ -146,11 +151,38 @@ class PackedAttribute(AttributeTemplate):
     key = PackedType
 
     def generic_resolve(self, typ: PackedType, attr: str) -> types.Type | None:
-        return typ.fields[typ.index[attr]][1] if attr in typ.index else None
+        return typ.types.get(attr)
+
+
+def _word(builder: Any, value: Any, k: int) -> Any:
+    """The k-th word of a record, which never changes."""
+    word_type = ir.IntType(64)
+    base = builder.inttoptr(value, ir.PointerType(word_type))
+    loaded = builder.load(builder.gep(base, [ir.Constant(word_type, k)]))
+    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return loaded
+
+
+def _entry(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
+    """Where a number that changes is."""
+    place, k = typ.entries[attr]
+    number = ir.PointerType(context.get_data_type(typ.types[attr]))
+    array = builder.inttoptr(_word(builder, value, WORDS * place), number)
+    return builder.gep(array, [ir.Constant(ir.IntType(64), k)])
+
+
+@lower_setattr_generic(PackedType)
+def _setattr(context: Any, builder: Any, sig: Any, arguments: Any, attr: str) -> None:
+    typ, (value, number) = sig.args[0], arguments
+    if attr not in typ.entries:
+        raise TypeError(f"{typ.name}: '{attr}' does not change")
+    builder.store(number, _entry(context, builder, typ, value, attr))
 
 
 @lower_getattr_generic(PackedType)
 def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -> Any:
+    if attr in typ.entries:
+        return builder.load(_entry(context, builder, typ, value, attr))
     place = typ.index[attr]
     kind, columns = typ.fields[place][1], typ.columns[place]
     first = _word(builder, value, WORDS * place)
@@ -162,18 +194,10 @@ def _getattr(context: Any, builder: Any, typ: PackedType, value: Any, attr: str)
     return _array(context, builder, kind, first, shape)
 
 
-def _word(builder: Any, value: Any, k: int) -> Any:
-    """The k-th word of a record, which never changes."""
-    base = builder.inttoptr(value, ir.PointerType(WORD))
-    loaded = builder.load(builder.gep(base, [ir.Constant(WORD, k)]))
-    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
-    return loaded
-
-
 def _array(context: Any, builder: Any, kind: Any, address: Any, shape: list[Any]) -> Any:
     """An array at an address."""
     array = context.make_array(kind)(context, builder)
-    size = ir.Constant(WORD, 8)
+    size = ir.Constant(WORD, kind.dtype.bitwidth // 8)
     strides = [size] if kind.ndim == 1 else [builder.mul(shape[1], size), size]
     populate_array(
         array,

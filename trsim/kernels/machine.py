@@ -10,7 +10,7 @@ Every call, from Python or from other machine code, is numba's own calling conve
 
     status = f(&result, &exception, arguments...)
 
-with an array as (0, 0, size, 8, data, shape, strides).
+with an array as (0, 0, size, bytes of an entry, data, shape, strides).
 """
 
 import ctypes
@@ -34,7 +34,7 @@ LIBRARY = frozenset(
     floor fma fmod frexp hypot ldexp lgamma log log10 log1p log2 memcpy memmove memset nearbyint
     pow rint round sin sincos sinh sqrt tan tanh tgamma trunc""".split()  # noqa: SIM905
 )
-LETTERS = {"float64": "d", "int64": "lq"}  # numpy's, of types eight bytes long
+LETTERS = {"float64": "d", "int64": "lq", "complex128": "D"}  # numpy's
 ERRORS = (-1,)  # of a status; above 0: an exception of the function's own
 
 
@@ -181,7 +181,7 @@ def _array(value: Any, kind: Kind) -> tuple[int, ...]:
         raise TypeError(f"wanted {kind.name}, got {value.ndim} dimensions of {value.dtype}")
     if not value.flags.c_contiguous:
         raise TypeError("an array must be contiguous")
-    return (0, 0, value.size, 8, value.ctypes.data, *value.shape, *value.strides)
+    return (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
 
 
 # --- files -----------------------------------------------------------------------------------

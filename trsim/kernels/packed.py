@@ -3,6 +3,7 @@
 A Packed object holds named numpy arrays and numbers.  Compiled functions see it as a single word,
 read `s.name` as a view of the array (no copy, no reference count), and may write into arrays, never
 replace them.  Passing eighty arrays as arguments costs ten times the physics; this costs nothing.
+Numbers that change (`r.t += h`) are entries of an array of the record, so its arrays are all of it.
 
 In memory: three words per field, (address, rows, columns) of an array, or the number itself.
 The addresses never change, which the loads say to the optimiser ("invariant").
@@ -14,6 +15,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
+from operator import setitem
 from typing import TYPE_CHECKING, Any
 
 from trsim.kernels.lazy import PYTHON
@@ -24,8 +27,12 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     from numpy.typing import NDArray
 
     f8 = float
+    F8 = float
     i8 = int
+    I8 = int
     A1 = NDArray[np.float64]
+    C1 = NDArray[np.complex128]
+    C2 = NDArray[np.complex128]
     A2 = NDArray[np.float64]
     T2 = NDArray[np.float64]
     T3 = NDArray[np.float64]
@@ -36,28 +43,62 @@ if TYPE_CHECKING:  # what the annotations mean to Python
     I1 = NDArray[np.int64]
     I2 = NDArray[np.int64]
 else:  # and to compiled code
-    from trsim.kernels.signatures import A1, A2, I1, I2, T2, T3, T6, T9, T12, T14, f8, i8
+    from trsim.kernels.signatures import (
+        A1,
+        A2,
+        C1,
+        C2,
+        F8,
+        I1,
+        I2,
+        I8,
+        T2,
+        T3,
+        T6,
+        T9,
+        T12,
+        T14,
+        f8,
+        i8,
+    )
 
 __all__ = [
-    "A1", "A2", "I1", "I2", "T2", "T3", "T6", "T9", "T12", "T14", "WORDS", "Packed", "f8", "i8",
+    "A1", "A2", "C1", "C2", "F8", "I1", "I2", "I8", "T2", "T3", "T6", "T9", "T12", "T14", "WORDS",
+    "Packed", "f8", "i8",
 ]  # fmt: skip
 
 WORDS = 3  # per field
 LINE = 8  # words: where one array ends and the next begins, there is a new line of the cache
+HOLDERS = {"F8": "clock", "I8": "count"}  # the arrays of numbers that change
 
 
 class Packed:
-    """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, f8 or i8, or
-    with T2 to T14, tables of so many columns."""
+    """Base class of records: subclasses annotate their fields with A1, A2, I1, I2, C1, C2, f8
+    or i8, or with T2 to T14, tables of so many columns.
+
+    F8 and I8 are numbers that change: entries of the record's arrays `clock` (A1) and `count` (I1),
+    in the order they are declared in.
+    """
 
     kind: Kind  # what signatures call it
     places: dict[str, int]  # of a field among the fields
+    sizes: Counter[str]  # of the arrays that numbers which change are entries of
 
     def __init_subclass__(cls) -> None:
         own = {k: v for k, v in vars(cls).get("__annotations__", {}).items() if k != "kind"}
-        inherited = dict(cls.kind.fields) if hasattr(cls, "kind") else {}
-        fields = {k: v if isinstance(v, Kind) else KINDS[v] for k, v in own.items()}
-        cls.kind = Kind(cls.__name__, fields=tuple({**inherited, **fields}.items()))
+        before = getattr(cls, "kind", Kind(""))
+        fields, entries = dict(before.fields), list(before.entries)
+        cls.sizes = Counter(holder for _, holder, _ in entries)
+        for name, word in own.items():
+            kind = word if isinstance(word, Kind) else KINDS[word]
+            holder = HOLDERS.get(kind.name)
+            if holder is None:
+                fields[name] = kind
+            else:
+                entries.append((name, holder, cls.sizes[holder]))
+                setattr(cls, name, _entry(*entries[-1][1:]))
+                cls.sizes[holder] += 1
+        cls.kind = Kind(cls.__name__, fields=tuple(fields.items()), entries=tuple(entries))
         cls.places = {name: k for k, (name, _) in enumerate(cls.kind.fields)}
 
     def __init__(
@@ -73,6 +114,8 @@ class Packed:
         if not wrong:
             if like is not None:
                 self._share(like, words)
+            else:
+                values = {name: np.zeros(n) for name, n in self.sizes.items()} | values
             self._make(room or {}, words)
             for name, value in values.items():
                 self._take(name, value, words)
@@ -126,12 +169,22 @@ class Packed:
         kind = self.kind.fields[self.places[name]][1]
         if len(shape) != kind.dimensions:
             raise TypeError(f"{name}: {len(shape)} dimensions instead of {kind.dimensions}")
+        if shape[0] != self.sizes.get(name, shape[0]):
+            raise TypeError(f"{name}: {shape[0]} numbers instead of {self.sizes[name]}")
         if kind.columns and shape[1] != kind.columns:
             raise TypeError(f"{name}: {shape[1]} columns instead of {kind.columns}")
 
     def arrays(self) -> dict[str, Any]:
         """The arrays by name."""
         return {name: getattr(self, name) for name, kind in self.kind.fields if kind.dimensions}
+
+
+def _entry(holder: str, k: int) -> property:
+    """A number that changes, for Python."""
+    return property(
+        lambda record: getattr(record, holder)[k],
+        lambda record, value: setitem(getattr(record, holder), k, value),
+    )
 
 
 def _fits(value: Any, kind: Kind) -> bool:

@@ -23,7 +23,7 @@ def whole(x: Any) -> int:
     return int(x) if abs(x) < 2.0**63 else LEAST
 
 
-BUILTINS = {"float": np.float64, "int": whole}
+BUILTINS = {"complex": np.complex128, "float": np.float64, "int": whole}
 SAME = {
     math.asinh: np.arcsinh, math.atan2: np.arctan2, math.copysign: np.copysign, math.cos: np.cos,
     math.exp: np.exp, math.isfinite: np.isfinite, math.log: np.log, math.log10: np.log10,

@@ -16,6 +16,8 @@ class Kind(NamedTuple):
     dtype: str = ""  # of a number or of the entries of an array; "" for a record
     fields: tuple[tuple[str, Kind], ...] = ()  # of a record
     columns: int = 0  # of a table that always has as many
+    # of a record: numbers that change, each with the array it is an entry of, and which
+    entries: tuple[tuple[str, str, int], ...] = ()
 
 
 class Signature(NamedTuple):
@@ -26,11 +28,15 @@ class Signature(NamedTuple):
 
 
 f8, i8 = Kind("f8", 0, "float64"), Kind("i8", 0, "int64")
+F8, I8 = Kind("F8", 0, "float64"), Kind("I8", 0, "int64")  # numbers of a record that change
 A1, A2 = Kind("A1", 1, "float64"), Kind("A2", 2, "float64")
 I1, I2 = Kind("I1", 1, "int64"), Kind("I2", 2, "int64")
+C1, C2 = Kind("C1", 1, "complex128"), Kind("C2", 2, "complex128")
 # tables as wide as that: where a row begins is then known when code is compiled
 T2, T3, T6, T9, T12, T14 = (Kind(f"T{n}", 2, "float64", columns=n) for n in (2, 3, 6, 9, 12, 14))
-KINDS = {kind.name: kind for kind in (f8, i8, A1, A2, I1, I2, T2, T3, T6, T9, T12, T14)}
+KINDS = {
+    kind.name: kind for kind in (f8, i8, F8, I8, A1, A2, I1, I2, C1, C2, T2, T3, T6, T9, T12, T14)
+}
 
 
 # arguments are kinds; to Python's type checker the same words are numbers and arrays (packed.py)

@@ -17,7 +17,7 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
 from trsim.solve.march.openings import held_to, look, may_open, opened
-from trsim.solve.march.record import Record
+from trsim.solve.march.record import Record, Settings
 from trsim.solve.march.works import LEAST, N_WORKED
 from trsim.solve.start.consistent import Start
 from trsim.statuses import Ended
@@ -81,7 +81,7 @@ def fastest_feedback(model: Any) -> float:
     return alpha + sqrt(alpha**2 - beta**2) if alpha > beta else beta
 
 
-def settings(scenario: Any, mechanism: Mechanism) -> Array:
+def settings(scenario: Any, mechanism: Mechanism) -> Settings:
     """The constants of the march.
 
     The error of a run grows like tolerance^0.75..0.88 where each step keeps to the tolerance.  So
@@ -94,36 +94,39 @@ def settings(scenario: Any, mechanism: Mechanism) -> Array:
         raise ScenarioError(
             "a run needs `solver: {end: ...}`", "for example `end: 1 s`", ("solver", "end")
         )
-    s = np.zeros(rec.N_SETTINGS)
-    s[rec.T_END] = solver.end
-    s[rec.TOLERANCE] = solver.tolerance
-    s[rec.STEP_ERROR] = SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION
-    s[rec.EVERY] = output.every or solver.end / 1000.0 or 1.0
-    s[rec.H_MAX] = solver.max_step or solver.end or 1.0
+    every = output.every or solver.end / 1000.0 or 1.0
+    longest = solver.max_step or solver.end or 1.0
     if mechanism.timed and not solver.max_step:
         # what is smooth and short between two stages of a long step would not be seen at all
-        s[rec.H_MAX] = min(s[rec.H_MAX], max(solver.end / LOOKS, 1e-300), LOOK_ROWS * s[rec.EVERY])
+        longest = min(longest, max(solver.end / LOOKS, 1e-300), LOOK_ROWS * every)
     if solver.stabilisation == "baumgarte" and method.explicit and method.adaptive:
-        s[rec.H_MAX] = min(s[rec.H_MAX], FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
-    s[rec.FIXED_STEP] = 0.0 if method.adaptive else solver.step
+        longest = min(longest, FEEDBACK / max(fastest_feedback(mechanism.model), 1e-300))
+    fixed = 0.0 if method.adaptive else solver.step
     check_given_steps(solver, "max_step" if method.adaptive else "step")
-    if s[rec.FIXED_STEP] > MOST_ROWS * s[rec.EVERY]:
+    if fixed > MOST_ROWS * every:
         raise ScenarioError(
             f"a step of {solver.step:g} s spans more than {MOST_ROWS} output rows",
             "make `output: {every: ...}` longer or the step shorter",
             ("output", "every"),
         )
-    if s[rec.EVERY] < 1e-9 * solver.end:
+    if every < 1e-9 * solver.end:
         raise ScenarioError(
-            f"{solver.end / s[rec.EVERY]:.0e} output rows",
+            f"{solver.end / every:.0e} output rows",
             "`every` is the time between two rows; at most 1e9 rows are written",
             ("output", "every"),
         )
-    s[rec.MISSED] = MISSED * solver.tolerance
-    s[rec.HELD_TO] = held_to(solver.tolerance)
-    s[rec.CHOOSES] = float(method.chooses)
-    s[rec.LOCATE] = float(solver.locates and len(mechanism.model.contact) > 0)
-    return s
+    return Settings(
+        t_end=solver.end,
+        step_error=SHARE * EASY * (solver.tolerance / EASY) ** PROPORTION,
+        h_max=longest,
+        every=every,
+        fixed_step=fixed,
+        locate=int(solver.locates and len(mechanism.model.contact) > 0),
+        chooses=int(method.chooses),
+        missed=MISSED * solver.tolerance,
+        held_to=held_to(solver.tolerance),
+        tolerance=solver.tolerance,
+    )
 
 
 def check_given_steps(solver: Any, key: str) -> None:
@@ -137,7 +140,7 @@ def check_given_steps(solver: Any, key: str) -> None:
         )
 
 
-def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
+def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
     """The addresses of what only some runs need, by its field of a row of methods (calls.py).
 
     What a run does not need is not compiled.
@@ -157,7 +160,7 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
         found["look"] = look_at_drift.address()
     elif may_open(mechanism):
         found["look"] = look.address()
-    if setting[rec.LOCATE] > 0.0 or len(model.watch):
+    if setting.locate > 0 or len(model.watch):
         from trsim.solve.march.search import search
 
         found["search"] = search.address()
@@ -170,13 +173,13 @@ def called_by(mechanism: Mechanism, setting: Array) -> dict[str, int]:
     return found
 
 
-def most_points(mechanism: Mechanism, setting: Array) -> int:
+def most_points(mechanism: Mechanism, setting: Settings) -> int:
     """How many points of sections one step may add; a step spans a buffer of rows at most.
 
     Raises ScenarioError where that is no buffer any more.
     """
-    spanned = FEWEST_ROWS + setting[rec.FIXED_STEP] / setting[rec.EVERY]
-    longest = min(setting[rec.T_END], spanned * setting[rec.EVERY])
+    spanned = FEWEST_ROWS + setting.fixed_step / setting.every
+    longest = min(setting.t_end, spanned * setting.every)
     most = 0
     for section in mechanism.sections:
         own = longest / section.every + 2.0 if section.every else CROSSINGS
@@ -194,7 +197,7 @@ def first_step(scenario: Any, record: Record) -> float:
     """The first step of a run, s: as given, or from the units of the error norm."""
     if scenario.solver.first_step:
         return float(scenario.solver.first_step)
-    length, speed = record.clock[rec.LENGTH], max(record.clock[rec.SPEED], record.clock[rec.MOST])
+    length, speed = record.length, max(record.speed, record.speed_cap)
     return step_of(length, speed, scenario.solver.tolerance, scenario.solver.end)
 
 
@@ -222,15 +225,12 @@ def new_record(
     model.branch[:] = begun.branch
     record = Record(
         y=begun.y.copy(),
-        yd=np.zeros_like(begun.y),
-        noise=np.zeros_like(begun.y),
+        **{name: np.zeros_like(begun.y) for name in ("yd", "noise", "crossed")},
         mem=model.mem,
         branch=model.branch,
         turning=np.zeros_like(model.branch),
         gap=np.zeros((len(model.contact) + len(model.watch), 2)),
         corner=np.zeros(len(model.contact)),
-        clock=np.zeros(rec.N_CLOCK),
-        count=np.zeros(rec.N_COUNT, np.int64),
         peak=np.zeros((rec.N_PEAK, model.n_out + len(model.vector))),
         firm=np.ones((2, model.n_out + len(model.vector))),
         book=np.zeros((1 + N_STORED, 2)),
@@ -238,13 +238,12 @@ def new_record(
         earlier=np.zeros((4 if len(model.kin) else 0, begun.y.size)),
         stages=np.zeros((rows if len(model.kin) else 0, begun.y.size)),
         largest=np.zeros(len(model.kin)),
-        sample=np.zeros((rec.POINTS, len(model.kin))),
-        slope=np.zeros((rec.POINTS, len(model.kin))),
+        **{name: np.zeros((rec.POINTS, len(model.kin))) for name in ("sample", "slope")},
         impact=begun.depth.copy(),
         by_place=np.zeros((n_w, n_v)),
-        by_rate=np.zeros((n_w, n_w)),
         stale=np.zeros(model.n, np.int64),
-        lu=np.zeros((3 * n_w, n_w)),
+        **{name: np.zeros((n_w, n_w)) for name in ("by_rate", "lu")},
+        lu_pair=np.zeros((n_w, n_w), complex),
         pivot=np.zeros((2, n_w), np.int64),
         past=np.zeros((past_rows, begun.y.size)),
         watch=np.zeros((len(model.watch), rec.N_WATCH)),
@@ -257,31 +256,29 @@ def new_record(
         jolt=np.zeros((rec.JOLTS_KEPT, 5)),
         passed=np.zeros((passes, 2 + 2 * begun.y.size + len(model.branch))),
         meeting=np.zeros((rec.MEETINGS_KEPT if passes else 0, begun.y.size)),
-        crossed=np.zeros_like(begun.y),
         swing=np.zeros((2, model.n_v + model.n_z - N_BOOK)),
         worked=np.zeros((2, N_WORKED)),
     )
-    record.clock[rec.WEAKEST] = 1.0
-    record.clock[rec.LENGTH], record.clock[rec.MOST] = begun.length, begun.speed
-    record.clock[rec.SPEED] = record.clock[rec.MET] = begun.moving
-    record.clock[rec.EXCHANGED] = LEAST * float(np.sum(model.mass)) * begun.speed**2
+    record.weakest = 1.0
+    record.length, record.speed_cap = begun.length, begun.speed
+    record.speed = record.top_speed = begun.moving
+    record.exchanged = LEAST * float(np.sum(model.mass)) * begun.speed**2
     return record
 
 
 def emptied(r: Record, b: rec.Buffers, recorded: Array | None = None) -> Block:
     """What the buffers hold, and what user events recorded; they count as empty afterwards."""
     block = Block(
-        b.rows[: r.count[rec.ROWS]],
-        b.steps[: r.count[rec.STEP_ROWS]],
-        b.events[: r.count[rec.EVENT_ROWS]],
-        float(r.clock[rec.T]),
-        float(r.clock[rec.H]),
-        int(r.count[rec.EVENTS]),
+        b.rows[: r.rows],
+        b.steps[: r.step_rows],
+        b.events[: r.event_rows],
+        float(r.t),
+        float(r.h),
+        int(r.events),
         np.zeros((0, 1 + b.rows.shape[1])) if recorded is None else recorded,
-        b.points[: r.count[rec.POINT_ROWS]],
+        b.points[: r.point_rows],
     )
-    for counter in (rec.ROWS, rec.STEP_ROWS, rec.EVENT_ROWS, rec.POINT_ROWS):
-        r.count[counter] = 0
+    r.rows = r.step_rows = r.event_rows = r.point_rows = 0
     return block
 
 
@@ -300,9 +297,9 @@ def runaway(mechanism: Mechanism, r: Record) -> str:
 
 def leapt(mechanism: Mechanism, r: Record) -> str:
     """Which drive would have taken the mechanism to another place in no time."""
-    instance = mechanism.instances[int(r.count[rec.TORN]) - 1]
+    instance = mechanism.instances[int(r.torn) - 1]
     unit = "rad" if instance.row.turns else "m"
-    by, t = r.clock[rec.TORN_BY], r.clock[rec.T]
+    by, t = r.torn_by, r.t
     return (
         f"drives.{instance.name}: the prescribed position jumps by {by:.6g} {unit} at t = {t:.9g} "
         "s, which no mechanism can follow: let it go there in a time of its own, as "
@@ -312,11 +309,11 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
 
 def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why what a run comes to is no motion of the mechanism, in words; empty where it is one."""
-    if r.count[rec.TORN]:
+    if r.torn:
         return leapt(mechanism, r)
-    if r.count[rec.OPENED]:
+    if r.opened:
         return opened(scenario, mechanism, r)
-    return lost_its_way(scenario, mechanism, r) if r.count[rec.LOST] else ""
+    return lost_its_way(scenario, mechanism, r) if r.lost else ""
 
 
 def whose(mechanism: Mechanism, c: int) -> str:
@@ -335,35 +332,35 @@ def whose(mechanism: Mechanism, c: int) -> str:
 
 def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, float]:
     """Counts, residuals and the energy book's error."""
-    book, least = float(r.clock[rec.LARGEST_ENERGY]), NOTHING * natural(work, begun)
+    book, least = float(r.largest_energy), NOTHING * natural(work, begun)
     scale = max(book, of_what_is_locked(r, work, begun), least, 1e-300)
-    redundant = float(r.clock[rec.WORST_OPEN])
+    redundant = float(r.worst_open)
     held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
-    unprojected = 0.0 if held else float(r.clock[rec.WORST_PHI]) / work.size
+    unprojected = 0.0 if held else float(r.worst_phi) / work.size
     return {
-        "steps": int(r.count[rec.STEPS]),
-        "rejected_steps": int(r.count[rec.REJECTED]),
+        "steps": int(r.steps),
+        "rejected_steps": int(r.rejected),
         "evaluations": int(work.status[1]),
         "factorisations": int(work.status[2]),
-        "dense_outputs": int(r.count[rec.DENSE_BUILT]),
-        "events": int(r.count[rec.EVENTS]),
-        "unproved_searches": int(r.count[rec.UNPROVED]),
-        "corners": int(r.count[rec.CORNERS]),
-        "method_switches": int(r.count[rec.SWITCHES]),
-        "jacobians": int(r.count[rec.JACOBIANS]),
-        "newton_iterations": int(r.count[rec.ITERATIONS]),
-        "position_residual": float(r.clock[rec.WORST_PHI]),
-        "velocity_residual": float(r.clock[rec.WORST_PHI_DOT]),
+        "dense_outputs": int(r.dense_built),
+        "events": int(r.events),
+        "unproved_searches": int(r.unproved),
+        "corners": int(r.corners_met),
+        "method_switches": int(r.method_switches),
+        "jacobians": int(r.jacobians),
+        "newton_iterations": int(r.iterations),
+        "position_residual": float(r.worst_phi),
+        "velocity_residual": float(r.worst_phi_dot),
         "start_position_residual": begun.moved,
         "start_force_residual": begun.residual,
-        "energy_residual": float(r.clock[rec.LARGEST_RESIDUAL]),
-        "energy_residual_relative": float(r.clock[rec.LARGEST_RESIDUAL]) / scale,
-        "work_error_relative": float(r.clock[rec.WORK_ERROR] / max(r.clock[rec.EXCHANGED], 1e-300)),
-        "work_of_projection": float(r.clock[rec.WORK_PROJECTION]),
-        "work_of_projection_relative": abs(float(r.clock[rec.WORK_PROJECTION])) / scale,
+        "energy_residual": float(r.largest_residual),
+        "energy_residual_relative": float(r.largest_residual) / scale,
+        "work_error_relative": float(r.work_error / max(r.exchanged, 1e-300)),
+        "work_of_projection": float(r.work_projection),
+        "work_of_projection_relative": abs(float(r.work_projection)) / scale,
         "joints_open_relative": max(redundant, unprojected),
         "redundant_open_relative": redundant,
-        "redundant_open_rate": float(r.clock[rec.WORST_OPEN_RATE]),
+        "redundant_open_rate": float(r.worst_open_rate),
         **rounding(r),
         "integration_cpu": cpu,
     }
@@ -371,7 +368,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
 
 def rounding(r: Record) -> dict[str, float]:
     """What rounding made of a step, of what the tolerance allows; where it was more."""
-    rounded = float(r.clock[rec.ROUNDED])
+    rounded = float(r.rounded)
     return {"rounding_of_tolerance": rounded} if rounded > 1.0 else {}
 
 

@@ -23,7 +23,7 @@ from trsim.solve.march.calls import FIELDS
 from trsim.solve.march.checkpoint import State, begun_at, put_back, state
 from trsim.solve.march.features import put_back as put_back_held
 from trsim.solve.march.loop import begin, march, method_table
-from trsim.solve.march.record import Record, fresh_buffers
+from trsim.solve.march.record import Record, Settings, fresh_buffers
 from trsim.solve.outcome import (
     CRAWLS,
     Block,
@@ -123,15 +123,15 @@ def compiled(
 ) -> Generator[Block, None, Outcome]:
     """The march of march.py with a compiled method, or an explicit and an implicit one."""
     setting = settings(scenario, mechanism)
-    located = setting[rec.LOCATE] > 0.0
+    located = setting.locate > 0
     if checkpoint:
         begun = begun_at(checkpoint, mechanism, scene(mechanism.model))
     else:
         begun = start(scenario, mechanism, located)
     work, left_out = begun_with(mechanism, begun)
     width = int(np.max(work.contact_width, initial=0))
-    spanned = int(np.ceil(setting[rec.FIXED_STEP] / setting[rec.EVERY]))
-    if setting[rec.FIXED_STEP] > 0.0 and not scenario.solver.force and not checkpoint:
+    spanned = int(np.ceil(setting.fixed_step / setting.every))
+    if setting.fixed_step > 0.0 and not scenario.solver.force and not checkpoint:
         from trsim.solve.diagnose.scales import scales
 
         check_step(scenario, scales(scenario, mechanism, begun))
@@ -162,30 +162,30 @@ def compiled(
         put_back_held(work, r)
     else:
         begin(work, r, b, setting)
-        r.clock[rec.H] = first_step(scenario, r)
+        r.h = first_step(scenario, r)
     limit = scenario.solver.max_steps or 2**62
     visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v))
     visit = min(visit, BARS) if mechanism.beams else visit
     bends = Bends(mechanism)
-    bends.look(float(r.clock[rec.T]), r.y)
+    bends.look(float(r.t), r.y)
     ended = None  # by a user event
     while True:
-        most = min(visit, limit - int(r.count[rec.STEPS]))
+        most = min(visit, limit - int(r.steps))
         reason = march(work, r, b, setting, methods, most)
         examine(work, r, other_rows=reason == rec.ACT)
         recorded = None
         if reason == rec.ACT:
             before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
-                r.clock[rec.H] = min(r.clock[rec.H], first_step(scenario, r))
-            if r.count[rec.WEAK] and ended is None:
+                r.h = min(r.h, first_step(scenario, r))
+            if r.weak and ended is None:
                 work = anew(mechanism, work, r, b, setting, acted=work is not before)
                 reason = STUCK if stuck(r, setting) else reason
             if work is not before:
                 b = sparse.buffers(b, mechanism, work) if sparse else b
-        bends.look(float(r.clock[rec.T]), r.y)
+        bends.look(float(r.t), r.y)
         if reason in GO_ON and ended is None and mechanism.beams:
-            text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
+            text = collapsed(scenario, mechanism, float(r.t), r.y)
             ended = ("failed", text) if text else None
         cpu, paused = time.process_time() - clock0, reason in GO_ON and ended is None
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
@@ -195,27 +195,27 @@ def compiled(
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block
         if not paused:
             break
-        if r.count[rec.STEPS] >= limit:
+        if r.steps >= limit:
             reason = NO_STEPS_LEFT
             break
     status, text = ended or ending(reason, limit, setting, scenario, mechanism, work, r)
     times = zip(switches.events, r.watch[:, rec.TIMES].astype(int).tolist(), strict=True)
     fired = {event.name: n for event, n in times if event.kind != "limit"}
-    return Outcome(status, text, float(r.clock[rec.T]), statistics(r, work, begun, cpu),
+    return Outcome(status, text, float(r.t), statistics(r, work, begun, cpu),
                    r.peak.T.copy(), r, begun, fired, bends.states)  # fmt: skip
 
 
 def ending(
-    reason: int, limit: int, setting: Array, scenario: Any, mechanism: Mechanism, work: Scene,
+    reason: int, limit: int, setting: Settings, scenario: Any, mechanism: Mechanism, work: Scene,
     r: Record,
 ) -> tuple[Ended, str]:  # fmt: skip
     """Status and reason of a run that no event ended."""
     if reason == rec.DONE:
-        text = collapsed(scenario, mechanism, float(r.clock[rec.T]), r.y)
+        text = collapsed(scenario, mechanism, float(r.t), r.y)
         return ("failed", text) if text else ("done", "")
     if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT):
         return "failed", untrue(scenario, mechanism, r)
-    if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting[rec.FIXED_STEP] > 0.0:
+    if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting.fixed_step > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:
         reason = CONTRADICTORY

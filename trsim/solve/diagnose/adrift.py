@@ -24,7 +24,7 @@ from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.diagnose.locked import dependent
 from trsim.solve.march.calls import LOOK
 from trsim.solve.march.openings import closed, look, opening
-from trsim.solve.march.record import FELT, FELT_T, LOST, MET, Record, T
+from trsim.solve.march.record import Record
 
 AS_FAR = 0.03  # of the pivot: runs on the right branch had 0.005, on the wrong one 0.07
 NEARLY = 0.3  # pivots of rows that nearly depend on each other
@@ -33,7 +33,7 @@ LITTLE, TOLD = 1e-3, 10.0
 
 
 @compiled(LOOK)
-def look_at_drift(s, r, b, setting, t, y, step):
+def look_at_drift(s, r, b, setting, t, step):
     """`look` of openings.py, whether the run has lost its way at the end of a step, and what
     accelerations feel of open rows."""
     felt = 0
@@ -42,13 +42,13 @@ def look_at_drift(s, r, b, setting, t, y, step):
         for row in range(s.m):
             worst = max(worst, opening(s, row))
         if worst > AS_FAR * pivot and worst > AS_FAR * plain(s):
-            r.count[LOST] = 1
+            r.lost = 1
         felt = int(DOUBTFUL < pivot <= NEARLY and worst > LITTLE * s.tolerance)
-    went = look(s, r, b, setting, t, y, step)
+    went = look(s, r, b, setting, t, step)
     if felt > 0:
         if went > 0:
-            evaluate(s, t, y, b.rough[1])
-        feel(s, r, b, t, y)
+            evaluate(s, t, b.y1, b.rough[1])
+        feel(s, r, b, t)
     return max(felt, went)
 
 
@@ -61,18 +61,18 @@ def plain(s):
 
 
 @internal
-def feel(s, r, b, t, y):
+def feel(s, r, b, t):
     """Into the record by how much accelerations, which are those of the last evaluation, would be
     others with the rows closed: of the largest, or of the square of the fastest rate so far."""
-    kept, clock = b.rough[2], r.clock
+    kept = b.rough[2]
     for f in range(1, s.n_r):
         for c in range(s.d):
             kept[s.d * (f - 1) + c] = s.free[f, c]
-    copy_to(b.y2, y)
+    copy_to(b.y2, b.y1)
     closed(s, t, b.y2)
     poses_and_rows(s, t, b.y2)
     project_velocities(s, b.y2)
-    fastest = max(speed(s), clock[MET] / s.size)
+    fastest = max(speed(s), r.top_speed / s.size)
     evaluate(s, t, b.y2, b.rough[1])
     most, scale = 0.0, fastest * fastest
     for f in range(1, s.n_r):
@@ -80,13 +80,13 @@ def feel(s, r, b, t, y):
             i = s.d * (f - 1) + c
             most = max(most, abs(s.free[f, c] - kept[i]) / unit(s, i))
             scale = max(scale, abs(kept[i]) / unit(s, i))
-    if most > clock[FELT] * scale:
-        clock[FELT], clock[FELT_T] = most / scale, t
+    if most > r.felt * scale:
+        r.felt, r.felt_t = most / scale, t
 
 
 def lost_its_way(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Whose rows depend on each other where a run lost its way, and what to do, in words."""
-    names, _ = dependent(mechanism, float(r.clock[T]), r.y)
+    names, _ = dependent(mechanism, float(r.t), r.y)
     return (
         f"branches of the motion meet here (rows of {', '.join(names)} depend on each other), and "
         "joints are open by as much as the branches are apart, so which one the motion takes is "
@@ -96,10 +96,10 @@ def lost_its_way(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 def of_drift(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[str]:
     """Rows that were open enough for accelerations to feel it where branches nearly meet."""
-    if r is not None and r.clock[FELT] > TOLD * scenario.solver.tolerance:
+    if r is not None and r.felt > TOLD * scenario.solver.tolerance:
         yield (
-            f"branches of the motion nearly meet at t = {r.clock[FELT_T]:.6g} s, where open "
-            f"joints change accelerations by {r.clock[FELT]:.2g} of the largest, and velocities "
+            f"branches of the motion nearly meet at t = {r.felt_t:.6g} s, where open "
+            f"joints change accelerations by {r.felt:.2g} of the largest, and velocities "
             "and forces to a lesser degree; "
             f"{REMEDY[scenario.solver.stabilisation]}"
         )

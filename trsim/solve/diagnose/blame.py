@@ -13,7 +13,6 @@ from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.locked import locked
 from trsim.solve.diagnose.strained import ALMOST, NEARLY, collapsed
-from trsim.solve.march import record as rec
 from trsim.solve.march.record import Record
 
 Array = NDArray[np.float64]
@@ -57,7 +56,7 @@ def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on, where the law of an element ends just ahead; else empty."""
     if not np.all(np.isfinite(r.y)):
         return ""
-    t, step = float(r.clock[rec.T]), scenario.solver.step or 0.0
+    t, step = float(r.t), scenario.solver.step or 0.0
     rates = r.yd if np.all(np.isfinite(r.yd)) else np.zeros_like(r.y)
     for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
         found = blamed(mechanism, t + ahead, r.y + ahead * rates, r.mem)
@@ -88,7 +87,7 @@ def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
 
 def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on from its record, in words; empty where nothing is found."""
-    t = float(r.clock[rec.T])
+    t = float(r.t)
     return (
         collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
         or end_of_law(scenario, mechanism, r)

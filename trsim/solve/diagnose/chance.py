@@ -22,7 +22,6 @@ from trsim.assemble.projection import project_positions
 from trsim.elements.scene import scene
 from trsim.errors import some
 from trsim.solve.diagnose.locked import dependent
-from trsim.solve.march.record import CROSSED, MEETINGS
 from trsim.solve.outcome import Outcome
 
 # pivots below which an extreme is none: where branches are known to meet or rows are redundant; by
@@ -78,7 +77,7 @@ def astray(outcome: Outcome) -> bool:
     """Whether the motion changed its branch there, or lost its energy, as is told elsewhere."""
     given = outcome.statistics.get("work_of_projection_relative", 0.0)
     r = outcome.record
-    return given > GIVEN or (r is not None and r.count[CROSSED] > 0)
+    return given > GIVEN or (r is not None and r.crossings > 0)
 
 
 def of_joints(mechanism: Mechanism) -> list[Column]:
@@ -100,7 +99,7 @@ def forces(mechanism: Mechanism, outcome: Outcome, column: Column) -> list[float
 def certain(mechanism: Mechanism, outcome: Outcome, regular: float) -> float:
     """The pivot below which there is a pole, or nobody looked whether there is."""
     r = outcome.record
-    if len(mechanism.model.redundant) or not regular > REGULAR or (r and r.count[MEETINGS]):
+    if len(mechanism.model.redundant) or not regular > REGULAR or (r and r.n_meetings):
         return KNOWN
     return NEAR if mechanism.model.near > 0.0 else UNSEEN  # methods of scipy
 

@@ -26,7 +26,6 @@ from trsim.assemble.rank import of_length_one
 from trsim.assemble.reduce import all_rows, weights
 from trsim.elements.scene import Scene, scene
 from trsim.solve.diagnose.locked import dependent
-from trsim.solve.march import record as rec
 from trsim.solve.march.meetings import CLOSED, MEET, NEWTON, REACHED, known
 from trsim.solve.march.record import Record
 
@@ -62,14 +61,14 @@ def examine(work: Scene, r: Record, other_rows: bool) -> None:
 
     other_rows: are solved from here on, so the last way must be judged now, and sigma begins anew.
     """
-    n, many = r.y.size, int(r.count[rec.PASSED])
+    n, many = r.y.size, int(r.n_passed)
     ways = [
         (*line[:2].tolist(), line[2 : 2 + n], line[2 + n : 2 + 2 * n], line[2 + 2 * n :])
         for line in r.passed[:many]
     ]
-    r.count[rec.PASSED] = 0
+    r.n_passed = 0
     if other_rows:
-        r.count[rec.KEPT] = 0
+        r.kept = 0
     if not ways:
         return
     scratch = scene(work)
@@ -84,13 +83,13 @@ def examine(work: Scene, r: Record, other_rows: bool) -> None:
 def keep(r: Record, found: Found) -> None:
     """A place in the record."""
     if found.meet:
-        r.meeting[r.count[rec.MEETINGS] % len(r.meeting)] = found.place.y
-        r.count[rec.MEETINGS] += 1
+        r.meeting[r.n_meetings % len(r.meeting)] = found.place.y
+        r.n_meetings += 1
         return
-    if not r.count[rec.CROSSED]:
-        r.clock[rec.CROSSED_T] = found.place.t
+    if not r.crossings:
+        r.crossed_t = found.place.t
         r.crossed[:] = found.place.y
-    r.count[rec.CROSSED] += 1
+    r.crossings += 1
 
 
 def between(w: Scene, t0: float, y0: Array, t1: float, y1: Array) -> Iterator[Found]:
@@ -176,9 +175,9 @@ def slope(w: Scene, y: Array) -> Array:
 
 def of_branches(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
     """Tell that a run changed its branch where branches nearly meet."""
-    if r is None or not r.count[rec.CROSSED]:
+    if r is None or not r.crossings:
         return
-    t, many = float(r.clock[rec.CROSSED_T]), int(r.count[rec.CROSSED])
+    t, many = float(r.crossed_t), int(r.crossings)
     names, nearly = dependent(mechanism, t, r.crossed)
     again = f" ({many} times in all)" if many > 1 else ""
     yield (

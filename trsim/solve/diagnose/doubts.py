@@ -45,7 +45,7 @@ from trsim.solve.diagnose.strained import of_bars
 from trsim.solve.diagnose.swings import of_sections
 from trsim.solve.diagnose.unhinged import of_hinges
 from trsim.solve.march.openings import apart
-from trsim.solve.march.record import JOLTS, ROUNDED_AT, ROUNDED_BY, STEP_TURN, Record, T
+from trsim.solve.march.record import Record
 from trsim.solve.methods.rk4 import PER_RADIAN
 from trsim.solve.outcome import NOTHING, Outcome, natural, whose
 from trsim.solve.start.bars import places
@@ -192,7 +192,7 @@ def of_elements(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
 
 def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:
     """What a fixed step makes of the fastest turn: no tolerance holds it."""
-    turn = float(outcome.record.clock[STEP_TURN]) if outcome.record is not None else 0.0
+    turn = float(outcome.record.step_turn) if outcome.record is not None else 0.0
     if turn > COARSE:
         step, order = scenario.solver.step, METHODS[scenario.solver.method].order
         yield (
@@ -209,7 +209,7 @@ def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     energy = outcome.peaks[mechanism.model.column_energy :, 0]
     if energy[0] <= AT_REST * np.max(np.abs(energy[1 : 1 + len(STORED)])):
         return
-    steps, end = outcome.statistics["steps"], float(outcome.record.clock[T])
+    steps, end = outcome.statistics["steps"], float(outcome.record.t)
     for name, beam in mechanism.beams.items():
         cells = (beam.length, beam.nodes - 1)
         fastest = largest(beam.stiffness, beam.bending, beam.per_length, *cells)
@@ -223,7 +223,7 @@ def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
 
 def of_jumps(mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Rates of drives that jumped, with the impulses they meant."""
-    many = int(r.count[JOLTS])
+    many = int(r.n_jolts)
     for t, e, rate, impulse, work in r.jolt[: min(many, TOLD)].tolist():
         instance = mechanism.instances[int(e)]
         turn, of = ("rad/s", "N*m*s") if instance.row.turns else ("m/s", "N*s")
@@ -240,8 +240,8 @@ def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterat
     rounded = outcome.statistics.get("rounding_of_tolerance", 0.0)
     if rounded <= 1.0 or outcome.record is None:
         return
-    what = whose(mechanism, int(outcome.record.clock[ROUNDED_AT]))
-    much, inside = outcome.record.clock[ROUNDED_BY], f" in {what}" if what else ""
+    what = whose(mechanism, int(outcome.record.rounded_at))
+    much, inside = outcome.record.rounded_by, f" in {what}" if what else ""
     yield (
         f"solver.tolerance: rounding makes up to {much:.2g} (SI) of a step{inside}, {rounded:.2g} "
         f"times what {scenario.solver.tolerance:g} allows; such steps were held to the rounding "

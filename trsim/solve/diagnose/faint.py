@@ -12,7 +12,6 @@ from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
 from trsim.solve.march.accelerations import ALLOWED, RUN
-from trsim.solve.march.record import BLURRED, BLURRED_SUM, BLURRED_W, GAIN
 from trsim.solve.outcome import Outcome
 
 TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
@@ -29,8 +28,9 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     """
     if outcome.record is None:
         return
-    clock = outcome.record.clock
-    off, total, w, largest = (float(clock[k]) for k in (BLURRED, BLURRED_SUM, BLURRED_W, GAIN))
+    r = outcome.record
+    off, total, w = float(r.blurred), float(r.blurred_sum), float(r.blurred_w)
+    largest = float(r.top_acceleration)
     tolerance = scenario.solver.tolerance
     natural = outcome.start.speed**2 / mechanism.model.size
     in_one, in_all = off > TOLD * tolerance * largest, total > SUM * tolerance * largest

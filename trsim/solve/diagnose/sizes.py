@@ -12,7 +12,6 @@ import numpy as np
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import RATE
 from trsim.scenario.methods import METHODS
-from trsim.solve.march.record import LENGTH
 from trsim.solve.outcome import Outcome, whose
 
 COARSE = 1e-2  # rad in a step
@@ -30,7 +29,7 @@ def of_sizes(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
     if not turns.any():
         return
     at = rates[turns][np.argmin(model.scale[rates[turns]])]
-    arm, length = float(model.scale[at]), float(r.clock[LENGTH])
+    arm, length = float(model.scale[at]), r.length
     off = solver.tolerance * length / arm
     if off > COARSE:
         body = whose(mechanism, int(at)).rpartition(" of ")[2]

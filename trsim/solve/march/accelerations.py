@@ -20,22 +20,6 @@ stiff, of places and rates.
 from math import sqrt
 
 from trsim.kernels.vectors import internal
-from trsim.solve.march.record import (
-    BLUR,
-    BLUR_W,
-    BLURRED,
-    BLURRED_H,
-    BLURRED_SUM,
-    BLURRED_W,
-    DECAY,
-    EXCESS,
-    LENGTH,
-    NOISY,
-    SPEED,
-    T_END,
-    TOLERANCE,
-    VIBRATION,
-)
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
 ROUNDED = 5e-16  # of the mechanism's size, and of speeds: what places and rates are rounded to
@@ -76,7 +60,7 @@ def frequency(turned, placed, h):
 @internal
 def stiffness(r, h):
     """w^2 of the fastest vibration or decay there could be, as far as a step h sees it."""
-    return min(max(r.clock[VIBRATION], r.clock[DECAY] ** 2), (WIDEST / h) ** 2)
+    return min(max(r.vibration, r.decay**2), (WIDEST / h) ** 2)
 
 
 @internal
@@ -87,8 +71,8 @@ def in_units(s, r, setting, h, off, most, mean, times):
     Where accelerations are less than a FURTHEST of what speeds give at that, it is rounding as
     well.
     """
-    most = max(most, sqrt(mean) * r.clock[SPEED] / FURTHEST)
-    allowed = times * setting[TOLERANCE] * most
+    most = max(most, sqrt(mean) * r.speed / FURTHEST)
+    allowed = times * setting.tolerance * most
     error = off / allowed if allowed > 0.0 else 0.0
     return error if error <= 1.0 else off / max(allowed, rounded(s, r, sqrt(mean) * h))
 
@@ -97,7 +81,7 @@ def in_units(s, r, setting, h, off, most, mean, times):
 def share(setting, h):
     """What a step h may be off by, times the tolerance: of a vibration errors add up, step by step,
     to RUN of a run of many; not less than ONE in a step."""
-    return max(ONE, min(ALLOWED, RUN * h / setting[T_END]))
+    return max(ONE, min(ALLOWED, RUN * h / setting.t_end))
 
 
 @internal
@@ -106,15 +90,15 @@ def doubted(s, r, setting, h, off, most, w):
 
     w: rad/s, how fast what the error consists of turns, 0 where it is not known.
     """
-    if off > ALLOWED * setting[TOLERANCE] * most and off > rounded(s, r, w * h):
-        r.clock[BLUR], r.clock[BLUR_W] = off, w
+    if off > ALLOWED * setting.tolerance * most and off > rounded(s, r, w * h):
+        r.blur, r.blur_w = off, w
 
 
 @internal
 def exceeded(r, setting, h, off, most):
     """Note what accelerations are off by where it is more than their share, rounding or not."""
-    if off > share(setting, h) * setting[TOLERANCE] * most:
-        r.clock[EXCESS] = off
+    if off > share(setting, h) * setting.tolerance * most:
+        r.excess = off
 
 
 @internal
@@ -124,12 +108,12 @@ def rounded(s, r, turned):
     turned: rad, by which what the error consists of turns in the step, 0 where it is not known;
     rounding of speeds is felt that many times.
     """
-    free, noise = r.clock[SPEED] ** 2 / r.clock[LENGTH], 0.0
+    free, noise = r.speed**2 / r.length, 0.0
     for f in range(1, s.n_r):
         for c in range(s.d):
             turns = c == 2 if s.d == 3 else c > 2
             free = max(free, abs(s.free[f, c]) * (s.reach if turns else 1.0))
-    if r.clock[NOISY] > 0.0:
+    if r.noisy > 0.0:
         for c in range(s.n_q, s.n_q + s.v_node):
             noise = max(noise, s.scale[c] * r.noise[c])
     turned = max(min(turned, WIDEST), 1.0) if turned > 0.0 else WIDEST
@@ -139,7 +123,7 @@ def rounded(s, r, turned):
 @internal
 def unknown(s, r):
     """What the rounding of places and rates makes of accelerations, by what is stiff, m/s^2."""
-    return ROUNDED * (r.clock[VIBRATION] * s.size + r.clock[DECAY] * r.clock[SPEED])
+    return ROUNDED * (r.vibration * s.size + r.decay * r.speed)
 
 
 @internal
@@ -149,8 +133,8 @@ def blurred(r, h):
 
     How fast it turns is that of the longest such step: in short ones rounding is seen.
     """
-    r.clock[BLURRED_SUM] += r.clock[EXCESS]
-    if r.clock[BLUR] > 0.0:
-        r.clock[BLURRED] = max(r.clock[BLURRED], r.clock[BLUR])
-        if h > r.clock[BLURRED_H]:
-            r.clock[BLURRED_H], r.clock[BLURRED_W] = h, r.clock[BLUR_W]
+    r.blurred_sum += r.excess
+    if r.blur > 0.0:
+        r.blurred = max(r.blurred, r.blur)
+        if h > r.blurred_h:
+            r.blurred_h, r.blurred_w = h, r.blur_w

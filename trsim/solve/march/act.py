@@ -18,7 +18,7 @@ from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.phases import settle
-from trsim.solve.march.record import Buffers, Record
+from trsim.solve.march.record import Buffers, Record, Settings
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -35,22 +35,22 @@ class Acted(NamedTuple):
     ended: tuple[Ended, str] | None  # status and reason, where the run ends here
 
 
-def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> Acted:
+def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -> Acted:
     """Do what the events at the end of the last step say, in the order of the file.
 
     Leaves a line for each among the events; the channels are those before anything changed.
     """
     recorded: list[Array] = []
     ended: tuple[Ended, str] | None = None
-    t = float(r.clock[rec.T])
+    t = float(r.t)
     for k, event in enumerate(mechanism.stages.switches.events):
         if not r.watch[k, rec.JUST_NOW]:
             continue
         r.watch[k, rec.JUST_NOW] = 0.0
-        line = b.events[r.count[rec.EVENT_ROWS]]
+        line = b.events[r.event_rows]
         line[:] = (t, rec.USER, len(mechanism.instances) + 1 + k,
                    r.gap[len(work.contact) + k, 1], np.nan, 0.0, 0.0)  # fmt: skip
-        r.count[rec.EVENT_ROWS] += 1
+        r.event_rows += 1
         if event.record:
             recorded.append(np.array([t, k, *b.out[: work.n_out]]))
         try:
@@ -60,7 +60,7 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array) -> A
             break
         if event.end and ended is None:
             ended = event.status, why_ended(mechanism, b, event, t)
-    r.count[rec.FIRED] = 0
+    r.fired = 0
     return Acted(work, np.array(recorded).reshape(-1, 2 + work.n_out), ended)
 
 
@@ -88,7 +88,7 @@ def failure(event: UserEvent, error: ModelError) -> str:
 
 
 def turned(
-    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Array, event: UserEvent
+    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings, event: UserEvent
 ) -> tuple[Scene, float]:
     """The scene of the stage an event leads to, with the record brought to it; the work done, J.
 
@@ -100,14 +100,14 @@ def turned(
     driven = [n for n, to in event.turned if stages.switches.names[n][0] == "drives" and to > 0]
     if not driven and np.array_equal(before, r.stage):
         return work, 0.0
-    t, y = float(r.clock[rec.T]), r.y
+    t, y = float(r.t), r.y
     energy = total_energy(work, t, y)
     model = stages.model(r.stage)
     for n in driven:
         take_hold(mechanism, work, model, r, n, int(before[n]))
     close_locks(mechanism, work, r, before)
     r.left_out[:] = stages.left_out(r.stage)
-    r.count[rec.WEAK], r.clock[rec.WEAKEST] = 1, 1.0
+    r.weak, r.weakest = 1, 1.0
     work = carried(work, model)
     project(mechanism, work, r)
     done = total_energy(work, t, y) - energy
@@ -138,7 +138,7 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
     """
     name = mechanism.stages.switches.names[n][1]
     e, instance = instance_of(mechanism, "drives", name)
-    t, first = float(r.clock[rec.T]), work.n_q + work.n_v
+    t, first = float(r.t), work.n_q + work.n_v
     old, new = int(AnyDrive(work, e).state), int(AnyDrive(model, e).state)
     if new >= 0:
         if before == LOOSE:
@@ -183,7 +183,7 @@ def project(mechanism: Any, work: Scene, r: Record) -> None:
     """Positions and velocities of the record to the constraints of a stage, nearest in M."""
     if work.m == 0:
         return
-    t = float(r.clock[rec.T])
+    t = float(r.t)
     for k in range(8):
         worst = project_positions(work, t, r.y)
         if k == 0 and worst > TORN * min(work.size, 1.0):

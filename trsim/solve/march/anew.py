@@ -11,7 +11,6 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import close_positions, project_positions, project_velocities
 from trsim.elements.scene import Model, Scene, carried, scene
 from trsim.errors import FileError
-from trsim.solve.march import record as rec
 from trsim.solve.march.checkpoint import ANEW, UNFIT
 from trsim.solve.march.openings import FEEBLE
 from trsim.solve.march.phases import settle
@@ -45,7 +44,7 @@ def resumed(mechanism: Mechanism, work: Scene, r: Record) -> Scene:
     marks = int(np.sum(r.left_out == 1))
     if not marks == len(choice.dropped) == int(np.sum(usual)) == int(np.sum(r.left_out != 0)):
         raise FileError(f"{UNFIT}: record.left_out", ANEW)
-    r.count[rec.KEPT] = 0  # what passes.py knows of rows is in the scene
+    r.kept = 0  # what passes.py knows of rows is in the scene
     return work if same(work, choice.model) else carried(work, choice.model)
 
 
@@ -71,7 +70,7 @@ def anew(
     What weak rows let go of is closed by them, without projection too: it is no drift.  An output
     row at the end of the step is that of the new ones; not one before an event that `acted`.
     """
-    r.count[rec.WEAK] = 0
+    r.weak = 0
     stages = mechanism.stages
     left_out = stages.anew(r.stage, r.left_out, work, r.y)
     if np.array_equal(left_out, r.left_out):
@@ -79,21 +78,21 @@ def anew(
     r.left_out[:] = left_out
     work = carried(work, stages.choice(r.stage, left_out).model)
     before = total_energy(work, r)
-    project(work, float(r.clock[rec.T]), r.y)
-    r.clock[rec.WORK_PROJECTION] += total_energy(work, r) - before
+    project(work, float(r.t), r.y)
+    r.work_projection += total_energy(work, r) - before
     settle(work, r, b, setting)
-    last = int(r.count[rec.ROWS]) - 1
-    if not acted and last >= 0 and b.rows[last, 0] >= r.clock[rec.T] * (1.0 - AT_END):
+    last = int(r.rows) - 1
+    if not acted and last >= 0 and b.rows[last, 0] >= r.t * (1.0 - AT_END):
         b.rows[last, 1:] = work.out
     return work
 
 
 def stuck(r: Record, setting: Any) -> bool:
     """Whether rows come to depend on each other wherever a run goes: it would not reach its end."""
-    t = float(r.clock[rec.T])
-    soon = t - r.clock[rec.CHOSEN_T] < NO_TIME * setting[rec.T_END]
-    r.count[rec.CHOSEN], r.clock[rec.CHOSEN_T] = r.count[rec.CHOSEN] + 1 if soon else 1, t
-    return bool(r.count[rec.CHOSEN] > MANY)
+    t = float(r.t)
+    soon = t - r.chosen_t < NO_TIME * setting.t_end
+    r.chosen, r.chosen_t = r.chosen + 1 if soon else 1, t
+    return bool(r.chosen > MANY)
 
 
 def project(work: Scene, t: float, y: Array) -> None:
@@ -106,4 +105,4 @@ def project(work: Scene, t: float, y: Array) -> None:
 def total_energy(work: Scene, r: Record) -> float:
     """Kinetic and stored, J."""
     poses(work, r.y)
-    return float(kinetic(work, r.y) + stored_energy(work, float(r.clock[rec.T])))
+    return float(kinetic(work, r.y) + stored_energy(work, float(r.t)))

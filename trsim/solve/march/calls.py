@@ -20,31 +20,31 @@ from trsim.elements.contract import SCENE
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.packed import A1, A2, I1, f8, i8
-from trsim.solve.march.record import BUFFERS, RECORD
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 NO_STEP = 10.0
 
-#                    scene  record  buffers  setting t h
-STEP = types.float64(SCENE, RECORD, BUFFERS, A1, f8, f8)
+#                    scene  record  buffers  settings  t   h
+STEP = types.float64(SCENE, RECORD, BUFFERS, SETTINGS, f8, f8)
 #                  scene  K   t   y   h   y1  P
 DENSE = types.void(SCENE, A2, f8, A1, f8, A1, A2)
 #                        P   y   theta out
 INTERPOLATE = types.void(A2, A1, f8, A1)
 #                    P   net
 CONTROL = types.void(A2, A2)
-# what locates points of sections, for runs that have some               scene  record  buffers
-#                                 method t h t1 work of projection, built, event
-SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, f8, f8, f8, f8, i8, i8)
+# what locates points of sections, for runs that have some
+#                     scene  record  buffers  method event
+SECTIONS = types.void(SCENE, RECORD, BUFFERS, I1, i8)
 
 # what looks at redundant rows, for runs that may have some
-#                   scene  record  buffers  setting t y end of a step
-LOOK = types.int64(SCENE, RECORD, BUFFERS, A1, f8, A1, i8)
-# what finds the first event of a step, for runs that can have some       scene  record  buffers
-#                                        setting method t h built
-SEARCH = types.float64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, i8)
+#                  scene  record  buffers  settings  t   end of a step
+LOOK = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, f8, i8)
+# what finds the first event of a step, for runs that can have some
+#                      scene  record  buffers  settings method
+SEARCH = types.float64(SCENE, RECORD, BUFFERS, SETTINGS, I1)
 
 # a row of `methods`, made by `method_row`: what the march must know of a method and of a run, in
 # whole numbers; an address is 0 where nothing of that kind is to be done

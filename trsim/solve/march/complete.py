@@ -10,7 +10,7 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.packed import I1
 from trsim.kernels.vectors import all_finite, copy_table, copy_to, internal
 from trsim.solve.march.accelerations import held
 from trsim.solve.march.calls import (
@@ -46,39 +46,7 @@ from trsim.solve.march.output_rows import at_end, due, rows_until
 from trsim.solve.march.passes import call_passes
 from trsim.solve.march.peaks import call_finish, call_sample
 from trsim.solve.march.phases import change_phases, latch
-from trsim.solve.march.record import (
-    BEHIND,
-    BUFFERS,
-    DENSE_BUILT,
-    ENERGY_0,
-    EVERY,
-    FIXED_STEP,
-    HISTORY,
-    JACOBIAN,
-    LARGEST_ENERGY,
-    LARGEST_RESIDUAL,
-    LENGTH,
-    LOCATE,
-    MOST,
-    NEXT_JACOBIAN,
-    NEXT_ROW,
-    OFF,
-    OFF_RATE,
-    PAST_H,
-    RECORD,
-    ROWS,
-    SAME_TIME,
-    SPEED,
-    STEP_ERROR,
-    STEP_ROWS,
-    STEPS,
-    T_END,
-    WEAK,
-    WORK_PROJECTION,
-    WORST_PHI,
-    WORST_PHI_DOT,
-    T,
-)
+from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.march.turns import too_far
@@ -106,114 +74,106 @@ NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
 SETTLED = 100.0  # times these: what rounding of a step and of the time may leave of a gap
 SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
 
-#                       scene   record  buffers  settings method h built
-COMPLETE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+#                      scene  record  buffers  settings method
+COMPLETE = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1)
 call_complete = caller(COMPLETE)
 
 
 @compiled(COMPLETE)
-def complete(s, r, b, setting, method, h, built):
-    """Turn a trial step of size h (end in b.y1) into an accepted one: project, locate, record.
+def complete(s, r, b, setting, method):
+    """Turn a trial step of length b.h (end in b.y1) into an accepted one: project, locate, record.
 
-    built: not 0 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
+    b.built: 1 where b.P already holds the dense output.  Returns SMOOTH_STEP, WITH_EVENT (the
     step was cut where a contact opens or closes), WITH_CORNER (where a law changes its branch),
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
     (accelerations inside it are not right; the same).
     """
-    last, t = method[LAST_AT], r.clock[T]
-    b.moved[0] = 0.0
-    t1 = reached(setting, t + h)
-    worst, worst_rate = r.clock[WORST_PHI], r.clock[WORST_PHI_DOT]
-    projected = land(s, r, b, t1, b.y1, b.K[last])
+    last, h = method[LAST_AT], b.h
+    b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
+    b.t1 = reached(setting, b.t + h)
+    worst, worst_rate = r.worst_phi, r.worst_phi_dot
+    b.projected = land(s, r, b, b.t1, b.y1, b.K[last])
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
     if s.steep > 0 and strayed(s, r, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
-    if s.status[4] > 0 and leaked(s, r, b, setting, h, t1, projected):
+    if s.status[4] > 0 and leaked(s, r, b, setting):
         return undone(r, worst, worst_rate, STRAYED)
     if s.wound.size > 0 and too_far(s, r, b, h):
         return undone(r, worst, worst_rate, WOUND)
     event = corner = False
     if method[SEARCH_AT] > 0 or method[CORNERS_AT] > 0:
-        before, theta = r.count[DENSE_BUILT], NOTHING
+        theta = other = NOTHING
         if method[CORNERS_AT] > 0:
-            theta = call_search(method[CORNERS_AT], s, r, b, setting, method, t, h, built)
+            theta = call_search(method[CORNERS_AT], s, r, b, setting, method)
             if theta == UNCERTAIN:
                 return undone(r, worst, worst_rate, STRAYED)
-            built = 1 if r.count[DENSE_BUILT] > before else built
-        other = NOTHING
         if method[SEARCH_AT] > 0:
-            other = call_search(method[SEARCH_AT], s, r, b, setting, method, t, h, built)
-            built = 1 if r.count[DENSE_BUILT] > before else built
+            other = call_search(method[SEARCH_AT], s, r, b, setting, method)
         event, corner = sooner(b, theta, other)
         theta = min(theta, other)
         if theta < 1.0:
-            shorter, beyond, projected = exact(s, r, b, setting, method, t, h, theta)
+            shorter, beyond, b.projected = exact(s, r, b, setting, method, theta)
             if shorter < 0.0:
                 return undone(r, worst, worst_rate, STRAYED)
             if shorter > 0.0:
-                # from here on h is the length that the dense output is made with
-                h, built = shorter, 0
-                t1 = reached(setting, t + h + beyond)
+                b.h, b.built = shorter, 0
+                b.t1 = reached(setting, b.t + b.h + beyond)
             else:
-                call_interpolate(method[INTERPOLATE_AT], b.P, r.y, theta, b.y2)
+                call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
-                t1 = reached(setting, t + theta * h)
-                projected = land(s, r, b, t1, b.y1, b.K[last])
-    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+                b.t1 = reached(setting, b.t + theta * h)
+                b.projected = land(s, r, b, b.t1, b.y1, b.K[last])
+    t1 = b.t1
+    measure(s, t1, b.y1, r.work_projection + b.projected, r.energy_0)
     copy_to(b.out, s.out)
     b.firm[1] = firmness(s)
-    if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, b.y1, 1) > 0:
+    if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
-    inside = due(r, setting, t1) and not at_end(setting[EVERY] * r.count[NEXT_ROW], t1)
-    unseen = not inside and t1 - t > LONG * setting[T_END]
-    if built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
-        build(s, r, b, method, t, h)
-        built = 1
-    if inside and loose(s, r, b, setting, method, t, h):
+    inside = due(r, setting, t1) and not at_end(setting.every * r.next_row, t1)
+    unseen = not inside and t1 - b.t > LONG * setting.t_end
+    if b.built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
+        build(s, r, b, method)
+    if inside and loose(s, r, b, setting, method):
         return undone(r, worst, worst_rate, LOOSE)
     if due(r, setting, t1):
-        first = r.count[ROWS]
-        if not rows_until(s, r, b, setting, method, t, h, t1, projected):
+        first = r.rows
+        if not rows_until(s, r, b, setting, method):
             return WORTHLESS
-        for k in range(first, r.count[ROWS]):
+        for k in range(first, r.rows):
             row, b.firm[0] = b.rows[k], b.row_firm[k]
-            built = call_sample(
-                method[SAMPLE_AT], s, r, b, setting, method, t, h, row[0], row[1:], projected, built
-            )  # fmt: skip
+            call_sample(method[SAMPLE_AT], s, r, b, setting, method, row[0], row[1:])
     if unseen:
         for k in range(1, LOOKS):
-            look_inside(s, r, b, setting, method, t, h, t + k / LOOKS * (t1 - t), projected)
+            at = b.t + k / LOOKS * (t1 - b.t)
+            measure_inside(s, r, b, at, (at - b.t) / b.h)
+            call_sample(method[SAMPLE_AT], s, r, b, setting, method, at, s.out)
     b.firm[0] = b.firm[1]
-    built = call_sample(
-        method[SAMPLE_AT], s, r, b, setting, method, t, h, t1, b.out, projected, built
-    )  # fmt: skip
-    if event or corner or last_of_its_kind(s, r, setting, method, t, t1):
-        built = call_finish(method[FINISH_AT], s, r, b, setting, method, t, h, projected, built)
+    call_sample(method[SAMPLE_AT], s, r, b, setting, method, t1, b.out)
+    if event or corner or last_of_its_kind(s, r, b, setting, method):
+        call_finish(method[FINISH_AT], s, r, b, setting, method)
     if method[SECTIONS_AT] > 0:
-        call_sections(
-            method[SECTIONS_AT], s, r, b, method, t, h, t1, projected, built, int(event or corner)
-        )  # fmt: skip
+        call_sections(method[SECTIONS_AT], s, r, b, method, int(event or corner))
     if method[PASSES_AT] > 0 and s.near_rows > 0.0:  # there is a loop still
-        call_passes(method[PASSES_AT], s, r, b, t1, last)
-    keep_step(r, b, method, h, projected, built)
-    accept(s, r, b, t1, projected, last)
+        call_passes(method[PASSES_AT], s, r, b, last)
+    keep_step(r, b, method)
+    accept(s, r, b, last)
     take_sides(s, r)
     if method[IMPLICIT_AT] > 0:
         for k in range(r.past.shape[0]):
             copy_to(r.past[k], b.P[k])
-        r.clock[PAST_H], r.count[HISTORY] = h, BEHIND
-        r.count[JACOBIAN] = r.count[NEXT_JACOBIAN]
-    if setting[LOCATE] == 0.0:
+        r.past_h, r.history = b.h, BEHIND
+        r.jacobian = r.next_jacobian
+    if setting.locate == 0:
         latch(s, r)
     outcome = SMOOTH_STEP
     if event:
         outcome = WITH_EVENT if change_phases(s, r, b, setting, t1) else WITH_CORNER
     if method[MEET_AT] > 0:
         copy_to(b.before, r.held)
-        met = call_meet(method[MEET_AT], s, r, b, t, t1)
+        met = call_meet(method[MEET_AT], s, r, b, b.t, t1)
         outcome = AT_INSTANT if met > 0 and not event else outcome
         if method[TURN_AT] > 0:
             turned = call_turn(method[TURN_AT], s, r, b, setting, method, t1, met + int(event))
@@ -225,42 +185,42 @@ def complete(s, r, b, setting, method, h, built):
 def strayed(s, r, setting, h):
     """Whether a smooth prescribed motion went on between the stages of a step as none of them saw:
     its end is far from the constraints."""
-    if setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
+    if setting.fixed_step > 0.0 or h <= BRIEF * setting.t_end:
         return False
-    far = FAR * setting[STEP_ERROR]
-    return r.clock[OFF] > far * s.size or r.clock[OFF_RATE] > far * max(
-        r.clock[SPEED], r.clock[MOST], s.size / setting[T_END]
+    far = FAR * setting.step_error
+    return r.off > far * s.size or r.off_rate > far * max(
+        r.speed, r.speed_cap, s.size / setting.t_end
     )
 
 
 @internal
-def loose(s, r, b, setting, method, t, h):
+def loose(s, r, b, setting, method):
     """Whether accelerations inside the step are not right, though those at its end are."""
-    if method[INSIDE_AT] == 0 or setting[FIXED_STEP] > 0.0 or h <= BRIEF * setting[T_END]:
+    if method[INSIDE_AT] == 0 or setting.fixed_step > 0.0 or b.h <= BRIEF * setting.t_end:
         return False
-    return held(s) and call_step(method[INSIDE_AT], s, r, b, setting, t, h) > 1.0
+    return held(s) and call_step(method[INSIDE_AT], s, r, b, setting, b.t, b.h) > 1.0
 
 
 @internal
-def leaked(s, r, b, setting, h, t1, projected):
+def leaked(s, r, b, setting):
     """Whether energy went astray in a step past a place where branches of the motion meet, or the
     projection took or gave much of it, as from one branch to the other."""
-    if setting[FIXED_STEP] > 0.0:
+    if setting.fixed_step > 0.0:
         return False
     before, after = kinetic(s, r.y), kinetic(s, b.y1)
-    if h > BRIEF * setting[T_END] and abs(projected) > THROWN * max(before, after):
+    if b.h > BRIEF * setting.t_end and abs(b.projected) > THROWN * max(before, after):
         return True
-    measure(s, t1, b.y1, r.clock[WORK_PROJECTION] + projected, r.clock[ENERGY_0])
+    measure(s, b.t1, b.y1, r.work_projection + b.projected, r.energy_0)
     lost = abs(s.out[s.n_out - 1] - b.out[s.n_out - 1])
     if before < FROM_REST * after:
         return False  # which way it goes from there is not decided by where it stands
-    return lost > LEAK * max(setting[STEP_ERROR], OF_LIMITS) * max(before, after)
+    return lost > LEAK * max(setting.step_error, OF_LIMITS) * max(before, after)
 
 
 @internal
 def undone(r, worst, worst_rate, why):
     """`why` a trial step is not accepted; residuals met on it are none of the run."""
-    r.clock[WORST_PHI], r.clock[WORST_PHI_DOT] = worst, worst_rate
+    r.worst_phi, r.worst_phi_dot = worst, worst_rate
     return why
 
 
@@ -284,12 +244,12 @@ def sooner(b, corner, event):
 @internal
 def reached(setting, t):
     """t, or the end of the run where no step would be left before it."""
-    left = setting[T_END] - t
-    return t if left > 2.0 * SMALLEST * 2.2e-16 * setting[T_END] else setting[T_END]
+    left = setting.t_end - t
+    return t if left > 2.0 * SMALLEST * 2.2e-16 * setting.t_end else setting.t_end
 
 
 @internal
-def exact(s, r, b, setting, method, t, h, theta):
+def exact(s, r, b, setting, method, theta):
     """The step that ends on the event found at theta, for methods with a poor interpolant.
 
     A gap, what is watched, or u of a corner of a function is brought to zero at its end by Newton's
@@ -305,17 +265,17 @@ def exact(s, r, b, setting, method, t, h, theta):
     """
     if method[STEP_AT] == 0:
         return 0.0, 0.0, 0.0
-    gap_of, last = -1, method[LAST_AT]
+    t, h, gap_of, last = b.t, b.h, -1, method[LAST_AT]
     for c in range(b.root.size):
         if b.root[c] <= theta:
             gap_of = c
     h1, before = theta * h, 1e300
-    close = max(PRECISE * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
+    close = max(PRECISE * setting.step_error * r.length, ROUNDING * s.size)
     for k in range(EXACT):
         if h1 <= SMALLEST * 2.2e-16 * abs(t) or h1 > h:
             return 0.0, 0.0, 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h1)
-        if setting[FIXED_STEP] == 0.0 and not error <= 1.0:
+        if setting.fixed_step == 0.0 and not error <= 1.0:
             return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
@@ -334,65 +294,58 @@ def exact(s, r, b, setting, method, t, h, theta):
         if rate == 0.0 or not abs(gap) < NEARER * before:
             return (h1, 0.0, projected) if abs(gap) <= SETTLED * close else (0.0, 0.0, 0.0)
         late, before = gap / rate, abs(gap)
-        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting[STEP_ERROR]) * h1
+        near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting.step_error) * h1
         if near and gap_of < s.contact.size:
             move_end(b, last, late)
             projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])
             if abs(b.gap1[gap_of, 0]) <= close:
                 return h1, -late, projected
-            b.moved[0] = 0.0
+            b.moved = 0
         h1 -= late
     return 0.0, 0.0, 0.0
 
 
 @internal
-def last_of_its_kind(s, r, setting, method, t, t1):
+def last_of_its_kind(s, r, b, setting, method):
     """Whether what follows on this step has other equations, or nothing follows."""
-    if t1 >= setting[T_END] or r.count[WEAK] > 0:
+    if b.t1 >= setting.t_end or r.weak > 0:
         return True
-    if setting[LOCATE] == 0.0 and s.contact.size > 0:  # `latch` changes them in any step
+    if setting.locate == 0 and s.contact.size > 0:  # `latch` changes them in any step
         return True
-    return method[MEET_AT] > 0 and t1 >= next_instant(s, t, setting[T_END])
+    return method[MEET_AT] > 0 and b.t1 >= next_instant(s, b.t, setting.t_end)
 
 
 @internal
-def look_inside(s, r, b, setting, method, t, h, at, projected):
-    """A sample inside the step, for the extremes."""
-    measure_inside(s, r, b, method[INTERPOLATE_AT], at, (at - t) / h, projected)
-    call_sample(method[SAMPLE_AT], s, r, b, setting, method, t, h, at, s.out, projected, 1)
-
-
-@internal
-def accept(s, r, b, t1, projected, last):
+def accept(s, r, b, last):
     """The trial becomes the state; contacts in touch leave a line, peaks are updated."""
     s.status[3] = 0
-    stays = t1 - r.clock[T] <= SMALLEST * 2.2e-16 * t1
-    r.count[SAME_TIME] = r.count[SAME_TIME] + 1 if stays else 0
-    r.clock[T] = t1
-    r.clock[WORK_PROJECTION] += projected
+    stays = b.t1 - r.t <= SMALLEST * 2.2e-16 * b.t1
+    r.same_time = r.same_time + 1 if stays else 0
+    r.t = b.t1
+    r.work_projection += b.projected
     copy_to(r.y, b.y1)
     copy_to(r.yd, b.K[last])
     copy_table(r.gap, b.gap1)
     copy_to(r.corner, b.corner1)
     copy_to(r.branch, b.branch1)
     copy_to(r.turning, b.turning1)
-    r.count[STEPS] += 1
+    r.steps += 1
     for c in range(s.contact.size):
         e = s.contact[c]
         if r.mem[e, PHASE] != FLIGHT and r.gap[c, 0] > 0.0:
             grow(s, r, c)
             if s.wanted[e] >= 0 and b.steps.shape[1] > 2:
-                line = b.steps[r.count[STEP_ROWS]]
-                line[0], line[1] = t1, e
+                line = b.steps[r.step_rows]
+                line[0], line[1] = b.t1, e
                 for k in range(line.size - 2):
                     line[2 + k] = b.out[s.wanted[e] + k] if s.wanted[e] + k < s.n_out else 0.0
-                r.count[STEP_ROWS] += 1
+                r.step_rows += 1
     if s.column_energy >= 0:
         exchanged(s, r, b)
         for c in range(s.column_energy, s.n_out - 1):
             size = abs(b.out[c])
             if c == s.column_energy + 1 + GRAVITY:  # counted from the origin, wherever that is
                 size = max(ORIGIN * size, r.book[1 + GRAVITY, 1] - r.book[1 + GRAVITY, 0])
-            r.clock[LARGEST_ENERGY] = max(r.clock[LARGEST_ENERGY], size)
+            r.largest_energy = max(r.largest_energy, size)
         residual = abs(b.out[s.n_out - 1])
-        r.clock[LARGEST_RESIDUAL] = max(r.clock[LARGEST_RESIDUAL], residual)
+        r.largest_residual = max(r.largest_residual, residual)

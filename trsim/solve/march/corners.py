@@ -27,30 +27,27 @@ def any_left(s, r, b):
 
 
 @internal
-def beyond_inside(s, P, y, t, h, theta, c, scratch, interpolate):
-    """How far contact c has left its branch at t + theta h."""
-    call_interpolate(interpolate, P, y, theta, scratch)
-    poses(s, scratch)
-    call_one(s, s.corners, t + theta * h, s.contact[c])
+def beyond_inside(s, r, b, c, theta):
+    """How far contact c has left its branch at theta of the step."""
+    call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
+    poses(s, b.y2)
+    call_one(s, s.corners, b.t + theta * b.h, s.contact[c])
     return s.corner[s.contact[c], 0]
 
 
 @internal
-def corner_root(s, r, b, t, h, c, interpolate):
+def corner_root(s, r, b, c):
     """Where contact c first leaves its branch, as theta in [0, 1]; NONE if it does not."""
     e = s.contact[c]
     if s.mem[e, PHASE] != CONTACT or not (b.corner1[c] > 0.0 or s.left[e] > 0.0):
         return NONE
-    P, y = b.P, r.y
     low, f_low = 0.0, r.corner[c]
     inside = f_low < 0.0
     for k in range(1, LOOKS + 1):
         theta = k / LOOKS
-        f = b.corner1[c] if k == LOOKS else beyond_inside(
-            s, P, y, t, h, theta, c, b.y2, interpolate
-        )  # fmt: skip
+        f = b.corner1[c] if k == LOOKS else beyond_inside(s, r, b, c, theta)
         if inside and f > 0.0:
-            return bracketed(s, P, y, t, h, c, b.y2, interpolate, low, f_low, theta, f)
+            return bracketed(s, r, b, c, (low, f_low), (theta, f))
         if f < 0.0:
             inside, low, f_low = True, theta, f
     # it starts on a corner: away from it at once, or the branch was left only by a trial
@@ -58,15 +55,15 @@ def corner_root(s, r, b, t, h, c, interpolate):
 
 
 @internal
-def bracketed(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_high):
-    """The root between two places, inside and beyond."""
+def bracketed(s, r, b, c, low, high):
+    """The root between two places, (theta, how far) each: inside and beyond."""
     # inside it may be zero: just inside
-    bracket = (low, min(f_low, -1e-3 * f_high), high, f_high, 0.0)
+    bracket = (low[0], min(low[1], -1e-3 * high[1]), high[0], high[1], 0.0)
     for k in range(100):
         if bracket[2] - bracket[0] <= EXACT:
             break
         middle = between(bracket, k)
-        f = beyond_inside(s, P, y, t, h, middle, c, scratch, interpolate)
+        f = beyond_inside(s, r, b, c, middle)
         bracket = narrowed(bracket, middle, f, True)
     return bracket[2]
 

@@ -6,7 +6,6 @@ from trsim.kernels.vectors import clear_table, copy_to, internal
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
 from trsim.solve.march.earlier import this_step
 from trsim.solve.march.land import evaluate_inside
-from trsim.solve.march.record import DENSE_BUILT, ENERGY_0
 from trsim.solve.march.samples import firmness
 
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
@@ -17,27 +16,28 @@ OF_FOUR, OF_SIX = (0.0, 2.0 / 3.0, -1.0 / 6.0, 0.0), (0.0, 0.75, -0.3, 0.05)
 
 
 @internal
-def build(s, r, b, method, t, h):
-    """The dense output of the step of length h, into b.P, and count it."""
-    fill(s, r, b, method, t, h)
-    r.count[DENSE_BUILT] += 1
+def build(s, r, b, method):
+    """The dense output of the step at hand, into b.P, and count it."""
+    fill(s, r, b, method)
+    r.dense_built += 1
+    b.built = 1
 
 
 @internal
-def fill(s, r, b, method, t, h):
-    """The dense output of the step of length h, into b.P.
+def fill(s, r, b, method):
+    """The dense output of the step at hand, into b.P.
 
     Where its end was moved on along its tangent it is that of the end as it was before: no stage
     has moved with it.
     """
-    if b.moved[0] > 0.0:
+    if b.moved > 0:
         last = b.K[method[LAST_AT]]
         copy_to(b.unmoved[2], last)
         copy_to(last, b.unmoved[1])
-        call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.unmoved[0], b.P)
+        call_dense(method[DENSE_AT], s, b.K, b.t, r.y, b.h, b.unmoved[0], b.P)
         copy_to(last, b.unmoved[2])
     else:
-        call_dense(method[DENSE_AT], s, b.K, t, r.y, h, b.y1, b.P)
+        call_dense(method[DENSE_AT], s, b.K, b.t, r.y, b.h, b.y1, b.P)
 
 
 @internal
@@ -45,19 +45,19 @@ def move_end(b, last, late):
     """Move the end of the step back by `late` s along its tangent; `build` knows where it was."""
     copy_to(b.unmoved[0], b.y1)
     copy_to(b.unmoved[1], b.K[last])
-    b.moved[0] = 1.0
+    b.moved = 1
     for i in range(b.y1.size):
         b.y1[i] -= late * b.K[last, i]
 
 
 @internal
-def measure_inside(s, r, b, interpolate, at, theta, projected):
-    """`measure_in` of the step at hand; projected: the work of the projection at its end."""
-    measure_in(s, r, b, interpolate, this_step(r, b, projected), at, theta)
+def measure_inside(s, r, b, at, theta):
+    """`measure_in` of the step at hand."""
+    measure_in(s, r, b, this_step(r, b), at, theta)
 
 
 @internal
-def measure_in(s, r, b, interpolate, step, at, theta):
+def measure_in(s, r, b, step, at, theta):
     """All channels at the time `at`, theta of a step, into s.out; the state is in b.y2.
 
     step: as earlier.py hands it on.  Where some rows are redundant, those of the solve may depend
@@ -65,7 +65,7 @@ def measure_in(s, r, b, interpolate, step, at, theta):
     chance there.  A force is then that of the polynomial through six places around it, unless its
     own value is nearer to that than the one through four is.
     """
-    measure_at(s, r, b, interpolate, step, at, theta)
+    measure_at(s, r, b, step, at, theta)
     b.firm[0] = firmness(s)
     if s.redundant.shape[0] == 0 or theta == 0.0:
         return
@@ -78,7 +78,7 @@ def measure_in(s, r, b, interpolate, step, at, theta):
         for side in (-1, 1):
             beside = theta + side * apart
             time = start + (at - start) * (beside / theta)
-            measure_at(s, r, b, interpolate, step, time, beside)
+            measure_at(s, r, b, step, time, beside)
             nearest = min(nearest, smallest_pivot(s))
         if nearest >= least:
             break
@@ -89,11 +89,11 @@ def measure_in(s, r, b, interpolate, step, at, theta):
             continue
         beside = theta + k * apart
         time = start + (at - start) * (beside / theta)
-        measure_at(s, r, b, interpolate, step, time, beside)
+        measure_at(s, r, b, step, time, beside)
         for c in range(s.n_out):
             b.mean[0, c] += OF_FOUR[abs(k)] * s.out[c]
             b.mean[1, c] += OF_SIX[abs(k)] * s.out[c]
-    measure_at(s, r, b, interpolate, step, at, theta)
+    measure_at(s, r, b, step, at, theta)
     for c in s.shared:
         rough, fine = b.mean[0, c], b.mean[1, c]
         if abs(s.out[c] - fine) > abs(fine - rough):
@@ -101,9 +101,9 @@ def measure_in(s, r, b, interpolate, step, at, theta):
 
 
 @internal
-def measure_at(s, r, b, interpolate, step, at, theta):
+def measure_at(s, r, b, step, at, theta):
     """All channels at the place itself, wherever the polynomial through others would be taken."""
     y, P, _, work, projected = step
-    call_interpolate(interpolate, P, y, theta, b.y2)
+    call_interpolate(b.interpolate, P, y, theta, b.y2)
     evaluate_inside(s, r, at, b.y2, b.rough[0], b.rough[1])
-    measure(s, at, b.y2, work + theta * projected, r.clock[ENERGY_0])
+    measure(s, at, b.y2, work + theta * projected, r.energy_0)

@@ -8,34 +8,22 @@ is asked for, or kept if it was.  Whichever step it is, what channels inside it 
 
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, STAGES_AT, call_dense
-from trsim.solve.march.record import (
-    DENSE_BUILT,
-    EARLIER_BUILT,
-    EARLIER_H,
-    EARLIER_PROJECTED,
-    EARLIER_T,
-    EARLIER_WORK,
-    SAMPLES,
-    UNSEEN,
-    WORK_PROJECTION,
-    T,
-)
 from trsim.solve.march.samples import older
 
 
 @internal
-def this_step(r, b, projected):
+def this_step(r, b):
     """The step at hand."""
-    return r.y, b.P, r.clock[T], r.clock[WORK_PROJECTION], projected
+    return r.y, b.P, r.t, r.work_projection, b.projected
 
 
 @internal
-def either_step(r, b, projected, earlier):
+def either_step(r, b, earlier):
     """The step that was kept, or the one at hand."""
     if earlier:
-        t, work, done = r.clock[EARLIER_T], r.clock[EARLIER_WORK], r.clock[EARLIER_PROJECTED]
+        t, work, done = r.earlier_t, r.earlier_work, r.earlier_projected
         return r.earlier[0], r.stages, t, work, done
-    return this_step(r, b, projected)
+    return this_step(r, b)
 
 
 @internal
@@ -47,29 +35,24 @@ def ends(r, b, method, earlier):
 
 
 @internal
-def keep_step(r, b, method, h, projected, built):
+def keep_step(r, b, method):
     """Keep the step at hand, which is about to be accepted, if extremes in it are still looked for.
 
     It is the one that the newest two samples lie in: not a step so short that its end took the
     place of the sample before.
     """
-    t = r.clock[T]
-    if (
-        r.earlier.shape[0] == 0
-        or r.count[UNSEEN] == 0
-        or r.count[SAMPLES] < 2
-        or r.sampled[older(r, 1)] < t
-    ):
+    t = r.t
+    if r.earlier.shape[0] == 0 or r.unseen == 0 or r.n_samples < 2 or r.sampled[older(r, 1)] < t:
         return
     copy_to(r.earlier[0], r.y)
     copy_to(r.earlier[1], b.y1)
     copy_to(r.earlier[2], r.yd)
     copy_to(r.earlier[3], b.K[method[LAST_AT]])
-    r.clock[EARLIER_T], r.clock[EARLIER_H] = t, h
-    r.clock[EARLIER_WORK], r.clock[EARLIER_PROJECTED] = r.clock[WORK_PROJECTION], projected
-    r.count[EARLIER_BUILT] = built
-    source = b.P if built > 0 else b.K
-    rows = method[STAGES_AT] if built == 0 and method[STAGES_AT] > 0 else source.shape[0]
+    r.earlier_t, r.earlier_h = t, b.h
+    r.earlier_work, r.earlier_projected = r.work_projection, b.projected
+    r.earlier_built = b.built
+    source = b.P if b.built > 0 else b.K
+    rows = method[STAGES_AT] if b.built == 0 and method[STAGES_AT] > 0 else source.shape[0]
     for k in range(min(rows, r.stages.shape[0])):
         copy_to(r.stages[k], source[k])
 
@@ -77,9 +60,9 @@ def keep_step(r, b, method, h, projected, built):
 @internal
 def build_earlier(s, r, b, method):
     """The dense output of the step that was kept, in the place of its stages."""
-    e, t, h = r.earlier, r.clock[EARLIER_T], r.clock[EARLIER_H]
+    e, t, h = r.earlier, r.earlier_t, r.earlier_h
     call_dense(method[DENSE_AT], s, r.stages, t, e[0], h, e[1], b.P_earlier)
     for k in range(b.P_earlier.shape[0]):
         copy_to(r.stages[k], b.P_earlier[k])
-    r.count[EARLIER_BUILT] = 1
-    r.count[DENSE_BUILT] += 1
+    r.earlier_built = 1
+    r.dense_built += 1

@@ -22,7 +22,6 @@ from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.corners import any_left, corner_root
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.record import LENGTH, STEP_ERROR, UNPROVED
 from trsim.solve.march.spread import spread, spread_at_stages
 
 NONE = 2.0  # a root beyond the step
@@ -39,11 +38,12 @@ GUESS = 4.0  # of the bends seen at its ends: what is taken for a bound where th
 
 
 @internal
-def stays(f0, r0, f1, r1, L, M, length, kink):
-    """Whether f cannot reach zero between two ends where it is positive, with the rates r.
+def stays(start, end, bounds, length, kink):
+    """Whether f cannot reach zero between two ends where it is positive: f and its rate at each.
 
-    L < 0: no bounds are known; what is seen of f'' is taken for one, enlarged.
+    bounds: L, M.  L < 0: none are known; what is seen of f'' is taken for one, enlarged.
     """
+    (f0, r0), (f1, r1), (L, M) = start, end, bounds
     if L >= 0.0 and f0 + f1 > L * length:
         return True
     # the least f'' with which these ends go together
@@ -81,35 +81,42 @@ def falls(r0, r1, M, length):
 
 
 @internal
-def inside(s, P, y, t, h, theta, c, scratch, interpolate):
-    """Penetration and rate of contact c at t + theta h; counted on, what is watched (watch.py)."""
-    call_interpolate(interpolate, P, y, theta, scratch)
-    poses(s, scratch)
+def inside(s, r, b, c, theta):
+    """Penetration and rate of contact c at theta of the step; counted on, what is watched
+    (watch.py)."""
+    call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
+    poses(s, b.y2)
+    t = b.t + theta * b.h
     if c >= s.contact.size:
-        entry, value = s.watch[c - s.contact.size, 0], s.watch_at[c - s.contact.size, 0]
-        if entry <= LIMITS:
-            call_one(s, s.gaps, t + theta * h, LIMITS - entry)
-            return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]
-        if entry < 0:
-            return t + theta * h - value, 1.0
-        return s.S[entry, 0] - value, s.S[entry, 1]
-    e = s.contact[c]
-    call_one(s, s.gaps, t + theta * h, e)
-    return s.gap[e, 0], s.gap[e, 1]
+        return watched(s, t, c - s.contact.size)
+    call_one(s, s.gaps, t, s.contact[c])
+    return s.gap[s.contact[c], 0], s.gap[s.contact[c], 1]
 
 
 @internal
-def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_high):
-    """Where the gap changes its sign between low and high, just behind it."""
-    if f_high == 0.0:
-        return high
-    rising = f_high > 0.0
-    bracket = (low, f_low, high, f_high, 0.0)
+def watched(s, t, k):
+    """The k-th user event: what it looks at less its value, and the rate, at the scene's poses."""
+    entry, value = s.watch[k, 0], s.watch_at[k, 0]
+    if entry <= LIMITS:
+        call_one(s, s.gaps, t, LIMITS - entry)
+        return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]
+    if entry < 0:
+        return t - value, 1.0
+    return s.S[entry, 0] - value, s.S[entry, 1]
+
+
+@internal
+def bracketed_root(s, r, b, c, low, high):
+    """Where the gap changes its sign between two places, (theta, gap) each; just behind it."""
+    if high[1] == 0.0:
+        return high[0]
+    rising = high[1] > 0.0
+    bracket = (low[0], low[1], high[0], high[1], 0.0)
     for k in range(200):
         if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
             break
         middle = between(bracket, k)
-        f, _ = inside(s, P, y, t, h, middle, c, scratch, interpolate)
+        f, _ = inside(s, r, b, c, middle)
         if f == 0.0:
             return middle
         bracket = narrowed(bracket, middle, f, rising)
@@ -119,37 +126,38 @@ def bracketed_root(s, P, y, t, h, c, scratch, interpolate, low, f_low, high, f_h
 @internal
 def hides(s, r, setting, c, M, length):
     """Whether a part of a step is so short that what it may hide does not count."""
-    depth = max(HIDDEN * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
+    depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
     if s.travel[c, 0] == ANGLE:
         depth /= s.reach
     return M >= 0.0 and 0.125 * M * length**2 < depth
 
 
 @internal
-def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate):
-    """Where f = sign * gap, positive at `low`, first falls through zero to below -beyond.
+def fall(s, r, b, setting, c, way, start, end):
+    """Where f = sign * gap, positive at the start, first falls through zero to below -beyond.
 
-    A theta in (low, end]; NONE where it does not.
+    way: sign, beyond; start: theta, f and its rate there.  A theta in (low, end]; NONE where it
+    does not.
     """
+    (sign, beyond), (low, f0, r0) = way, start
     at_low, f_at_low = low, f0  # the last place where it was seen to be positive
     high = end
     for _ in range(LOOKS):
-        g1, rate = inside(s, b.P, r.y, t, h, high, c, b.y2, interpolate)
+        g1, rate = inside(s, r, b, c, high)
         if high == 1.0:
             g1, rate = b.gap1[c, 0], b.gap1[c, 1]
-        f1, r1, length = sign * g1, sign * rate, (high - low) * h
-        L, M = spread(s, r, b, c, sign, low, high, h)
+        f1, r1, length = sign * g1, sign * rate, (high - low) * b.h
+        L, M = spread(s, r, b, s.travel[c], sign, (low, high))
         short = high - low < FINEST or (
             hides(s, r, setting, c, M, length) and not through(f0, f1, L, length, s.kink[c])
         )
         least = 0.0 if high >= end else beyond  # at an end what comes after is not known
         if f1 < -least or (f1 == 0.0 and least == 0.0 and r1 < 0.0):
             if short or falls(r0, r1, M, length) or (M < 0.0 and high - low <= PART):
-                return bracketed_root(s, b.P, r.y, t, h, c, b.y2, interpolate, at_low,
-                                      sign * f_at_low, high, g1)  # fmt: skip
+                return bracketed_root(s, r, b, c, (at_low, sign * f_at_low), (high, g1))
         elif short or (
             (M >= 0.0 or high - low <= PART)
-            and stays(f0 + beyond, r0, f1 + beyond, r1, L, M, length, s.kink[c])
+            and stays((f0 + beyond, r0), (f1 + beyond, r1), (L, M), length, s.kink[c])
         ):
             if high >= end:
                 return NONE
@@ -160,7 +168,7 @@ def fall(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate)
             high = min(end, low + step)
             continue
         high = 0.5 * (low + high)
-    r.count[UNPROVED] += 1
+    r.unproved += 1
     return NONE
 
 
@@ -171,25 +179,29 @@ def noise(s, f0):
 
 
 @internal
-def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolate):
-    """A place behind `low`, where f is about zero, at which it is above `beyond`; -1 for none."""
+def leaves(s, r, b, setting, c, way, start, end):
+    """A place behind the start, where f is about zero, at which it is above `beyond`; -1 for none.
+
+    way, start: see `fall`.
+    """
+    (sign, beyond), (low, f0, r0) = way, start
     at, rate = low, r0
     for trial in range(2):
         if rate > 0.0 or trial == 0:
             reach, M = end, inf
             for _ in range(HALVINGS):
-                L, M = spread(s, r, b, c, sign, at, reach, h)
+                L, M = spread(s, r, b, s.travel[c], sign, (at, reach))
                 # not as far as to its other branch: bounds hold on one
-                if inf > M and not f0 + L * (reach - at) * h > s.kink[c]:
+                if inf > M and not f0 + L * (reach - at) * b.h > s.kink[c]:
                     break
                 reach = at + 0.5 * (reach - at)
             # f >= f_0 + r_0 tau - M tau^2 / 2 is largest there; what is not known is looked at soon
-            place = min(reach, at + rate / (M * h)) if M > 0.0 else reach
+            place = min(reach, at + rate / (M * b.h)) if M > 0.0 else reach
             if M < 0.0:
                 place = at + PART**2 * (end - at)
             place = max(place, at + FINEST * (end - at))
             for _ in range(HALVINGS):
-                g, _ = inside(s, b.P, r.y, t, h, place, c, b.y2, interpolate)
+                g, _ = inside(s, r, b, c, place)
                 if sign * g > beyond:
                     return place
                 # no deeper than rounding has it, it is still on its way
@@ -199,35 +211,35 @@ def leaves(s, r, b, setting, t, h, c, sign, beyond, low, f0, r0, end, interpolat
         if at > low or f0 >= 0.0:
             break
         # below zero: where it rises through zero, if it does
-        at = fall(s, r, b, setting, t, h, c, -sign, 0.0, low, -f0, -r0, end, interpolate)
+        at = fall(s, r, b, setting, c, (-sign, 0.0), (low, -f0, -r0), end)
         if at >= end:
             break
-        _, rate = inside(s, b.P, r.y, t, h, at, c, b.y2, interpolate)
+        _, rate = inside(s, r, b, c, at)
         rate *= sign
     return -1.0
 
 
 @internal
-def change(s, r, b, setting, t, h, c, end, interpolate):
+def change(s, r, b, setting, c, end):
     """Where contact c first changes its phase up to `end`, as theta; NONE if it does not."""
     sign = -1.0 if r.mem[s.contact[c], PHASE] == FLIGHT else 1.0
     low, f0, r0 = 0.0, sign * r.gap[c, 0], sign * r.gap[c, 1]
     if f0 <= 0.0:
         # it begins on the event just handled, and first moves away
-        low = leaves(s, r, b, setting, t, h, c, sign, 0.0, 0.0, f0, r0, end, interpolate)
+        low = leaves(s, r, b, setting, c, (sign, 0.0), (0.0, f0, r0), end)
         if low < 0.0:
             # a step that other events make short may end while it is still on its way
-            g, _ = inside(s, b.P, r.y, t, h, end, c, b.y2, interpolate)
+            g, _ = inside(s, r, b, c, end)
             return NONE if r0 > 0.0 and sign * g >= -noise(s, f0) else 0.0
-        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        g, rate = inside(s, r, b, c, low)
         f0, r0 = sign * g, sign * rate
     if low >= end:
         return NONE
-    return fall(s, r, b, setting, t, h, c, sign, 0.0, low, f0, r0, end, interpolate)
+    return fall(s, r, b, setting, c, (sign, 0.0), (low, f0, r0), end)
 
 
 @internal
-def may_change(s, r, b, h, c, stages):
+def may_change(s, r, b, c, stages):
     """Whether contact c may change its phase in the step, as far as is known without looking."""
     phase = r.mem[s.contact[c], PHASE]
     if phase == UNLOCATED:
@@ -237,31 +249,31 @@ def may_change(s, r, b, h, c, stages):
     f1, r1 = sign * b.gap1[c, 0], sign * b.gap1[c, 1]
     if f1 <= 0.0 or stages == 0:
         return True
-    L, M = spread_at_stages(s, r, b, c, sign, h)
-    return not stays(max(f0, 0.0), r0, f1, r1, L, M, h, s.kink[c])
+    bounds = spread_at_stages(s, r, b, s.travel[c], sign)
+    return not stays((max(f0, 0.0), r0), (f1, r1), bounds, b.h, s.kink[c])
 
 
 @internal
-def first_change(s, r, b, setting, t, h, interpolate):
+def first_change(s, r, b, setting):
     """Fill b.root and b.corner_root for all contacts and return the earliest; needs b.P, b.net."""
     first = NONE
     for c in range(s.contact.size):
         b.root[c], b.corner_root[c] = NONE, NONE
         if r.mem[s.contact[c], PHASE] != UNLOCATED:
-            b.corner_root[c] = corner_root(s, r, b, t, h, c, interpolate)
+            b.corner_root[c] = corner_root(s, r, b, c)
             first = min(first, b.corner_root[c])
     for c in range(s.contact.size):
         if r.mem[s.contact[c], PHASE] != UNLOCATED:
-            b.root[c] = change(s, r, b, setting, t, h, c, min(first + SAME, 1.0), interpolate)
+            b.root[c] = change(s, r, b, setting, c, min(first + SAME, 1.0))
             first = min(first, b.root[c])
     return first
 
 
 @internal
-def any_change(s, r, b, h, stages):
+def any_change(s, r, b, stages):
     """Whether the step must be searched at all."""
     for c in range(s.contact.size):
-        if may_change(s, r, b, h, c, stages):
+        if may_change(s, r, b, c, stages):
             return True
     return any_left(s, r, b)
 

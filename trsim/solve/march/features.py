@@ -8,15 +8,7 @@ longer than the time to the next.
 from math import nan
 
 from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
-from trsim.assemble.features import (
-    BEHIND,
-    DRIVE,
-    FIRST,
-    PISTON,
-    RATE_JUMP,
-    call_hold,
-    passed,
-)
+from trsim.assemble.features import BEHIND, DRIVE, FIRST, PISTON, RATE_JUMP, call_hold, passed
 from trsim.assemble.outputs import measure
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.elements.contract import SCENE, SINCE, compiled
@@ -29,29 +21,18 @@ from trsim.laws.functions import BY_TIME
 from trsim.solve.march.land import land
 from trsim.solve.march.record import (
     BUFFERS,
-    ENERGY_0,
     EVENT_ANGLE,
     EVENT_IMPULSE,
     EVENT_KIND,
     EVENT_ROW,
-    EVENT_ROWS,
     EVENT_SPEED,
     EVENT_TIME,
     EVENT_WORK,
-    HISTORY,
-    JACOBIAN,
     JOLT,
-    JOLTS,
     JOLTS_KEPT,
-    LAST_EVENT,
     NO_HISTORY,
     NO_JACOBIAN,
-    PAST_ERROR,
     RECORD,
-    TORN,
-    TORN_BY,
-    WORK_PROJECTION,
-    T,
 )
 from trsim.solve.march.samples import restart
 from trsim.solve.march.works import LONG
@@ -96,10 +77,10 @@ def meet(s, r, b, t, t1):
     before = kinetic(s, r.y) + stored_energy(s, t1) if jumped else 0.0
     call_hold(s.on_features[0], s, t1, BY_TIME)
     keep(s, r)
-    if r.count[TORN] > 0:
+    if r.torn > 0:
         return 1
     copy_to(b.y1, r.y)
-    first = r.count[EVENT_ROWS]
+    first = r.event_rows
     if jumped:
         jolt(s, r, b, t, t1)
     done = land(s, r, b, t1, b.y1, r.yd)
@@ -111,7 +92,7 @@ def meet(s, r, b, t, t1):
         evaluate(s, t1, r.y, r.yd)
         tell(r, b, first, done)
     else:
-        r.clock[WORK_PROJECTION] += done
+        r.work_projection += done
     for c in range(r.gap.shape[0]):
         r.gap[c, 1] = b.gap1[c, 1]
     other_side(s, r, b, t1)
@@ -131,7 +112,7 @@ def looked_at(s, r, t, t1):
             place, rate = s.jump[s.feature[n, FIRST] + k]
             jumped = jumped or place != 0.0 or rate != 0.0
             if place != 0.0 and AnyDrive(s, e).row >= 0:
-                r.count[TORN], r.clock[TORN_BY] = 1 + e, place
+                r.torn, r.torn_by = 1 + e, place
     return jumped
 
 
@@ -157,9 +138,9 @@ def jolt(s, r, b, t, t1):
             continue
         for k in range(passed(s, n, t), passed(s, n, t1)):
             rate += s.jump[s.feature[n, FIRST] + k, RATE_JUMP]
-        if rate != 0.0 and r.count[EVENT_ROWS] < b.events.shape[0]:
-            line = b.events[r.count[EVENT_ROWS]]
-            r.count[EVENT_ROWS] += 1
+        if rate != 0.0 and r.event_rows < b.events.shape[0]:
+            line = b.events[r.event_rows]
+            r.event_rows += 1
             line[EVENT_TIME], line[EVENT_KIND], line[EVENT_ROW] = t1, JOLT, e
             line[EVENT_SPEED], line[EVENT_ANGLE] = rate, nan
             line[EVENT_IMPULSE] = -s.x[AnyDrive(s, e).row]
@@ -168,24 +149,24 @@ def jolt(s, r, b, t, t1):
 @internal
 def tell(r, b, first, done):
     """The work of the jumps of one instant into their lines, the first ones kept for the end."""
-    r.clock[LAST_EVENT] = b.events[first, EVENT_TIME] if first < r.count[EVENT_ROWS] else r.clock[T]
-    for k in range(first, r.count[EVENT_ROWS]):
+    r.last_event = b.events[first, EVENT_TIME] if first < r.event_rows else r.t
+    for k in range(first, r.event_rows):
         line = b.events[k]
         line[EVENT_WORK] = done
-        if r.count[JOLTS] < JOLTS_KEPT:
-            kept = r.jolt[r.count[JOLTS]]
+        if r.n_jolts < JOLTS_KEPT:
+            kept = r.jolt[r.n_jolts]
             kept[0], kept[1], kept[2] = line[EVENT_TIME], line[EVENT_ROW], line[EVENT_SPEED]
             kept[3], kept[4] = line[EVENT_IMPULSE], done
-        r.count[JOLTS] += 1
+        r.n_jolts += 1
 
 
 @internal
 def other_side(s, r, b, t1):
     """What the end of a step leaves behind does not hold across a corner."""
-    measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+    measure(s, t1, r.y, r.work_projection, r.energy_0)
     restart(s, r, b, t1)
-    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
-    r.clock[PAST_ERROR] = 0.0
+    r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
+    r.past_error = 0.0
     r.worked[0, LONG] = 0.0
 
 

@@ -17,7 +17,6 @@ from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.own_rows import ends_in, keep_roots, keep_rows, look_at
-from trsim.solve.march.record import LENGTH, OFF, OFF_RATE, SPEED, WORST_PHI, WORST_PHI_DOT
 from trsim.solve.march.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
@@ -63,13 +62,13 @@ def land(s, r, b, t, y, yd):
             s.status[3] += 1
             y[0] = nan
         else:
-            r.clock[WORST_PHI] = max(r.clock[WORST_PHI], first)
-        r.clock[OFF] = first
+            r.worst_phi = max(r.worst_phi, first)
+        r.off = first
         T0 = kinetic(s, y)
         if not at_hand:
             poses_and_rows(s, t, y)
-        worst = r.clock[OFF_RATE] = project_velocities(s, y)
-        r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], worst)
+        worst = r.off_rate = project_velocities(s, y)
+        r.worst_phi_dot = max(r.worst_phi_dot, worst)
         done += kinetic(s, y) - T0
     flush(y)
     evaluate(s, t, y, yd)
@@ -82,9 +81,9 @@ def land(s, r, b, t, y, yd):
         done += position_work(s, b.y2, y)
     else:
         for k in range(s.m):
-            r.clock[WORST_PHI] = max(r.clock[WORST_PHI], abs(s.phi[k]))
+            r.worst_phi = max(r.worst_phi, abs(s.phi[k]))
             off = abs(velocity_residual(s, k))
-            r.clock[WORST_PHI_DOT] = max(r.clock[WORST_PHI_DOT], off)
+            r.worst_phi_dot = max(r.worst_phi_dot, off)
     if s.contact.size > 0:
         gaps(s, t)
         corners(s, t)
@@ -189,7 +188,7 @@ def off_the_rows(s, r, pivot):
     if s.near == 0.0 or s.stabilisation == NONE:
         return False
     allowed = s.tolerance * pivot / s.size
-    length, speed = allowed * r.clock[LENGTH], allowed * r.clock[SPEED]
+    length, speed = allowed * r.length, allowed * r.speed
     for k in range(s.m):
         if abs(s.phi[k]) > length * s.row_unit[k]:
             return True

@@ -9,7 +9,7 @@ from math import isfinite
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
-from trsim.kernels.packed import A1, I2, i8
+from trsim.kernels.packed import I2, i8
 from trsim.kernels.vectors import clear_table, copy_to, internal
 from trsim.solve.march.accelerations import blurred
 from trsim.solve.march.calls import (
@@ -44,56 +44,27 @@ from trsim.solve.march.phases import evaluate_all
 from trsim.solve.march.record import (
     ACT,
     ADRIFT,
-    AFTER_REJECTION,
-    BLUR,
     BUFFERS,
     CHATTER,
     CRAWL,
-    CRAWLED,
     CRAWLED_MOST,
     CRAWLING,
     DONE,
-    ENERGY_0,
-    EVENT_ROWS,
-    EVERY,
-    EXCESS,
     FASTEST,
-    FIRED,
-    FIXED_STEP,
-    FREED,
     FULL,
-    H_MAX,
-    JACOBIAN,
     LEAPT,
     LOAD,
-    LOST,
-    METHOD,
-    NEXT_ROW,
     NOT_FINITE,
     OLD,
-    OLD_H,
     OPEN,
-    OPENED,
-    PASSED,
-    PAST_ERROR,
     PAUSE,
     PEAK_MAX,
     PEAK_MIN,
-    POINT_ROWS,
     RECORD,
-    REJECTED,
-    ROWS,
-    SAME_TIME,
-    STEP_ERROR,
-    STEP_ROWS,
+    SETTINGS,
     STEP_TOO_SMALL,
-    T_END,
     TOO_FAST,
-    TORN,
-    VIBRATION,
     WINDS,
-    H,
-    T,
 )
 from trsim.solve.march.rounding import (
     blunted,
@@ -152,7 +123,7 @@ def method_table(method, **called):
     )
 
 
-@compiled(types.int64(SCENE, RECORD, BUFFERS, A1, I2, i8))
+@compiled(types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I2, i8))
 def march(s, r, b, setting, methods, most):
     """Advance the record until it is done, a buffer is full, or `most` steps were accepted, or
     twice as many tried.
@@ -163,20 +134,20 @@ def march(s, r, b, setting, methods, most):
     ADRIFT, CRAWL, LEAPT or WINDS.
     """
     accepted = tried = 0
-    while r.clock[T] < setting[T_END]:
+    while r.t < setting.t_end:
         if full(s, r, b):
             return FULL
         if accepted >= most or tried >= 2 * most:
             return PAUSE
         tried += 1
-        t, method = r.clock[T], methods[r.count[METHOD]]
+        t, method = r.t, methods[r.method]
         if method[STEP_AT] == 0:
             return LOAD
         if method[STIFF_AT] > 0 and stiffness_due(r) and smooth(s, r):
             call_look_stiff(method[STIFF_AT], s, r, b)
         h = next_step(s, r, b, setting, method)
-        if h < SMALLEST * 2.2e-16 * max(abs(t), setting[T_END] * 1e-3):
-            return NOT_FINITE if r.count[AFTER_REJECTION] == 2 else STEP_TOO_SMALL
+        if h < SMALLEST * 2.2e-16 * max(abs(t), setting.t_end * 1e-3):
+            return NOT_FINITE if r.after_rejection == 2 else STEP_TOO_SMALL
         if crawls(r, setting, h):
             return CRAWL
         weights(s, r, b, setting, h)
@@ -185,62 +156,63 @@ def march(s, r, b, setting, methods, most):
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
         s.status[4] = s.status[6] = 0
-        r.clock[BLUR] = r.clock[EXCESS] = 0.0
+        r.blur = r.excess = 0.0
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
-            error *= min(1.0, setting[STEP_ERROR] / OF_LIMITS)
+            error *= min(1.0, setting.step_error / OF_LIMITS)
         if not (error <= 1.0):
-            r.count[REJECTED] += 1
+            r.rejected += 1
             if error < NO_STEP and to_look(r, h):
                 call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
-            r.count[AFTER_REJECTION] = 1 if isfinite(error) else 2
-            if setting[FIXED_STEP] > 0.0:
+            r.after_rejection = 1 if isfinite(error) else 2
+            if setting.fixed_step > 0.0:
                 return NOT_FINITE
             shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
-            r.clock[H] = h * (shorter if isfinite(error) else 0.1)
+            r.h = h * (shorter if isfinite(error) else 0.1)
             continue
-        if setting[FIXED_STEP] == 0.0 and overdue(r, h):
+        if setting.fixed_step == 0.0 and overdue(r, h):
             call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
             continue
-        outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method, h, 0)
+        b.h, b.built = h, 0
+        outcome = call_complete(method[COMPLETE_AT], s, r, b, setting, method)
         if outcome == WORTHLESS:
-            if setting[FIXED_STEP] > 0.0:
+            if setting.fixed_step > 0.0:
                 return NOT_FINITE
-            r.count[REJECTED] += 1
-            r.count[AFTER_REJECTION] = 2
-            r.clock[H] = 0.1 * h
+            r.rejected += 1
+            r.after_rejection = 2
+            r.h = 0.1 * h
             continue
-        if outcome == WOUND and setting[FIXED_STEP] > 0.0:
+        if outcome == WOUND and setting.fixed_step > 0.0:
             return WINDS
         if outcome in (STRAYED, WOUND, LOOSE):
-            r.count[REJECTED] += 1
-            r.count[AFTER_REJECTION] = 1
-            r.clock[H] = (TIGHTER if outcome == LOOSE else 0.3) * h
+            r.rejected += 1
+            r.after_rejection = 1
+            r.h = (TIGHTER if outcome == LOOSE else 0.3) * h
             continue
         accepted += 1
         remember(s, r, setting, h)
         blurred(r, h)
-        if r.count[TORN] > 0:
+        if r.torn > 0:
             return LEAPT
         if too_fast(s, r):
             return TOO_FAST
-        if r.count[OPENED] > 0:
+        if r.opened > 0:
             return OPEN
-        if r.count[LOST] > 0:
+        if r.lost > 0:
             return ADRIFT
         cut = outcome in (WITH_EVENT, WITH_CORNER)
         control(r, setting, method, h, error, cut)
-        if outcome == WITH_CORNER and r.clock[T] - t < TURNED_BACK * h:
+        if outcome == WITH_CORNER and r.t - t < TURNED_BACK * h:
             shorten(r, setting, h)
         if methods.shape[0] > 1:
             choose(s, r, b, h, outcome == WITH_EVENT)
-            if methods[r.count[METHOD], STEP_AT] != method[STEP_AT]:  # another reads its own steps
-                call_finish(method[FINISH_AT], s, r, b, setting, method, t, h, 0.0, 0)
+            if methods[r.method, STEP_AT] != method[STEP_AT]:  # another reads its own steps
+                call_finish(method[FINISH_AT], s, r, b, setting, method)
         elif method[STAGES_AT] > 0 and s.contact.size > 0:  # dop853
             calm(s, r, b, h, outcome == WITH_EVENT)
-        if r.count[SAME_TIME] > MAX_SAME_TIME:
+        if r.same_time > MAX_SAME_TIME:
             return CHATTER
-        if r.count[FIRED] > 0:
+        if r.fired > 0:
             return ACT
     return DONE
 
@@ -248,9 +220,9 @@ def march(s, r, b, setting, methods, most):
 @internal
 def crawls(r, setting, h):
     """Whether step after step is so short that 10^11 of them would be needed."""
-    short = setting[FIXED_STEP] == 0.0 and h < CRAWLING * setting[T_END]
-    r.count[CRAWLED] = r.count[CRAWLED] + 1 if short else 0
-    return r.count[CRAWLED] > CRAWLED_MOST
+    short = setting.fixed_step == 0.0 and h < CRAWLING * setting.t_end
+    r.crawled = r.crawled + 1 if short else 0
+    return r.crawled > CRAWLED_MOST
 
 
 @internal
@@ -267,11 +239,11 @@ def full(s, r, b):
     """Whether the next step may overflow a buffer."""
     contacts, watched = s.contact.size, s.watch.shape[0]
     return (
-        r.count[ROWS] > b.rows.shape[0] // 2
-        or r.count[STEP_ROWS] + contacts >= b.steps.shape[0]
-        or r.count[EVENT_ROWS] + contacts + watched + s.feature.shape[0] >= b.events.shape[0]
-        or r.count[POINT_ROWS] > b.points.shape[0] // 2
-        or (r.count[PASSED] > 0 and 2 * r.count[PASSED] > r.passed.shape[0])
+        r.rows > b.rows.shape[0] // 2
+        or r.step_rows + contacts >= b.steps.shape[0]
+        or r.event_rows + contacts + watched + s.feature.shape[0] >= b.events.shape[0]
+        or r.point_rows > b.points.shape[0] // 2
+        or (r.n_passed > 0 and 2 * r.n_passed > r.passed.shape[0])
     )
 
 
@@ -282,15 +254,15 @@ def next_step(s, r, b, setting, method):
     It never spans more output times than the buffer has room for, and ends where the time meets a
     corner of a function.  Of an explicit method it stays where what is stiff dies out.
     """
-    left = next_instant(s, r.clock[T], setting[T_END]) - r.clock[T]
-    most = min(setting[H_MAX], (b.rows.shape[0] // 2 - 2) * setting[EVERY])
-    if setting[FIXED_STEP] > 0.0:
-        return left if left < setting[FIXED_STEP] * (1.0 + 1e-9) else setting[FIXED_STEP]
+    left = next_instant(s, r.t, setting.t_end) - r.t
+    most = min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
+    if setting.fixed_step > 0.0:
+        return left if left < setting.fixed_step * (1.0 + 1e-9) else setting.fixed_step
     if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
         most = min(most, longest_turn(s, r))
-    if method[STIFF_AT] > 0 and r.clock[VIBRATION] > 0.0 and smooth(s, r):
+    if method[STIFF_AT] > 0 and r.vibration > 0.0 and smooth(s, r):
         most = min(most, longest_calm(r))
-    h = min(r.clock[H], most)
+    h = min(r.h, most)
     if min(STRETCH * h, most) >= left * (1.0 - 1e-12):
         return left
     return 0.5 * left if 2.0 * h > left else h
@@ -299,30 +271,30 @@ def next_step(s, r, b, setting, method):
 @internal
 def control(r, setting, method, h, error, event):
     """The next step from the error of this one."""
-    if setting[FIXED_STEP] > 0.0:
+    if setting.fixed_step > 0.0:
         return
     power, error = 1.0 / method[ESTIMATE_AT], max(error, 1e-8)
     factor = min(LONGER, max(0.3, AIM * error**-power))
     # predictive: the error as it changed from the step before                  [Gustafsson1994]
-    past = max(r.clock[PAST_ERROR], 1e-2)
-    if r.clock[PAST_ERROR] > 0.0 and not event:
-        factor = min(factor, AIM * h / r.clock[OLD_H] * (past / error**2) ** power)
+    past = max(r.past_error, 1e-2)
+    if r.past_error > 0.0 and not event:
+        factor = min(factor, AIM * h / r.old_h * (past / error**2) ** power)
         factor = max(factor, 0.2)
-    r.clock[PAST_ERROR], r.clock[OLD_H] = (0.0 if event else error), h
-    if method[IMPLICIT_AT] > 0 and 1.0 <= factor <= 1.2 and r.count[JACOBIAN] == OLD:
+    r.past_error, r.old_h = (0.0 if event else error), h
+    if method[IMPLICIT_AT] > 0 and 1.0 <= factor <= 1.2 and r.jacobian == OLD:
         factor = 1.0  # its factors stay good
-    if r.count[AFTER_REJECTION] > 0:
+    if r.after_rejection > 0:
         factor = min(factor, 1.0)
-    r.count[AFTER_REJECTION] = 0
+    r.after_rejection = 0
     if event:
         # change_phases may have set a shorter first step after a touch, or that of free motion
-        if r.count[FREED] == 0:
-            r.clock[H] = min(r.clock[H], h * factor)
-        r.count[FREED] = 0
-    elif h >= r.clock[H] or factor < 1.0:
-        r.clock[H] = h * factor
+        if r.freed == 0:
+            r.h = min(r.h, h * factor)
+        r.freed = 0
+    elif h >= r.h or factor < 1.0:
+        r.h = h * factor
     else:
-        r.clock[H] = max(r.clock[H], h * factor)
+        r.h = max(r.h, h * factor)
 
 
 @internal
@@ -333,12 +305,12 @@ def shorten(r, setting, h):
     the step's beginning.  Both branches could then send the motion back to the other for ever; in
     a step that resolves it one of them does not.
     """
-    shortest = 100.0 * SMALLEST * 2.2e-16 * setting[T_END]
-    if setting[FIXED_STEP] == 0.0:
-        r.clock[H] = min(r.clock[H], max(SHORTEN * h, shortest))
+    shortest = 100.0 * SMALLEST * 2.2e-16 * setting.t_end
+    if setting.fixed_step == 0.0:
+        r.h = min(r.h, max(SHORTEN * h, shortest))
 
 
-@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+@compiled(types.void(SCENE, RECORD, BUFFERS, SETTINGS))
 def begin(s, r, b, setting):
     """First row, energy and gaps of a record whose y and mem were just set."""
     evaluate_all(s, r, setting, 0.0)
@@ -346,12 +318,12 @@ def begin(s, r, b, setting):
     units(s, r)
     measure(s, 0.0, r.y, 0.0, 0.0)
     copy_to(b.out, s.out)
-    r.clock[ENERGY_0] = b.out[s.n_out - 1]
+    r.energy_0 = b.out[s.n_out - 1]
     b.out[s.n_out - 1] = 0.0
     b.rows[0, 0] = 0.0
     copy_to(b.rows[0, 1:], b.out)
-    r.count[ROWS] = 1
-    r.count[NEXT_ROW] = 1
+    r.rows = 1
+    r.next_row = 1
     for k in range(r.book.shape[0]):
         r.book[k, 0] = r.book[k, 1] = b.out[s.column_energy + k]
     clear_table(r.peak)

@@ -9,7 +9,7 @@ from trsim.kernels.packed import A1
 from trsim.kernels.vectors import internal
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.own_rows import cosine, keep_roots, keep_rows, look_at, own
-from trsim.solve.march.record import MEETINGS, RECORD, T
+from trsim.solve.march.record import RECORD
 
 MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
 APART = 1e-2  # pivots that do not take part
@@ -22,24 +22,24 @@ AROUND = 3.5
 
 
 @internal
-def meet(s, r, b, t1, last, start, end, k):
+def meet(s, r, b, last, part, k):
     """Whether branches meet in the part of a step where the row eliminated k-th turned round.
 
     Its sigma, negative behind that place, has a zero there along the cubic through both ends of
     the step and the rates there, brought to the constraints.  That place is left in b.rough[0];
     branches meet where no other pivot is small that is not zero too.
     """
-    place, h = b.rough[0], t1 - r.clock[T]
-    bracket = (start, s.kept_roots[0, k], end, -s.kept_roots[1, k], 0.0)
+    place, h = b.rough[0], b.t1 - b.t
+    bracket = (part[0], s.kept_roots[0, k], part[1], -s.kept_roots[1, k], 0.0)
     about = min(s.kept_roots[0, k], s.kept_roots[1, k])
     for n in range(NEARER):
         x = between(bracket, n)
-        inside(r.y, r.yd, b.y1, b.K[last], h, x, place)
-        if not closed(s, t1 + (x - 1.0) * h, place, about):
+        inside(r, b, last, x, place)
+        if not closed(s, b.t1 + (x - 1.0) * h, place, about):
             return False
         about = s.kept_roots[1, k]
         if about <= MEET:
-            return closed(s, t1 + (x - 1.0) * h, place, 0.0) and alone(s, k)
+            return closed(s, b.t1 + (x - 1.0) * h, place, 0.0) and alone(s, k)
         own(s, 1, k, 1)
         bracket = narrowed(bracket, x, about if cosine(s) > 0.0 else -about, False)
     return False
@@ -71,8 +71,9 @@ def alone(s, k):
 
 
 @internal
-def inside(y0, yd0, y1, yd1, h, x, y):
-    """y <- the cubic through both ends of a step and their rates, at the part x of it."""
+def inside(r, b, last, x, y):
+    """y <- the cubic through both ends of the step at hand and their rates, at the part x of it."""
+    y0, yd0, y1, yd1, h = r.y, r.yd, b.y1, b.K[last], b.t1 - b.t
     for k in range(y.size):
         by = y1[k] - y0[k]
         bent = (1.0 - x) * (h * yd0[k] - by) - x * (h * yd1[k] - by)
@@ -82,7 +83,7 @@ def inside(y0, yd0, y1, yd1, h, x, y):
 @compiled(types.int64(SCENE, RECORD, A1, A1))
 def known(s, r, y0, y1):
     """Whether branches meet, as was found out before, between two states."""
-    many = min(r.count[MEETINGS], r.meeting.shape[0])
+    many = min(r.n_meetings, r.meeting.shape[0])
     most = AROUND * apart(s, y0, y1, 1e300) if many > 0 else 0.0
     for k in range(many):
         first = apart(s, r.meeting[k], y0, most)

@@ -18,9 +18,8 @@ from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.kernels import signatures as types
-from trsim.kernels.packed import A1
 from trsim.kernels.vectors import internal
-from trsim.solve.march.record import BUFFERS, LENGTH, MET, MOST, RECORD, SPEED, STEP_ERROR, H
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 
 
 @internal
@@ -30,10 +29,10 @@ def weights(s, r, b, setting, h):
     Lengths are weighed by the smallest gap or penetration that matters, not by the distance from
     the origin; rotations by that length over the body's arm; velocities by the matching speed.
     """
-    if r.clock[MET] < r.clock[MOST]:
+    if r.top_speed < r.speed_cap:
         follow(s, r, h)
-    length, tolerance = r.clock[LENGTH], setting[STEP_ERROR]
-    speed = min(r.clock[SPEED], felt(s, r))
+    length, tolerance = r.length, setting.step_error
+    speed = min(r.speed, felt(s, r))
     for c in range(b.weight.size):
         b.weight[c] = weighed(s, length, speed, tolerance, c)
 
@@ -59,18 +58,18 @@ def felt(s, r):
 @internal
 def follow(s, r, h):
     """Let the unit of velocities follow the speeds met, and those a step h leads to."""
-    met, ahead = r.clock[MET], 0.0
+    met, ahead = r.top_speed, 0.0
     for c in range(s.n_q, s.n_q + s.n_v):
         met = max(met, s.scale[c] * abs(r.y[c]))
         ahead = max(ahead, s.scale[c] * abs(r.y[c] + h * r.yd[c]))
-    r.clock[MET] = met
-    r.clock[SPEED] = min(max(met, ahead), r.clock[MOST])
+    r.top_speed = met
+    r.speed = min(max(met, ahead), r.speed_cap)
 
 
 @internal
 def weight_of(s, r, tolerance, c):
     """1 / (tolerance times unit) of one entry of y."""
-    return weighed(s, r.clock[LENGTH], r.clock[SPEED], tolerance, c)
+    return weighed(s, r.length, r.speed, tolerance, c)
 
 
 @internal
@@ -114,10 +113,10 @@ def units(s, r):
         # the frequency of the contact at that depth turns the length into a speed
         speed = min(speed, depth * arm * np.sqrt(n * K * depth ** (n - 1.0) / mass))
     if length < 1e300:
-        r.clock[LENGTH], r.clock[SPEED], r.clock[MOST] = length, speed, 0.0
+        r.length, r.speed, r.speed_cap = length, speed, 0.0
 
 
-@compiled(types.void(SCENE, RECORD, BUFFERS, A1))
+@compiled(types.void(SCENE, RECORD, BUFFERS, SETTINGS))
 def weigh(s, r, b, setting):
     """`weights`, for solvers outside."""
-    weights(s, r, b, setting, r.clock[H])
+    weights(s, r, b, setting, r.h)

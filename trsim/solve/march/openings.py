@@ -30,20 +30,7 @@ from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import LOOK
-from trsim.solve.march.record import (
-    APART,
-    APART_T,
-    FIRED,
-    HELD_TO,
-    OPEN_INDEX,
-    OPEN_ROW,
-    OPENED,
-    WEAK,
-    WEAKEST,
-    WORST_OPEN,
-    WORST_OPEN_RATE,
-    Record,
-)
+from trsim.solve.march.record import Record
 
 Array = NDArray[np.float64]
 
@@ -64,33 +51,35 @@ REMEDY = (
 
 
 @compiled(LOOK)
-def look(s, r, b, setting, t, y, step):
-    """Note the openings of the redundant rows at (t, y), which the last evaluation was at.
+def look(s, r, b, setting, t, step):
+    """Note the openings of the redundant rows at t, which the last evaluation was at.
 
-    step: 1 at the end of a step, 0 inside, where interpolation may open them to what is told.
+    step: 1 at the end of a step, b.y1; 0 inside, at b.y2, where interpolation may open them to what
+    is told.
 
     Leaves other poses in the workspace, and b.y2 changed, where it returns 1; else 0.
     """
     if step == 1:
         look_at_pivots(s, r)
-    told, worst = max(TOLD * setting[HELD_TO], LEAST_TOLD), 0.0
+    told, worst = max(TOLD * setting.held_to, LEAST_TOLD), 0.0
     for k in range(s.redundant.shape[0]):
         worst = max(worst, opening(s, s.m + k))
-        r.clock[WORST_OPEN_RATE] = max(r.clock[WORST_OPEN_RATE], rate(s, s.m + k))
-    r.clock[WORST_OPEN] = max(r.clock[WORST_OPEN], worst)
-    if worst <= (told if step == 1 else setting[HELD_TO]):
+        r.worst_open_rate = max(r.worst_open_rate, rate(s, s.m + k))
+    r.worst_open = max(r.worst_open, worst)
+    if worst <= (told if step == 1 else setting.held_to):
         return 0
-    copy_to(b.y2, y)
+    if step == 1:
+        copy_to(b.y2, b.y1)
     bound = AS_THE_OTHERS * closed(s, t, b.y2)
     for k in range(s.redundant.shape[0]):
         left = opening(s, s.m + k)
         if left <= max(told, bound):
             continue
-        if left > r.clock[APART]:
-            r.clock[APART], r.clock[APART_T] = left, t
-            r.count[OPEN_ROW], r.count[OPEN_INDEX] = s.redundant[k, ROW], s.redundant[k, INDEX]
-        if left > setting[HELD_TO]:
-            r.count[OPENED] = 1
+        if left > r.apart:
+            r.apart, r.apart_t = left, t
+            r.open_row, r.open_index = s.redundant[k, ROW], s.redundant[k, INDEX]
+        if left > setting.held_to:
+            r.opened = 1
     return 1
 
 
@@ -98,12 +87,12 @@ def look(s, r, b, setting, t, y, step):
 def look_at_pivots(s, r):
     """Ask for other rows where those of the solve come to depend on each other."""
     smallest = smallest_pivot(s)
-    if smallest < FEEBLE and smallest <= FALLEN * r.clock[WEAKEST]:
-        r.clock[WEAKEST] = smallest
-        r.count[WEAK] = 1
-    r.clock[WEAKEST] = max(r.clock[WEAKEST], smallest)
-    if r.count[WEAK] > 0:
-        r.count[FIRED] += 1
+    if smallest < FEEBLE and smallest <= FALLEN * r.weakest:
+        r.weakest = smallest
+        r.weak = 1
+    r.weakest = max(r.weakest, smallest)
+    if r.weak > 0:
+        r.fired += 1
 
 
 @internal
@@ -153,7 +142,7 @@ def opened(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 def apart(mechanism: Mechanism, r: Record) -> str:
     """`opened` of a row that is open by more than is told; empty where none is."""
-    if r.clock[APART] == 0.0:
+    if r.apart == 0.0:
         return ""
     instance, axis, by = worst(mechanism, r)
     return (
@@ -165,9 +154,9 @@ def apart(mechanism: Mechanism, r: Record) -> str:
 
 def worst(mechanism: Mechanism, r: Record) -> tuple[Instance, str, str]:
     """The redundant row that was most open: of which element, its name, how far and when."""
-    e, index = int(r.count[OPEN_ROW]), int(r.count[OPEN_INDEX])
+    e, index = int(r.open_row), int(r.open_index)
     instance = mechanism.instances[e]
-    by = f"{size(mechanism, e, index, float(r.clock[APART]))} at t = {r.clock[APART_T]:.6g} s"
+    by = f"{size(mechanism, e, index, float(r.apart))} at t = {r.apart_t:.6g} s"
     return instance, instance.element.rows[index], by
 
 

@@ -1,15 +1,14 @@
 """Output rows inside a step: its channels at the times that are due."""
 
 from trsim.kernels.vectors import all_finite, copy_to, internal
-from trsim.solve.march.calls import INTERPOLATE_AT, LOOK_AT, call_look
+from trsim.solve.march.calls import LOOK_AT, call_look
 from trsim.solve.march.dense_output import measure_inside
-from trsim.solve.march.record import EVERY, NEXT_ROW, OPENED, ROWS
 
 
 @internal
 def due(r, setting, t1):
     """Whether an output time lies at or before t1."""
-    return setting[EVERY] * r.count[NEXT_ROW] <= t1 * (1.0 + 1e-15)
+    return setting.every * r.next_row <= t1 * (1.0 + 1e-15)
 
 
 @internal
@@ -19,30 +18,30 @@ def at_end(t_o, t1):
 
 
 @internal
-def rows_until(s, r, b, setting, method, t, h, t1, projected):
-    """Write the output rows of (t, t1]; the one at the end of the step is in b.out.
+def rows_until(s, r, b, setting, method):
+    """Write the output rows of the step at hand; the one at its end is in b.out.
 
     Returns False, and writes none of them, where a value is not finite.
     """
-    rows, next_row = r.count[ROWS], r.count[NEXT_ROW]
-    while r.count[ROWS] < b.rows.shape[0]:
-        t_o = setting[EVERY] * r.count[NEXT_ROW]
-        if t_o > t1 * (1.0 + 1e-15):
+    rows, next_row = r.rows, r.next_row
+    while r.rows < b.rows.shape[0]:
+        t_o = setting.every * r.next_row
+        if t_o > b.t1 * (1.0 + 1e-15):
             break
-        row = b.rows[r.count[ROWS]]
+        row = b.rows[r.rows]
         row[0] = t_o
-        if at_end(t_o, t1):
+        if at_end(t_o, b.t1):
             copy_to(row[1:], b.out)
-            b.row_firm[r.count[ROWS]] = b.firm[1]
+            b.row_firm[r.rows] = b.firm[1]
         else:
-            measure_inside(s, r, b, method[INTERPOLATE_AT], t_o, (t_o - t) / h, projected)
+            measure_inside(s, r, b, t_o, (t_o - b.t) / b.h)
             copy_to(row[1:], s.out)
-            b.row_firm[r.count[ROWS]] = b.firm[0]
+            b.row_firm[r.rows] = b.firm[0]
             if method[LOOK_AT] > 0:
-                call_look(method[LOOK_AT], s, r, b, setting, t_o, b.y2, 0)
+                call_look(method[LOOK_AT], s, r, b, setting, t_o, 0)
         if not all_finite(row):
-            r.count[ROWS], r.count[NEXT_ROW], r.count[OPENED] = rows, next_row, 0
+            r.rows, r.next_row, r.opened = rows, next_row, 0
             return False
-        r.count[ROWS] += 1
-        r.count[NEXT_ROW] += 1
+        r.rows += 1
+        r.next_row += 1
     return True

@@ -12,7 +12,6 @@ from trsim.assemble.equations import constraints, poses
 from trsim.assemble.linear import diagonal, eliminate
 from trsim.assemble.schur import rows
 from trsim.kernels.vectors import clear, copy_to, internal
-from trsim.solve.march.record import KEPT
 
 FINEST = 1e-15  # of the diagonal: rounding of a pivot
 # cosine: below that a row turned by more than it does in half of a way on its branch.  One that
@@ -42,7 +41,7 @@ def keep_roots(s, roots):
 @internal
 def begun_in(r):
     """Which of the four places has the rows where the step begins; `ends_in`: where it ends."""
-    return 3 if r.count[KEPT] == 2 else 2
+    return 3 if r.kept == 2 else 2
 
 
 @internal

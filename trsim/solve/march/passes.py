@@ -16,7 +16,7 @@ from trsim.assemble.projection import close_positions
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import f8, i8
+from trsim.kernels.packed import i8
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.meetings import CLOSED, NEWTON, inside, known, meet
 from trsim.solve.march.own_rows import (
@@ -27,7 +27,7 @@ from trsim.solve.march.own_rows import (
     look_at,
     turned_round,
 )
-from trsim.solve.march.record import BUFFERS, KEPT, LAST_WAY, MEETINGS, PASSED, RECORD, T
+from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.march.turns import fastest_in_loops
 
 LONGEST = 0.2  # rad, or of the mechanism's size: of a part of a step
@@ -36,75 +36,74 @@ STEEPEST = 10.0  # 1/rad: by how much sigma changes
 PLAINER, BENT = 4.0, 8.0  # times as far; 1/rad^2, by how much sigma bends
 SHARE = 0.75  # of sigma at both ends: the most of that
 
-#                   scene  record  buffers end of the step
-PASSES = types.void(SCENE, RECORD, BUFFERS, f8, i8)
+#                   scene  record  buffers  row of the derivative at the end of the step
+PASSES = types.void(SCENE, RECORD, BUFFERS, i8)
 call_passes = caller(PASSES)
 
 
 @compiled(PASSES)
-def note_passes(s, r, b, t1, last):
+def note_passes(s, r, b, last):
     """Look at the step to b.y1, which is about to be accepted; notes it, or parts of it.
 
     last: the row of b.K with its derivative.
     """
-    t = r.clock[T]
-    h = t1 - t
+    h = b.t1 - b.t
     if not h > 0.0:
         return
-    if r.count[KEPT] == 0:
-        look_at(s, t, r.y)
+    if r.kept == 0:
+        look_at(s, b.t, r.y)
         keep_roots(s, s.root[1])
         keep_rows(s, begun_in(r))
-        r.clock[LAST_WAY], r.count[KEPT] = 0.0, 1
+        r.last_way, r.kept = 0.0, 1
     way = h * max(fastest_in_loops(s, r.y), fastest_in_loops(s, b.y1))
-    if may_turn(s, s.root, way, r.clock[LAST_WAY]):
-        look_at_parts(s, r, b, t1, last, way)
+    if may_turn(s, s.root, way, r.last_way):
+        look_at_parts(s, r, b, last, way)
     for k in range(s.root.shape[1]):
         s.root[0, k], s.root[1, k] = s.root[1, k], s.root[2, k]
-    r.clock[LAST_WAY], r.count[KEPT] = way, 3 - r.count[KEPT]
+    r.last_way, r.kept = way, 3 - r.kept
 
 
 @internal
-def look_at_parts(s, r, b, t1, last, way):
+def look_at_parts(s, r, b, last, way):
     """Note the parts of a step in which a row turned round: of those that may have, to look closer.
 
     Places inside are those of the cubic; where one of both ends of a part, on the constraints.
     """
-    y0, y1, t, h = b.part[0], b.part[1], r.clock[T], t1 - r.clock[T]
-    n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.clock[LAST_WAY]
+    y0, y1, t, h = b.part[0], b.part[1], b.t, b.t1 - b.t
+    n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.last_way
     for k in range(s.first.size):
         roots[0, k], roots[1, k], roots[2, k] = s.root[0, k], s.root[1, k], s.root[2, k]
     one, other = begun_in(r), ends_in(r)
     for k in range(1, n + 1):
         if k < n:
             other = k % 2
-            keep_inside(s, r, b, last, h, k / n, other)
+            keep_inside(s, r, b, last, k / n, other)
             keep_roots(s, roots[2])
         else:
             other = ends_in(r)
             copy_to(roots[2], s.root[2])
         if may_turn(s, roots, way / n, before):
-            inside(r.y, r.yd, b.y1, b.K[last], h, (k - 1) / n, y0)
-            inside(r.y, r.yd, b.y1, b.K[last], h, k / n, y1)
+            inside(r, b, last, (k - 1) / n, y0)
+            inside(r, b, last, k / n, y1)
             start, end = t + (k - 1) / n * h, t + k / n * h
             if known(s, r, y0, y1) == 0:
                 ways = (way / n, before)
                 if turned(s, roots, ways, one, other) >= 0:
                     close_positions(s, start, y0, CLOSED * s.size, NEWTON)
                     close_positions(s, end, y1, CLOSED * s.size, NEWTON)
-                    note_turned(s, r, b, t1, last, (k - 1) / n, k / n, y0, y1, roots, ways)
+                    note_turned(s, r, b, last, ((k - 1) / n, k / n), ways)
                     if k < n:  # others took their place
-                        keep_inside(s, r, b, last, h, k / n, other)
+                        keep_inside(s, r, b, last, k / n, other)
         copy_to(roots[0], roots[1])
         copy_to(roots[1], roots[2])
         before, one = way / n, other
 
 
 @internal
-def keep_inside(s, r, b, last, h, x, place):
+def keep_inside(s, r, b, last, x, place):
     """Keep the rows at the part x of the step, on the cubic."""
-    inside(r.y, r.yd, b.y1, b.K[last], h, x, b.part[1])
-    look_at(s, r.clock[T] + x * h, b.part[1])
+    inside(r, b, last, x, b.part[1])
+    look_at(s, b.t + x * (b.t1 - b.t), b.part[1])
     keep_rows(s, place)
 
 
@@ -147,37 +146,38 @@ def turned(s, roots, ways, one, other):
 
 
 @internal
-def note_turned(s, r, b, t1, last, start, end, y0, y1, roots, ways):
-    """Note a part of a step in which a row turned round, by the states at its ends.
+def note_turned(s, r, b, last, part, ways):
+    """Note a part of a step in which a row turned round, by the states at its ends, in b.part.
 
     Where that is because branches meet, the place is kept instead.
     """
-    t, h = r.clock[T], t1 - r.clock[T]
-    look_at(s, t + start * h, y0)
+    y0, y1, h = b.part[0], b.part[1], b.t1 - b.t
+    start, end = b.t + part[0] * h, b.t + part[1] * h
+    look_at(s, start, y0)
     keep_rows(s, 0)
     keep_roots(s, s.kept_roots[0])
-    look_at(s, t + end * h, y1)
+    look_at(s, end, y1)
     keep_rows(s, 1)
     keep_roots(s, s.kept_roots[1])
-    k = turned(s, roots, ways, 0, 1)
+    k = turned(s, s.part_root, ways, 0, 1)
     if k < 0:
         return
-    if s.redundant.shape[0] == 0 and meet(s, r, b, t1, last, start, end, k):
-        copy_to(r.meeting[r.count[MEETINGS] % r.meeting.shape[0]], b.rough[0])
-        r.count[MEETINGS] += 1
+    if s.redundant.shape[0] == 0 and meet(s, r, b, last, part, k):
+        copy_to(r.meeting[r.n_meetings % r.meeting.shape[0]], b.rough[0])
+        r.n_meetings += 1
         return
-    note(r, t + start * h, t + end * h, y0, y1)
+    note(r, start, end, y0, y1)
 
 
 @internal
 def note(r, t0, t1, y0, y1):
     """A line in r.passed: times, states and branches of angles."""
-    if r.count[PASSED] == r.passed.shape[0]:
+    if r.n_passed == r.passed.shape[0]:
         return
-    line, n = r.passed[r.count[PASSED]], y0.size
+    line, n = r.passed[r.n_passed], y0.size
     line[0], line[1] = t0, t1
     for k in range(n):
         line[2 + k], line[2 + n + k] = y0[k], y1[k]
     for k in range(r.branch.size):
         line[2 + 2 * n + k] = r.branch[k]
-    r.count[PASSED] += 1
+    r.n_passed += 1

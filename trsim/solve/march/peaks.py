@@ -21,30 +21,13 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.packed import A1, I1, f8
 from trsim.kernels.vectors import internal
-from trsim.solve.march.calls import INTERPOLATE_AT
 from trsim.solve.march.dense_output import build, measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
 from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
-from trsim.solve.march.record import (
-    BUFFERS,
-    EARLIER_BUILT,
-    EARLIER_H,
-    ENERGY_0,
-    MISSED,
-    NEWEST,
-    PEAK_MAX,
-    PEAK_MIN,
-    POINTS,
-    RECORD,
-    SAMPLES,
-    STEPS,
-    T_END,
-    UNSEEN,
-    T,
-)
+from trsim.solve.march.record import BUFFERS, PEAK_MAX, PEAK_MIN, POINTS, RECORD, SETTINGS
 from trsim.solve.march.samples import (
     NOT_LAID,
     aside,
@@ -65,75 +48,66 @@ TINY = 0.02  # of the mean step: in a shorter one nothing turns
 GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be
 TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
 
-#                     scene  record  buffers setting method t  h   at values projected built
-SAMPLE = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, A1, f8, i8)
+#                   scene  record  buffers  settings method at values
+SAMPLE = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, A1)
 call_sample = caller(SAMPLE)
-#                     scene  record  buffers setting method t  h   projected built
-FINISH = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, f8, f8, i8)
+#                   scene  record  buffers  settings method
+FINISH = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1)
 call_finish = caller(FINISH)
 
 
 @compiled(SAMPLE)
-def sample(s, r, b, setting, method, t, h, at, values, projected, built):
-    """Take the channels at one time of the step from t into their extremes, and what lies between
-    the two samples before it.
-
-    built: whether b.P holds the dense output.  Returns whether it does now.
-    """
+def sample(s, r, b, setting, method, at, values):
+    """Take the channels at one time of the step at hand into their extremes, and what lies between
+    the two samples before it."""
     if s.sought.size == 0:  # no channel is told
         gather(s, b.full, values, b.inside[0])
         known_extremes(s, r, b, at)
-        return built
-    if r.count[SAMPLES] > 0 and at <= r.sampled[r.count[NEWEST]]:
-        return built
+        return
+    if r.n_samples > 0 and at <= r.sampled[r.newest]:
+        return
     own = push(s, r, b, at, values)
     known_extremes(s, r, b, at)
     if own:
-        if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 2:
-            built = between(s, r, b, setting, method, t, h, 1, projected, built)
-        r.count[UNSEEN] = 1
-    return built
+        if r.unseen > 0 and r.n_samples > 2:
+            between(s, r, b, setting, method, 1)
+        r.unseen = 1
 
 
 @compiled(FINISH)
-def finish(s, r, b, setting, method, t, h, projected, built):
+def finish(s, r, b, setting, method):
     """Take what lies between the two newest samples into the extremes: no sample follows that they
-    have to do with.  Arguments and what is returned as of `sample`."""
-    if r.count[UNSEEN] > 0 and r.count[SAMPLES] > 1:
-        built = between(s, r, b, setting, method, t, h, 0, projected, built)
-    r.count[UNSEEN] = 0
-    return built
+    have to do with."""
+    if r.unseen > 0 and r.n_samples > 1:
+        between(s, r, b, setting, method, 0)
+    r.unseen = 0
 
 
 @internal
-def between(s, r, b, setting, method, t, h, ahead, projected, built):
+def between(s, r, b, setting, method, ahead):
     """Look for the extremes of all channels between two neighbours among the samples.
 
     ahead: samples that are newer than the later of them.
     """
-    share, now, last = setting[MISSED], r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
-    earlier = r.sampled[older(r, ahead + 1)] < r.clock[T]
-    if earlier:
-        h, ready = r.clock[EARLIER_H], r.count[EARLIER_BUILT]
-    else:
-        ready = built
-    b.found[0], b.laid[0] = 0.0, NOT_LAID
-    inner = max(ENDS - r.count[SAMPLES], 1)
-    last_one = r.sampled[r.count[NEWEST]] >= setting[T_END]
-    turns = ahead == 0 or h * r.count[STEPS] >= TINY * t  # an event cuts steps of any length
-    if (r.count[SAMPLES] <= YOUNG and turns) or (ahead == 0 and last_one):
-        if ready == 0 and not last_one:
-            guess(s, r, b, method, h, inner, projected, earlier)
+    share, now, last = setting.missed, r.sample[older(r, ahead)], r.sample[older(r, ahead + 1)]
+    b.n_found, b.laid = 0, NOT_LAID
+    inner = max(ENDS - r.n_samples, 1)
+    last_one = r.sampled[r.newest] >= setting.t_end
+    # an event cuts steps of any length
+    turns = ahead == 0 or length(r, b, ahead) * r.steps >= TINY * b.t
+    if (r.n_samples <= YOUNG and turns) or (ahead == 0 and last_one):
+        if not ready(r, b, ahead) and not last_one:
+            guess(s, r, b, method, ahead, inner)
         else:
-            ready = look_within(s, r, b, method, h, ahead, inner, projected, ready, earlier)
+            look_within(s, r, b, method, ahead, inner)
     bounds(r, b, ahead)
     for c in range(now.size):
         high, low = r.peak[PEAK_MAX, s.sought[c]], r.peak[PEAK_MIN, s.sought[c]]
         beyond = b.bound[1, c]
         above, below = max(now[c], last[c]), min(now[c], last[c])
-        for k in range(int(b.found[0])):
+        for k in range(b.n_found):
             above, below = max(above, b.inside[k, c]), min(below, b.inside[k, c])
-        beyond += above - below if b.found[0] > 0.0 else 0.0
+        beyond += above - below if b.n_found > 0 else 0.0
         if above + beyond <= high and below - beyond >= low:
             continue
         enough = share * max(high - low, SMALL * r.largest[s.kin[c]] / s.lever[c])
@@ -141,50 +115,65 @@ def between(s, r, b, setting, method, t, h, ahead, projected, built):
         falls = low > s.least[c] and below - beyond < low - enough
         if not (rises or falls):
             continue
-        if b.found[0] == 0.0 or (ready > 0 and b.found[0] <= POINTS - 2):
-            rises, falls = reached(s, r, b, ahead, c, enough, rises, falls)
+        if b.n_found == 0 or (ready(r, b, ahead) and b.n_found <= POINTS - 2):
+            up, down = reached(s, r, b, ahead, c, enough)
+            rises, falls = rises and up, falls and down
             if not (rises or falls):
                 continue
-        if ready == 0:
-            if b.found[0] == 0.0:
-                guess(s, r, b, method, h, inner, projected, earlier)
-            rises, falls = guessed(s, r, b, ahead, c, rises, falls)
+        if not ready(r, b, ahead):
+            if b.n_found == 0:
+                guess(s, r, b, method, ahead, inner)
+            up, down = guessed(s, r, b, ahead, c)
+            rises, falls = rises and up, falls and down
             if not (rises or falls):
                 continue
-            b.found[0], b.laid[0] = 0.0, NOT_LAID
-            ready = look_within(s, r, b, method, h, ahead, inner, projected, 0, earlier)
+            b.n_found, b.laid = 0, NOT_LAID
+            look_within(s, r, b, method, ahead, inner)
         if rises:
-            search(s, r, b, enough, method, h, ahead, c, 1.0, projected, earlier)
+            search(s, r, b, method, ahead, c, 1.0, enough)
         if falls:
-            search(s, r, b, enough, method, h, ahead, c, -1.0, projected, earlier)
-    if earlier:
-        return built
-    return ready
+            search(s, r, b, method, ahead, c, -1.0, enough)
 
 
 @internal
-def reached(s, r, b, ahead, c, enough, rises, falls):
+def before(r, ahead):
+    """Whether two neighbours lie in the step that was kept, not in the one at hand."""
+    return r.sampled[older(r, ahead + 1)] < r.t
+
+
+@internal
+def length(r, b, ahead):
+    """Of the step they lie in, s."""
+    return r.earlier_h if before(r, ahead) else b.h
+
+
+@internal
+def ready(r, b, ahead):
+    """Whether its dense output is there."""
+    return (r.earlier_built if before(r, ahead) else b.built) > 0
+
+
+@internal
+def reached(s, r, b, ahead, c, enough):
     """Whether the polynomial of channel c may rise above its extremes, and fall below them."""
     up, down = reach(b, through(r, b, ahead, c, 1.0))
     o = s.sought[c]
-    rises = rises and up > r.peak[PEAK_MAX, o] + enough
-    return rises, falls and down < r.peak[PEAK_MIN, o] - enough
+    return up > r.peak[PEAK_MAX, o] + enough, down < r.peak[PEAK_MIN, o] - enough
 
 
 @internal
-def guessed(s, r, b, ahead, c, rises, falls):
+def guessed(s, r, b, ahead, c):
     """`reached` with a guess of the middle: plainly not, or it is to be looked at."""
     n = through(r, b, ahead, c, 1.0)
     if one_way(b, n):
         return False, False
     up, down = reach(b, n)
     o, doubtful = s.sought[c], GUESSED * apart(b.node)
-    rises = rises and up > r.peak[PEAK_MAX, o] - doubtful
-    return rises, falls and down < r.peak[PEAK_MIN, o] + doubtful
+    return up > r.peak[PEAK_MAX, o] - doubtful, down < r.peak[PEAK_MIN, o] + doubtful
 
 
 @internal
-def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
+def search(s, r, b, method, ahead, c, sign, enough):
     """Look for an extreme of channel c between two neighbours, by its polynomial; the dense output
     is there.
 
@@ -208,50 +197,51 @@ def search(s, r, b, enough, method, h, ahead, c, sign, projected, earlier):
         if n == POINTS and promised - said < SURE * enough and settled(b.node, place, enough):
             extreme(r, o, place, sign * said, b.firm[0])
             break
-        if int(b.found[0]) + 1 >= b.found.size:
+        if b.n_found >= b.found.size:
             break
-        look(s, r, b, method, h, place, projected, 1, earlier)
+        look(s, r, b, method, ahead, place)
 
 
 @internal
-def look(s, r, b, method, h, place, projected, built, earlier):
+def look(s, r, b, method, ahead, place):
     """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
-    step = either_step(r, b, projected, earlier)
-    if built == 0 and earlier:
-        build_earlier(s, r, b, method)
-    elif built == 0:
-        build(s, r, b, method, r.clock[T], h)
-    k, t = int(b.found[0]), step[2]
+    earlier, h = before(r, ahead), length(r, b, ahead)
+    step = either_step(r, b, earlier)
+    if not ready(r, b, ahead):
+        if earlier:
+            build_earlier(s, r, b, method)
+        else:
+            build(s, r, b, method)
+    k, t = b.n_found, step[2]
     place = min(place, t + h)
-    measure_in(s, r, b, method[INTERPOLATE_AT], step, place, (place - t) / h)
+    measure_in(s, r, b, step, place, (place - t) / h)
     gather(s, b.full, s.out, b.inside[k])
     known_extremes(s, r, b, place)
-    b.found[0], b.found[1 + k] = k + 1.0, place
-    return 1
+    b.n_found, b.found[k] = k + 1, place
 
 
 @internal
-def look_within(s, r, b, method, h, ahead, inner, projected, built, earlier):
+def look_within(s, r, b, method, ahead, inner):
     """`look` at `inner` places that part the time between two neighbours into equal parts."""
     start, end = r.sampled[older(r, ahead + 1)], r.sampled[older(r, ahead)]
     for k in range(inner):
         place = start + (k + 1.0) / (inner + 1.0) * (end - start)
-        built = look(s, r, b, method, h, place, projected, built, earlier)
-    return built
+        look(s, r, b, method, ahead, place)
 
 
 @internal
-def guess(s, r, b, method, h, inner, projected, earlier):
+def guess(s, r, b, method, ahead, inner):
     """The channels at `inner` places that part the step into equal parts, of the cubic through both
     ends and their rates, into b.inside: what tells whether the dense output is worth building."""
-    y0, y1, yd0, yd1 = ends(r, b, method, earlier)
-    _, _, t, work, done = either_step(r, b, projected, earlier)
+    h = length(r, b, ahead)
+    y0, y1, yd0, yd1 = ends(r, b, method, before(r, ahead))
+    _, _, t, work, done = either_step(r, b, before(r, ahead))
     for i in range(inner):
         u = (i + 1.0) / (inner + 1.0)
         v, way = 1.0 - u, u * u * (3.0 - 2.0 * u)
         for k in range(b.y2.size):
             b.y2[k] = y0[k] + way * (y1[k] - y0[k]) + h * u * v * (v * yd0[k] - u * yd1[k])
         evaluate_inside(s, r, t + u * h, b.y2, b.rough[0], b.rough[1])
-        measure(s, t + u * h, b.y2, work + u * done, r.clock[ENERGY_0])
+        measure(s, t + u * h, b.y2, work + u * done, r.energy_0)
         gather(s, b.full, s.out, b.inside[i])
-        b.found[0], b.found[1 + i] = i + 1.0, t + u * h
+        b.n_found, b.found[i] = i + 1, t + u * h

@@ -15,7 +15,6 @@ from trsim.elements.contract import (
     Pair,
     compiled,
 )
-from trsim.kernels.packed import A1
 from trsim.kernels.signatures import void
 from trsim.kernels.vectors import internal
 from trsim.laws.functions import BY_SENSORS, BY_TIME
@@ -24,38 +23,20 @@ from trsim.solve.march.events import NONE, SAME, flip, hertz_step
 from trsim.solve.march.features import keep
 from trsim.solve.march.record import (
     BUFFERS,
-    CORNERS,
-    ENERGY_0,
     EVENT_ANGLE,
     EVENT_IMPULSE,
     EVENT_KIND,
     EVENT_ROW,
-    EVENT_ROWS,
     EVENT_SPEED,
     EVENT_TIME,
     EVENT_WORK,
-    EVENTS,
-    FACTORED_H,
-    FREE_H,
-    FREE_SINCE,
-    FREED,
-    HISTORY,
-    JACOBIAN,
-    LAST_EVENT,
-    LOCATE,
     NO_HISTORY,
     NO_JACOBIAN,
     NO_RATES,
-    NOT_STIFF,
     ONSET,
-    PAST_ERROR,
     RECORD,
     SEPARATION,
-    STEP_ERROR,
-    STIFF,
-    WORK_PROJECTION,
-    H,
-    T,
+    SETTINGS,
 )
 from trsim.solve.march.samples import restart
 from trsim.solve.march.watch import fire, watch
@@ -84,7 +65,7 @@ def change_phases(s, r, b, setting, t1):
             s.mem[e, BRANCH] = s.corner[e, 1]
             pair = Pair(s, e)
             r.stale[pair.i] = r.stale[pair.j] = 1
-            r.count[CORNERS] += 1
+            r.corners_met += 1
     touched = fire(s, r, b, first) > 0
     h, were_closed = 1e300, closed(s, r)
     for c in range(s.contact.size):
@@ -93,9 +74,9 @@ def change_phases(s, r, b, setting, t1):
         touched = True
         e = s.contact[c]
         r.mem[e, PHASE] = flip(r.mem[e, PHASE])
-        r.count[EVENTS] += 1
-        line = b.events[r.count[EVENT_ROWS]]
-        r.count[EVENT_ROWS] += 1
+        r.events += 1
+        line = b.events[r.event_rows]
+        r.event_rows += 1
         onset = r.mem[e, PHASE] == CONTACT
         line[EVENT_TIME], line[EVENT_ROW] = t1, e
         line[EVENT_WORK] = line[EVENT_IMPULSE] = 0.0
@@ -113,33 +94,31 @@ def change_phases(s, r, b, setting, t1):
             if s.contact_state[c] >= 0:
                 r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
             speed = max(speed, 1e-12)
-            h = min(
-                h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting[STEP_ERROR])
-            )
+            h = min(h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting.step_error))
         else:
             r.mem[e, IMPACT_SPEED] = 0.0
     are_closed = closed(s, r)
     if were_closed == 0 and are_closed > 0:
-        r.clock[FREE_H] = min(r.clock[H], AS_LONG * (t1 - r.clock[FREE_SINCE]))
-    r.count[FREED] = int(were_closed > 0 and are_closed == 0)
-    if r.count[FREED] > 0:
-        r.clock[FREE_SINCE] = t1
+        r.free_h = min(r.h, AS_LONG * (t1 - r.free_since))
+    r.freed = int(were_closed > 0 and are_closed == 0)
+    if r.freed > 0:
+        r.free_since = t1
     if touched:
-        r.clock[LAST_EVENT] = t1
-        r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
-    elif r.count[JACOBIAN] != NO_JACOBIAN:
-        r.count[JACOBIAN] = NO_RATES  # the force itself has no jump: a kink in its slope
+        r.last_event = t1
+        r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
+    elif r.jacobian != NO_JACOBIAN:
+        r.jacobian = NO_RATES  # the force itself has no jump: a kink in its slope
     evaluate(s, t1, r.y, r.yd)
     corners(s, t1)
     for c in range(s.contact.size):
         # inside its new branch, whatever rounding says
         r.corner[c] = min(s.corner[s.contact[c], 0], -TINY)
-    measure(s, t1, r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
+    measure(s, t1, r.y, r.work_projection, r.energy_0)
     restart(s, r, b, t1)
     if h < 1e300:
-        r.clock[H] = min(r.clock[H], h)
-    if r.count[FREED] > 0:  # steps are again as they were before all this
-        r.clock[H] = max(r.clock[H], r.clock[FREE_H])
+        r.h = min(r.h, h)
+    if r.freed > 0:  # steps are again as they were before all this
+        r.h = max(r.h, r.free_h)
     return touched
 
 
@@ -181,7 +160,7 @@ def evaluate_all(s, r, setting, t):
     watch(s, t, r.gap)
     for k in range(s.n_s):
         r.branch[k], r.turning[k] = s.S[k, 0], s.S[k, 1]
-    if setting[LOCATE] > 0.0:
+    if setting.locate > 0:
         for c in range(s.contact.size):
             look(s, c)
         evaluate(s, t, r.y, r.yd)
@@ -190,12 +169,12 @@ def evaluate_all(s, r, setting, t):
             r.corner[c] = s.corner[s.contact[c], 0]
 
 
-@compiled(void(SCENE, RECORD, BUFFERS, A1))
+@compiled(void(SCENE, RECORD, BUFFERS, SETTINGS))
 def settle(s, r, b, setting):
     """Go on with other equations: nothing that was learnt from the old ones counts any more."""
-    evaluate_all(s, r, setting, r.clock[T])
-    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
-    r.count[STIFF], r.count[NOT_STIFF] = 0, 0
-    r.clock[PAST_ERROR], r.clock[FACTORED_H] = 0.0, 0.0
-    measure(s, r.clock[T], r.y, r.clock[WORK_PROJECTION], r.clock[ENERGY_0])
-    restart(s, r, b, r.clock[T])
+    evaluate_all(s, r, setting, r.t)
+    r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
+    r.stiff, r.not_stiff = 0, 0
+    r.past_error, r.factored_h = 0.0, 0.0
+    measure(s, r.t, r.y, r.work_projection, r.energy_0)
+    restart(s, r, b, r.t)

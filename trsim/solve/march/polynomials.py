@@ -73,18 +73,18 @@ def lacking(last, second, third):
 
 @internal
 def doubt(b, n, surer):
-    """What stands for the last divided difference in the error of a polynomial, into b.doubt[0].
+    """What stands for the last divided difference in the error of a polynomial, into b.doubt.
 
     surer: how many times it counts.  Places that were looked at lie anyhow: how fast terms fall
     says nothing there.  Where none was, b.node[4] holds the `factors` of these nodes.
     """
     slope, size = b.node[2], b.node[4]
-    b.doubt[0] = surer * abs(slope[n - 1])
-    if n < ENOUGH or b.found[0] > 0.0:
+    b.doubt = surer * abs(slope[n - 1])
+    if n < ENOUGH or b.n_found > 0:
         return
     third, second = abs(slope[n - 3]) * size[n - 3], abs(slope[n - 2]) * size[n - 2]
     last = abs(slope[n - 1]) * size[n - 1]
-    b.doubt[0] = surer * lacking(last, second, third) / size[n - 1]
+    b.doubt = surer * lacking(last, second, third) / size[n - 1]
 
 
 @internal
@@ -121,7 +121,7 @@ def reach(b, n):
     along(b, n)
     lattice, value = b.lattice, b.along
     most, least, bend = -1e300, 1e300, 0.0
-    last = b.doubt[0]
+    last = b.doubt
     for k in range(PARTS + 1):
         doubt = last * abs(lattice[n - 1, k])
         most, least = max(most, value[k] + doubt), min(least, value[k] - doubt)
@@ -143,7 +143,7 @@ def top(b, n, start, end, wanted):
     along(b, n)
     lattice, width, value = b.lattice, (end - start) / PARTS, b.along
     for k in range(PARTS + 1):
-        value[k] += b.doubt[0] * abs(lattice[n - 1, k])
+        value[k] += b.doubt * abs(lattice[n - 1, k])
     for k in range(PARTS + 1):
         if value[k] > best:
             best, place = value[k], start + k * width
@@ -152,7 +152,7 @@ def top(b, n, start, end, wanted):
         before, last = last, value[k]
     if best + 0.25 * bend < wanted:
         return place, best
-    return higher(b.node, n, start, end, place, best, b.doubt[0])
+    return higher(b.node, n, start, end, place, best, b.doubt)
 
 
 @internal
@@ -199,7 +199,7 @@ def one_way(b, n):
     h = abs(times[0] - times[1])
     bend, product, rate = 0.0, 0.25 * h * h, h  # of (x - t0) (x - t1)
     for k in range(2, n):
-        bend += rate * (abs(slope[k]) + (b.doubt[0] if k == n - 1 else 0.0))
+        bend += rate * (abs(slope[k]) + (b.doubt if k == n - 1 else 0.0))
         far = max(abs(times[0] - times[k]), abs(times[1] - times[k]))
         product, rate = product * far, rate * far + product
     return bend < PLAIN * abs(slope[1])

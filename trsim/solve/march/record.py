@@ -3,143 +3,10 @@
 import numpy as np
 
 from trsim.elements.scene import Model
-from trsim.kernels.packed import A1, A2, I1, I2, T14, Packed
-
-# clock: floating-point state of the march
-(
-    T,  # s
-    H,  # s, the step to try next
-    LENGTH,  # m, unit of the error norm: the smallest gap or penetration that matters
-    SPEED,  # m/s, its unit for velocities, of the next step
-    MET,  # m/s, the largest speed so far     norm.py
-    MOST,  # m/s, more is no unit for velocities
-    WORK_PROJECTION,  # J, given to the mechanism by projecting back to the constraints
-    ENERGY_0,  # J, total energy at the start
-    WORST_PHI,  # m or rad, largest constraint residual met at an accepted point
-    WORST_PHI_DOT,
-    LARGEST_ENERGY,  # J, largest entry of the energy book so far: the scale of its residual
-    LARGEST_RESIDUAL,  # J
-    LAST_EVENT,  # s
-    PAST_H,  # s, length of the step whose polynomial is in `past`
-    PAST_ERROR,  # error of the last step, for the controller; 0 after an event
-    OLD_H,  # s, its length
-    FACTORED_H,  # s, the step size `lu` belongs to; 0 for none
-    CONTRACTION,  # of the matrix at hand, as far as it was measured
-    NEWTON_RATE,  # contraction of the last Newton iterations
-    JACOBIAN_RATE,  # 1/s, largest eigenvalue of the Jacobian; negative: not known
-    EXPLICIT_RATE,  # 1/s, how much the derivative changes with the state; 0: not known     auto.py
-    EXCHANGED,  # J, largest work, or range of an energy, so far: the scale of works     works.py
-    WORK_TRIAL,  # J, error of the works in the last trial step, as estimated
-    WORK_ERROR,  # J, the sum of those accepted
-    WORST_OPEN,  # of the mechanism's size or rad, largest opening of a redundant row  openings.py
-    WORST_OPEN_RATE,  # the same per second
-    APART,  # the same of rows that are open by more than the rest is
-    APART_T,  # s, when
-    WEAKEST,  # pivot of a row, of its diagonal: at the last look at which rows to solve
-    TORN_BY,  # m or rad
-    OFF,  # m or rad, largest constraint residual at the end of the last trial step
-    OFF_RATE,
-    NOISY,  # 1/s, rounding of steps in units of the tolerance              rounding.py
-    NOISY_AT,  # the entry of y that has it
-    PASSING,  # 1: it was seen where rows nearly depended on each other
-    ROUNDED,  # largest rounding of an accepted step in these units, and the entry that had it
-    ROUNDED_AT,
-    ROUNDED_BY,  # and how much it was, m, rad, m/s or rad/s
-    LONGEST,  # s, the longest step since then, see LOOKED
-    LAST_WAY,  # rad, or of the mechanism's size: how far the last step went, 0: none    passes.py
-    CROSSED_T,  # s, when the run first changed its branch                         crossed.py
-    GAIN,  # m/s^2, the largest acceleration so far                     generalized_alpha.py
-    BLUR,  # m/s^2, error of accelerations the last trial was not held for    accelerations.py
-    EXCESS,  # m/s^2, the same where it was more than its share, rounding or not
-    BLUR_W,  # rad/s, how fast what it consists of turns, 0: not known
-    BLURRED,  # m/s^2, the largest of accepted steps
-    BLURRED_W,  # rad/s, of the longest of them, and its length
-    BLURRED_H,
-    BLURRED_SUM,  # m/s^2, of all that were more than their share
-    EARLIER_T,  # s, where the step began that is kept in `earlier`                earlier.py
-    EARLIER_H,  # s, its length
-    EARLIER_WORK,  # J, WORK_PROJECTION there, and what projection gave in it
-    EARLIER_PROJECTED,
-    FREE_H,  # s, the step to try next when a contact last closed while all were open      phases.py
-    FREE_SINCE,  # s, when they last opened
-    CHOSEN_T,  # s, when rows were last chosen anew                                   anew.py
-    FELT,  # of rows open where branches nearly meet, in accelerations                adrift.py
-    FELT_T,  # s, when
-    VIBRATION,  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known    stiffness.py
-    DECAY,  # 1/s, of the fastest decay
-    STEP_TURN,  # rad, the most a body turned by in a fixed step                        rk4.py
-    N_CLOCK,
-) = range(62)
-
-# count: integer state of the march
-(
-    STEPS,
-    REJECTED,
-    EVENTS,
-    CORNERS,  # of laws, met
-    NEXT_ROW,  # index of the next output time
-    ROWS,  # filled rows of the buffers
-    STEP_ROWS,
-    EVENT_ROWS,
-    DENSE_BUILT,
-    AFTER_REJECTION,  # 1 the last trial was rejected, 2 because it was not finite
-    SAME_TIME,  # events in a row without time passing
-    METHOD,  # which of the methods makes the steps
-    SWITCHES,  # changes of method
-    STIFF,  # steps in a row that looked stiff to an explicit method, or not to an implicit one
-    NOT_STIFF,  # steps in a row that speak against it
-    HISTORY,  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
-    JACOBIAN,  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
-    NEXT_JACOBIAN,  # its state once the last trial is accepted: OLD, or NO_JACOBIAN
-    JACOBIANS,  # made so far
-    ITERATIONS,  # of Newton, so far
-    CRAWLED,  # trial steps in a row that were vanishingly short
-    FIRED,  # user events at the end of the last step, not yet acted on
-    POINT_ROWS,
-    WEAK,  # 1: rows of the solve nearly depend on each other, others may not      openings.py
-    OPENED,  # 1: a redundant row is open beyond its bound
-    OPEN_ROW,  # element row e and row of it that APART is of
-    OPEN_INDEX,
-    JOLTS,  # jumps of the rate of a rigid drive
-    LOST,  # 1: without projection, rows are open by as much as branches are apart     adrift.py
-    TORN,  # 1 + row of the rigid drive whose place has jumped: the run ends
-    UNPROVED,  # searches for an event in a step that gave up
-    DEGREE,  # of the polynomials in `net`
-    LOOKED,  # steps when rounding was looked at last    rounding.py
-    NEXT_LOOK,  # steps when stiffness is to be looked at again, and how far apart   stiffness.py
-    APART_LOOKS,
-    OF_RATES,  # 1: it was rates that were looked at
-    FAILED,  # and how many trials were rejected then
-    NEWEST,  # which of the last samples of the channels is the newest, and how many there are
-    SAMPLES,
-    KEPT,  # 0: no rows are known where the step begins; 1, 2: they are kept in one of two places
-    PASSED,  # ways noted that are still to be examined
-    MEETINGS,  # places known where branches meet
-    CROSSED,  # how often the run changed its branch
-    UNSEEN,  # 1: between the two newest samples no extremes were looked for yet
-    FREED,  # 1: the step ended where the last closed contact opened
-    EARLIER_BUILT,  # 1: `stages` holds the dense output of the earlier step, not its stages
-    CHOSEN,  # how often rows were chosen anew with next to no time between
-    N_COUNT,
-) = range(48)
+from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8, i8
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
-
-# settings: constants of the march
-(
-    T_END,
-    STEP_ERROR,  # what a step may err by, made of the tolerance in `settings` of solve/outcome.py
-    H_MAX,
-    EVERY,  # s between output rows
-    FIXED_STEP,  # s, 0 where the method controls its step
-    LOCATE,  # 1: contact onset and separation are located
-    CHOOSES,  # 1: between two methods, by the fastest motion
-    MISSED,  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
-    HELD_TO,  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
-    TOLERANCE,  # as it is written
-    N_SETTINGS,
-) = range(11)
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
@@ -168,6 +35,21 @@ FOUND = 200  # places between two samples where extremes are looked for
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
 
 
+class Settings(Packed):
+    """The constants of the march."""
+
+    t_end: f8
+    step_error: f8  # what a step may err by, made of the tolerance: see `settings` of outcome.py
+    h_max: f8
+    every: f8  # s between output rows
+    fixed_step: f8  # s, 0 where the method controls its step
+    locate: i8  # 1: contact onset and separation are located
+    chooses: i8  # 1: between two methods, by the fastest motion
+    missed: f8  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
+    held_to: f8  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
+    tolerance: f8  # as it is written
+
+
 class Record(Packed):
     """The state of a run."""
 
@@ -179,8 +61,6 @@ class Record(Packed):
     turning: A1  # (n_s) rates of S at y
     gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
     corner: A1  # (n_contacts) how far each has left the branch of its law at y
-    clock: A1
-    count: I1
     peak: A2  # (N_PEAK, n_c) extremes of channels and magnitudes
     firm: A2  # (2, n_c) the least pivot of rows where each was taken, 1 in open chains   samples.py
     book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
@@ -195,9 +75,10 @@ class Record(Packed):
     by_place: A2  # (n_w, n_v) w' against displacements
     by_rate: A2  # (n_w, n_w) w' against w
     stale: I1  # (n) frames whose columns of `by_rate` a corner made old
-    lu: A2  # (3 n_w, n_w) factors: real, then real and imaginary part of the complex ones
+    lu: A2  # (n_w, n_w) factors of the real system
+    lu_pair: C2  # (n_w, n_w) and of the complex one
     pivot: I2  # (2, n_w)
-    past: A2  # (dense rows, n_y) dense output of a step, see HISTORY
+    past: A2  # (dense rows, n_y) dense output of a step, see `history`
     watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
     held: A1  # (corners) what functions are held on                            features.py
     sight: A1  # (n_sensed) what the sensors that meet corners show at y
@@ -213,6 +94,116 @@ class Record(Packed):
     crossed: A1  # (n_y) where the run first changed its branch
     swing: A2  # (2, n_w) how it vibrates, and how it decays              stiffness.py
     worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
+    clock: A1  # the numbers that change
+    t: F8  # s
+    h: F8  # s, the step to try next
+    length: F8  # m, unit of the error norm: the smallest gap or penetration that matters
+    speed: F8  # m/s, its unit for velocities, of the next step
+    top_speed: F8  # m/s, the largest speed so far  norm.py
+    speed_cap: F8  # m/s, more is no unit for velocities
+    work_projection: F8  # J, given to the mechanism by projecting back to the constraints
+    energy_0: F8  # J, total energy at the start
+    worst_phi: F8  # m or rad, largest constraint residual met at an accepted point
+    worst_phi_dot: F8
+    largest_energy: F8  # J, largest entry of the energy book so far: the scale of its residual
+    largest_residual: F8  # J
+    last_event: F8  # s
+    past_h: F8  # s, length of the step whose polynomial is in `past`
+    past_error: F8  # error of the last step, for the controller; 0 after an event
+    old_h: F8  # s, its length
+    factored_h: F8  # s, the step size `lu` belongs to; 0 for none
+    contraction: F8  # of the matrix at hand, as far as it was measured
+    newton_rate: F8  # contraction of the last Newton iterations
+    jacobian_rate: F8  # 1/s, largest eigenvalue of the Jacobian; negative: not known
+    explicit_rate: F8  # 1/s, how much the derivative changes with the state; 0: not known  auto.py
+    exchanged: F8  # J, largest work, or range of an energy, so far: the scale of works  works.py
+    work_trial: F8  # J, error of the works in the last trial step, as estimated
+    work_error: F8  # J, the sum of those accepted
+    worst_open: F8  # of the mechanism's size or rad, of a redundant row  openings.py
+    worst_open_rate: F8  # the same per second
+    apart: F8  # the same of rows that are open by more than the rest is
+    apart_t: F8  # s, when
+    weakest: F8  # pivot of a row, of its diagonal: at the last look at which rows to solve
+    torn_by: F8  # m or rad
+    off: F8  # m or rad, largest constraint residual at the end of the last trial step
+    off_rate: F8
+    noisy: F8  # 1/s, rounding of steps in units of the tolerance  rounding.py
+    noisy_at: F8  # the entry of y that has it
+    passing: F8  # 1: it was seen where rows nearly depended on each other
+    rounded: F8  # largest rounding of an accepted step in these units, and the entry that had it
+    rounded_at: F8
+    rounded_by: F8  # and how much it was, m, rad, m/s or rad/s
+    longest: F8  # s, the longest step since then, see `looked`
+    last_way: F8  # rad, or of the mechanism's size: how far the last step went, 0: none  passes.py
+    crossed_t: F8  # s, when the run first changed its branch  crossed.py
+    top_acceleration: F8  # m/s^2, the largest acceleration so far  generalized_alpha.py
+    blur: F8  # m/s^2, error of accelerations the last trial was not held for  accelerations.py
+    excess: F8  # m/s^2, the same where it was more than its share, rounding or not
+    blur_w: F8  # rad/s, how fast what it consists of turns, 0: not known
+    blurred: F8  # m/s^2, the largest of accepted steps
+    blurred_w: F8  # rad/s, of the longest of them, and its length
+    blurred_h: F8
+    blurred_sum: F8  # m/s^2, of all that were more than their share
+    earlier_t: F8  # s, where the step began that is kept in `earlier`  earlier.py
+    earlier_h: F8  # s, its length
+    earlier_work: F8  # J, `work_projection` there, and what projection gave in it
+    earlier_projected: F8
+    free_h: F8  # s, the step to try next when a contact last closed while all were open  phases.py
+    free_since: F8  # s, when they last opened
+    chosen_t: F8  # s, when rows were last chosen anew  anew.py
+    felt: F8  # of rows open where branches nearly meet, in accelerations  adrift.py
+    felt_t: F8  # s, when
+    vibration: F8  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known  stiffness.py
+    decay: F8  # 1/s, of the fastest decay
+    step_turn: F8  # rad, the most a body turned by in a fixed step  rk4.py
+    count: I1  # and the whole ones
+    steps: I8
+    rejected: I8
+    events: I8
+    corners_met: I8  # corners of laws, met
+    next_row: I8  # index of the next output time
+    rows: I8  # filled rows of the buffers
+    step_rows: I8
+    event_rows: I8
+    dense_built: I8
+    after_rejection: I8  # 1 the last trial was rejected, 2 because it was not finite
+    same_time: I8  # events in a row without time passing
+    method: I8  # which of the methods makes the steps
+    method_switches: I8  # changes of method
+    stiff: I8  # steps in a row that looked stiff to an explicit method, or not to an implicit one
+    not_stiff: I8  # steps in a row that speak against it
+    history: I8  # what `past` holds: NO_HISTORY, a step BEHIND the state, a trial AHEAD of it
+    jacobian: I8  # state of `by_place` and `by_rate`: NO_JACOBIAN, NO_RATES, OLD, FRESH
+    next_jacobian: I8  # its state once the last trial is accepted: OLD, or NO_JACOBIAN
+    jacobians: I8  # made so far
+    iterations: I8  # of Newton, so far
+    crawled: I8  # trial steps in a row that were vanishingly short
+    fired: I8  # user events at the end of the last step, not yet acted on
+    point_rows: I8
+    weak: I8  # 1: rows of the solve nearly depend on each other, others may not  openings.py
+    opened: I8  # 1: a redundant row is open beyond its bound
+    open_row: I8  # element row e and row of it that `apart` is of
+    open_index: I8
+    n_jolts: I8  # jumps of the rate of a rigid drive
+    lost: I8  # 1: without projection, rows are open by as much as branches are apart  adrift.py
+    torn: I8  # 1 + row of the rigid drive whose place has jumped: the run ends
+    unproved: I8  # searches for an event in a step that gave up
+    degree: I8  # of the polynomials in `net`
+    looked: I8  # steps when rounding was looked at last  rounding.py
+    next_look: I8  # steps when stiffness is to be looked at again, and how far apart  stiffness.py
+    apart_looks: I8
+    of_rates: I8  # 1: it was rates that were looked at
+    failed: I8  # and how many trials were rejected then
+    newest: I8  # which of the last samples of the channels is the newest, and how many there are
+    n_samples: I8
+    kept: I8  # 0: no rows are known where the step begins; 1, 2: they are kept in one of two places
+    n_passed: I8  # ways noted that are still to be examined
+    n_meetings: I8  # places known where branches meet
+    crossings: I8  # how often the run changed its branch
+    unseen: I8  # 1: between the two newest samples no extremes were looked for yet
+    freed: I8  # 1: the step ended where the last closed contact opened
+    earlier_built: I8  # 1: `stages` holds the dense output of the earlier step, not its stages
+    chosen: I8  # how often rows were chosen anew with next to no time between
 
 
 POINTS = 6  # samples of every channel that are kept: see peaks.py
@@ -243,6 +234,7 @@ class Buffers(Packed):
     y1: A1
     y2: A1
     weight: A1
+    pair: C1  # (n_y) right-hand side of the complex system of an implicit method
     rough: A2  # (3, n_y) a state and the end of a step from it, while it is made again
     out: A1  # (n_out) channels at the end of the step
     gap1: A2  # (n_contacts + n_w, 2)
@@ -251,17 +243,14 @@ class Buffers(Packed):
     firm: A1  # (2) the least pivot of rows where channels were measured last, and at the step's end
     row_firm: A1  # (n) the same of every output row
     inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
-    found: A1  # (1 + FOUND) how often, and when
+    found: A1  # (FOUND) when, see `n_found`
     node: A2  # (5, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), factors
     along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
-    doubt: A1  # (1) what stands for the last divided difference in its error
-    laid: A1  # (1) how many places were found when those were made
     bound: A2  # (2, n_k) of channels between two samples: see `bounds` of samples.py
     part: A2  # (2, n_y) both ends of a part of a step                            passes.py
     mean: A2  # (2, n_out) channels where rows of the solve depend on each other
-    moved: A1  # (1) 1: the end of the step was moved on along its tangent
     unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
     root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
     corner_root: A1  # (n_contacts) and where it meets a corner
@@ -274,9 +263,21 @@ class Buffers(Packed):
     box: A2  # (slots, 4) ranges of the parts of a function
     before: A1  # (corners) what functions were held on in the last step
     met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
+    clock: A1  # the numbers that change
+    t: F8  # s, where the step at hand begins
+    h: F8  # s, its length; what its dense output is made with
+    t1: F8  # s, its end
+    projected: F8  # J, what the projection there gave
+    doubt: F8  # what stands for the last divided difference in the error of a polynomial
+    count: I1  # and the whole ones
+    interpolate: I8  # address of what evaluates the dense output
+    built: I8  # 1: P holds it
+    moved: I8  # 1: the end of the step was moved on along its tangent
+    n_found: I8  # places between two samples that were looked at                peaks.py
+    laid: I8  # how many there were when a lattice was laid
 
 
-RECORD, BUFFERS = Record.kind, Buffers.kind
+SETTINGS, RECORD, BUFFERS = Settings.kind, Record.kind, Buffers.kind
 
 
 def fresh_buffers(
@@ -294,35 +295,27 @@ def fresh_buffers(
         events=np.zeros((max(256, 8 * (contacts + watched)), N_EVENT)),
         points=np.zeros((max(1024, 2 * points + 16) if points else 0, N_POINT)),
         K=np.zeros((stages, n_y)),
-        P=np.zeros((dense_rows, n_y)),
-        P_earlier=np.zeros((dense_rows, n_y)),
-        y1=np.zeros(n_y),
-        y2=np.zeros(n_y),
-        weight=np.zeros(n_y),
-        rough=np.zeros((3, n_y)),
+        **{name: np.zeros((dense_rows, n_y)) for name in ("P", "P_earlier")},
+        **{name: np.zeros(n_y) for name in ("y1", "y2", "weight")},
+        pair=np.zeros(n_y, complex),
+        **{name: np.zeros((3, n_y)) for name in ("rough", "unmoved")},
         out=np.zeros(max(model.n_out, 1)),
         gap1=np.zeros((contacts + watched, 2)),
-        corner1=np.zeros(contacts),
         full=np.zeros(model.n_out + len(model.vector)),
         firm=np.ones(2),
         row_firm=np.ones(max(1024, 2 * step_rows + 16)),
         inside=np.zeros((FOUND, len(model.kin))),
-        found=np.zeros(1 + FOUND),
+        found=np.zeros(FOUND),
         node=np.zeros((5, POINTS)),
         along=np.zeros(1 + PARTS),
         lattice=np.zeros((POINTS, 1 + PARTS)),
         inverse=np.zeros((POINTS, POINTS)),
-        doubt=np.zeros(1),
-        laid=np.zeros(1),
         bound=np.zeros((2, len(model.kin))),
         part=np.zeros((2, n_y)),
         mean=np.zeros((2, model.n_out)),
-        moved=np.zeros(1),
-        unmoved=np.zeros((3, n_y)),
         root=np.zeros(contacts + watched),
-        corner_root=np.zeros(contacts),
-        branch1=np.zeros(max(model.n_s, 1)),
-        turning1=np.zeros(max(model.n_s, 1)),
+        **{name: np.zeros(contacts) for name in ("corner1", "corner_root")},
+        **{name: np.zeros(max(model.n_s, 1)) for name in ("branch1", "turning1")},
         net=np.zeros((9, model.n_q if contacts + watched + len(model.sensed) else 0)),
         seen=np.zeros((max(model.n_s, 1) if len(model.sensed) else 0, 4)),
         shown=np.zeros((len(model.sensed), 2)),
@@ -336,9 +329,9 @@ def fresh_buffers(
 def crowded(r: Record, b: Buffers) -> bool:
     """Whether a buffer is half full: time to empty them."""
     filled = (
-        (ROWS, b.rows), (STEP_ROWS, b.steps), (EVENT_ROWS, b.events), (POINT_ROWS, b.points)
+        (r.rows, b.rows), (r.step_rows, b.steps), (r.event_rows, b.events), (r.point_rows, b.points)
     )  # fmt: skip
-    return any(2 * r.count[counter] > len(buffer) for counter, buffer in filled)
+    return any(2 * number > len(buffer) for number, buffer in filled)
 
 
 def copy(record: Record) -> dict[str, np.ndarray]:

@@ -29,28 +29,11 @@ from trsim.assemble.linear import SOUND
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8
+from trsim.kernels.packed import I1, f8
 from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.calls import NO_STEP, call_step
 from trsim.solve.march.norm import weight_of
-from trsim.solve.march.record import (
-    AFTER_REJECTION,
-    BUFFERS,
-    FAILED,
-    LONGEST,
-    LOOKED,
-    NOISY,
-    NOISY_AT,
-    PASSING,
-    RECORD,
-    REJECTED,
-    ROUNDED,
-    ROUNDED_AT,
-    ROUNDED_BY,
-    STEP_ERROR,
-    STEPS,
-    T,
-)
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 
 EPS = 2.2e-16
 APART = 32  # steps between two looks
@@ -62,14 +45,14 @@ MANY, MOST = 6, 3  # steps to a failure, of one step the second and the first: o
 PART = 0.1  # of the tolerance: below, rounding does not show in the error of a step
 
 #                         scene  record  buffers  setting step h
-LOOK_CLOSER = types.void(SCENE, RECORD, BUFFERS, A1, I1, f8)
+LOOK_CLOSER = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8)
 call_look_closer = caller(LOOK_CLOSER)
 
 
 @compiled(LOOK_CLOSER)
 def look_closer(s, r, b, setting, method, h):
     """Make the trial step that ended in b.y1 again, a bit beside; fill r.noise, per second."""
-    t, counted = r.clock[T], (s.status[1], s.status[2], s.status[3])
+    t, counted = r.t, (s.status[1], s.status[2], s.status[3])
     y, yd, y1 = b.rough[0], b.rough[1], b.rough[2]
     copy_to(y, r.y)
     copy_to(yd, r.yd)
@@ -82,7 +65,7 @@ def look_closer(s, r, b, setting, method, h):
         for c in range(y.size):
             y1[c] -= b.y1[c]
         noted(s, r, setting, y1, h)
-        r.clock[PASSING] = 1.0 if passing else 0.0
+        r.passing = 1.0 if passing else 0.0
     copy_to(r.y, y)
     copy_to(r.yd, yd)
     s.status[1], s.status[2], s.status[3] = counted
@@ -92,8 +75,8 @@ def look_closer(s, r, b, setting, method, h):
 def beside(s, r, setting, y, moved, sign):
     """moved <- y with every entry moved by its last bit, or to the other side with the sign -1."""
     for c in range(y.size):
-        weight = weight_of(s, r, setting[STEP_ERROR], c)
-        unit = 1.0 / (weight * setting[STEP_ERROR]) if weight > 0.0 else 0.0
+        weight = weight_of(s, r, setting.step_error, c)
+        unit = 1.0 / (weight * setting.step_error) if weight > 0.0 else 0.0
         d = sign * EPS * max(abs(y[c]), unit)
         # neighbours in ways of their own
         moved[c] = y[c] + (d if (c * c + c // 2) % 4 < 2 else -d)
@@ -103,8 +86,8 @@ def beside(s, r, setting, y, moved, sign):
 def to_look(r, h):
     """Whether a trial that failed is to be looked at: one of many, where steps have been short for
     a while."""
-    steps, failed = r.count[STEPS] - r.count[LOOKED], r.count[REJECTED] - r.count[FAILED]
-    second = r.count[AFTER_REJECTION] == 1
+    steps, failed = r.steps - r.looked, r.rejected - r.failed
+    second = r.after_rejection == 1
     if steps < APART or (MANY if second else MOST) * failed < steps:
         return False
     return stuck(r, h)
@@ -113,7 +96,7 @@ def to_look(r, h):
 @internal
 def overdue(r, h):
     """Whether a trial that did not fail is to be looked at, and made again."""
-    if r.count[STEPS] - r.count[LOOKED] < OVERDUE or r.count[AFTER_REJECTION] > 0:
+    if r.steps - r.looked < OVERDUE or r.after_rejection > 0:
         return False
     return stuck(r, h)
 
@@ -122,8 +105,8 @@ def overdue(r, h):
 def stuck(r, h):
     """Whether no step was much longer than h since it was last asked; steps, failures and the
     longest step are counted again from here."""
-    told = r.clock[LONGEST] <= STUCK * h
-    r.count[LOOKED], r.count[FAILED], r.clock[LONGEST] = r.count[STEPS], r.count[REJECTED], 0.0
+    told = r.longest <= STUCK * h
+    r.looked, r.failed, r.longest = r.steps, r.rejected, 0.0
     return told
 
 
@@ -151,17 +134,17 @@ def noted(s, r, setting, step, h):
 @internal
 def largest(s, r, setting):
     """The largest noise in units of the tolerance per second."""
-    r.clock[NOISY] = 0.0
+    r.noisy = 0.0
     for c in range(r.noise.size):
-        noisy = r.noise[c] * weight_of(s, r, setting[STEP_ERROR], c)
-        if noisy > r.clock[NOISY]:
-            r.clock[NOISY], r.clock[NOISY_AT] = noisy, c
+        noisy = r.noise[c] * weight_of(s, r, setting.step_error, c)
+        if noisy > r.noisy:
+            r.noisy, r.noisy_at = noisy, c
 
 
 @internal
 def blunted(s, r, b, h):
     """Weigh what rounding hides in a step h by the rounding."""
-    if r.clock[NOISY] * h <= PART:
+    if r.noisy * h <= PART:
         return
     for c in range(b.weight.size):
         floor = r.noise[c] * h
@@ -173,18 +156,18 @@ def blunted(s, r, b, h):
 def remember(s, r, setting, h):
     """Keep the largest excess of rounding over what the tolerance allows of a step; forget noise
     that is not seen again."""
-    r.clock[LONGEST] = max(r.clock[LONGEST], h)
-    if r.clock[NOISY] == 0.0:
+    r.longest = max(r.longest, h)
+    if r.noisy == 0.0:
         return
-    rounded = r.clock[NOISY] * h / MARGIN
-    if rounded > r.clock[ROUNDED]:
-        r.clock[ROUNDED], r.clock[ROUNDED_AT] = rounded, r.clock[NOISY_AT]
-        r.clock[ROUNDED_BY] = r.noise[int(r.clock[NOISY_AT])] * h / MARGIN
-    if r.clock[PASSING] > 0.0 and s.status[0] == SOUND:
-        r.clock[NOISY] = r.clock[PASSING] = 0.0
+    rounded = r.noisy * h / MARGIN
+    if rounded > r.rounded:
+        r.rounded, r.rounded_at = rounded, r.noisy_at
+        r.rounded_by = r.noise[int(r.noisy_at)] * h / MARGIN
+    if r.passing > 0.0 and s.status[0] == SOUND:
+        r.noisy = r.passing = 0.0
         clear(r.noise)
         return
-    if (r.count[STEPS] - r.count[LOOKED]) % APART == 0:
+    if (r.steps - r.looked) % APART == 0:
         for c in range(r.noise.size):
             r.noise[c] *= FADES
         largest(s, r, setting)

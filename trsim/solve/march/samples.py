@@ -21,21 +21,12 @@ from math import sqrt
 from trsim.assemble.linear import smallest_pivot
 from trsim.kernels.vectors import internal
 from trsim.solve.march.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
-from trsim.solve.march.record import (
-    NEWEST,
-    PEAK_MAX,
-    PEAK_MAX_T,
-    PEAK_MIN,
-    PEAK_MIN_T,
-    POINTS,
-    SAMPLES,
-    UNSEEN,
-)
+from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, POINTS
 
 CLOSE = 1e-3  # of the time between two samples: a third one nearer than that is none of its own
 NEAR = 1e-4  # of it: an extreme so near a known place is known
 AWAY = 0.1  # of the way to the next known place
-NOT_LAID = -1.0
+NOT_LAID = -1
 LEAST = 1e-300  # not to divide zero by zero
 # times the error of a polynomial next to a sample where its channel turns back, or that no sample
 # follows: on which side of it must be plain
@@ -50,7 +41,7 @@ def restart(s, r, b, t):
     known_extremes(s, r, b, t)
     for c in range(s.sought.size):
         r.slope[0, c] = r.sample[0, c]
-    r.count[NEWEST], r.count[SAMPLES], r.count[UNSEEN], r.sampled[0] = 0, 1, 0, t
+    r.newest, r.n_samples, r.unseen, r.sampled[0] = 0, 1, 0, t
 
 
 @internal
@@ -59,11 +50,11 @@ def push(s, r, b, at, values):
 
     One that is too near to the newest takes its place.
     """
-    head, known = r.count[NEWEST], r.count[SAMPLES]
+    head, known = r.newest, r.n_samples
     own = known < 2 or at - r.sampled[head] > CLOSE * (r.sampled[head] - r.sampled[older(r, 1)])
     if own:
-        r.count[NEWEST], r.count[SAMPLES] = (head + 1) % POINTS, min(known + 1, POINTS)
-    new = r.count[NEWEST]
+        r.newest, r.n_samples = (head + 1) % POINTS, min(known + 1, POINTS)
+    new = r.newest
     gather(s, b.full, values, r.sample[new])
     r.sampled[new] = at
     if own:
@@ -76,14 +67,14 @@ def push(s, r, b, at, values):
 @internal
 def older(r, k):
     """Where in the ring the sample is that is k older than the newest."""
-    return (r.count[NEWEST] + POINTS - k) % POINTS
+    return (r.newest + POINTS - k) % POINTS
 
 
 @internal
 def take(r, b):
     """Divided differences of all channels with a new sample: f[t0], f[t0, t1], ... newest first."""
-    n, now, inverse = r.count[SAMPLES], r.sample[r.count[NEWEST]], b.node[3]
-    at = r.sampled[r.count[NEWEST]]
+    n, now, inverse = r.n_samples, r.sample[r.newest], b.node[3]
+    at = r.sampled[r.newest]
     for k in range(1, n):
         inverse[k] = 1.0 / (at - r.sampled[older(r, k)])
     d, before = r.slope, b.bound[0]
@@ -101,9 +92,9 @@ def take(r, b):
 @internal
 def anew(r, b):
     """The divided differences made again, where the newest sample was replaced."""
-    head, known = r.count[NEWEST], r.count[SAMPLES]
+    head, known = r.newest, r.n_samples
     for k in range(known):
-        r.count[NEWEST], r.count[SAMPLES] = (head + POINTS + 1 - known + k) % POINTS, k + 1
+        r.newest, r.n_samples = (head + POINTS + 1 - known + k) % POINTS, k + 1
         take(r, b)
 
 
@@ -159,11 +150,11 @@ def firmness(s):
 @internal
 def nodes(r, b, ahead):
     """Fill the times of b.node for polynomials between two neighbours; how many there are."""
-    times, found = b.node[0], int(b.found[0])
-    n = min(r.count[SAMPLES] + found, POINTS)
+    times, found = b.node[0], b.n_found
+    n = min(r.n_samples + found, POINTS)
     times[0], times[1] = r.sampled[older(r, ahead)], r.sampled[older(r, ahead + 1)]
     for k in range(2, min(2 + found, n)):
-        times[k] = b.found[k - 1]
+        times[k] = b.found[k - 2]
     for k in range(2 + found, n):
         times[k] = r.sampled[other(r, ahead, k - found)]
     return n
@@ -172,7 +163,7 @@ def nodes(r, b, ahead):
 @internal
 def other(r, ahead, k):
     """Where in the ring the k-th node is, k >= 2: first the sample ahead, then those before."""
-    return r.count[NEWEST] if k == 1 + ahead else older(r, k)
+    return r.newest if k == 1 + ahead else older(r, k)
 
 
 @internal
@@ -220,8 +211,8 @@ def known_place(b, start, end, place):
     near = NEAR * (end - start)
     if place - start < near or end - place < near:
         return True
-    for k in range(int(b.found[0])):  # noqa: SIM110 - a generator does not compile
-        if abs(b.found[1 + k] - place) < near:
+    for k in range(b.n_found):  # noqa: SIM110 - a generator does not compile
+        if abs(b.found[k] - place) < near:
             return True
     return False
 
@@ -230,8 +221,8 @@ def known_place(b, start, end, place):
 def aside(b, start, end, place):
     """A place away from one that is known, towards the further of the two known ones next to it."""
     near, low, high = NEAR * (end - start), start, end
-    for k in range(int(b.found[0])):
-        x = b.found[1 + k]
+    for k in range(b.n_found):
+        x = b.found[k]
         low = x if low < x < place - near else low
         high = x if place + near < x < high else high
     return place + AWAY * ((high if high - place > place - low else low) - place)
@@ -244,7 +235,7 @@ def through(r, b, ahead, c, sign):
     The last node is what the polynomial may do without.  Where more was found than it can go
     through, it goes through the places around the best one, the two next to it first.
     """
-    found, values, slope = int(b.found[0]), b.node[1], b.node[2]
+    found, values, slope = b.n_found, b.node[1], b.node[2]
     end, start = older(r, ahead), older(r, ahead + 1)
     if found > POINTS - 2:
         values[0], values[1] = sign * r.sample[end, c], sign * r.sample[start, c]
@@ -252,18 +243,18 @@ def through(r, b, ahead, c, sign):
         n = around_best(b, found, c, sign)
         lay(b, n)
         invert(b, n)
-        b.laid[0] = NOT_LAID
+        b.laid = NOT_LAID
         differences(b, n)
         doubt(b, n, 1.0)
         return n
-    n, surer = min(r.count[SAMPLES] + found, POINTS), 1.0
+    n, surer = min(r.n_samples + found, POINTS), 1.0
     if ahead == 0 or turns(r, ahead, c) or turns(r, ahead + 1, c):
         surer = TURNED
-    if b.laid[0] != found:
+    if b.laid != found:
         lay(b, nodes(r, b, ahead))
         if found > 0:
             invert(b, n)
-        b.laid[0] = found
+        b.laid = found
     values[0], values[1] = sign * r.sample[end, c], sign * r.sample[start, c]
     if found == 0:  # as `take` and `bounds` have them
         slope[0], slope[1] = values[0], sign * b.bound[0, c]
@@ -283,7 +274,7 @@ def through(r, b, ahead, c, sign):
 @internal
 def turns(r, k, c):
     """Whether channel c turns back at the sample that is k older than the newest."""
-    if k < 1 or k + 1 >= r.count[SAMPLES]:
+    if k < 1 or k + 1 >= r.n_samples:
         return False
     here = r.sample[older(r, k), c]
     return (here - r.sample[older(r, k - 1), c]) * (here - r.sample[older(r, k + 1), c]) > 0.0
@@ -297,15 +288,15 @@ def around_best(b, found, c, sign):
     place, best = (end, last) if last > first else (start, first)
     for k in range(found):
         if sign * b.inside[k, c] > best:
-            place, best = b.found[1 + k], sign * b.inside[k, c]
+            place, best = b.found[k], sign * b.inside[k, c]
     low, high = start, end
     for k in range(found):
-        x = b.found[1 + k]
+        x = b.found[k]
         low = x if low < x < place else low
         high = x if place < x < high else high
     n = 0
     for k in range(-2, found):
-        x = end if k == -2 else start if k == -1 else b.found[1 + k]
+        x = end if k == -2 else start if k == -1 else b.found[k]
         value = last if k == -2 else first if k == -1 else sign * b.inside[k, c]
         # those of the interval first, then the others by their distance to its middle
         at = min(n, POINTS)

@@ -44,32 +44,25 @@ from trsim.assemble.sections import (
 )
 from trsim.elements.contract import FLIGHT, PHASE, compiled
 from trsim.kernels.vectors import internal
-from trsim.solve.march.calls import (
-    INTERPOLATE_AT,
-    LAST_AT,
-    SECTIONS,
-)
+from trsim.solve.march.calls import LAST_AT, SECTIONS
 from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import (
     DECADES,
     END_RATE,
-    ENERGY_0,
     FAR,
     KNOWN,
     LAST,
     LEAST,
     NEXT,
     ON,
-    POINT_ROWS,
     POINT_SECTION,
     POINT_TIME,
     POINT_X,
     POINT_Y,
     RATE,
     SWINGS,
-    WORK_PROJECTION,
 )
 from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
 
@@ -85,18 +78,18 @@ AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and
 
 
 @compiled(SECTIONS)
-def sections(s, r, b, method, t, h, t1, projected, built, event):
-    """Write the points of (t, t1] into b.points; the step of length h is about to be accepted.
+def sections(s, r, b, method, event):
+    """Write the points of the step at hand into b.points; it is about to be accepted.
 
-    Its end, measured, is in b.out.  built: whether b.P holds its dense output.  event: whether an
-    event ends it.  Counters are left as they were.
+    Its end, measured, is in b.out.  event: whether an event ends it.  Counters are left as they
+    were.
     """
+    last, built, t1 = method[LAST_AT], b.built, b.t1
     went, evaluations = s.status[0], s.status[1]
     factorisations, contradictory = s.status[2], s.status[3]
-    interpolate = method[INTERPOLATE_AT]
-    ends_known(s, r, b, t, t1, method[LAST_AT], built, event)
-    still = parts_of(s, r, b, t1 - t, method[LAST_AT])
-    swinging = waves_of(s, r, b, t, t1)
+    ends_known(s, r, b, last, event)
+    still = parts_of(s, r, b, last)
+    swinging = waves_of(s, r, b)
     for k in range(s.section.shape[0]):
         kind = s.section[k, KIND]
         parts = max(still, swinging) if s.section[k, WAVES] > 0 else still
@@ -104,16 +97,16 @@ def sections(s, r, b, method, t, h, t1, projected, built, event):
             if event > 0 and touches(s, r, b, s.section[k, WHEN]):
                 point(s, r, b, k, t1, b.out)
         elif (kind == STROBE and instant(s, r, k) <= latest(t1)) or (
-            crosses_after(s, k, t1) and may_cross(s, r, b, k, t1 - t, event, parts)
+            crosses_after(s, k, t1) and may_cross(s, r, b, k, event, parts)
         ):
             if built == 0:
-                fill(s, r, b, method, t, h)
+                fill(s, r, b, method)
                 built = 1
             if kind == STROBE:
-                strobes(s, r, b, k, interpolate, t, h, t1, projected)
+                strobes(s, r, b, k)
             else:
-                crossings(s, r, b, k, interpolate, t, h, t1, projected, parts)
-        keep_end(s, r, b, k, t1, event)
+                crossings(s, r, b, k, parts)
+        keep_end(s, r, b, k, event)
     s.status[0], s.status[1] = went, evaluations
     s.status[2], s.status[3] = factorisations, contradictory
 
@@ -124,9 +117,9 @@ def point(s, r, b, k, t, values):
     x, y = values[s.section[k, X]], values[s.section[k, Y]]
     if t < s.section_at[k, AFTER] or not (isfinite(x) and isfinite(y)):
         return
-    line = b.points[r.count[POINT_ROWS]]
+    line = b.points[r.point_rows]
     line[POINT_TIME], line[POINT_SECTION], line[POINT_X], line[POINT_Y] = t, k, x, y
-    r.count[POINT_ROWS] += 1
+    r.point_rows += 1
 
 
 # --- touches and instants --------------------------------------------------------------------
@@ -158,17 +151,17 @@ def latest(t1):
 
 
 @internal
-def strobes(s, r, b, k, interpolate, t, h, t1, projected):
+def strobes(s, r, b, k):
     """The points of a stroboscopic section; a step longer than the buffer is none, see room."""
-    while r.count[POINT_ROWS] < b.points.shape[0]:
+    while r.point_rows < b.points.shape[0]:
         at = instant(s, r, k)
-        if at > latest(t1):
+        if at > latest(b.t1):
             break
-        if at >= t1:
+        if at >= b.t1:
             point(s, r, b, k, at, b.out)
         else:
-            theta = max((at - t) / h, 0.0)
-            measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
+            theta = max((at - b.t) / b.h, 0.0)
+            measure_inside(s, r, b, b.t + theta * b.h, theta)
             point(s, r, b, k, at, s.out)
         r.section[k, NEXT] += 1.0
 
@@ -183,18 +176,19 @@ def crosses_after(s, k, t1):
 
 
 @internal
-def ends_known(s, r, b, t, t1, last, built, event):
+def ends_known(s, r, b, last, event):
     """Values of `when` at the start of the step, where an event changed them, and its end's rates.
 
     b.P is free for scratch where it holds no dense output yet.
     """
     lost = asked = False
+    t, t1 = b.t, b.t1
     for k in range(s.section.shape[0]):
         if crosses_after(s, k, t1):
             asked = event == 0
             lost = lost or r.section[k, KNOWN] == 0.0
-    scratch, done, energy_0 = b.P[0], r.clock[WORK_PROJECTION], r.clock[ENERGY_0]
-    if built > 0:
+    scratch, done, energy_0 = b.P[0], r.work_projection, r.energy_0
+    if b.built > 0:
         scratch = b.K[1]
     if lost:
         evaluate(s, t, r.y, scratch)
@@ -222,7 +216,7 @@ def side_of(value, before):
 
 
 @internal
-def keep_end(s, r, b, k, t1, event):
+def keep_end(s, r, b, k, event):
     """The end of the step is the start of the next."""
     if s.section[k, KIND] != CROSSING:
         return
@@ -230,13 +224,13 @@ def keep_end(s, r, b, k, t1, event):
     r.section[k, FAR] = max(r.section[k, FAR], abs(r.section[k, LAST]))
     r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
     r.section[k, RATE] = r.section[k, END_RATE]
-    r.section[k, KNOWN] = 1.0 if event == 0 and t1 >= s.section_at[k, AFTER] else 0.0
+    r.section[k, KNOWN] = 1.0 if event == 0 and b.t1 >= s.section_at[k, AFTER] else 0.0
 
 
 @internal
-def may_cross(s, r, b, k, length, event, parts):
+def may_cross(s, r, b, k, event, parts):
     """Whether the step must be looked into: the sign changes, or the cubic comes near zero."""
-    side = r.section[k, ON]
+    side, length = r.section[k, ON], b.t1 - b.t
     if event > 0 or r.section[k, KNOWN] == 0.0 or side == 0.0 or parts > PARTS:
         return True
     f0, f1 = side * r.section[k, LAST], side * b.out[s.section[k, WHEN]]
@@ -253,53 +247,51 @@ def may_cross(s, r, b, k, length, event, parts):
 
 
 @internal
-def parts_of(s, r, b, length, last):
+def parts_of(s, r, b, last):
     """In how many parts a step is looked at."""
     fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
-    return PARTS * (1 + int(min(fast * length, 2.0 * WHOLE) / TURN))
+    return PARTS * (1 + int(min(fast * (b.t1 - b.t), 2.0 * WHOLE) / TURN))
 
 
 @internal
-def waves_of(s, r, b, t, t1):
+def waves_of(s, r, b):
     """In how many parts it is looked at where a channel swings with a function."""
     if s.wave.size == 0:
         return PARTS
-    w = swings(s, t, t1 - t, r.branch, r.turning, b.branch1, b.turning1)
-    return PARTS * (1 + int(min(w * (t1 - t), 2.0 * MOST_WAVES) / WAVE))
+    length = b.t1 - b.t
+    w = swings(s, b.t, length, r.branch, r.turning, b.branch1, b.turning1)
+    return PARTS * (1 + int(min(w * length, 2.0 * MOST_WAVES) / WAVE))
 
 
 @internal
-def crossings(s, r, b, k, interpolate, t, h, t1, projected, parts):
-    """The points of all crossings in the step."""
-    when, reach = s.section[k, WHEN], (t1 - t) / h
-    before, f_before = -1.0, 0.0  # the neighbour before the last, where both are on one side
-    low, f_low, side = 0.0, r.section[k, LAST], r.section[k, ON]
+def crossings(s, r, b, k, parts):
+    """The points of all crossings in the step.  Places inside it are pairs: theta, value."""
+    when, reach = s.section[k, WHEN], (b.t1 - b.t) / b.h
+    before = (-1.0, 0.0)  # the neighbour before the last, where both are on one side
+    low, side = (0.0, r.section[k, LAST]), r.section[k, ON]
     for j in range(1, parts + 1):
-        high = reach * j / parts
-        f_high = value(s, r, b, k, interpolate, t, h, high, projected) if j < parts else b.out[when]
-        if t == 0.0 and j == 1 and abs(f_low) <= AT_START * abs(f_high):
+        theta = reach * j / parts
+        high = (theta, value(s, r, b, k, theta) if j < parts else b.out[when])
+        if b.t == 0.0 and j == 1 and abs(low[1]) <= AT_START * abs(high[1]):
             side = 0.0
-        new = side_of(f_high, side)
+        new = side_of(high[1], side)
         if side * new < 0.0:
-            swung(r, k, abs(f_low))
-            crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, new, projected)
-            r.section[k, FAR] = abs(f_high)
-            before = -1.0
+            swung(r, k, abs(low[1]))
+            crossed(s, r, b, k, low, high, new)
+            r.section[k, FAR] = abs(high[1])
+            before = (-1.0, 0.0)
         else:
-            if before >= 0.0 and side * f_low < min(side * f_before, side * f_high):
-                bottom = dip(s, r, b, k, interpolate, t, h, before, f_before, low, f_low, high,
-                             f_high, side, projected)  # fmt: skip
-                if bottom >= 0.0:
-                    f = value(s, r, b, k, interpolate, t, h, bottom, projected)
-                    swung(r, k, f_before)
-                    swung(r, k, f)
-                    crossed(s, r, b, k, interpolate, t, h, t1, before, f_before, bottom, f, -side,
-                            projected)  # fmt: skip
-                    crossed(s, r, b, k, interpolate, t, h, t1, bottom, f, high, f_high, side,
-                            projected)  # fmt: skip
-            r.section[k, FAR] = max(r.section[k, FAR], abs(f_high))
-            before, f_before = low, f_low
-        low, f_low, side = high, f_high, new
+            if before[0] >= 0.0 and side * low[1] < min(side * before[1], side * high[1]):
+                theta = dip(s, r, b, k, side, (before, low, high))
+                if theta >= 0.0:
+                    bottom = (theta, value(s, r, b, k, theta))
+                    swung(r, k, before[1])
+                    swung(r, k, bottom[1])
+                    crossed(s, r, b, k, before, bottom, -side)
+                    crossed(s, r, b, k, bottom, high, side)
+            r.section[k, FAR] = max(r.section[k, FAR], abs(high[1]))
+            before = low
+        low, side = high, new
 
 
 @internal
@@ -312,31 +304,31 @@ def swung(r, k, f):
 
 
 @internal
-def value(s, r, b, k, interpolate, t, h, theta, projected):
+def value(s, r, b, k, theta):
     """What section k looks at, inside the step."""
-    measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
+    measure_inside(s, r, b, b.t + theta * b.h, theta)
     return s.out[s.section[k, WHEN]]
 
 
 @internal
-def crossed(s, r, b, k, interpolate, t, h, t1, low, f_low, high, f_high, to, projected):
+def crossed(s, r, b, k, low, high, to):
     """The point of a crossing to the side `to` between two places, if it is asked for."""
     want = s.section[k, DIRECTION]
     if want != 0 and want != to:
         return
-    when = s.section[k, WHEN]
-    theta = root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected)
+    theta = root(s, r, b, k, low, high)
     if theta >= 0.0:
-        measure_inside(s, r, b, interpolate, t + theta * h, theta, projected)
-        point(s, r, b, k, min(t + theta * h, t1), s.out)
+        measure_inside(s, r, b, b.t + theta * b.h, theta)
+        point(s, r, b, k, min(b.t + theta * b.h, b.t1), s.out)
 
 
 @internal
-def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, projected):
+def dip(s, r, b, k, side, places):
     """A place beyond zero at the bottom of three values of one side; -1 where it stays on it.
 
     By parabolas through the three lowest, as far as these may reach zero.
     """
+    (x0, f0), (x1, f1), (x2, f2) = places
     for _ in range(DIPS):
         a, c = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
         bend = (c - a) / (x2 - x0)
@@ -348,7 +340,7 @@ def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, projected):
             return -1.0
         if abs(x - x1) < 1e-3 * (x2 - x0):  # the middle is the bottom: look beside it
             x = x1 + 0.1 * (x2 - x1 if x2 - x1 > x1 - x0 else x0 - x1)
-        f = value(s, r, b, k, interpolate, t, h, x, projected)
+        f = value(s, r, b, k, x)
         if side * f < 0.0:
             return x
         if side * f < side * f1:
@@ -365,19 +357,19 @@ def dip(s, r, b, k, interpolate, t, h, x0, f0, x1, f1, x2, f2, side, projected):
 
 
 @internal
-def root(s, r, b, when, interpolate, t, h, low, f_low, high, f_high, projected):
-    """Where column `when` is zero between low and high, as theta; -1 where it jumps over zero."""
-    if f_low == 0.0:
-        return low
-    rising, change = f_high > 0.0, abs(f_high - f_low)
-    finest = RESOLUTION * max(1.0, abs(t) / h)
-    bracket, f0, f1 = (low, f_low, high, f_high, 0.0), f_low, f_high
+def root(s, r, b, k, low, high):
+    """Where what section k looks at is zero between two places, as theta; -1 where it jumps over
+    zero."""
+    if low[1] == 0.0:
+        return low[0]
+    rising, change = high[1] > 0.0, abs(high[1] - low[1])
+    finest = RESOLUTION * max(1.0, abs(b.t) / b.h)
+    bracket, f0, f1 = (low[0], low[1], high[0], high[1], 0.0), low[1], high[1]
     for n in range(TRIALS):
         if bracket[2] - bracket[0] <= finest:
             break
         middle = between(bracket, n)
-        measure_inside(s, r, b, interpolate, t + middle * h, middle, projected)
-        f = s.out[when]
+        f = value(s, r, b, k, middle)
         if f == 0.0:
             return middle
         bracket = narrowed(bracket, middle, f, rising)

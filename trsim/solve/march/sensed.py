@@ -37,7 +37,7 @@ from trsim.assemble.travel import ANGLE
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.packed import I1, f8, i8
 from trsim.kernels.vectors import internal
 from trsim.laws.functions import (
     CLEAR,
@@ -54,7 +54,6 @@ from trsim.laws.functions import (
 )
 from trsim.solve.march.calls import (
     IMPLICIT_AT,
-    INTERPOLATE_AT,
     LAST_AT,
     SEARCH,
     STAGES_AT,
@@ -64,17 +63,8 @@ from trsim.solve.march.calls import (
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.features import keep, other_side
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.record import (
-    BUFFERS,
-    FIXED_STEP,
-    LENGTH,
-    RECORD,
-    STEP_ERROR,
-    T_END,
-    UNPROVED,
-    H,
-)
-from trsim.solve.march.spread import fill_net, spread_of, spread_of_stages
+from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
+from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 
 NONE, UNCERTAIN = 2.0, 3.0  # no corner in the step; a step too long to be certain
 SAME = 1e-12  # of a step: corners nearer to each other are met at once
@@ -89,17 +79,17 @@ LAST, TIMES, FAR = range(3)  # of r.chatter
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
-TURN = types.int64(SCENE, RECORD, BUFFERS, A1, I1, f8, i8)
+TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, i8)
 BEYOND = types.float64(SCENE, BUFFERS, f8)
 call_turn, call_beyond = caller(TURN), caller(BEYOND)
 
 
 @compiled(SEARCH)
-def corners_ahead(s, r, b, setting, method, t, h, built):
-    """Where sensors first meet a corner in the step of length h, whose end was evaluated last.
+def corners_ahead(s, r, b, setting, method):
+    """Where sensors first meet a corner in the step at hand, whose end was evaluated last.
 
     As theta in [0, 1]; NONE, the scene is then again as evaluated there; UNCERTAIN where a shorter
-    step is needed.  Fills b.met.  built: not 0 where b.P already holds the dense output.
+    step is needed.  Fills b.met.
     """
     for n in range(s.feature.shape[0]):
         b.met[n, THETA] = NONE
@@ -107,21 +97,21 @@ def corners_ahead(s, r, b, setting, method, t, h, built):
         return NONE
     for k in range(s.sensed.shape[0]):
         b.shown[k, 0], b.shown[k, 1] = r.sight[k], s.S[s.sensed[k, ENTRY], 0]
-    if built == 0 and method[STAGES_AT] > 0:
+    if b.built == 0 and method[STAGES_AT] > 0:
         for k in range(s.sensed.shape[0]):
-            bounds = spread_of_stages(s, r, b, s.sensed[k, KIND], s.sensed[k, INSTANCE], 1.0, h)
-            see(s, b, k, bounds[0], bounds[1], h)
-        if verdict(s, b, t, t + h) == CLEAR:
+            what = (s.sensed[k, KIND], s.sensed[k, INSTANCE])
+            L, M = spread_at_stages(s, r, b, what, 1.0)
+            see(s, b, k, L, M, b.h)
+        if verdict(s, b, b.t, b.t + b.h) == CLEAR:
             return NONE
     evaluations = s.status[1]
-    if built == 0:
-        build(s, r, b, method, t, h)
+    if b.built == 0:
+        build(s, r, b, method)
     fill_net(s, r, b, method)
-    again = setting[FIXED_STEP] == 0.0  # a shorter step can be had
-    first = first_corner(s, r, b, setting, t, h, method[INTERPOLATE_AT], again)
+    first = first_corner(s, r, b, setting)
     if first >= 1.0:
         if s.status[1] > evaluations:
-            evaluate(s, t + h, b.y1, b.K[method[LAST_AT]])
+            evaluate(s, b.t + b.h, b.y1, b.K[method[LAST_AT]])
         else:
             poses(s, b.y1)
     return first
@@ -155,26 +145,27 @@ def verdict(s, b, t0, t1):
 
 
 @internal
-def show(s, r, b, interpolate, theta):
+def show(s, r, b, theta):
     """The sensors at theta of the step."""
-    call_interpolate(interpolate, b.P, r.y, theta, b.y2)
+    call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
     poses(s, b.y2)
 
 
 @internal
-def first_corner(s, r, b, setting, t, h, interpolate, again):
+def first_corner(s, r, b, setting):
     """The first corner that is met, by halving; b.shown holds the sensors at both ends."""
-    low, high = 0.0, 1.0
+    low, high, t, h = 0.0, 1.0, b.t, b.h
+    again = setting.fixed_step == 0.0  # a shorter step can be had
     for _ in range(LOOKS):
-        show(s, r, b, interpolate, high)
+        show(s, r, b, high)
         length, short = (high - low) * h, high - low < FINEST
         hidden = True
         for k in range(s.sensed.shape[0]):
             kind = s.sensed[k, KIND]
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
-            L, M = spread_of(s, r, b, kind, s.sensed[k, INSTANCE], 1.0, low, high, h)
+            L, M = spread(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
             see(s, b, k, L, M, length)
-            depth = max(HIDDEN * setting[STEP_ERROR] * r.clock[LENGTH], ROUNDING * s.size)
+            depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
             if kind == ANGLE:
                 depth /= s.reach
             seen = b.seen[s.sensed[k, ENTRY]]
@@ -184,13 +175,13 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
             high = 0.5 * (low + high)
             continue
         if found == UNSURE and not hidden and short:
-            r.count[UNPROVED] += 1
+            r.unproved += 1
             if again:
                 return UNCERTAIN
         if found != CLEAR:
-            first = roots(s, r, b, t, h, interpolate, low, high)
+            first = roots(s, r, b, low, high)
             if first <= 1.0:
-                unseen = first < SEEN and first * h > BRIEF * setting[T_END]
+                unseen = first < SEEN and first * h > BRIEF * setting.t_end
                 return UNCERTAIN if again and unseen and leaves_brief(s, b) else first
         if high >= 1.0:
             return NONE
@@ -198,12 +189,12 @@ def first_corner(s, r, b, setting, t, h, interpolate, again):
         low, high = high, min(1.0, high + step)
         for k in range(s.sensed.shape[0]):
             b.shown[k, 0] = b.shown[k, 1]
-    r.count[UNPROVED] += 1
+    r.unproved += 1
     return UNCERTAIN if again else NONE
 
 
 @internal
-def roots(s, r, b, t, h, interpolate, low, high):
+def roots(s, r, b, low, high):
     """The first of the corners that lie between two places, each met once; fills b.met."""
     first = NONE
     for n in range(s.feature.shape[0]):
@@ -213,12 +204,12 @@ def roots(s, r, b, t, h, interpolate, low, high):
             o, place = s.feature[n, OFFSET], s.held[k]
             if not sensed(s.tab, o, place) or s.tab[place] == FREE:
                 continue
-            show(s, r, b, interpolate, high)
-            u = u_at(s, n, place, t + high * h)
+            show(s, r, b, high)
+            u = u_at(s, n, place, b.t + high * b.h)
             least, most = ends_of(s.tab, o, place)
             if least <= u <= most:
                 continue
-            at = root(s, r, b, t, h, interpolate, low, high, n, place, u > most)
+            at = root(s, r, b, n, place, u > most, (low, high))
             if at < b.met[n, THETA]:
                 b.met[n, THETA], b.met[n, PLACE] = at, place
                 b.met[n, NEXT] = neighbour(s.tab, o, place, u > most)
@@ -246,12 +237,13 @@ def u_at(s, n, place, t):
 
 
 @internal
-def root(s, r, b, t, h, interpolate, low, high, n, place, above):
-    """Where u leaves its piece between two places, just behind it."""
+def root(s, r, b, n, place, above, part):
+    """Where u leaves its piece between two places of the step, just behind it."""
+    (low, high), t, h = part, b.t, b.h
     least, most = ends_of(s.tab, s.feature[n, OFFSET], place)
     end = most if above else least
     f_high = u_at(s, n, place, t + high * h) - end
-    show(s, r, b, interpolate, low)
+    show(s, r, b, low)
     f_low = u_at(s, n, place, t + low * h) - end
     if (f_low > 0.0) == above and f_low != 0.0:
         return low  # outside as it begins: to rounding on the corner, and on its way out
@@ -260,7 +252,7 @@ def root(s, r, b, t, h, interpolate, low, high, n, place, above):
         if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
             break
         middle = between(bracket, k)
-        show(s, r, b, interpolate, middle)
+        show(s, r, b, middle)
         f = u_at(s, n, place, t + middle * h) - end
         if f == 0.0:
             return middle
@@ -338,7 +330,7 @@ def ease(s, r, b, t1):
     most = 1.0  # of the velocities, in units of the tolerance
     for c in range(s.n_q, s.n_q + s.n_v):
         most = max(most, abs(r.y[c]) * b.weight[c])
-    h = r.clock[H]
+    h = r.h
     for _ in range(HALVINGS):
         for c in range(r.y.size):
             b.y2[c] = r.y[c] + (h * r.yd[c] if c < s.n_q else 0.0)
@@ -353,8 +345,8 @@ def ease(s, r, b, t1):
             break
         h *= 0.25
     evaluate(s, t1, r.y, r.yd)
-    shorter = h < r.clock[H]
-    r.clock[H] = h
+    shorter = h < r.h
+    r.h = h
     return int(shorter)
 
 
@@ -376,7 +368,7 @@ def chatters(s, r, b, setting, n, t1):
     for k in range(s.sensed.shape[0]):
         own = abs(s.S[s.sensed[k, ENTRY], 1])
         fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
-    allowed = setting[STEP_ERROR] * r.clock[LENGTH]
+    allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
     if chatter[TIMES] > OFTEN:

@@ -44,7 +44,6 @@ from trsim.solve.march.calls import (
     call_control,
     call_interpolate,
 )
-from trsim.solve.march.record import DEGREE
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
@@ -72,7 +71,7 @@ def fill_net(s, r, b, method):
     """b.net[k] = k-th control points of q over the step, less q at its beginning."""
     degree, net = method[DEGREE_AT], b.net
     n = degree + 1
-    r.count[DEGREE] = degree
+    r.degree = degree
     if method[CONTROL_AT] > 0:
         call_control(method[CONTROL_AT], b.P, net)
         return
@@ -133,10 +132,11 @@ def fill_curve(s, b, n, f, first):
 
 
 @internal
-def turning(s, r, b, n, f, first, length):
+def turning(s, r, b, f, first, length):
     """Bounds of the angular velocity and acceleration of a frame on a part of `length` seconds."""
     if f == 0:
         return 0.0, 0.0
+    n = r.degree + 1
     q, places, attitude = coordinates_of(s, f)
     once, twice, off = 0.0, 0.0, 0.0
     size, curve = 0.0, b.curve
@@ -187,48 +187,46 @@ def apart(s, b, n, i, j, first_j, length):
 
 
 @internal
-def spread(s, r, b, c, sign, low, high, h):
-    """Bounds L of |g'| and M of -sign g'' on a part of the step, of entry c.
+def spread(s, r, b, what, sign, part):
+    """Bounds L of |g'| and M of -sign g'' on a part of the step, from theta to theta.
 
-    The poses are those of one end of the part.  Both are negative where there are none.
+    what: the kind of the quantity, and the instance between whose frames and points it is.  The
+    poses are those of one end of the part.  Both are negative where there are none.
     """
-    return spread_of(s, r, b, s.travel[c, 0], s.travel[c, 1], sign, low, high, h)
-
-
-@internal
-def spread_of(s, r, b, kind, e, sign, low, high, h):
-    """`spread` of a quantity of a kind, between the frames and points of instance e."""
+    kind, e = what[0], what[1]
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:
         return 1.0, 0.0
-    own, length = Pair(s, e), (high - low) * h
+    own, length = Pair(s, e), (part[1] - part[0]) * b.h
     i, j = own.i, own.j
-    n = r.count[DEGREE] + 1
+    n = r.degree + 1
     first_j = fill_curve(s, b, n, i, 0)
-    cut(b.curve, n, fill_curve(s, b, n, j, first_j), low, high)
-    spin_i, bend_i = turning(s, r, b, n, i, 0, length)
-    spin_j, bend_j = turning(s, r, b, n, j, first_j, length)
-    away = apart(s, b, n, i, j, first_j, length)
-    return from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j)
-
-
-@internal
-def from_motion(s, kind, e, sign, length, away, spin_i, bend_i, spin_j, bend_j):
-    """Bounds of |g'| and -sign g'' from those of the motion of both frames, in `length` s."""
+    cut(b.curve, n, fill_curve(s, b, n, j, first_j), part[0], part[1])
+    of_i, of_j = turning(s, r, b, i, 0, length), turning(s, r, b, j, first_j, length)
     if kind == ANGLE:
-        turn = spin_i + spin_j
-        return turn, bend_i + bend_j + spin_i * turn
+        return of_angle(of_i, of_j)
+    (spin_i, bend_i), (spin_j, bend_j) = of_i, of_j
+    away = apart(s, b, n, i, j, first_j, length)
     _, p_i, _, p_j = two_points(s, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
-    return from_points(s, kind, e, sign, length, bend, spin_i, round_i)
+    return from_points(s, what, sign, length, bend, of_i)
 
 
 @internal
-def from_points(s, kind, e, sign, length, bend, spin_i, round_i):
-    """Bounds of |g'| and -sign g'' of a stroke or a distance, with |d''| <= bend."""
-    V = s.V
+def of_angle(of_i, of_j):
+    """Bounds of |g'| and |g''| of an angle, from those of both frames: angular velocity and
+    acceleration."""
+    turn = of_i[0] + of_j[0]
+    return turn, of_i[1] + of_j[1] + of_i[0] * turn
+
+
+@internal
+def from_points(s, what, sign, length, bend, of_i):
+    """Bounds of |g'| and -sign g'' of a stroke or a distance in `length` s, with |d''| <= bend."""
+    kind, e, (spin_i, bend_i) = what[0], what[1], of_i
+    V, round_i = s.V, bend_i + spin_i * spin_i
     i, p_i, j, p_j = two_points(s, e)
     d = separation(s.X, i, p_i, j, p_j)
     v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
@@ -312,22 +310,21 @@ def point_at_stage(s, b, k, f, p):
 
 
 @internal
-def apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j):
+def apart_at_stages(s, b, e, of_i, of_j):
     """The largest |d''| of an instance's points at the stages, enlarged.
 
     Arms and spins are those at the end of the step, and what they turn by in it is added.
     """
     i, p_i, j, p_j = two_points(s, e)
     worst = 0.0
+    slack = slack_of(s, b, i, p_i, of_i) + slack_of(s, b, j, p_j, of_j)
     if flat(s, i) and flat(s, j):
-        return SAFETY * apart_in_plane(s, b, i, p_i, j, p_j) + slack_of(
-            s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j
-        )
+        return SAFETY * apart_in_plane(s, b, i, p_i, j, p_j) + slack
     for k in SEEN:
         a_i, a_j = point_at_stage(s, b, k, i, p_i), point_at_stage(s, b, k, j, p_j)
         d = (a_j[0] - a_i[0], a_j[1] - a_i[1], a_j[2] - a_i[2])
         worst = max(worst, dot(d, d))
-    return SAFETY * sqrt(worst) + slack_of(s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j)
+    return SAFETY * sqrt(worst) + slack
 
 
 @internal
@@ -350,39 +347,25 @@ def apart_in_plane(s, b, i, p_i, j, p_j):
 
 
 @internal
-def slack_of(s, h, i, p_i, spin_i, bend_i, j, p_j, spin_j, bend_j):
-    """What |d''| may change by as both arms turn."""
-    of_i = sqrt(dot(p_i, p_i)) * slackness(s, i, h, spin_i, bend_i)
-    return of_i + sqrt(dot(p_j, p_j)) * slackness(s, j, h, spin_j, bend_j)
+def slack_of(s, b, f, p, motion):
+    """What |d''| may change by as the arm p of a frame turns, with its spin and their rate."""
+    spin, bend = motion
+    more = bend + spin * spin  # for each m of the arm
+    if f < s.n_r:
+        more = min(more, b.h * (spin * more + 2.0 * spin * bend))
+    return sqrt(dot(p, p)) * more
 
 
 @internal
-def slackness(s, f, h, spin, bend):
-    """What the acceleration of a point changes by, for each m of its arm, as its frame turns."""
-    all_of_it = bend + spin * spin
-    if f >= s.n_r:
-        return all_of_it
-    return min(all_of_it, h * (spin * all_of_it + 2.0 * spin * bend))
-
-
-@internal
-def spread_at_stages(s, r, b, c, sign, h):
+def spread_at_stages(s, r, b, what, sign):
     """`spread` over the whole step, from its stages; the poses are those of its end."""
-    return spread_of_stages(s, r, b, s.travel[c, 0], s.travel[c, 1], sign, h)
-
-
-@internal
-def spread_of_stages(s, r, b, kind, e, sign, h):
-    """`spread_at_stages` of a quantity of a kind, between frames and points of instance e."""
+    kind, e = what[0], what[1]
     if kind == UNKNOWN:
         return -1.0, -1.0
     if kind == CLOCK:
         return 1.0, 0.0
     own = Pair(s, e)
-    i, j = own.i, own.j
-    spin_i, bend_i = at_stages(s, r, b, i)
-    spin_j, bend_j = at_stages(s, r, b, j)
+    of_i, of_j = at_stages(s, r, b, own.i), at_stages(s, r, b, own.j)
     if kind == ANGLE:
-        return from_motion(s, kind, e, sign, h, 0.0, spin_i, bend_i, spin_j, bend_j)
-    bend = apart_at_stages(s, b, e, h, spin_i, bend_i, spin_j, bend_j)
-    return from_points(s, kind, e, sign, h, bend, spin_i, bend_i + spin_i * spin_i)
+        return of_angle(of_i, of_j)
+    return from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)

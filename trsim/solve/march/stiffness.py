@@ -25,21 +25,7 @@ from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.record import (
-    AFTER_REJECTION,
-    APART_LOOKS,
-    BUFFERS,
-    DECAY,
-    LENGTH,
-    MOST,
-    NEXT_LOOK,
-    OF_RATES,
-    RECORD,
-    SPEED,
-    STEPS,
-    VIBRATION,
-    T,
-)
+from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.methods.displacements import active, displace, w_index
 
 FIRST, OFTEN, SELDOM = 3, 4, 32
@@ -71,44 +57,46 @@ def smooth(s, r):
 @internal
 def stiffness_due(r):
     """Whether it is time for a look, before a step."""
-    if r.clock[VIBRATION] == 0.0:
+    if r.vibration == 0.0:
         return True
-    return r.count[STEPS] >= r.count[NEXT_LOOK] and r.count[AFTER_REJECTION] == 0
+    return r.steps >= r.next_look and r.after_rejection == 0
 
 
 @internal
 def longest_calm(r):
     """The longest step in which what is stiff dies out, s."""
-    return min(SWINGING / sqrt(r.clock[VIBRATION]), DYING / max(r.clock[DECAY], NOTHING))
+    return min(SWINGING / sqrt(r.vibration), DYING / max(r.decay, NOTHING))
 
 
 @internal
 def stiff_load(r, h):
     """h over that."""
-    return h / longest_calm(r) if r.clock[VIBRATION] > 0.0 else 0.0
+    return h / longest_calm(r) if r.vibration > 0.0 else 0.0
 
 
 @compiled(LOOK_STIFF)
 def look_stiff(s, r, b):
-    """Take one iteration on, at the state of the record; what it says is in r.clock."""
+    """Take one iteration on, at the state of the record; what it says is in the record."""
     counted = (s.status[1], s.status[2], s.status[3])
-    apart = r.count[APART_LOOKS]
-    if r.clock[VIBRATION] == 0.0:
+    apart = r.apart_looks
+    if r.vibration == 0.0:
         for k in range(r.swing.shape[1]):  # no two bodies move alike
             r.swing[0, k] = r.swing[1, k] = (GOLDEN * (k + 1)) % 1.0 - 0.5
         for _ in range(FIRST):
-            r.clock[VIBRATION], r.clock[DECAY] = turned(s, r, b, 0), turned(s, r, b, 1)
+            r.vibration, r.decay = turned(s, r, b, 0), turned(s, r, b, 1)
         apart = OFTEN
     else:
-        of_rates = r.count[OF_RATES] = 1 - r.count[OF_RATES]
-        known = DECAY if of_rates > 0 else VIBRATION
-        before, now = r.clock[known], turned(s, r, b, of_rates)
-        r.clock[known] = max(now, FADING * before)
+        of_rates = r.of_rates = 1 - r.of_rates
+        before, now = r.decay if of_rates > 0 else r.vibration, turned(s, r, b, of_rates)
+        if of_rates > 0:
+            r.decay = max(now, FADING * before)
+        else:
+            r.vibration = max(now, FADING * before)
         apart = OFTEN if now > RISEN * before else min(2 * apart, SELDOM)
-    r.count[APART_LOOKS], r.count[NEXT_LOOK] = apart, r.count[STEPS] + apart
-    r.clock[VIBRATION] = max(r.clock[VIBRATION], NOTHING)
+    r.apart_looks, r.next_look = apart, r.steps + apart
+    r.vibration = max(r.vibration, NOTHING)
     if s.near_rows > 0.0:  # what is seen of the rows goes on from there
-        evaluate(s, r.clock[T], r.y, b.rough[1])
+        evaluate(s, r.t, r.y, b.rough[1])
     s.status[1], s.status[2], s.status[3] = counted
 
 
@@ -120,8 +108,8 @@ def turned(s, r, b, of_rates):
     """
     place, rates, swing = b.rough[0], b.rough[1], r.swing[of_rates]
     many = active(s) if of_rates > 0 else s.n_v
-    speed = max(r.clock[SPEED], r.clock[MOST])
-    nudge = NUDGE * (speed if of_rates > 0 else r.clock[LENGTH])
+    speed = max(r.speed, r.speed_cap)
+    nudge = NUDGE * (speed if of_rates > 0 else r.length)
     by = nudge / size_of(s, swing, speed, many)
     copy_to(place, r.y)
     for k in range(many):
@@ -129,7 +117,7 @@ def turned(s, r, b, of_rates):
             place[w_index(s, k)] += by * swing[k]
         else:
             displace(s, place, k, by * swing[k])
-    evaluate(s, r.clock[T], place, rates)
+    evaluate(s, r.t, place, rates)
     for k in range(many):
         rates[k] = rates[w_index(s, k)] - r.yd[w_index(s, k)]
     if s.stabilisation == PROJECTION:  # nothing leaves the rows

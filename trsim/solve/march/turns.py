@@ -14,7 +14,6 @@ from math import sqrt
 
 from trsim.kernels.vectors import internal
 from trsim.laws.functions import swing
-from trsim.solve.march.record import T
 from trsim.solve.march.spread import coordinates_of
 
 MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
@@ -49,7 +48,7 @@ def longest_turn(s, r):
     if s.section.shape[0] > 0:
         longest = WHOLE / max(fastest(s, r.y, r.yd), 1e-300)
     if s.wave.size > 0:
-        w = swings(s, r.clock[T], 1.0, r.branch, r.turning, r.branch, r.turning)
+        w = swings(s, r.t, 1.0, r.branch, r.turning, r.branch, r.turning)
         longest = min(longest, MOST_WAVES / max(w, 1e-300))
     if s.looped.size > 0:
         longest = min(longest, IN_LOOPS / max(fastest_in_loops(s, r.y), 1e-300))

@@ -9,12 +9,10 @@ turns the motion round or stops it there, and not where g touches the value and 
 In the tables of gaps and of roots the watched sensors follow the contacts.
 """
 
-from trsim.assemble.equations import call_one
-from trsim.assemble.switches import LIMITS
 from trsim.assemble.travel import CLOCK
 from trsim.kernels.vectors import internal
-from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays
-from trsim.solve.march.record import EVENTS, FIRED, JUST_NOW, SIDE, TIMES
+from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched
+from trsim.solve.march.record import JUST_NOW, SIDE, TIMES
 from trsim.solve.march.spread import spread_at_stages
 
 BELOW, AT, ABOVE = -1.0, 0.0, 1.0
@@ -26,18 +24,8 @@ PASSED = 1000  # crossings in the other direction that one step may have
 @internal
 def watch(s, t, gap):
     """Put g and its rate into the last rows of a table of gaps, at the poses of the scene."""
-    first = s.contact.size
     for k in range(s.watch.shape[0]):
-        entry = s.watch[k, ENTRY]
-        if entry <= LIMITS:
-            call_one(s, s.gaps, t, LIMITS - entry)
-            gap[first + k, 0] = s.gap[LIMITS - entry, 0]
-            gap[first + k, 1] = s.gap[LIMITS - entry, 1]
-        elif entry < 0:
-            gap[first + k, 0], gap[first + k, 1] = t - s.watch_at[k, VALUE], 1.0
-        else:
-            gap[first + k, 0] = s.S[entry, 0] - s.watch_at[k, VALUE]
-            gap[first + k, 1] = s.S[entry, 1]
+        gap[s.contact.size + k, 0], gap[s.contact.size + k, 1] = watched(s, t, k)
 
 
 @internal
@@ -64,43 +52,40 @@ def starting_side(r, c, k):
 
 
 @internal
-def may_cross(s, r, b, k, h, stages):
+def may_cross(s, r, b, k, stages):
     """Whether the step must be searched for event k, as far as is known without looking."""
     c = s.contact.size + k
     if r.watch[k, TIMES] >= s.watch[k, MOST]:
         return False
     side, band = starting_side(r, c, k), s.watch_at[k, BAND]
-    f0, r0, f1, r1 = (
-        side * r.gap[c, 0],
-        side * r.gap[c, 1],
-        side * b.gap1[c, 0],
-        side * b.gap1[c, 1],
-    )
+    f0, r0 = side * r.gap[c, 0], side * r.gap[c, 1]
+    f1, r1 = side * b.gap1[c, 0], side * b.gap1[c, 1]
     if f1 < 0.0 or (f1 == 0.0 and r1 < 0.0):
         return r.watch[k, SIDE] != AT or -f1 > band
     if s.travel[c, 0] == CLOCK:
         return False
     if stages == 0:
         return True
-    L, M = spread_at_stages(s, r, b, c, side, h)
-    return not stays(f0 + band, r0, f1 + band, r1, L, M, h, s.kink[c])
+    bounds = spread_at_stages(s, r, b, s.travel[c], side)
+    return not stays((f0 + band, r0), (f1 + band, r1), bounds, b.h, s.kink[c])
 
 
 @internal
-def departure(s, r, b, setting, t, h, c, side, band, end, interpolate):
+def departure(s, r, b, setting, c, way, end):
     """The side on which g first leaves the band it is in, and a place in the step beyond it.
 
-    What rested on the value has a rate that is rounding, so no side is to be taken from it.  The
-    place is less than 0 where g stays in the band.
+    way: the side it is on, and the band.  What rested on the value has a rate that is rounding, so
+    no side is to be taken from it.  The place is less than 0 where g stays in the band.
     """
+    side, band = way
     g, rate = side * r.gap[c, 0], side * r.gap[c, 1]
-    one = leaves(s, r, b, setting, t, h, c, side, band, 0.0, g, rate, end, interpolate)
-    other = leaves(s, r, b, setting, t, h, c, -side, band, 0.0, -g, -rate, end, interpolate)
+    one = leaves(s, r, b, setting, c, way, (0.0, g, rate), end)
+    other = leaves(s, r, b, setting, c, (-side, band), (0.0, -g, -rate), end)
     return (side, one) if other < 0.0 or 0.0 <= one <= other else (-side, other)
 
 
 @internal
-def crossing(s, r, b, setting, t, h, k, end, interpolate):
+def crossing(s, r, b, setting, k, end):
     """Where event k first happens in the step, as theta in (0, end]; NONE if it does not.
 
     A crossing in the direction that is not asked for is passed, and the next one looked for.
@@ -111,20 +96,20 @@ def crossing(s, r, b, setting, t, h, k, end, interpolate):
     side, low = starting_side(r, c, k), 0.0
     g, rate = r.gap[c, 0], r.gap[c, 1]
     if r.watch[k, SIDE] == AT and abs(g) <= band:
-        side, low = departure(s, r, b, setting, t, h, c, side, band, end, interpolate)
+        side, low = departure(s, r, b, setting, c, (side, band), end)
         if low < 0.0 or low >= end:
             return NONE
-        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        g, rate = inside(s, r, b, c, low)
     for passed in range(PASSED):
         if side * g <= 0.0:
             at = r.watch[k, SIDE] == AT or passed > 0
             left = -1.0
             if at or side * rate >= 0.0:
-                left = leaves(s, r, b, setting, t, h, c, side, band if at else 0.0, low, side * g,
-                              side * rate, end, interpolate)  # fmt: skip
+                start = (low, side * g, side * rate)
+                left = leaves(s, r, b, setting, c, (side, band if at else 0.0), start, end)
             if left < 0.0:
                 # on the value, or inside its band, and on to the other side
-                ahead, _ = inside(s, b.P, r.y, t, h, end, c, b.y2, interpolate)
+                ahead, _ = inside(s, r, b, c, end)
                 if at or (side * rate >= 0.0 and side * ahead >= -band):
                     return NONE
                 if want == 0 or want == -side:
@@ -132,15 +117,14 @@ def crossing(s, r, b, setting, t, h, k, end, interpolate):
                 side, g = -side, 0.0
                 continue
             low = left
-            g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+            g, rate = inside(s, r, b, c, low)
         if low >= end:
             break
-        root = fall(s, r, b, setting, t, h, c, side, band, low, side * g, side * rate, end,
-                    interpolate)  # fmt: skip
+        root = fall(s, r, b, setting, c, (side, band), (low, side * g, side * rate), end)
         if root > end or want == 0 or want == -side:
             return root
         side, low = -side, root
-        g, rate = inside(s, b.P, r.y, t, h, low, c, b.y2, interpolate)
+        g, rate = inside(s, r, b, c, low)
         if side * g > 0.0:
             g = 0.0  # on the value, whatever rounding says
     return NONE
@@ -156,6 +140,6 @@ def fire(s, r, b, first):
             r.watch[k, TIMES] += 1.0
             r.watch[k, JUST_NOW] = 1.0
             fired += 1
-    r.count[EVENTS] += fired
-    r.count[FIRED] = fired
+    r.events += fired
+    r.fired = fired
     return fired

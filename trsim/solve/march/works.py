@@ -17,14 +17,6 @@ that the works in them are none: a load that jumps does so at one point of time.
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import N_STORED
 from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.record import (
-    EXCHANGED,
-    LARGEST_ENERGY,
-    STEP_ERROR,
-    T_END,
-    WORK_ERROR,
-    WORK_TRIAL,
-)
 
 # of what a step is held to, which is a fifth to a twentieth of the tolerance asked for: see
 # `settings` in outcome.py
@@ -44,11 +36,11 @@ def works(r, setting, h, worst, size):
 
     worst: the largest error of a work in the step, J; size: the largest energy it moves, J.
     """
-    r.clock[WORK_TRIAL] = worst
-    if abs(h) <= SHORTEST * setting[T_END]:
+    r.work_trial = worst
+    if abs(h) <= SHORTEST * setting.t_end:
         return 0.0
-    allowed = WIDER * setting[STEP_ERROR] * max(r.clock[EXCHANGED], size)
-    return worst / max(allowed, ROUNDING * r.clock[LARGEST_ENERGY], 1e-300)
+    allowed = WIDER * setting.step_error * max(r.exchanged, size)
+    return worst / max(allowed, ROUNDING * r.largest_energy, 1e-300)
 
 
 @internal
@@ -60,15 +52,15 @@ def first_work(s):
 @internal
 def exchanged(s, r, b):
     """Take an accepted step into what has been exchanged, and its error into the sum."""
-    r.clock[WORK_ERROR] += r.clock[WORK_TRIAL]
-    first, most = s.column_energy, r.clock[EXCHANGED]
+    r.work_error += r.work_trial
+    first, most = s.column_energy, r.exchanged
     for k in range(r.book.shape[0]):
         energy = b.out[first + k]
         r.book[k, 0], r.book[k, 1] = min(r.book[k, 0], energy), max(r.book[k, 1], energy)
         most = max(most, r.book[k, 1] - r.book[k, 0])
     for c in range(first + 1 + N_STORED, s.n_out - 1):
         most = max(most, abs(b.out[c]))
-    r.clock[EXCHANGED] = most
+    r.exchanged = most
 
 
 @internal
@@ -84,7 +76,7 @@ def note_error(s, r, b, t, h, middle):
         copy_to(before, now)
     now[BEGAN], now[LONG] = t, h
     pair = h == before[LONG] and abs(before[BEGAN] + h - t) <= SAME_TIME * h
-    r.clock[WORK_TRIAL] = 0.0
+    r.work_trial = 0.0
     for k in range(N_BOOK):
         c = first_work(s) + k
         now[POWERS + k], now[DONE + k] = b.K[0, c], b.y1[c] - r.y[c]
@@ -92,4 +84,4 @@ def note_error(s, r, b, t, h, middle):
             ends = before[POWERS + k] + b.K[middle + 1, c]
             twice = h / 3.0 * (ends + 4.0 * b.K[0, c])
             off = abs(before[DONE + k] + now[DONE + k] - twice) / (2.0 * KINK)
-            r.clock[WORK_TRIAL] = max(r.clock[WORK_TRIAL], off)
+            r.work_trial = max(r.work_trial, off)

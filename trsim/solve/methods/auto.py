@@ -19,27 +19,13 @@ from trsim.solve.march.record import (
     EVENT_IMPULSE,
     EVENT_KIND,
     EVENT_ROW,
-    EVENT_ROWS,
     EVENT_SPEED,
     EVENT_TIME,
     EVENT_WORK,
-    EXPLICIT_RATE,
-    FACTORED_H,
-    HISTORY,
-    JACOBIAN,
-    JACOBIAN_RATE,
-    METHOD,
     NO_HISTORY,
     NO_JACOBIAN,
-    NOT_STIFF,
-    PAST_ERROR,
-    STIFF,
-    SWITCHES,
     TO_EXPLICIT,
     TO_IMPLICIT,
-    VIBRATION,
-    H,
-    T,
 )
 from trsim.solve.march.stiffness import stiff_load
 from trsim.solve.methods.displacements import active
@@ -58,31 +44,31 @@ ITERATIONS = 12  # of the vector iteration
 
 @internal
 def choose(s, r, b, h, event):
-    """Change r.count[METHOD] where the steps so far say so; leaves a line among the events."""
-    if r.count[METHOD] == EXPLICIT:
+    """Change r.method where the steps so far say so; leaves a line among the events."""
+    if r.method == EXPLICIT:
         if event:
             forget(r)
             return
         rate = explicit_rate(s, r, b, h)
         load, light = h * max(rate, STABLE / HELD * stiff_load(r, 1.0)), calmed(s, r, h, rate)
         if load > STABLE or light:
-            r.count[STIFF] += 1
-            r.count[NOT_STIFF] = 0
-            if r.count[STIFF] >= max(STIFF_STEPS, s.n_v // DEAR):
+            r.stiff += 1
+            r.not_stiff = 0
+            if r.stiff >= max(STIFF_STEPS, s.n_v // DEAR):
                 change(s, r, b, IMPLICIT, load)
         else:
-            r.count[NOT_STIFF] += 1
-            if r.count[NOT_STIFF] >= RELIEF:
-                r.count[STIFF] = 0
+            r.not_stiff += 1
+            if r.not_stiff >= RELIEF:
+                r.stiff = 0
         return
     if event:
         change(s, r, b, EXPLICIT, 0.0)
         return
-    if r.clock[JACOBIAN_RATE] < 0.0:
-        r.clock[JACOBIAN_RATE] = implicit_rate(s, r, b)
-    load = h * r.clock[JACOBIAN_RATE]
-    r.count[STIFF] = r.count[STIFF] + 1 if load < EASY else 0
-    if r.count[STIFF] >= CHEAP_STEPS:
+    if r.jacobian_rate < 0.0:
+        r.jacobian_rate = implicit_rate(s, r, b)
+    load = h * r.jacobian_rate
+    r.stiff = r.stiff + 1 if load < EASY else 0
+    if r.stiff >= CHEAP_STEPS:
         change(s, r, b, EXPLICIT, load)
 
 
@@ -98,7 +84,7 @@ def calm(s, r, b, h, event):
 @internal
 def forget(r):
     """Behind an event the derivative changes by other rates."""
-    r.clock[EXPLICIT_RATE] = 0.0
+    r.explicit_rate = 0.0
 
 
 @internal
@@ -110,29 +96,29 @@ def calmed(s, r, h, rate):
     real axis the error estimate sees down to an eighth of the error: what is stiff trembles there
     by many times the error allowed, and the damping of a light touch makes forces of it.
     """
-    sure = min(rate, r.clock[EXPLICIT_RATE])
-    r.clock[EXPLICIT_RATE] = rate
-    if s.contact.size == 0 or h * sure <= NEAR or r.clock[H] * sure <= CALM:
+    sure = min(rate, r.explicit_rate)
+    r.explicit_rate = rate
+    if s.contact.size == 0 or h * sure <= NEAR or r.h * sure <= CALM:
         return False
-    stiff = r.clock[H] * sure > STABLE
-    r.clock[H] = CALM / sure
+    stiff = r.h * sure > STABLE
+    r.h = CALM / sure
     return stiff
 
 
 @internal
 def change(s, r, b, method, load):
     """Go on with the other method; the line says how stiff the last step was."""
-    r.count[METHOD] = method
-    r.count[STIFF], r.count[NOT_STIFF] = 0, 0
-    r.count[HISTORY], r.count[JACOBIAN] = NO_HISTORY, NO_JACOBIAN
-    r.clock[PAST_ERROR], r.clock[FACTORED_H], r.clock[VIBRATION] = 0.0, 0.0, 0.0
+    r.method = method
+    r.stiff, r.not_stiff = 0, 0
+    r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
+    r.past_error, r.factored_h, r.vibration = 0.0, 0.0, 0.0
     forget(r)
-    r.count[SWITCHES] += 1
-    line = b.events[r.count[EVENT_ROWS]]
-    r.count[EVENT_ROWS] += 1
-    line[EVENT_TIME], line[EVENT_ROW] = r.clock[T], s.con.shape[0]
+    r.method_switches += 1
+    line = b.events[r.event_rows]
+    r.event_rows += 1
+    line[EVENT_TIME], line[EVENT_ROW] = r.t, s.con.shape[0]
     line[EVENT_KIND] = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
-    line[EVENT_SPEED] = load / r.clock[H] if r.clock[H] > 0.0 else 0.0
+    line[EVENT_SPEED] = load / r.h if r.h > 0.0 else 0.0
     line[EVENT_ANGLE], line[EVENT_WORK], line[EVENT_IMPULSE] = load, 0.0, 0.0
 
 

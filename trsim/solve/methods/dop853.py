@@ -26,7 +26,6 @@ from trsim.solve.march.accelerations import (
 )
 from trsim.solve.march.calls import CONTROL, DENSE, INTERPOLATE, STEP
 from trsim.solve.march.land import evaluate_stage
-from trsim.solve.march.record import DECAY, GAIN, LENGTH, MET, SPEED, STEP_ERROR, VIBRATION
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import dop853_tableau as tableau
 
@@ -129,10 +128,10 @@ def of_accelerations(s, r, b, setting, h):
     Inside a step that holds more than FAR rad the dense output is off by more than its end.  What
     rounding makes of stages is told, and not held.
     """
-    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
+    K, weight, tolerance = b.K, b.weight, setting.step_error
     combined(K, OF_PLACES, 0, s.n_q, K[PLACES])
-    r.clock[GAIN] = most = largest(s, K[0], r.clock[GAIN])
-    length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
+    r.top_acceleration = most = largest(s, K[0], r.top_acceleration)
+    length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     error5 = error3 = seen5 = seen3 = least = moved = turned = 0.0
     stiff, rounding = stiffness(r, h), unknown(s, r) ** 2
@@ -164,7 +163,7 @@ def of_accelerations(s, r, b, setting, h):
     off = h * error5 / sqrt((error5 + 0.01 * error3) * bodies)
     # stages of a step too long may be anywhere: no more than the speeds so far may turn to
     mean = turned / moved
-    inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.clock[MET])
+    inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.top_speed)
     most = max(most, inside)
     doubted(s, r, setting, h, off, most, sqrt(mean))
     exceeded(r, setting, h, off, most)
@@ -221,14 +220,14 @@ def inside(scene, r, b, setting, t, h):
         places += (LEFT * b.P[6, c] * b.weight[c]) ** 2
     for c in range(scene.n_q, scene.n_q + scene.v_node):
         rates += (LEFT * b.P[6, c] * b.weight[c]) ** 2
-    length, speed = setting[STEP_ERROR] * r.clock[LENGTH], setting[STEP_ERROR] * r.clock[SPEED]
+    length, speed = setting.step_error * r.length, setting.step_error * r.speed
     if sqrt(places) * length < ROUNDED * scene.size:
         return 0.0
     ww = stiffness(r, h)
-    of_places = min(r.clock[VIBRATION], ww) * length
-    of_rates = min(r.clock[DECAY], sqrt(ww)) * speed
+    of_places = min(r.vibration, ww) * length
+    of_rates = min(r.decay, sqrt(ww)) * speed
     off = sqrt(of_places**2 * places + of_rates**2 * rates) / sqrt(EACH * (scene.n_r - 1))
-    most = largest(scene, r.yd, r.clock[GAIN])
+    most = largest(scene, r.yd, r.top_acceleration)
     doubted(scene, r, setting, h, off, most, sqrt(ww))
     return in_units(scene, r, setting, h, off, most, ww, share(setting, h))
 

@@ -20,22 +20,7 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.accelerations import FURTHEST, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
-from trsim.solve.march.record import (
-    FACTORED_H,
-    FRESH,
-    GAIN,
-    HISTORY,
-    ITERATIONS,
-    JACOBIAN,
-    LENGTH,
-    NEWTON_RATE,
-    NEXT_JACOBIAN,
-    NO_JACOBIAN,
-    OLD,
-    PAST_H,
-    SPEED,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import FRESH, NO_JACOBIAN, OLD
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import hermite
 from trsim.solve.methods.dense_lu import factorise_real, solve_real
@@ -74,26 +59,26 @@ HALVE = NO_STEP  # Newton failed: take about half the step
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
     K = b.K
-    if r.count[HISTORY] == 0:
+    if r.history == 0:
         copy_to(r.past[FILTERED], r.yd)
     for attempt in range(2):
-        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.jacobian == OLD):
             jacobian(s, r, b, setting, t, K[SCRATCH], K[MOVE])
-            r.clock[FACTORED_H] = 0.0
+            r.factored_h = 0.0
         elif attempt > 0:
             return HALVE
-        if r.clock[FACTORED_H] != h and not factorised(s, r, h):
+        if r.factored_h != h and not factorised(s, r, h):
             return HALVE
         copy_to(K[B1], r.past[FILTERED])
         done = newton(s, r, b, t, h)
         if done > 0:
             break
-        if done < 0 and r.count[JACOBIAN] == FRESH:
+        if done < 0 and r.jacobian == FRESH:
             return np.inf
     else:
         return HALVE
     error = estimate(s, r, b, setting, t, h)
-    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    r.next_jacobian = OLD if r.newton_rate < QUICK else NO_JACOBIAN
     return error
 
 
@@ -101,14 +86,14 @@ def step(s, r, b, setting, t, h):
 def factorised(s, r, h):
     """Factors of (1 - a_m) - (1 - a_f) (h gamma by_rate + h^2 beta by_place)."""
     n = active(s)
-    A, f = r.lu[:n], 1.0 - A_F
+    A, f = r.lu, 1.0 - A_F
     for i in range(n):
         for k in range(n):
             B = r.by_place[i, k] if k < s.n_v else 0.0
             A[i, k] = -f * h * (GAMMA * r.by_rate[i, k] + h * BETA * B)
         A[i, i] += 1.0 - A_M
-    r.clock[FACTORED_H] = h if factorise_real(A, r.pivot[0], n) else 0.0
-    return n == 0 or r.clock[FACTORED_H] == h
+    r.factored_h = h if factorise_real(A, r.pivot[0], n) else 0.0
+    return n == 0 or r.factored_h == h
 
 
 @internal
@@ -141,7 +126,7 @@ def newton(s, r, b, t, h):
     counted, floor = resolution(r, weight, h)
     kappa, before = max(KAPPA, floor), 0.0
     for iteration in range(MOST_ITERATIONS):
-        r.count[ITERATIONS] += 1
+        r.iterations += 1
         arrive(s, r, b, h)
         evaluate(s, t + h, b.y1, K[NEW])
         if not all_finite(K[NEW]):
@@ -154,7 +139,7 @@ def newton(s, r, b, t, h):
                 - (1.0 - A_M) * K[B1, c]
                 - A_M * r.past[FILTERED, c]
             )
-        solve_real(r.lu[:n_w], r.pivot[0], K[SCRATCH], n_w)
+        solve_real(r.lu, r.pivot[0], K[SCRATCH], n_w)
         moved = 0.0
         for i in range(n_w):
             c = w_index(s, i)
@@ -167,7 +152,7 @@ def newton(s, r, b, t, h):
         if verdict == FAILS:
             return 0
         if verdict != GOES_ON:
-            r.clock[NEWTON_RATE] = rate if iteration > 0 else 0.0
+            r.newton_rate = rate if iteration > 0 else 0.0
             arrive(s, r, b, h)
             for c in range(first_work(s), first_work(s) + N_BOOK):
                 # works feed nothing back: the trapezoidal rule, which no change of step disturbs
@@ -192,7 +177,7 @@ def estimate(s, r, b, setting, t, h):
     for c in range(r.y.size):
         if weight[c] > 0.0:
             moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
-    ratio = h / r.clock[PAST_H] if r.count[HISTORY] > 0 else 0.0
+    ratio = h / r.past_h if r.history > 0 else 0.0
     if ratio == 0.0 and held(s):
         halved(s, r, b, t, h)
     if ratio > 0.0 or held(s):
@@ -229,7 +214,7 @@ def accelerated(s, r, b, setting, h, ratio, further):
     pass over them.
     """
     K, weight = b.K, b.weight
-    r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
+    r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
     most, bent, moved = largest(s, K[NEW], most), 0.0, 0.0
     for c in range(s.n_q, s.n_q + s.v_node):
         by = K[NEW, c] - r.yd[c]
@@ -239,14 +224,14 @@ def accelerated(s, r, b, setting, h, ratio, further):
             bend = max(4.0 * abs(by - 2.0 * (K[SCRATCH, c] - r.yd[c])), UNKNOWN * abs(by))
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
-    off, strict = setting[STEP_ERROR] * r.clock[SPEED] * bent / 12.0, 0.0
+    off, strict = setting.step_error * r.speed * bent / 12.0, 0.0
     if held(s):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
     if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
         units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
         strict = min(STRICT * units, FURTHEST * further)
-    turned = max(most, r.clock[SPEED] ** 2 / r.clock[LENGTH])  # at the largest speed
-    return max(strict, min(off / (setting[STEP_ERROR] * turned), further)) if turned > 0.0 else 0.0
+    turned = max(most, r.speed**2 / r.length)  # at the largest speed
+    return max(strict, min(off / (setting.step_error * turned), further)) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)

@@ -11,7 +11,7 @@ from trsim.assemble.linear import substitute
 from trsim.assemble.schur import velocity_residual
 from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.norm import weight_of
-from trsim.solve.march.record import FRESH, JACOBIAN, JACOBIANS, STEP_ERROR
+from trsim.solve.march.record import FRESH
 from trsim.solve.methods.auto import ITERATIONS, grown, sown
 from trsim.solve.methods.displacements import (
     active,
@@ -28,7 +28,7 @@ from trsim.solve.methods.jacobian import PART
 @internal
 def sparse_jacobian(s, r, b, setting, t, trial, lam):
     """The derivatives of `pull`, B and Phi_z at (t, r.y).  trial, lam: scratch (n_y)."""
-    tolerance = setting[STEP_ERROR]
+    tolerance = setting.step_error
     evaluate(s, t, r.y, trial)
     copy_to(lam, s.lam)
     pull(s, t, r.y, lam, b.pull0)
@@ -65,8 +65,8 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
                     r.at_state[e] = change / (trial[i] - r.y[i])
     if s.n_r < s.n:
         elastic(s, r, b, t)
-    r.count[JACOBIAN] = FRESH
-    r.count[JACOBIANS] += 1
+    r.jacobian = FRESH
+    r.jacobians += 1
 
 
 @internal

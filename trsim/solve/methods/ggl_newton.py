@@ -23,40 +23,37 @@ from trsim.assemble.linear import factorise, substitute
 from trsim.assemble.schur import hub_mass, hub_rows
 from trsim.elements.contract import N_BOOK
 from trsim.kernels.vectors import clear, copy_to, internal
-from trsim.solve.march.record import CHOOSES, JACOBIAN_RATE, JACOBIANS
+from trsim.solve.methods.dense_lu import quotient
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index, width_of
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times
 from trsim.solve.methods.ggl_jacobian import fastest
-from trsim.solve.methods.sparse_lu import (
-    factorise_sparse,
-    factorise_sparse_complex,
-    solve_sparse,
-    solve_sparse_complex,
-)
-
-# b.made: number of the Jacobian, step size of the factors, whether loads depend on rates, and rows
-# of constraints on places
-MADE_OF, MADE_FOR, RESISTED, TURNS = 0, 1, 2, 3
+from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA
+from trsim.solve.methods.sparse_lu import factorise_sparse, factorise_sparse_complex, solve_sparse
 
 
 @internal
-def sparse_factors(s, r, b, setting, h, g, a, c):
-    """Factors of the systems for g and for a + i c, of the Jacobian in r.  False: not finite."""
-    if b.made[MADE_OF] != r.count[JACOBIANS]:
+def sparse_factors(s, r, b, setting, h):
+    """Factors of both systems of a step h, of the Jacobian in r.  False: not finite."""
+    if b.made_of != r.jacobians:
         schur(s, r, b)
-        b.made[MADE_OF], b.made[MADE_FOR] = r.count[JACOBIANS], 0.0
-        b.made[RESISTED] = 1.0 if some(r.at_rate) else 0.0
-        b.made[TURNS] = 1.0 if some_of(r.at_turn) else 0.0
-        if setting[CHOOSES] > 0.0:
-            r.clock[JACOBIAN_RATE] = fastest(s, r, b)
-    if b.made[MADE_FOR] == h:
+        b.made_of, b.made_for = r.jacobians, 0.0
+        b.resisted, b.turns = int(some(r.at_rate)), int(some_of(r.at_turn))
+        if setting.chooses > 0:
+            r.jacobian_rate = fastest(s, r, b)
+    if b.made_for == h:
         return True
-    assembled(s, r, b, g, 0.0)
-    real = factorise_sparse(b, b.value[0], b.real_l, b.real_u, b.real_d, b.work[0])
-    assembled(s, r, b, a, c)
-    pair = factorise_sparse_complex(b, b.value, b.complex_l, b.complex_u, b.complex_d, b.work)
-    b.made[MADE_FOR] = h if real >= 0 and pair >= 0 else 0.0
+    assembled(s, r, b, eigenvalue(0, h))
+    real = factorise_sparse(b, b.value, b.real_l, b.real_u, b.real_d, b.side[0])
+    assembled(s, r, b, eigenvalue(1, h))
+    pair = factorise_sparse_complex(b, b.value, b.complex_l, b.complex_u, b.complex_d, b.pair)
+    b.made_for = h if real >= 0 and pair >= 0 else 0.0
     return real >= 0 and pair >= 0
+
+
+@internal
+def eigenvalue(part, h):
+    """Of the method over h: that of the real system, or of the complex one."""
+    return complex(ALPHA / h, BETA / h) if part > 0 else complex(GAMMA / h, 0.0)
 
 
 @internal
@@ -108,37 +105,40 @@ def schur(s, r, b):
 
 
 @internal
-def assembled(s, r, b, a, c):
-    """The entries of the constrained system for a + i c into b.value, row by row."""
-    re, im = b.value[0], b.value[1]
+def assembled(s, r, b, mu):
+    """The entries of the constrained system for mu into b.value, row by row."""
+    a, c = mu.real, mu.imag
     for k in range(active(s)):
         for e in range(b.column_start[k], b.column_start[k + 1]):
             if k < s.n_v:
-                re[b.entry[e]] = (a * a - c * c) * b.mass[e] - a * r.at_rate[e] - r.at_place[e]
-                im[b.entry[e]] = 2.0 * a * c * b.mass[e] - c * r.at_rate[e]
+                re = (a * a - c * c) * b.mass[e] - a * r.at_rate[e] - r.at_place[e]
+                im = 2.0 * a * c * b.mass[e] - c * r.at_rate[e]
             else:
-                re[b.entry[e]] = a * b.mass[e] - r.at_rate[e]
-                im[b.entry[e]] = c * b.mass[e]
+                re, im = a * b.mass[e] - r.at_rate[e], c * b.mass[e]
+            b.value[b.entry[e]] = complex(re, im)
     for f in range(1, s.n):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for k in range(width_of(s, f)):
-                re[b.entry_row[p, k]] = r.at_rows[p, k]
-                re[b.entry_across[p, k]] = r.at_rows[p, k]
-                im[b.entry_row[p, k]] = 0.0
-                im[b.entry_across[p, k]] = 0.0
+                b.value[b.entry_row[p, k]] = b.value[b.entry_across[p, k]] = r.at_rows[p, k]
     for k in range(b.entry_state.size):
-        re[b.entry_state[k]] = r.at_state[k]
-        im[b.entry_state[k]] = 0.0
+        b.value[b.entry_state[k]] = r.at_state[k]
 
 
 @internal
-def multipliers(s, r, b, part, rates, x, places, y, a, c):
-    """b.mu[part] <- S^-1 (rates + B x - (a places - c y)), its real or its imaginary part."""
-    mu = b.mu[part]
+def multipliers(s, r, b, sides, mu, parts):
+    """b.mu <- S^-1 (u + i w + B (x + i y) - mu (p + i q)), x and y in b.slope.
+
+    parts: 1 where there is no imaginary one.
+    """
+    _, _, p, q, u, w = sides
+    clear(b.mu[1])
     for j in range(s.m):
-        mu[j] = rates[j] - (a * places[j] - c * y[j])
-    add_product(s, r.at_rows, 1.0, x, mu)
-    substitute(s, b.schur, mu)
+        b.mu[0, j] = u[j] - (mu.real * p[j] - mu.imag * q[j])
+        if parts > 1:
+            b.mu[1, j] = w[j] - (mu.real * q[j] + mu.imag * p[j])
+    for part in range(parts):
+        add_product(s, r.at_rows, 1.0, b.slope[part], b.mu[part])
+        substitute(s, b.schur, b.mu[part])
 
 
 @internal
@@ -149,10 +149,12 @@ def with_states(s, r, b, rates, f, sign):
 
 
 @internal
-def loaded(s, r, b, f, x, y, a, c, side):
-    """side <- rows of w of f + Re((a + i c) M u) - (f_v, g_v) x, u = x + i y, in rank order."""
-    n_w = active(s)
-    for i in range(n_w):
+def loaded(s, r, b, part, f, mu):
+    """b.side[part] <- rows of w of f + the part of mu M (x + i y) - (f_v, g_v) times that of
+    (x + i y), in rank order; x and y in b.move."""
+    x, y, side = b.move[part], b.move[1 - part], b.side[part]
+    a, c = mu.real, mu.imag if part == 0 else -mu.imag
+    for i in range(active(s)):
         side[b.rank[i]] = f[w_index(s, i)]
     u, weighed = b.pull, b.pull0
     for k in range(s.n_v):
@@ -160,7 +162,7 @@ def loaded(s, r, b, f, x, y, a, c, side):
     mass_times(s, u, weighed)
     for k in range(s.n_v):
         side[b.rank[k]] += weighed[k]
-    if b.made[RESISTED] == 0.0:
+    if b.resisted == 0:
         return
     for k in range(s.n_v):
         for e in range(b.column_start[k], b.column_start[k + 1]):
@@ -168,23 +170,21 @@ def loaded(s, r, b, f, x, y, a, c, side):
 
 
 @internal
-def solved(s, r, b, f, g, p, q, u, w, a, c, held):
-    """(f + i g, p + i q, u + i w) <- the Newton step for a + i c of the right-hand sides there.
+def solved(s, r, b, sides, mu, held):
+    """(f + i g, p + i q, u + i w) <- the Newton step for mu of the right-hand sides there.
 
-    f, g: of y (n_y), with rows of v as forces; p, q: of Phi, then dlam; u, w: of Phi', then dmu.
-    c = 0 takes the real factors; g, q, w are zero then, and stay so.  held: 1.0; 0.0 leaves C out,
-    for right-hand sides of ggl_stages.unconstrained.
+    sides: f, g of y (n_y), with rows of v as forces; p, q of Phi, then dlam; u, w of Phi', then
+    dmu.  A real mu takes the real factors; g, q, w are zero then, and stay so.  held: 1.0; 0.0
+    leaves C out, for right-hand sides of ggl_stages.unconstrained.
     """
+    f, g, p, q, u, w = sides
+    a, c = mu.real, mu.imag
     n_w, x, y = active(s), b.slope[0], b.slope[1]
     for k in range(s.n_v):
         x[k], y[k] = twisted(s, r, k, f), twisted(s, r, k, g)
     with_states(s, r, b, u, f, 1.0)
     with_states(s, r, b, w, g, 1.0)
-    multipliers(s, r, b, 0, u, x, p, q, a, c)
-    if c != 0.0:
-        multipliers(s, r, b, 1, w, y, q, p, a, -c)
-    else:
-        clear(b.mu[1])
+    multipliers(s, r, b, sides, mu, 2 if c != 0.0 else 1)
     with_states(s, r, b, u, f, -1.0)
     with_states(s, r, b, w, g, -1.0)
     dx, dy = b.move[0], b.move[1]  # u = r_x - M^-1 B^T dmu for now
@@ -193,39 +193,44 @@ def solved(s, r, b, f, g, p, q, u, w, a, c, held):
     across(s, r.at_rows, b.across, b.mu[0], dx)
     if c != 0.0:
         across(s, r.at_rows, b.across, b.mu[1], dy)
-        loaded(s, r, b, g, dy, dx, a, -c, b.side[1])
-    loaded(s, r, b, f, dx, dy, a, c, b.side[0])
+        loaded(s, r, b, 1, g, mu)
+    loaded(s, r, b, 0, f, mu)
     for j in range(s.m):
         b.side[0, b.rank[n_w + j]], b.side[1, b.rank[n_w + j]] = p[j], q[j]
     if c == 0.0:
         solve_sparse(b, b.real_l, b.real_u, b.real_d, b.side[0])
         clear(b.side[1])
     else:
-        solve_sparse_complex(b, b.complex_l, b.complex_u, b.complex_d, b.side[0], b.side[1])
+        for k in range(b.pair.size):
+            b.pair[k] = complex(b.side[0, k], b.side[1, k])
+        solve_sparse(b, b.complex_l, b.complex_u, b.complex_d, b.pair)
+        for k in range(b.pair.size):
+            b.side[0, k], b.side[1, k] = b.pair[k].real, b.pair[k].imag
     for k in range(s.n_v):
         dx[k], dy[k] = b.side[0, b.rank[k]], b.side[1, b.rank[k]]
         x[k] -= a * dx[k] - c * dy[k]  # r_x - (a + i c) dx
         y[k] -= a * dy[k] + c * dx[k]
-    corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held)
+    corrected_multipliers(s, r, b, sides, mu, held)
     across(s, r.at_rows, b.across, u, x)
     if c != 0.0:
         across(s, r.at_rows, b.across, w, y)
-    advanced(s, r, b, f, g, a, c)
+    advanced(s, r, b, f, g, mu)
 
 
 @internal
-def corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held):
+def corrected_multipliers(s, r, b, sides, mu, held):
     """u + i w <- dmu of the velocities as found; p + i q <- dlam with what that changes."""
-    n_w = active(s)
+    _, _, p, q, u, w = sides
+    a, c = mu.real, mu.imag
+    n_w, parts = active(s), 2 if c != 0.0 else 1
     for j in range(s.m):
         k = b.rank[n_w + j]
         p[j] = b.side[0, k] + a * b.mu[0, j] - c * b.mu[1, j]
         q[j] = b.side[1, k] + a * b.mu[1, j] + c * b.mu[0, j]
     add_product(s, r.at_turn, -held, b.move[0], u)
-    multipliers(s, r, b, 0, u, x, u, w, 0.0, 0.0)
-    if c != 0.0:
+    if parts > 1:
         add_product(s, r.at_turn, -held, b.move[1], w)
-        multipliers(s, r, b, 1, w, y, u, w, 0.0, 0.0)
+    multipliers(s, r, b, sides, complex(0.0, 0.0), parts)
     for j in range(s.m):
         u[j], w[j] = b.mu[0, j], b.mu[1, j]
         p[j] -= a * u[j] - c * w[j]
@@ -233,9 +238,8 @@ def corrected_multipliers(s, r, b, p, q, u, w, x, y, a, c, held):
 
 
 @internal
-def advanced(s, r, b, f, g, a, c):
-    """Increments of y into f + i g; b.slope holds r_x - (a + i c) dx - M^-1 B^T dmu = -dv."""
-    size = a * a + c * c
+def advanced(s, r, b, f, g, mu):
+    """Increments of y into f + i g; b.slope holds r_x - mu dx - M^-1 B^T dmu = -dv."""
     x, y, dx, dy = b.slope[0], b.slope[1], b.move[0], b.move[1]
     for k in range(s.n_v):
         f[s.n_q + k], g[s.n_q + k] = -x[k], -y[k]
@@ -244,14 +248,12 @@ def advanced(s, r, b, f, g, a, c):
         f[i], g[i] = b.side[0, b.rank[k]], b.side[1, b.rank[k]]
     for k in range(N_BOOK):
         i = s.n_q + s.n_v + k
-        re, im = f[i], g[i]
-        f[i], g[i] = (re * a + im * c) / size, (im * a - re * c) / size
+        z = quotient(complex(f[i], g[i]), mu)
+        f[i], g[i] = z.real, z.imag
     # a quaternion has a fourth number: what no displacement means, r_q without r_x
     for k in range(s.n_v):
-        re, im = twisted(s, r, k, f), twisted(s, r, k, g)
-        x[k] = dx[k] - (re * a + im * c) / size
-        y[k] = dy[k] - (im * a - re * c) / size
+        z = quotient(complex(twisted(s, r, k, f), twisted(s, r, k, g)), mu)
+        x[k], y[k] = dx[k] - z.real, dy[k] - z.imag
     for k in range(s.n_q):
-        re, im = f[k], g[k]
-        f[k] = (re * a + im * c) / size + moved_by(s, r.y, k, x)
-        g[k] = (im * a - re * c) / size + moved_by(s, r.y, k, y)
+        z = quotient(complex(f[k], g[k]), mu)
+        f[k], g[k] = z.real + moved_by(s, r.y, k, x), z.imag + moved_by(s, r.y, k, y)

@@ -7,15 +7,17 @@ equations.py, whose constraints hold by their accelerations.
 from trsim.assemble.equations import evaluate
 from trsim.assemble.schur import velocity_residual
 from trsim.kernels.vectors import all_finite, clear, internal
+from trsim.solve.methods.dense_lu import quotient, squared
 from trsim.solve.methods.displacements import twisted, w_index
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times, moving, pull
+from trsim.solve.methods.ggl_newton import eigenvalue
 from trsim.solve.methods.radau import F, W, Z
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, C, T
 
 # rows of K after those of radau.py, three each: lam of the stages, mu, right-hand sides and
 # increments of Phi and Phi'; three rows that stay zero
-LAM, MU, RP, RR, NIL = 14, 17, 20, 23, 26
-STAGES = 29
+LAM, MU, RP, RR, NIL = 13, 16, 19, 22, 25
+STAGES = 28
 
 
 @internal
@@ -83,20 +85,29 @@ def residuals_index1(s, r, b, t, h):
             return False
     left_over(s, r, b, h, False)
     nothing(s, K)
-    unconstrained(s, r, b, K[F], K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], GAMMA / h, 0.0)
-    unconstrained(s, r, b, K[F + 1], K[F + 2], K[RP + 1], K[RP + 2], K[RR + 1], K[RR + 2],
-                  ALPHA / h, BETA / h)  # fmt: skip
+    for part in range(2):
+        unconstrained(s, r, b, sides(K, part), eigenvalue(part, h))
     return True
 
 
 @internal
-def unconstrained(s, r, b, f, g, p, q, u, w, a, c):
+def sides(K, part):
+    """Right-hand sides of the real system (part 0) or the complex one, two parts of each: of y, of
+    Phi and of Phi'."""
+    i, j = (F, NIL) if part == 0 else (F + 1, F + 2)
+    p, q = (RP, NIL + 1) if part == 0 else (RP + 1, RP + 2)
+    u, w = (RR, NIL + 2) if part == 0 else (RR + 1, RR + 2)
+    return K[i], K[j], K[p], K[q], K[u], K[w]
+
+
+@internal
+def unconstrained(s, r, b, sides, mu):
     """Right-hand sides of `solved` that constrain nothing: what is across the rows stays.
 
-    (p + i q, u + i w) <- B dx and B dv of c dv = f_v, c dx = f_x + dv with c = a + i c; rows of v
-    in f + i g change from accelerations to forces.
+    (p + i q, u + i w) <- B dx and B dv of mu dv = f_v, mu dx = f_x + dv; rows of v in f + i g
+    change from accelerations to forces.
     """
-    size = a * a + c * c
+    f, g, p, q, u, w = sides
     x, y, dx, dy = b.slope[0], b.slope[1], b.move[0], b.move[1]
     for k in range(s.n_v):
         x[k], y[k] = twisted(s, r, k, f), twisted(s, r, k, g)
@@ -106,16 +117,17 @@ def unconstrained(s, r, b, f, g, p, q, u, w, a, c):
     add_product(s, r.at_rows, 1.0, dx, u)
     add_product(s, r.at_rows, 1.0, dy, w)
     for j in range(s.m):
-        re, im = u[j], w[j]
-        u[j], w[j] = (re * a + im * c) / size, (im * a - re * c) / size
-        p[j], q[j] = u[j], w[j]
+        z = quotient(complex(u[j], w[j]), mu)
+        u[j], w[j] = z.real, z.imag
+        p[j], q[j] = z.real, z.imag
     add_product(s, r.at_rows, 1.0, x, p)
     add_product(s, r.at_rows, 1.0, y, q)
     for j in range(s.m):
-        re, im = p[j], q[j]
-        p[j], q[j] = (re * a + im * c) / size, (im * a - re * c) / size
+        z = quotient(complex(p[j], q[j]), mu)
+        p[j], q[j] = z.real, z.imag
     for k in range(b.state_row.shape[0]):  # these rows hold the difference of place and state
         j, i = b.state_row[k, 0], w_index(s, b.state_row[k, 1])
+        a, c, size = mu.real, mu.imag, squared(mu)
         p[j] += r.at_state[k] * (f[i] * a + g[i] * c) / size
         q[j] += r.at_state[k] * (g[i] * a - f[i] * c) / size
     mass_times(s, dx, x)

@@ -14,7 +14,7 @@ from trsim.assemble.elimination import Elimination, elimination
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import Model
-from trsim.kernels.packed import A1, A2, I1, I2
+from trsim.kernels.packed import A1, A2, C1, F8, I1, I2, I8
 from trsim.solve.march.record import Buffers, Record
 
 
@@ -53,24 +53,26 @@ class SparseBuffers(Buffers):
     lower_start: I1
     lower: I1
     # numbers
-    made: A1  # see ggl_newton.py
     across: A2  # (slots, 6) M^-1 B^T
     schur: A1  # factors of B M^-1 B^T
-    value: A2  # (2, entries)
+    value: C1  # (entries)
     real_l: A1
     real_u: A1
     real_d: A1
-    complex_l: A2  # (2, ...) real and imaginary part
-    complex_u: A2
-    complex_d: A2
-    work: A2  # (2, N)
-    side: A2  # (2, N) right-hand sides and solutions, in the order of elimination
+    complex_l: C1
+    complex_u: C1
+    complex_d: C1
+    side: A2  # (2, N) right-hand sides and solutions, in the order of elimination; `pair` as well
     pull: A1  # (n_w) loads less B^T lambda, and rates of states
     pull0: A1  # (n_w)
     rate0: A1  # (m) Phi' at the place of the Jacobian
     slope: A2  # (2, n_v)
     move: A2  # (2, n_v)
     mu: A2  # (2, n_x) of rows, and of hubs
+    made_for: F8  # s, the step size of the factors; 0: none
+    made_of: I8  # number of the Jacobian they are made of
+    resisted: I8  # 1: loads depend on rates
+    turns: I8  # 1: rows of constraints depend on places
 
 
 def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
@@ -90,7 +92,7 @@ def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
 
 def buffers(dense: Buffers, mechanism: Mechanism, model: Model) -> SparseBuffers:
     """Buffers with the pattern of a stage of the mechanism, whose model is given."""
-    own = {name: getattr(dense, name) for name, _ in Buffers.kind.fields}
+    own = {name: array for name, array in dense.arrays().items() if name not in dense.sizes}
     found = nodes(mechanism)
     return SparseBuffers(**{**own, **tables(found, mechanism, model)})
 
@@ -292,13 +294,13 @@ def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]
     n_v, m, N = model.n_v, model.m, n_w + model.m
     return {
         **{name: np.zeros(n_lower) for name in ("real_l", "real_u")},
-        **{name: np.zeros((2, n_lower)) for name in ("complex_l", "complex_u")},
-        **{name: np.zeros((2, N)) for name in ("complex_d", "work", "side")},
+        **{name: np.zeros(n_lower, complex) for name in ("complex_l", "complex_u")},
+        **{name: np.zeros(N, complex) for name in ("complex_d", "pair")},
+        "side": np.zeros((2, N)),
         **{name: np.zeros((2, n_v)) for name in ("slope", "move")},
         **{name: np.zeros(n_w) for name in ("pull", "pull0")},
         "real_d": np.zeros(N),
-        "value": np.zeros((2, n_entries)),
-        "made": np.zeros(4),
+        "value": np.zeros(n_entries, complex),
         "rate0": np.zeros(m),
         "across": np.zeros((len(model.slot_row), 6)),
         "schur": np.zeros(len(model.row)),

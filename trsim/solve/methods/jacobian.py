@@ -13,16 +13,7 @@ smallest penetration that matters.
 from trsim.assemble.equations import evaluate
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.norm import weight_of
-from trsim.solve.march.record import (
-    FRESH,
-    JACOBIAN,
-    JACOBIAN_RATE,
-    JACOBIANS,
-    NO_JACOBIAN,
-    NO_RATES,
-    OLD,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import FRESH, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.methods.displacements import active, displace, frame_of, place_of, w_index
 
 PART = 3e-4  # of an entry's unit: the step of a difference
@@ -31,7 +22,7 @@ PART = 3e-4  # of an entry's unit: the step of a difference
 @internal
 def missing(r):
     """Whether a step needs `jacobian` first."""
-    return r.count[JACOBIAN] == NO_JACOBIAN or r.count[JACOBIAN] == NO_RATES
+    return r.jacobian == NO_JACOBIAN or r.jacobian == NO_RATES
 
 
 @internal
@@ -41,8 +32,8 @@ def jacobian(s, r, b, setting, t, trial, rates):
     After a corner of friction only the columns of by_rate are new that belong to the bodies which
     rub there: the law has no jump, and what is left of the others is good enough.
     """
-    n_w, tolerance = active(s), setting[STEP_ERROR]
-    places = r.count[JACOBIAN] != NO_RATES
+    n_w, tolerance = active(s), setting.step_error
+    places = r.jacobian != NO_RATES
     for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed
         unit = 1.0 / (weight_of(s, r, tolerance, place_of(s, k)) * tolerance)
@@ -69,7 +60,7 @@ def jacobian(s, r, b, setting, t, trial, rates):
             r.by_rate[row, k] = (rates[i] - r.yd[i]) / part
     for f in range(s.n):
         r.stale[f] = 0
-    r.count[JACOBIAN] = FRESH if places else OLD
-    r.count[JACOBIANS] += 1
+    r.jacobian = FRESH if places else OLD
+    r.jacobians += 1
     if places:
-        r.clock[JACOBIAN_RATE] = -1.0  # not known yet
+        r.jacobian_rate = -1.0  # not known yet

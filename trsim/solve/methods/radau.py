@@ -22,34 +22,13 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, internal
 from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
-from trsim.solve.march.record import (
-    AFTER_REJECTION,
-    AHEAD,
-    BEHIND,
-    CONTRACTION,
-    FACTORED_H,
-    FRESH,
-    GAIN,
-    HISTORY,
-    ITERATIONS,
-    JACOBIAN,
-    LENGTH,
-    NEWTON_RATE,
-    NEXT_JACOBIAN,
-    NO_HISTORY,
-    NO_JACOBIAN,
-    NO_RATES,
-    OLD,
-    OLD_H,
-    PAST_H,
-    SPEED,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import jitter, noted, to_look
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods.dense_lu import (
     factorise_complex,
     factorise_real,
+    quotient,
     solve_complex,
     solve_real,
 )
@@ -59,13 +38,13 @@ from trsim.solve.methods.newton import FAILS, GOES_ON, NEXT_TO_NOTHING, judged, 
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 
 ESTIMATE = 4  # the error estimate falls with h^4
-STAGES = 14
+STAGES = 13
 LAST = 2
 DENSE_ROWS = 4
 DENSE_DEGREE = 3
 IMPLICIT = True
 
-Z, W, F, DX, DW = 3, 6, 9, 12, 13  # rows of K: three each of Z, W, F; two of scratch
+Z, W, F, DW = 3, 6, 9, 12  # rows of K: three each of Z, W, F; one of scratch
 # second differences over the stages: of what Z is, and of its rate times h; that rate at the end
 BENT = np.array([1.0 / ((C[0] - C[1]) * (C[0] - 1.0)), 1.0 / ((C[1] - C[0]) * (C[1] - 1.0)),
     1.0 / ((1.0 - C[0]) * (1.0 - C[1]))])  # fmt: skip
@@ -79,22 +58,22 @@ HALVE = NO_STEP  # Newton failed: take about half the step
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
-    corner = r.count[JACOBIAN] == NO_RATES
+    corner = r.jacobian == NO_RATES
     for attempt in range(3):
-        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.jacobian == OLD):
             jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
-            r.clock[CONTRACTION] = 1.0
-            r.clock[FACTORED_H] = 0.0
+            r.contraction = 1.0
+            r.factored_h = 0.0
         elif attempt > 0:
             return HALVE
-        if r.clock[FACTORED_H] != h and not factorised(s, r, h):
-            r.clock[FACTORED_H] = 0.0
+        if r.factored_h != h and not factorised(s, r, h):
+            r.factored_h = 0.0
             return HALVE
         guess(s, r, b, h)
         converged = newton(s, r, b, t, h)
         if converged > 0:
             break
-        if converged < 0 and r.count[JACOBIAN] == FRESH:
+        if converged < 0 and r.jacobian == FRESH:
             return np.inf
         if corner:  # the step is too long for the new branch, more often than its matrix too old
             return hidden(s, r, b, setting, t, h)
@@ -106,16 +85,16 @@ def step(s, r, b, setting, t, h):
     error = estimate(s, r, b, setting, t, h)
     # a shorter step from the same state, to an event or after a rejection, begins on this one
     collocation(b.K, r.y, b.y1, r.past)
-    r.clock[PAST_H], r.count[HISTORY] = h, AHEAD
+    r.past_h, r.history = h, AHEAD
     # where the state moves on its matrix is good for as long as Newton is quick
-    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < QUICK else NO_JACOBIAN
+    r.next_jacobian = OLD if r.newton_rate < QUICK else NO_JACOBIAN
     return error
 
 
 @internal
 def hidden(s, r, b, setting, t, h):
     """HALVE: Newton failed.  If it is rounding that it could not go below, it is not asked to."""
-    if to_look(r, h) and r.clock[FACTORED_H] == h:
+    if to_look(r, h) and r.factored_h == h:
         jitter(s, r, b, setting, t, b.K[F], b.K[F + 1])
         corrected(s, r, b.K[F], b.K[DW], GAMMA / h)
         noted(s, r, setting, b.K[F], h)
@@ -127,9 +106,9 @@ def factorised(s, r, h):
     """Factors of mu - by_rate - by_place / mu for the real and the complex mu."""
     n = active(s)
     if n == 0:
-        r.clock[FACTORED_H] = h
+        r.factored_h = h
         return True
-    real, re, im = r.lu[:n], r.lu[n : 2 * n], r.lu[2 * n :]
+    real, pair = r.lu, r.lu_pair
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
     size = a * a + c * c
     by_g, by_a, by_c = 1.0 / g, a / size, c / size
@@ -137,16 +116,14 @@ def factorised(s, r, h):
         for k in range(n):
             B = r.by_place[i, k] if k < s.n_v else 0.0
             real[i, k] = -r.by_rate[i, k] - B * by_g
-            re[i, k] = -r.by_rate[i, k] - B * by_a
-            im[i, k] = B * by_c
+            pair[i, k] = complex(-r.by_rate[i, k] - B * by_a, B * by_c)
         real[i, i] += g
-        re[i, i] += a
-        im[i, i] += c
+        pair[i, i] += complex(a, c)
     if not factorise_real(real, r.pivot[0], n):
         return False
-    if not factorise_complex(re, im, r.pivot[1], n):
+    if not factorise_complex(pair, r.pivot[1], n):
         return False
-    r.clock[FACTORED_H] = h
+    r.factored_h = h
     return True
 
 
@@ -155,10 +132,10 @@ def guess(s, r, b, h):
     """Start Newton from the polynomial of the step before, drawn on, or from that of a longer
     trial of this one; W = T^-1 Z."""
     K, n = b.K, r.y.size
-    if r.count[HISTORY] != NO_HISTORY:
-        ahead = 1.0 if r.count[HISTORY] == AHEAD else 0.0
+    if r.history != NO_HISTORY:
+        ahead = 1.0 if r.history == AHEAD else 0.0
         for i in range(3):
-            theta = C[i] * h / r.clock[PAST_H] - ahead
+            theta = C[i] * h / r.past_h - ahead
             for c in range(n):
                 K[Z + i, c] = ahead * r.past[3, c] + polynomial(r.past, c, theta)
     else:
@@ -181,10 +158,10 @@ def newton(s, r, b, t, h):
     counted, floor = resolution(r, weight, h)
     kappa, before = max(KAPPA, floor), 0.0
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
-    expected = max(r.clock[CONTRACTION], SHARPEST) ** 0.8
-    r.clock[CONTRACTION] = expected
+    expected = max(r.contraction, SHARPEST) ** 0.8
+    r.contraction = expected
     for iteration in range(MOST_ITERATIONS):
-        r.count[ITERATIONS] += 1
+        r.iterations += 1
         for i in range(3):
             for k in range(n):
                 b.y1[k] = r.y[k] + K[Z + i, k]
@@ -201,7 +178,7 @@ def newton(s, r, b, t, h):
             K[F + 1, k] = u - (a * w1 - c * w2)
             K[F + 2, k] = v - (c * w1 + a * w2)
         corrected(s, r, K[F], K[DW], g)
-        corrected_pair(s, r, K[F + 1], K[F + 2], K[DX], K[DW], a, c)
+        corrected_pair(s, r, K[F + 1], K[F + 2], b.pair, complex(a, c))
         moved = 0.0
         for i in range(3):
             for k in range(n):
@@ -215,12 +192,12 @@ def newton(s, r, b, t, h):
             return -1
         verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
         if iteration > 0:
-            r.clock[CONTRACTION] = rate
+            r.contraction = rate
         elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
             return 1
         if verdict == FAILS:
             return 0
-        r.clock[NEWTON_RATE] = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
+        r.newton_rate = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
         if verdict != GOES_ON:
             return 1
         before = moved
@@ -237,7 +214,7 @@ def corrected(s, r, f, w, mu):
         x = twisted(s, r, k, f) / mu
         for i in range(n):
             w[i] += r.by_place[i, k] * x
-    solve_real(r.lu[:n], r.pivot[0], w, n)
+    solve_real(r.lu, r.pivot[0], w, n)
     for q in range(s.n_q):
         f[q] = (f[q] + moved_by(s, r.y, q, w)) / mu
     for i in range(n):
@@ -247,27 +224,24 @@ def corrected(s, r, f, w, mu):
 
 
 @internal
-def corrected_pair(s, r, f, g, x, w, a, c):
-    """f + i g <- (a + i c - J)^-1 (f + i g) with the complex factors; x, w: scratch."""
-    n, size = active(s), a * a + c * c
+def corrected_pair(s, r, f, g, w, mu):
+    """f + i g <- (mu - J)^-1 (f + i g) with the complex factors; w: scratch."""
+    n = active(s)
     for i in range(n):
-        x[i], w[i] = f[w_index(s, i)], g[w_index(s, i)]
+        w[i] = complex(f[w_index(s, i)], g[w_index(s, i)])
     for k in range(s.n_v):
-        p, q = twisted(s, r, k, f), twisted(s, r, k, g)
-        u, v = (p * a + q * c) / size, (q * a - p * c) / size  # (p + i q) / (a + i c)
+        x = quotient(complex(twisted(s, r, k, f), twisted(s, r, k, g)), mu)
         for i in range(n):
-            x[i] += r.by_place[i, k] * u
-            w[i] += r.by_place[i, k] * v
-    solve_complex(r.lu[n : 2 * n], r.lu[2 * n :], r.pivot[1], x, w, n)
+            w[i] += complex(r.by_place[i, k] * x.real, r.by_place[i, k] * x.imag)
+    solve_complex(r.lu_pair, r.pivot[1], w, n)
     for q in range(s.n_q):
-        u, v = f[q] + moved_by(s, r.y, q, x), g[q] + moved_by(s, r.y, q, w)
-        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+        x = quotient(complex(f[q], g[q]) + moved_by(s, r.y, q, w), mu)
+        f[q], g[q] = x.real, x.imag
     for i in range(n):
-        f[w_index(s, i)], g[w_index(s, i)] = x[i], w[i]
-    for k in range(N_BOOK):
-        q = s.n_q + s.n_v + k
-        u, v = f[q], g[q]
-        f[q], g[q] = (u * a + v * c) / size, (v * a - u * c) / size
+        f[w_index(s, i)], g[w_index(s, i)] = w[i].real, w[i].imag
+    for q in range(s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK):
+        x = quotient(complex(f[q], g[q]), mu)
+        f[q], g[q] = x.real, x.imag
 
 
 @internal
@@ -282,7 +256,7 @@ def estimate(s, r, b, setting, t, h):
     corrected(s, r, e, K[DW], GAMMA / h)
     booked = of_works(s, r, b, setting, h)
     error = norm(e, weight)
-    if error >= 1.0 and (r.count[HISTORY] != BEHIND or r.count[AFTER_REJECTION] > 0):
+    if error >= 1.0 and (r.history != BEHIND or r.after_rejection > 0):
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
@@ -303,18 +277,18 @@ def of_accelerations(s, r, b, setting, h):
     a first step, which may be of any length, the filter of the estimate may have left nothing of
     it: there what was filtered counts as well.
     """
-    K, weight, tolerance = b.K, b.weight, setting[STEP_ERROR]
-    r.clock[GAIN] = most = largest(s, r.yd, r.clock[GAIN])
+    K, weight, tolerance = b.K, b.weight, setting.step_error
+    r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
     for c in range(s.n_q + s.n_v):
         K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]
         K[F + 2, c] = TURNED[0] * K[Z, c] + TURNED[1] * K[Z + 1, c] + TURNED[2] * K[Z + 2, c]
         if c >= s.n_q:  # at the end of the step
             rate = LEAVING[0] * K[Z, c] + LEAVING[1] * K[Z + 1, c] + LEAVING[2] * K[Z + 2, c]
             most = max(most, s.scale[c] * abs(rate) / h)
-    length, speed = (tolerance * r.clock[LENGTH]) ** 2, (tolerance * r.clock[SPEED]) ** 2
+    length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     off = bent = 0.0
-    moved, begins = 1e-300, r.count[HISTORY] != BEHIND and r.clock[OLD_H] == 0.0
+    moved, begins = 1e-300, r.history != BEHIND and r.old_h == 0.0
     for _ in range(1, s.n_r):
         x = w = placed = turned = bare = 0.0
         for c in range(q, q + of_q):

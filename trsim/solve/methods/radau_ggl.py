@@ -16,36 +16,22 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import DRIVES, SCENE, compiled
-from trsim.kernels.packed import A1, f8
+from trsim.kernels.packed import f8
 from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.calls import DENSE
-from trsim.solve.march.record import (
-    AFTER_REJECTION,
-    HISTORY,
-    ITERATIONS,
-    JACOBIAN,
-    NEWTON_RATE,
-    NEXT_JACOBIAN,
-    NO_JACOBIAN,
-    OLD,
-    PAST_ERROR,
-    PAST_H,
-    STEP_ERROR,
-)
+from trsim.solve.march.record import NO_JACOBIAN, OLD, SETTINGS
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
 from trsim.solve.methods.ggl_jacobian import sparse_jacobian
-from trsim.solve.methods.ggl_newton import TURNS, solved, sparse_factors
+from trsim.solve.methods.ggl_newton import eigenvalue, solved, sparse_factors
 from trsim.solve.methods.ggl_stages import (
     LAM,
     MU,
-    NIL,
-    RP,
-    RR,
     moved_on,
     nothing,
     residuals,
     residuals_index1,
+    sides,
     unconstrained,
 )
 from trsim.solve.methods.ggl_tables import SparseBuffers, SparseRecord
@@ -63,7 +49,7 @@ from trsim.solve.methods.radau import (
     norm,
     of_works,
 )
-from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, A, C, E
+from trsim.solve.methods.radau_tableau import A, C, E
 
 ESTIMATE, LAST = radau.ESTIMATE, radau.LAST
 IMPLICIT = True
@@ -81,14 +67,14 @@ DENSE_ROWS = KEPT + 3
 DENSE_DEGREE = 3
 
 #                   scene  record  buffers  setting t h
-STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, A1, f8, f8)
+STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, SETTINGS, f8, f8)
 
 
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
     stabilised = True
     for attempt in range(3):
-        if missing(r) or (attempt > 0 and r.count[JACOBIAN] == OLD):
+        if missing(r) or (attempt > 0 and r.jacobian == OLD):
             sparse_jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
         elif not stabilised:
             return HALVE
@@ -96,7 +82,7 @@ def step(s, r, b, setting, t, h):
             # past a singular position: rows that change their sense cannot be brought to zero with
             # those of the start, but accelerations are there on both sides
             stabilised = False
-        if not sparse_factors(s, r, b, setting, h, GAMMA / h, ALPHA / h, BETA / h):
+        if not sparse_factors(s, r, b, setting, h):
             return HALVE
         guess(s, r, b, h)
         guess_multipliers(s, r, b, t, h)
@@ -112,8 +98,8 @@ def step(s, r, b, setting, t, h):
     for c in range(r.y.size):
         b.y1[c] = r.y[c] + b.K[Z + 2, c]
     error = estimate(s, r, b, setting, t, h)
-    quick = QUICK if b.made[TURNS] > 0.0 else QUICK_FIXED
-    r.count[NEXT_JACOBIAN] = OLD if r.clock[NEWTON_RATE] < quick else NO_JACOBIAN
+    quick = QUICK if b.turns > 0 else QUICK_FIXED
+    r.next_jacobian = OLD if r.newton_rate < quick else NO_JACOBIAN
     return error
 
 
@@ -148,8 +134,8 @@ def work_of_drives(s, r, b, t, h):
 def guess_multipliers(s, r, b, t, h):
     """lam of the stages from the parabola of the step before, or as it is now; mu = 0."""
     K = b.K
-    if r.count[HISTORY] > 0:
-        ratio = h / r.clock[PAST_H]
+    if r.history > 0:
+        ratio = h / r.past_h
         for i in range(3):
             theta = 1.0 + C[i] * ratio
             for k in range(s.m):
@@ -177,17 +163,17 @@ def newton(s, r, b, setting, t, h, stabilised):
     """
     K, n, weight = b.K, r.y.size, b.weight
     counted, floor = resolution(r, weight, h)
-    strict = stabilised and b.made[TURNS] > 0.0
+    strict = stabilised and b.turns > 0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
     # errors as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is
     # small
-    made = r.clock[PAST_ERROR] if r.clock[PAST_ERROR] > 0.0 else UNKNOWN
+    made = r.past_error if r.past_error > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
-    wanted = max(min(KAPPA, sqrt(setting[STEP_ERROR])) * made, floor) if strict else enough
+    wanted = max(min(KAPPA, sqrt(setting.step_error)) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
-        r.count[ITERATIONS] += 1
+        r.iterations += 1
         if stabilised:
             sound = residuals(s, r, b, t, h)
         else:
@@ -196,12 +182,7 @@ def newton(s, r, b, setting, t, h, stabilised):
             return -1
         nothing(s, K)
         for part in range(2):
-            # the real system fills the rows of a pair as well, with nothing
-            i, j = (F, NIL) if part == 0 else (F + 1, F + 2)
-            p, q = (RP, NIL + 1) if part == 0 else (RP + 1, RP + 2)
-            u, w = (RR, NIL + 2) if part == 0 else (RR + 1, RR + 2)
-            re, im = (GAMMA / h, 0.0) if part == 0 else (ALPHA / h, BETA / h)
-            solved(s, r, b, K[i], K[j], K[p], K[q], K[u], K[w], re, im, held)
+            solved(s, r, b, sides(K, part), eigenvalue(part, h), held)
         moved = sqrt(moved_on(s, K, weight, n, stabilised) / max(3 * counted, 1))
         if not isfinite(moved):
             return -1
@@ -209,7 +190,7 @@ def newton(s, r, b, setting, t, h, stabilised):
             return 1
         if iteration > 0:
             rate = moved / before if before > 0.0 else 0.0
-            r.clock[NEWTON_RATE] = rate
+            r.newton_rate = rate
             left = MOST_ITERATIONS - 1 - iteration
             less = moved / (1.0 - rate) if rate < 1.0 else moved  # times rate: what is left
             if rate < 1.0 and less * rate < wanted:
@@ -227,7 +208,7 @@ def newton(s, r, b, setting, t, h, stabilised):
 def estimate(s, r, b, setting, t, h):
     """Error of order 3 as in radau.py: (GAMMA/h - J)^-1 of (f(y) + sum E_i Z_i / h), the real
     system; filtered once more if large."""
-    K, n, weight, g = b.K, r.y.size, b.weight, GAMMA / h
+    K, n, weight, g = b.K, r.y.size, b.weight, eigenvalue(0, h)
     e, error, booked = K[F], 0.0, 0.0
     copy_to(e, r.yd)
     for c in range(n):
@@ -236,12 +217,12 @@ def estimate(s, r, b, setting, t, h):
         for c in range(n):
             e[c] += K[F + 1, c]
         nothing(s, K)
-        unconstrained(s, r, b, e, K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], g, 0.0)
-        solved(s, r, b, e, K[NIL], K[RP], K[NIL + 1], K[RR], K[NIL + 2], g, 0.0, 0.0)
+        unconstrained(s, r, b, sides(K, 0), g)
+        solved(s, r, b, sides(K, 0), g, 0.0)
         error = norm(e, weight)
         if turn == 0:
             booked = of_works(s, r, b, setting, h)
-        if turn > 0 or error < 1.0 or (r.count[HISTORY] > 0 and r.count[AFTER_REJECTION] == 0):
+        if turn > 0 or error < 1.0 or (r.history > 0 and r.after_rejection == 0):
             break
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]

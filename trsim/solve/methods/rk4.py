@@ -16,7 +16,6 @@ finds them overlapping.  Between the ends of a step the solution is the cubic He
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import compiled
 from trsim.solve.march.calls import DENSE, INTERPOLATE, STEP
-from trsim.solve.march.record import STEP_TURN
 from trsim.solve.march.turns import fastest
 from trsim.solve.march.works import note_error
 from trsim.solve.methods import hermite
@@ -41,7 +40,7 @@ def step(scene, r, b, setting, t, h):
         evaluate(scene, t + part, y1, K[s])
     for c in range(y.size):
         y1[c] = y[c] + h / 6.0 * (K[0, c] + 2.0 * K[1, c] + 2.0 * K[2, c] + K[3, c])
-    r.clock[STEP_TURN] = max(r.clock[STEP_TURN], h * fastest(scene, y, K[0]))
+    r.step_turn = max(r.step_turn, h * fastest(scene, y, K[0]))
     note_error(scene, r, b, t, h, 2)
     return 0.0
 

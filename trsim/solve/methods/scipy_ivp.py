@@ -31,7 +31,7 @@ from trsim.solve.march.features import next_time
 from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
 from trsim.solve.march.peaks import finish, sample
-from trsim.solve.march.record import Buffers, Record, crowded, fresh_buffers
+from trsim.solve.march.record import Buffers, Record, Settings, crowded, fresh_buffers
 from trsim.solve.march.works import ROUNDING
 from trsim.solve.methods.jacobian import PART
 from trsim.solve.outcome import (
@@ -89,7 +89,7 @@ def interpolate(P, y, theta, out):
 def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     """As solve/simulate.py's, with scipy's solver making the steps."""
     setting = settings(scenario, mechanism)
-    begun = start(scenario, mechanism, located=setting[rec.LOCATE] > 0.0)
+    begun = start(scenario, mechanism, located=setting.locate > 0)
     s, left_out = begun_with(mechanism, begun)
     r = new_record(s, begun, left_out, NODES.size)
     b = fresh_buffers(
@@ -108,13 +108,13 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     )
     clock0 = time.process_time()
     begin(s, r, b, setting)
-    r.clock[rec.H] = first_step(scenario, r)
+    r.h = first_step(scenario, r)
     status: Ended = "done"
     reason = ""
     limit, crawled = scenario.solver.max_steps or 2**62, 0
     finer = 1.0
     solver = restarted(scenario, s, r, b, setting, finer)
-    while r.clock[rec.T] < setting[rec.T_END]:
+    while r.t < setting.t_end:
         reason = stopped(solver)
         if reason:
             status = "failed"
@@ -124,40 +124,41 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         before = finer
         finer = min(of_accelerations(scenario, s, r, b, setting, h, before), EASED * before)
         if finer < TOO_LONG * before:
-            r.clock[rec.H] = 0.3 * h
+            r.h = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer)
             continue
-        outcome = complete(s, r, b, setting, method, h, 1)
+        b.h, b.built = h, 1
+        outcome = complete(s, r, b, setting, method)
         if outcome == WORTHLESS:
             status, reason = "failed", "a value is not finite"
             break
         if outcome in (STRAYED, WOUND):
-            r.clock[rec.H] = 0.3 * h
-            solver = restarted(scenario, s, r, b, setting, finer, float(r.clock[rec.H]))
+            r.h = 0.3 * h
+            solver = restarted(scenario, s, r, b, setting, finer, float(r.h))
             continue
         if untrue(scenario, mechanism, r):
             status = "failed"
             break
-        crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting[rec.T_END] else 0
+        crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting.t_end else 0
         reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
         if reason:
             status = "failed"
             break
         changed = s
-        if r.count[rec.WEAK]:
+        if r.weak:
             s = anew(mechanism, s, r, b, setting)
         if outcome == SMOOTH_STEP and s is changed:
             nudge(solver, r)
-            r.clock[rec.H] = h
-            if r.clock[rec.MOST] > 0.0:
+            r.h = h
+            if r.speed_cap > 0.0:
                 solver.atol = allowed(scenario, s, r, b, setting, finer)
             solver.atol[books(s)] = unit_of_works(r, setting)
-        elif r.clock[rec.T] < setting[rec.T_END]:
+        elif r.t < setting.t_end:
             solver = restarted(scenario, s, r, b, setting, finer)
-        if r.count[rec.STEPS] >= limit and r.clock[rec.T] < setting[rec.T_END]:
+        if r.steps >= limit and r.t < setting.t_end:
             status, reason = "failed", f"more than {limit} steps"
             break
-        if crowded(r, b) or r.count[rec.STEPS] % 2000 == 0:
+        if crowded(r, b) or r.steps % 2000 == 0:
             yield emptied(r, b)
     yield emptied(r, b)
     cpu = time.process_time() - clock0
@@ -166,8 +167,8 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         at = mechanism.in_stage(r.stage, r.left_out)
         reason = untrue(scenario, mechanism, r) or why(scenario, at, r) or reason
     bends = Bends(mechanism)
-    bends.look(float(r.clock[rec.T]), r.y)
-    return Outcome(status, reason, float(r.clock[rec.T]), numbers, r.peak.T.copy(), r, begun,
+    bends.look(float(r.t), r.y)
+    return Outcome(status, reason, float(r.t), numbers, r.peak.T.copy(), r, begun,
                    bent=bends.states)  # fmt: skip
 
 
@@ -183,7 +184,7 @@ def stopped(solver: Any) -> str:
 
 
 def restarted(
-    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float,
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, finer: float,
     most: float = np.inf,
 ) -> Any:  # fmt: skip
     """A scipy solver at the state of the record, with the error units in force there."""
@@ -197,7 +198,7 @@ def restarted(
     atol = allowed(scenario, s, r, b, setting, finer)
     # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
     # a body is 50 m from the origin and entries of its quaternion are zero
-    step = PART / np.where(b.weight > 0.0, b.weight * setting[rec.STEP_ERROR], PART)
+    step = PART / np.where(b.weight > 0.0, b.weight * setting.step_error, PART)
 
     def jacobian(t: float, y: Array) -> Array:
         J, f = np.zeros((y.size, y.size)), right_hand_side(t, y)
@@ -210,18 +211,20 @@ def restarted(
     method = scenario.solver.method
     make = getattr(scipy.integrate, method.split(":", 1)[1])
     more = {} if METHODS[method].explicit else {"jac": jacobian}
-    t = float(r.clock[rec.T])
-    until = next_time(s, t, setting[rec.T_END])
-    first = min(float(r.clock[rec.H]), until - t)
-    longest = min(most, setting[rec.H_MAX], (b.rows.shape[0] // 2 - 2) * setting[rec.EVERY])
+    t = float(r.t)
+    until = next_time(s, t, setting.t_end)
+    first = min(float(r.h), until - t)
+    longest = min(most, setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
     return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
                 max_step=longest, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
 
 
-def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, finer: float) -> Array:
+def allowed(
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, finer: float
+) -> Array:
     """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
     weigh(s, r, b, setting)
-    outside = 1e6 * setting[rec.STEP_ERROR] * max(r.clock[rec.LARGEST_ENERGY], 1.0)
+    outside = 1e6 * setting.step_error * max(r.largest_energy, 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
     absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
     absolute[books(s)] = unit_of_works(r, setting)
@@ -229,7 +232,7 @@ def allowed(scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, fine
 
 
 def of_accelerations(
-    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Array, h: float, finer: float
+    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, h: float, finer: float
 ) -> float:
     """What part of the error allowed to places and velocities keeps accelerations to their share of
     the tolerance, 1 at most: see accelerations.py.
@@ -240,17 +243,17 @@ def of_accelerations(
     if not held.python(s):
         return 1.0
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
-    length, speed = float(r.clock[rec.LENGTH]), float(r.clock[rec.SPEED])
-    r.clock[rec.GAIN] = most = float(largest.python(s, r.yd, r.clock[rec.GAIN]))
-    weight = b.weight * setting[rec.STEP_ERROR]
+    length, speed = float(r.length), float(r.speed)
+    r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
+    weight = b.weight * setting.step_error
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
     third = THIRD @ b.P[:, rates] * weight[rates]
-    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting[rec.STEP_ERROR]
+    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting.step_error
     v = h * speed * max(float(np.linalg.norm(third)) - SHOWN * allowed, 0.0)
     w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
     most = max(most, w * speed / FURTHEST)
     made = w * np.hypot(w * length, speed)
-    finest = min(1.0, RELATIVE / setting[rec.STEP_ERROR])  # below it only rounding is left
+    finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
     return (
         max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
     )
@@ -261,10 +264,10 @@ def books(s: Scene) -> slice:
     return slice(s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK)
 
 
-def unit_of_works(r: Record, setting: Array) -> float:
+def unit_of_works(r: Record, setting: Settings) -> float:
     """The error allowed to a work, J; see works.py."""
-    allowed = setting[rec.STEP_ERROR] * r.clock[rec.EXCHANGED]
-    return max(float(allowed), ROUNDING * float(r.clock[rec.LARGEST_ENERGY]), 1e-300)
+    allowed = setting.step_error * r.exchanged
+    return max(float(allowed), ROUNDING * float(r.largest_energy), 1e-300)
 
 
 def hand_over(solver: Any, b: Buffers) -> None:
