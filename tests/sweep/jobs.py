@@ -40,6 +40,5 @@ def compiling(task, begun):
 
     machine.Compiled._compiled = marked
     for module in (gravity, revolute):
-        functions = [f for f in vars(module).values() if isinstance(f, machine.Compiled)]
-        functions[0].address()
+        next(iter(module.ELEMENT.kernels.values())).address()
     return {"status": "done", "reason": ""}

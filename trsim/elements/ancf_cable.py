@@ -14,7 +14,6 @@ body are those of its chord, from the first node to the last.
 from math import sqrt
 from typing import ClassVar
 
-import numpy as np
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
@@ -80,19 +79,22 @@ class AncfCable(Cable):
     @property
     def tangent(self):
         """Unit vector from start to end."""
-        return (np.array(self.end) - np.array(self.start)) / self.length
+        return tuple((b - a) / self.length for a, b in zip(self.start, self.end, strict=True))
 
     def bar(self, start, end):
         return self
 
     def as_rigid(self):
         """A rigid body of the same mass, slender; its axes are the world's."""
-        t = self.tangent
-        across = self.per_length * self.length**3 / 12.0
-        I = across * ((1.0 + SLENDER) * np.eye(3) - np.outer(t, t))
+        t, across = self.tangent, self.per_length * self.length**3 / 12.0
+
+        def of(a, b):
+            """An entry of the tensor of inertia."""
+            return across * ((1.0 + SLENDER) * (a == b) - t[a] * t[b])
+
         return RigidBody.model_construct(
             mass=self.whole_mass,
-            inertia=(I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]),
+            inertia=(of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2)),
             at=tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True)),
             velocity=self.velocity,
             angular_velocity=self.angular_velocity,
