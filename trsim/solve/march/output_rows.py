@@ -1,5 +1,6 @@
 """Output rows inside a step: its channels at the times that are due."""
 
+from trsim.elements.scene import PROJECTION
 from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.calls import LOOK_AT, STEP_AT, call_look
 from trsim.solve.march.dense_output import measure_inside
@@ -49,7 +50,8 @@ def rows_until(s, r, b, setting, method):
         felt = FELT * max(1.0, s.tolerance / LOOSE) ** MORE
         inside = t_o - b.t > SOON * b.h and not at_end(t_o, b.t1)
         chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
-        if inside and chosen and b.row_firm[r.rows] < felt:
+        closed = s.stabilisation == PROJECTION  # else rows are closed inside steps only
+        if inside and chosen and closed and b.row_firm[r.rows] < felt:
             b.until = t_o - b.t
         if not all_finite(row) or b.until > 0.0:
             r.rows, r.next_row, r.opened = rows, next_row, 0
