@@ -91,6 +91,8 @@ METHODS = {
 def test_every_method_finds_all_crossings(method, bound):
     """x = 0.1 sin(10 t) crosses 0.05 upwards at (pi/6 + 2 pi k) / 10."""
     text = SWING.replace("end: 1,", f"end: 3, {method},")
+    if "generalized_alpha" in method:  # of second order
+        text = text.replace("1e-10", "1e-9")
     r = run(text + "  half: {when: x, value: 50 mm, do: {record: true}}")
     expected = (pi / 6 + 2 * pi * np.arange(5)) / 10
     assert user(r)[:, EVENT_TIME] == pytest.approx(expected, abs=bound)
