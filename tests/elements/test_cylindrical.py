@@ -55,6 +55,7 @@ def test_fall_and_spin(method):
     r = run(ring(solver=solver))
     angle, stroke = RATE * r.t, -9.81 * r.t**2 / 2
     assert r["angle"] == pytest.approx(angle, abs=error * RATE)
+    assert r["angle.rate"] == pytest.approx(RATE, abs=error * RATE)
     assert r["stroke"] == pytest.approx(stroke, abs=error * 20)
     assert r["stroke.rate"] == pytest.approx(-9.81 * r.t, abs=error * 20)
     assert r["angle.acceleration"] == pytest.approx(0.0, abs=1e3 * error)

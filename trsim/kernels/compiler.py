@@ -141,7 +141,7 @@ class PackedModel(models.PrimitiveModel):
     """One word: the address of the record."""
 
     def __init__(self, dmm: Any, fe_type: Any) -> None:
-        super().__init__(dmm, fe_type, ir.IntType(64))
+        super().__init__(dmm, fe_type, WORD)
 
 
 @infer_getattr
@@ -156,9 +156,8 @@ class PackedAttribute(AttributeTemplate):
 
 def _word(builder: Any, value: Any, k: int) -> Any:
     """The k-th word of a record, which never changes."""
-    word_type = ir.IntType(64)
-    base = builder.inttoptr(value, ir.PointerType(word_type))
-    loaded = builder.load(builder.gep(base, [ir.Constant(word_type, k)]))
+    base = builder.inttoptr(value, ir.PointerType(WORD))
+    loaded = builder.load(builder.gep(base, [ir.Constant(WORD, k)]))
     loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
     return loaded
 
@@ -168,7 +167,7 @@ def _entry(context: Any, builder: Any, typ: PackedType, value: Any, attr: str) -
     place, k = typ.entries[attr]
     number = ir.PointerType(context.get_data_type(typ.types[attr]))
     array = builder.inttoptr(_word(builder, value, WORDS * place), number)
-    return builder.gep(array, [ir.Constant(ir.IntType(64), k)])
+    return builder.gep(array, [ir.Constant(WORD, k)])
 
 
 @lower_setattr_generic(PackedType)

@@ -128,12 +128,18 @@ def evaluate_inside(s, r, t, y, yd, kept):
         if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
             return
     copy_to(kept, y)
-    close_positions(s, t, y, CLOSED * s.size, NEWTON)
-    poses_and_rows(s, t, y)
-    project_velocities(s, y)
+    bring_inside(s, t, y)
     if s.near_rows > 0.0 and elsewhere(s, y, kept):
         copy_to(y, kept)
     evaluate_to_measure(s, t, y, yd)
+
+
+@internal
+def bring_inside(s, t, y):
+    """Bring a state inside a step to the rows, its velocities too, as closely as rounding lets."""
+    close_positions(s, t, y, CLOSED * s.size, NEWTON)
+    poses_and_rows(s, t, y)
+    project_velocities(s, y)
 
 
 @internal
@@ -145,9 +151,7 @@ def evaluate_stage(s, t, y, yd):
     """
     evaluate(s, t, y, yd)
     if s.near_rows > 0.0 and s.stabilisation != NONE and smallest_pivot(s) < DOUBTFUL:
-        close_positions(s, t, y, CLOSED * s.size, NEWTON)
-        poses_and_rows(s, t, y)
-        project_velocities(s, y)
+        bring_inside(s, t, y)
         evaluate_to_measure(s, t, y, yd)
 
 
