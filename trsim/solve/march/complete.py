@@ -54,7 +54,9 @@ from trsim.solve.march.watch import take_sides
 from trsim.solve.march.works import exchanged
 
 # what `complete` made of a trial step
-SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED, WOUND, LOOSE = range(8)
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED, WOUND, LOOSE, AT_ROW = range(
+    9
+)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
@@ -88,7 +90,7 @@ def complete(s, r, b, setting, method):
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
-    (accelerations inside it are not right; the same).
+    (accelerations inside it are not right; the same) or AT_ROW (to end b.until after its start).
     """
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
@@ -141,7 +143,7 @@ def complete(s, r, b, setting, method):
     if due(r, setting, t1):
         first = r.rows
         if not rows_until(s, r, b, setting, method):
-            return WORTHLESS
+            return undone(r, worst, worst_rate, AT_ROW) if b.until > 0.0 else WORTHLESS
         for k in range(first, r.rows):
             row, b.firm[0] = b.rows[k], b.row_firm[k]
             call_sample(method[SAMPLE_AT], s, r, b, setting, method, row[0], row[1:])

@@ -26,6 +26,7 @@ from trsim.solve.march.calls import (
     method_row,
 )
 from trsim.solve.march.complete import (
+    AT_ROW,
     LOOSE,
     OF_LIMITS,
     SMALLEST,
@@ -90,6 +91,7 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 LONGER = 6.0  # times the step before: the next one at most
 AIM = 0.9  # times the step that would just meet the error allowed
 STRETCH = 1.05  # times the step as controlled: what may be added to end where it is to end
+TO_ROW = 3  # why a trial was rejected: see after_rejection
 TIGHTER = 0.7  # of a step whose inside is not right, and whose end is
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
@@ -184,6 +186,10 @@ def march(s, r, b, setting, methods, most):
             continue
         if outcome == WOUND and setting.fixed_step > 0.0:
             return WINDS
+        if outcome == AT_ROW:
+            r.rejected += 1
+            r.after_rejection, r.h = TO_ROW, b.until
+            continue
         if outcome in (STRAYED, WOUND, LOOSE):
             r.rejected += 1
             r.after_rejection = 1
@@ -254,6 +260,8 @@ def next_step(s, r, b, setting, method):
     It never spans more output times than the buffer has room for, and ends where the time meets a
     corner of a function.  Of an explicit method it stays where what is stiff dies out.
     """
+    if r.after_rejection == TO_ROW:
+        return r.h
     left = next_instant(s, r.t, setting.t_end) - r.t
     most = min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
     if setting.fixed_step > 0.0:

@@ -1,8 +1,14 @@
 """Output rows inside a step: its channels at the times that are due."""
 
+from trsim.elements.scene import PROJECTION
 from trsim.kernels.vectors import all_finite, copy_to, internal
-from trsim.solve.march.calls import LOOK_AT, call_look
+from trsim.solve.march.calls import LOOK_AT, STEP_AT, call_look
 from trsim.solve.march.dense_output import measure_inside
+
+SOON = 0.05  # of a step: a row so near to its start is as right as that
+# a pivot at which the dense output's error is felt a hundredfold; long steps of loose tolerances,
+# from the one there on, may reach past such a place and are further off
+FELT, LOOSE, MORE = 2e-5, 1e-6, 0.2
 
 
 @internal
@@ -21,9 +27,11 @@ def at_end(t_o, t1):
 def rows_until(s, r, b, setting, method):
     """Write the output rows of the step at hand; the one at its end is in b.out.
 
-    Returns False, and writes none of them, where a value is not finite.
+    Returns False, and writes none of them, where a value is not finite, or where rows of joints
+    nearly depend on each other: what the dense output is off by is felt 1 / pivot times there, so
+    the step is to end at that row, b.until after its start.
     """
-    rows, next_row = r.rows, r.next_row
+    rows, next_row, b.until = r.rows, r.next_row, 0.0
     while r.rows < b.rows.shape[0]:
         t_o = setting.every * r.next_row
         if t_o > b.t1 * (1.0 + 1e-15):
@@ -39,7 +47,13 @@ def rows_until(s, r, b, setting, method):
             b.row_firm[r.rows] = b.firm[0]
             if method[LOOK_AT] > 0:
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, 0)
-        if not all_finite(row):
+        felt = FELT * max(1.0, s.tolerance / LOOSE) ** MORE
+        inside = t_o - b.t > SOON * b.h and not at_end(t_o, b.t1)
+        chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
+        closed = s.stabilisation == PROJECTION  # else rows are closed inside steps only
+        if inside and chosen and closed and b.row_firm[r.rows] < felt:
+            b.until = t_o - b.t
+        if not all_finite(row) or b.until > 0.0:
             r.rows, r.next_row, r.opened = rows, next_row, 0
             return False
         r.rows += 1

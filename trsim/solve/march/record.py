@@ -166,7 +166,9 @@ class Record(Packed):
     step_rows: I8
     event_rows: I8
     dense_built: I8
-    after_rejection: I8  # 1 the last trial was rejected, 2 because it was not finite
+    after_rejection: (
+        I8  # 1 the last trial was rejected, 2 it was not finite, 3 it is to end at a row
+    )
     same_time: I8  # events in a row without time passing
     method: I8  # which of the methods makes the steps
     method_switches: I8  # changes of method
@@ -268,6 +270,7 @@ class Buffers(Packed):
     h: F8  # s, its length; what its dense output is made with
     t1: F8  # s, its end
     projected: F8  # J, what the projection there gave
+    until: F8  # s, after its start: the row that it is to end at, 0: none     output_rows.py
     doubt: F8  # what stands for the last divided difference in the error of a polynomial
     count: I1  # and the whole ones
     interpolate: I8  # address of what evaluates the dense output
