@@ -19,6 +19,7 @@ from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.kernels.packed import f8
 from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import copy_to, internal
+from trsim.solve.march.accelerations import held
 from trsim.solve.march.calls import DENSE
 from trsim.solve.march.record import NO_JACOBIAN, OLD, SETTINGS
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
@@ -47,6 +48,7 @@ from trsim.solve.methods.radau import (
     collocation,
     guess,
     norm,
+    of_accelerations,
     of_works,
 )
 from trsim.solve.methods.radau_tableau import A, C, E
@@ -207,7 +209,7 @@ def newton(s, r, b, setting, t, h, stabilised):
 @internal
 def estimate(s, r, b, setting, t, h):
     """Error of order 3 as in radau.py: (GAMMA/h - J)^-1 of (f(y) + sum E_i Z_i / h), the real
-    system; filtered once more if large."""
+    system; filtered once more if large.  Of accelerations as in radau.py too."""
     K, n, weight, g = b.K, r.y.size, b.weight, eigenvalue(0, h)
     e, error, booked = K[F], 0.0, 0.0
     copy_to(e, r.yd)
@@ -227,6 +229,8 @@ def estimate(s, r, b, setting, t, h):
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
+    if held(s):
+        error = max(error, of_accelerations(s, r, b, setting, h))
     return max(error, booked, 1e-10)
 
 
