@@ -1155,3 +1155,22 @@ def drifting(rng: Any) -> Drawn:
     drawn.scene.rates = rate, rate * pick(rng, 1.0, 1.0, 0.5, 2.0)
     drawn.scene.settings.pop("formulation", None)  # ggl has a stabilisation of its own
     return drawn
+
+
+@family
+def stabilised(rng: Any) -> Drawn:
+    """Radau on the stabilised equations, as it solves many bodies; with small, fast vibrations."""
+    kind = pick(
+        rng, "towed", "towed", "towed", "chain_planar", "chain_spatial", "loop", "redundant"
+    )
+    drawn = FAMILIES[kind](rng)
+    s = drawn.scene
+    if kind == "towed":
+        v = [np.r_[b.velocity, b.spin] for b in s.bodies]
+        shaken = float(np.abs(v).max()) * decades(rng, 1e-4, 0.1)
+        way = np.array([1, 1, 0, 0, 0, 1.0]) if s.flat else np.ones(6)
+        given(s, [a + shaken * way * rng.normal(size=6) for a in v])
+    s.method, s.step = "radau", None
+    s.tolerance = max(s.tolerance, 1e-10)
+    s.settings["formulation"] = "ggl"
+    return drawn

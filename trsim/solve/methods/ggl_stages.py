@@ -137,6 +137,20 @@ def unconstrained(s, r, b, sides, mu):
 
 
 @internal
+def constrained(s, b, sides):
+    """Right-hand sides of `solved` whose solution is along the rows, of a real system."""
+    f, _, p, q, u, w = sides
+    x, dx = b.slope[0], b.move[0]
+    for j in range(s.m):
+        p[j] = q[j] = u[j] = w[j] = 0.0
+    for k in range(s.n_v):
+        dx[k] = f[s.n_q + k]
+    mass_times(s, dx, x)
+    for k in range(s.n_v):
+        f[s.n_q + k] = x[k]
+
+
+@internal
 def transformed(x, y, z, n):
     """(x, y, z) <- T^-1 (x, y, z)."""
     for k in range(n):

@@ -20,16 +20,7 @@ from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, internal
-from trsim.solve.march.accelerations import (
-    EACH,
-    ROUNDED,
-    doubted,
-    frequency,
-    held,
-    in_units,
-    largest,
-    share,
-)
+from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import jitter, noted, to_look
@@ -295,8 +286,6 @@ def of_accelerations(s, r, b, setting, h):
             rate = LEAVING[0] * K[Z, c] + LEAVING[1] * K[Z + 1, c] + LEAVING[2] * K[Z + 2, c]
             most = max(most, s.scale[c] * abs(rate) / h)
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
-    # stages are on the rows, and what a state is off them is rounding
-    unseen_place, unseen_rate = (ROUNDED * s.size) ** 2, (ROUNDED * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     off = bent = 0.0
     moved, begins = 1e-300, r.history != BEHIND and r.old_h == 0.0
@@ -314,10 +303,7 @@ def of_accelerations(s, r, b, setting, h):
         q, v = q + of_q, v + of_v
         if turned > 0.0:
             ww = frequency(speed * turned / h**2, length * placed, h)
-            x, w = length * x, speed * w
-            x = x if x > unseen_place else 0.0
-            w = w if w > unseen_rate else 0.0
-            by = ww * x + w
+            by = ww * length * x + speed * w
             moved, bent = moved + by, bent + ww * by
             off += ww * by
             off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)

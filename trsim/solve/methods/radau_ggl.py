@@ -28,6 +28,7 @@ from trsim.solve.methods.ggl_newton import eigenvalue, solved, sparse_factors
 from trsim.solve.methods.ggl_stages import (
     LAM,
     MU,
+    constrained,
     moved_on,
     nothing,
     residuals,
@@ -209,7 +210,8 @@ def newton(s, r, b, setting, t, h, stabilised):
 @internal
 def estimate(s, r, b, setting, t, h):
     """Error of order 3 as in radau.py: (GAMMA/h - J)^-1 of (f(y) + sum E_i Z_i / h), the real
-    system; filtered once more if large.  Of accelerations as in radau.py too."""
+    system; filtered once more if large.  Of accelerations as in radau.py, of what is along the rows
+    alone: across them they are solved for from stages that are on them."""
     K, n, weight, g = b.K, r.y.size, b.weight, eigenvalue(0, h)
     e, error, booked = K[F], 0.0, 0.0
     copy_to(e, r.yd)
@@ -218,6 +220,7 @@ def estimate(s, r, b, setting, t, h):
     for turn in range(2):
         for c in range(n):
             e[c] += K[F + 1, c]
+        copy_to(K[F + 2], e)
         nothing(s, K)
         unconstrained(s, r, b, sides(K, 0), g)
         solved(s, r, b, sides(K, 0), g, 0.0)
@@ -230,6 +233,9 @@ def estimate(s, r, b, setting, t, h):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
     if held(s):
+        copy_to(e, K[F + 2])
+        constrained(s, b, sides(K, 0))
+        solved(s, r, b, sides(K, 0), g, 1.0)
         error = max(error, of_accelerations(s, r, b, setting, h))
     return max(error, booked, 1e-10)
 
