@@ -8,7 +8,8 @@ book and small residuals may be wrong in all of its numbers.
 Of rows open by much less the way is sure, but not all of its numbers: what is open by e moves the
 mechanism by e / delta, and since delta changes with the motion, accelerations by e / delta^3 of the
 square of the rates.  What they would be with the joints closed is looked at where delta is small,
-up to where all that is measured is closed anyway (DOUBTFUL, land.py).
+with Baumgarte's stabilisation up to where all that is measured is closed anyway (DOUBTFUL of
+land.py).
 """
 
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from trsim.assemble.linear import TINY, smallest_pivot
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import DOUBTFUL, poses_and_rows, project_velocities
 from trsim.elements.contract import compiled
+from trsim.elements.scene import NONE
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.diagnose.locked import dependent
 from trsim.solve.march.calls import LOOK
@@ -43,7 +45,8 @@ def look_at_drift(s, r, b, setting, t, step):
             worst = max(worst, opening(s, row))
         if worst > AS_FAR * pivot and worst > AS_FAR * plain(s):
             r.lost = 1
-        felt = int(DOUBTFUL < pivot <= NEARLY and worst > LITTLE * s.tolerance)
+        least = 0.0 if s.stabilisation == NONE else DOUBTFUL
+        felt = int(least < pivot <= NEARLY and worst > LITTLE * s.tolerance)
     went = look(s, r, b, setting, t, step)
     if felt > 0:
         if went > 0:
