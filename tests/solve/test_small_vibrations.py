@@ -14,6 +14,7 @@ import pytest
 
 from trsim.solve.diagnose.doubts import doubts
 
+from ..overconstrained import METHODS
 from ..runs import run
 from ..sizes import size
 
@@ -99,11 +100,7 @@ def drawn(seed, faint=False):
 
 def by(method):
     """What is set for a method, "ggl" the one Radau takes for many bodies."""
-    return (
-        ("solver.method=radau", "solver.formulation=ggl")
-        if method == "ggl"
-        else (f"solver.method={method}",)
-    )
+    return METHODS["ggl"] if method == "ggl" else (f"solver.method={method}",)
 
 
 def off(seed, method):
@@ -126,17 +123,9 @@ def off_of(r, axis, ways, exact):
 @pytest.mark.parametrize("first", range(0, SEEDS, TOGETHER))
 @pytest.mark.parametrize(
     "method",
-    [
-        "dop853",
-        "auto",
-        "radau",
-        "ggl",
-        "generalized_alpha",
-        "scipy:BDF",
-        "scipy:RK45",
-        "scipy:Radau",
-    ],
-)
+    ["dop853", "auto", "radau", "ggl", "generalized_alpha",
+     "scipy:BDF", "scipy:RK45", "scipy:Radau"],
+)  # fmt: skip
 def test_a_small_vibration_beside_a_larger_motion(method, first):
     worst = {seed: off(seed, method) for seed in range(first, first + TOGETHER)}
     wrong = {seed: x for seed, x in worst.items() if not x.max() < ALLOWED}

@@ -54,9 +54,8 @@ from trsim.solve.march.watch import take_sides
 from trsim.solve.march.works import exchanged
 
 # what `complete` made of a trial step
-SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS, AT_INSTANT, STRAYED, WOUND, LOOSE, AT_ROW = range(
-    9
-)
+SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = range(4)
+AT_INSTANT, STRAYED, WOUND, LOOSE, AT_ROW = range(4, 9)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave

@@ -50,6 +50,7 @@ from trsim.solve.march.record import (
     CRAWL,
     CRAWLED_MOST,
     CRAWLING,
+    DIVERGED,
     DONE,
     FASTEST,
     FULL,
@@ -62,8 +63,10 @@ from trsim.solve.march.record import (
     PEAK_MAX,
     PEAK_MIN,
     RECORD,
+    REJECTED,
     SETTINGS,
     STEP_TOO_SMALL,
+    TO_ROW,
     TOO_FAST,
     WINDS,
 )
@@ -91,7 +94,6 @@ MAX_SAME_TIME = 1000  # events without progress: chatter
 LONGER = 6.0  # times the step before: the next one at most
 AIM = 0.9  # times the step that would just meet the error allowed
 STRETCH = 1.05  # times the step as controlled: what may be added to end where it is to end
-TO_ROW = 3  # why a trial was rejected: see after_rejection
 TIGHTER = 0.7  # of a step whose inside is not right, and whose end is
 TURNED_BACK, SHORTEN = 1e-6, 0.2  # of a step: ends at a corner it began on; see `shorten`
 
@@ -149,7 +151,7 @@ def march(s, r, b, setting, methods, most):
             call_look_stiff(method[STIFF_AT], s, r, b)
         h = next_step(s, r, b, setting, method)
         if h < SMALLEST * 2.2e-16 * max(abs(t), setting.t_end * 1e-3):
-            return NOT_FINITE if r.after_rejection == 2 else STEP_TOO_SMALL
+            return NOT_FINITE if r.after_rejection == DIVERGED else STEP_TOO_SMALL
         if crawls(r, setting, h):
             return CRAWL
         weights(s, r, b, setting, h)
@@ -166,7 +168,7 @@ def march(s, r, b, setting, methods, most):
             r.rejected += 1
             if error < NO_STEP and to_look(r, h):
                 call_look_closer(method[ROUNDING_AT], s, r, b, setting, method, h)
-            r.after_rejection = 1 if isfinite(error) else 2
+            r.after_rejection = REJECTED if isfinite(error) else DIVERGED
             if setting.fixed_step > 0.0:
                 return NOT_FINITE
             shorter = max(0.2, 0.9 * error ** (-1.0 / method[ESTIMATE_AT]))
@@ -181,7 +183,7 @@ def march(s, r, b, setting, methods, most):
             if setting.fixed_step > 0.0:
                 return NOT_FINITE
             r.rejected += 1
-            r.after_rejection = 2
+            r.after_rejection = DIVERGED
             r.h = 0.1 * h
             continue
         if outcome == WOUND and setting.fixed_step > 0.0:
@@ -192,7 +194,7 @@ def march(s, r, b, setting, methods, most):
             continue
         if outcome in (STRAYED, WOUND, LOOSE):
             r.rejected += 1
-            r.after_rejection = 1
+            r.after_rejection = REJECTED
             r.h = (TIGHTER if outcome == LOOSE else 0.3) * h
             continue
         accepted += 1

@@ -24,6 +24,16 @@ def at_end(t_o, t1):
 
 
 @internal
+def felt(s, b, setting, method):
+    """Whether the row just measured inside the step feels the error of the dense output so much
+    that the step is to end there, and may."""
+    if b.firm[0] >= FELT * max(1.0, s.tolerance / LOOSE) ** MORE:
+        return False
+    chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
+    return chosen and s.stabilisation == PROJECTION  # else rows are closed inside steps only
+
+
+@internal
 def rows_until(s, r, b, setting, method):
     """Write the output rows of the step at hand; the one at its end is in b.out.
 
@@ -47,12 +57,8 @@ def rows_until(s, r, b, setting, method):
             b.row_firm[r.rows] = b.firm[0]
             if method[LOOK_AT] > 0:
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, 0)
-        felt = FELT * max(1.0, s.tolerance / LOOSE) ** MORE
-        inside = t_o - b.t > SOON * b.h and not at_end(t_o, b.t1)
-        chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
-        closed = s.stabilisation == PROJECTION  # else rows are closed inside steps only
-        if inside and chosen and closed and b.row_firm[r.rows] < felt:
-            b.until = t_o - b.t
+            if t_o - b.t > SOON * b.h and felt(s, b, setting, method):
+                b.until = t_o - b.t
         if not all_finite(row) or b.until > 0.0:
             r.rows, r.next_row, r.opened = rows, next_row, 0
             return False

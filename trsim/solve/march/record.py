@@ -7,6 +7,8 @@ from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
+# why a trial step was rejected: its error, a value that is not finite, or it is to end at a row
+REJECTED, DIVERGED, TO_ROW = 1, 2, 3
 
 # why the march returned
 DONE, FULL, STEP_TOO_SMALL, NOT_FINITE, CHATTER, PAUSE = 0, 1, 2, 3, 4, 5
@@ -166,9 +168,7 @@ class Record(Packed):
     step_rows: I8
     event_rows: I8
     dense_built: I8
-    after_rejection: (
-        I8  # 1 the last trial was rejected, 2 it was not finite, 3 it is to end at a row
-    )
+    after_rejection: I8  # why the last trial was rejected, see REJECTED; 0: it was not
     same_time: I8  # events in a row without time passing
     method: I8  # which of the methods makes the steps
     method_switches: I8  # changes of method

@@ -33,7 +33,7 @@ from trsim.kernels.packed import I1, f8
 from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.calls import NO_STEP, call_step
 from trsim.solve.march.norm import weight_of
-from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
+from trsim.solve.march.record import BUFFERS, RECORD, REJECTED, SETTINGS
 
 EPS = 2.2e-16
 APART = 32  # steps between two looks
@@ -87,7 +87,7 @@ def to_look(r, h):
     """Whether a trial that failed is to be looked at: one of many, where steps have been short for
     a while."""
     steps, failed = r.steps - r.looked, r.rejected - r.failed
-    second = r.after_rejection == 1
+    second = r.after_rejection == REJECTED
     if steps < APART or (MANY if second else MOST) * failed < steps:
         return False
     return stuck(r, h)

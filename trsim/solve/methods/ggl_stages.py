@@ -130,24 +130,28 @@ def unconstrained(s, r, b, sides, mu):
         a, c, size = mu.real, mu.imag, squared(mu)
         p[j] += r.at_state[k] * (f[i] * a + g[i] * c) / size
         q[j] += r.at_state[k] * (g[i] * a - f[i] * c) / size
-    mass_times(s, dx, x)
-    mass_times(s, dy, y)
-    for k in range(s.n_v):
-        f[s.n_q + k], g[s.n_q + k] = x[k], y[k]
+    as_forces(s, b, f)
+    as_forces(s, b, g)
 
 
 @internal
 def constrained(s, b, sides):
-    """Right-hand sides of `solved` whose solution is along the rows, of a real system."""
-    f, _, p, q, u, w = sides
-    x, dx = b.slope[0], b.move[0]
-    for j in range(s.m):
-        p[j] = q[j] = u[j] = w[j] = 0.0
+    """Right-hand sides of `solved`, of a real system, whose solution is along the rows."""
+    f, _, p, _, u, _ = sides
+    clear(p)
+    clear(u)
+    as_forces(s, b, f)
+
+
+@internal
+def as_forces(s, b, f):
+    """Rows of v in f from accelerations to forces."""
+    forces, accelerations = b.slope[0], b.move[0]
     for k in range(s.n_v):
-        dx[k] = f[s.n_q + k]
-    mass_times(s, dx, x)
+        accelerations[k] = f[s.n_q + k]
+    mass_times(s, accelerations, forces)
     for k in range(s.n_v):
-        f[s.n_q + k] = x[k]
+        f[s.n_q + k] = forces[k]
 
 
 @internal

@@ -220,7 +220,7 @@ def estimate(s, r, b, setting, t, h):
     for turn in range(2):
         for c in range(n):
             e[c] += K[F + 1, c]
-        copy_to(K[F + 2], e)
+        copy_to(K[F + 2], e)  # as it is unfiltered
         nothing(s, K)
         unconstrained(s, r, b, sides(K, 0), g)
         solved(s, r, b, sides(K, 0), g, 0.0)
