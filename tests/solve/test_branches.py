@@ -89,6 +89,27 @@ def test_a_row_exactly_where_branches_meet(method):
 
 
 @pytest.mark.parametrize("R", [ORDINARY, TILTED], ids=["plane", "tilted"])
+@pytest.mark.parametrize("method", ["dop853", "radau", "ggl"])
+@pytest.mark.parametrize("number", [2, 3])
+def test_rows_next_to_where_branches_meet(number, method, R):
+    """At constant speed nothing accelerates; rounding makes eps/d^3 of that at d from a flat place:
+    a row at the start, between others and at the end of a run was off by the largest of all."""
+    rate = 20.0
+    drive = f"drives: {{motor: {{joint: F0, velocity: {-rate}}}}}\noutput: {{every: "
+    wrong = {}
+    for past in (1e-5, 2e-5, 1e-4, 3e-4):
+        every = (np.pi / 2 + past) / rate
+        for tolerance in (1e-3, 1e-4, 1e-6):
+            sets = (*METHODS[method], f"solver.tolerance={tolerance}")
+            for angle, end in ((np.pi / 2, every), (np.pi / 2, 3 * every), (past, every)):
+                r = run(flat(number, f"{drive}{every!r}}}", R, angle=angle, end=end), *sets)
+                off = np.abs(spins(r, number, R)).max() / rate**2
+                if not off < 100.0 * tolerance:
+                    wrong[past, tolerance, angle, end] = off / tolerance
+    assert not wrong
+
+
+@pytest.mark.parametrize("R", [ORDINARY, TILTED], ids=["plane", "tilted"])
 @pytest.mark.parametrize("method", ["dop853", "radau"])
 def test_steps_go_past_where_branches_meet(method, R):
     """Two cranks that turn about 25 times: no step ends close to a flat place because it is one,

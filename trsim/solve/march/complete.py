@@ -40,7 +40,7 @@ from trsim.solve.march.dense_output import build, measure_inside, move_end
 from trsim.solve.march.earlier import keep_step
 from trsim.solve.march.events import SAME
 from trsim.solve.march.features import call_meet, next_instant
-from trsim.solve.march.land import land
+from trsim.solve.march.land import land, limits_to_measure
 from trsim.solve.march.norm import grow
 from trsim.solve.march.output_rows import at_end, due, rows_until
 from trsim.solve.march.passes import call_passes
@@ -128,9 +128,10 @@ def complete(s, r, b, setting, method):
                 b.t1 = reached(setting, b.t + theta * h)
                 b.projected = land(s, r, b, b.t1, b.y1, b.K[last])
     t1 = b.t1
+    b.firm[1] = firmness(s)
+    limits_to_measure(s, t1, b.y1, b.firm[1], b.rough[0])
     measure(s, t1, b.y1, r.work_projection + b.projected, r.energy_0)
     copy_to(b.out, s.out)
-    b.firm[1] = firmness(s)
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
     inside = due(r, setting, t1) and not at_end(setting.every * r.next_row, t1)

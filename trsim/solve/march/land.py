@@ -182,6 +182,14 @@ def evaluate_to_measure(s, t, y, yd):
 
 
 @internal
+def limits_to_measure(s, t, y, pivot, room):
+    """Accelerations of the state y, which was evaluated last, become limits where its own are
+    rounding, eps/d^3.  The step that begins there keeps its own."""
+    if s.near < pivot <= s.near_rows:
+        evaluate_to_measure(s, t, y, room)
+
+
+@internal
 def off_the_rows(s, r, pivot):
     """Whether what the last state is off the rows by is felt beyond the tolerance.
 

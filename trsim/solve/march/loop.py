@@ -39,6 +39,7 @@ from trsim.solve.march.complete import (
     complete,
 )
 from trsim.solve.march.features import next_instant
+from trsim.solve.march.land import limits_to_measure
 from trsim.solve.march.norm import units, weights
 from trsim.solve.march.peaks import call_finish, finish, sample
 from trsim.solve.march.phases import evaluate_all
@@ -78,7 +79,7 @@ from trsim.solve.march.rounding import (
     remember,
     to_look,
 )
-from trsim.solve.march.samples import restart
+from trsim.solve.march.samples import firmness, restart
 from trsim.solve.march.stiffness import (
     call_look_stiff,
     longest_calm,
@@ -326,6 +327,7 @@ def begin(s, r, b, setting):
     evaluate_all(s, r, setting, 0.0)
     take_sides(s, r)
     units(s, r)
+    limits_to_measure(s, 0.0, r.y, firmness(s), b.rough[0])
     measure(s, 0.0, r.y, 0.0, 0.0)
     copy_to(b.out, s.out)
     r.energy_0 = b.out[s.n_out - 1]

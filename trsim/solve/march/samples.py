@@ -139,9 +139,8 @@ def extreme(r, c, t, value, pivot):
 @internal
 def firmness(s):
     """How far rows are from depending on each other at the last evaluation: where they nearly do,
-    what they carry is chance (chance.py).  1 of open chains, which have no such places, and where
-    no channel is told."""
-    return smallest_pivot(s) if s.near_rows > 0.0 and s.sought.size > 0 else 1.0
+    what they carry is chance (chance.py).  1 of open chains, which have no such places."""
+    return smallest_pivot(s) if s.near_rows > 0.0 else 1.0
 
 
 # --- polynomials between two neighbours: `ahead` samples are newer than the later of them --------
