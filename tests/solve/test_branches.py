@@ -109,6 +109,33 @@ def test_rows_next_to_where_branches_meet(number, method, R):
     assert not wrong
 
 
+EVENTS = {
+    "set": "events: {{a: {{when: t, value: {}, do: {{set: {{motor: {{velocity: -20.0}}}}}}}}}}",
+    "load": "forces: {{l: {{type: applied_load, body: crank0, torque: '1e-30*(t > {})', "
+    "direction: [0, 0, 1]}}}}",
+}
+
+
+@pytest.mark.parametrize("R", [ORDINARY, TILTED], ids=["plane", "tilted"])
+@pytest.mark.parametrize("method", ["dop853", "radau", "ggl"])
+@pytest.mark.parametrize("event", EVENTS.values(), ids=EVENTS)
+def test_extremes_behind_events_next_to_where_branches_meet(event, method, R):
+    """The same behind an event that changes nothing: what it leaves behind is an extreme, too."""
+    rate = 20.0
+    drive = f"drives: {{motor: {{joint: F0, velocity: {-rate}}}}}\noutput: {{every: 0.5}}\n"
+    wrong = {}
+    for past in (-1e-5, 1e-5, 2e-5):
+        more = drive + event.format(repr((np.pi / 2 + past) / rate))
+        for tolerance in (1e-3, 1e-4):
+            sets = (*METHODS[method], f"solver.tolerance={tolerance}")
+            r = run(flat(3, more, R, angle=np.pi / 2, end=0.2), *sets)
+            place = r.place["crank1.angular_acceleration"][0]
+            off = np.abs(r.outcome.peaks[place : place + 3, [0, 2]]).max() / rate**2
+            if not off < 100.0 * tolerance:
+                wrong[past, tolerance] = off / tolerance
+    assert not wrong
+
+
 @pytest.mark.parametrize("R", [ORDINARY, TILTED], ids=["plane", "tilted"])
 @pytest.mark.parametrize("method", ["dop853", "radau"])
 def test_steps_go_past_where_branches_meet(method, R):

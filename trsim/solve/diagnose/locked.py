@@ -11,17 +11,25 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import derivative, poses
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.reduce import closest, displaced, jacobian, world_rates
-from trsim.elements.scene import Model, workspace
+from trsim.assemble.reduce import (
+    closest,
+    displaced,
+    jacobian,
+    roots,
+    times_roots,
+    world_rates,
+)
+from trsim.elements.scene import Model, Scene, workspace
 
 Array = NDArray[np.float64]
 
 NEARLY = 1e-3  # smallest singular value, of the largest: a place that steps were too short to pass
 AHEAD = 0.02  # rad, or of the mechanism's size: how far is looked for a way on
 CLOSED = 1e-9  # of the mechanism's size
-# of that way: between branches that nearly meet a motion turns by up to a right angle, and a tenth
-# of it or less may lie along the branch it goes on
-PARTLY = 0.05
+PARTLY = 0.5  # of that way: a place found nearer is the one it stands at
+BACK = -0.9  # cosine: between branches that nearly meet a motion may turn round, but not go back
+TURNS = np.pi * np.array([0.0, 0.5, -0.5, 0.25, -0.25, 0.75, -0.75])  # from the velocity
+PAIRS = ((2, 1), (0, 2), (1, 0))
 TAKES_PART = 0.1  # of the largest entry of the dependent combination of rows
 
 
@@ -50,16 +58,47 @@ def goes_on(model: Model, t: float, y: Array) -> bool:
         return False
     w, yd = workspace(model), np.zeros_like(y)
     derivative(w, t, y, yd)
-    before, rates = w.X[1:, :3].copy(), world_rates(model, y)
     unit = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)
-    d = AHEAD / max(float(np.max(np.abs(rates / unit), initial=0.0)), 1e-300)
-    ahead = displaced(model, y, d * rates)
-    ahead[model.n_q + model.n_v :] += d * yd[model.n_q + model.n_v :]  # where drives are
-    near, left = closest(model, t + d, ahead)
-    poses(w, near)
-    wanted = d * rates.reshape(-1, 6)[:, :3]
-    along = float(np.sum((w.X[1:, :3] - before) * wanted))
-    return left <= CLOSED * model.size and along > PARTLY * float(np.sum(wanted * wanted))
+    speeds = world_rates(model, y) / unit
+    if not np.any(speeds):
+        return False
+    d = AHEAD / float(np.linalg.norm(speeds))
+    before, velocity = places(w), speeds / np.linalg.norm(speeds)
+    for way in ways_on(model, t, y, velocity, unit):
+        start = displaced(model, y, AHEAD * way * unit)
+        start[model.n_q + model.n_v :] += d * yd[model.n_q + model.n_v :]  # where drives are
+        near, left = closest(model, t + d, start)
+        poses(w, near)
+        moved = displacement(before, places(w)) / unit
+        far = float(np.linalg.norm(moved))
+        along = float(moved @ velocity)
+        if left <= CLOSED * model.size and far > PARTLY * AHEAD and along > BACK * far:
+            return True
+    return False
+
+
+def ways_on(model: Model, t: float, y: Array, velocity: Array, unit: Array) -> Array:
+    """Unit vectors (7, 6 (n-1)) to look along: the velocity's, then others in the plane of it and
+    of the motion that the rows leave free but for their nearly dependent combination."""
+    C = roots(model, y, model.d == 3)
+    rows = times_roots(jacobian(model, t, y)[2], C)
+    _, _, free = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+    motion = np.einsum("fij,fj->fi", C, free[model.m - 1].reshape(C.shape[:2])).ravel() / unit
+    across = motion - (motion @ velocity) * velocity
+    across /= max(float(np.linalg.norm(across)), 1e-300)
+    return np.array([np.cos(x) * velocity + np.sin(x) * across for x in TURNS])
+
+
+def places(work: Scene) -> tuple[Array, Array]:
+    """Places (n-1, 3) and attitudes (n-1, 3, 3) of the moving frames, copied."""
+    return work.X[1:, :3].copy(), work.X[1:, 3:].reshape(-1, 3, 3).copy()
+
+
+def displacement(before: tuple[Array, Array], after: tuple[Array, Array]) -> Array:
+    """The displacement (6 (n-1)) from one place to another near it."""
+    turn = 0.5 * np.einsum("fij,fkj->fik", after[1], before[1])
+    spin = np.stack([(turn - turn.transpose(0, 2, 1))[:, i, j] for i, j in PAIRS], axis=1)
+    return np.concatenate([after[0] - before[0], spin], axis=1).ravel()
 
 
 def dependent(mechanism: Mechanism, t: float, y: Array) -> tuple[list[str], float]:

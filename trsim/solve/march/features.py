@@ -9,7 +9,6 @@ from math import nan
 
 from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
 from trsim.assemble.features import BEHIND, DRIVE, FIRST, PISTON, RATE_JUMP, call_hold, passed
-from trsim.assemble.outputs import measure
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.elements.contract import SCENE, SINCE, compiled
 from trsim.elements.prescribed import AnyDrive
@@ -34,7 +33,7 @@ from trsim.solve.march.record import (
     NO_JACOBIAN,
     RECORD,
 )
-from trsim.solve.march.samples import restart
+from trsim.solve.march.samples import behind
 from trsim.solve.march.works import LONG
 
 MEET = types.int64(SCENE, RECORD, BUFFERS, f8, f8)
@@ -163,8 +162,7 @@ def tell(r, b, first, done):
 @internal
 def other_side(s, r, b, t1):
     """What the end of a step leaves behind does not hold across a corner."""
-    measure(s, t1, r.y, r.work_projection, r.energy_0)
-    restart(s, r, b, t1)
+    behind(s, r, b, t1)
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
     r.past_error = 0.0
     r.worked[0, LONG] = 0.0

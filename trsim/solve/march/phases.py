@@ -4,7 +4,6 @@ import numpy as np
 
 from trsim.assemble.equations import corners, evaluate, gaps, poses
 from trsim.assemble.features import call_hold
-from trsim.assemble.outputs import measure
 from trsim.elements.contract import (
     BRANCH,
     CONTACT,
@@ -38,7 +37,7 @@ from trsim.solve.march.record import (
     SEPARATION,
     SETTINGS,
 )
-from trsim.solve.march.samples import restart
+from trsim.solve.march.samples import behind
 from trsim.solve.march.watch import fire, watch
 
 TINY = 1e-300
@@ -113,8 +112,7 @@ def change_phases(s, r, b, setting, t1):
     for c in range(s.contact.size):
         # inside its new branch, whatever rounding says
         r.corner[c] = min(s.corner[s.contact[c], 0], -TINY)
-    measure(s, t1, r.y, r.work_projection, r.energy_0)
-    restart(s, r, b, t1)
+    behind(s, r, b, t1)
     if h < 1e300:
         r.h = min(r.h, h)
     if r.freed > 0:  # steps are again as they were before all this
@@ -176,5 +174,4 @@ def settle(s, r, b, setting):
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
     r.stiff, r.not_stiff = 0, 0
     r.past_error, r.factored_h = 0.0, 0.0
-    measure(s, r.t, r.y, r.work_projection, r.energy_0)
-    restart(s, r, b, r.t)
+    behind(s, r, b, r.t)

@@ -13,13 +13,15 @@ older ones:
 Divided differences do not depend on the order of their places: as long as nothing was found in
 between, all but the first two are those kept, wherever the interval lies.
 
-Samples on two sides of an event have nothing to do with each other: `restart`.
+Samples on two sides of an event have nothing to do with each other: `behind`.
 """
 
 from math import sqrt
 
 from trsim.assemble.linear import smallest_pivot
+from trsim.assemble.outputs import measure
 from trsim.kernels.vectors import internal
+from trsim.solve.march.land import limits_to_measure
 from trsim.solve.march.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
 from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, POINTS
 
@@ -34,8 +36,16 @@ TURNED = 4.0
 
 
 @internal
+def behind(s, r, b, t):
+    """Begin anew with the channels behind an event, of the state r.y, which was evaluated last."""
+    limits_to_measure(s, t, r.y, firmness(s), b.rough[0])
+    measure(s, t, r.y, r.work_projection, r.energy_0)
+    restart(s, r, b, t)
+
+
+@internal
 def restart(s, r, b, t):
-    """Begin anew with the channels in s.out, those behind an event."""
+    """Begin anew with the channels in s.out."""
     gather(s, b.full, s.out, r.sample[0])
     b.firm[0] = firmness(s)
     known_extremes(s, r, b, t)

@@ -27,7 +27,6 @@ Nothing here has a part in the motion: a run makes the same steps with its secti
 
 from math import isfinite, log10
 
-from trsim.assemble.equations import evaluate
 from trsim.assemble.outputs import measure
 from trsim.assemble.sections import (
     AFTER,
@@ -48,6 +47,7 @@ from trsim.solve.march.calls import LAST_AT, SECTIONS
 from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME
 from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.land import evaluate_to_measure
 from trsim.solve.march.record import (
     DECADES,
     END_RATE,
@@ -191,7 +191,7 @@ def ends_known(s, r, b, last, event):
     if b.built > 0:
         scratch = b.K[1]
     if lost:
-        evaluate(s, t, r.y, scratch)
+        evaluate_to_measure(s, t, r.y, scratch)
         measure(s, t, r.y, done, energy_0)
         for k in range(s.section.shape[0]):
             if crosses_after(s, k, t1) and r.section[k, KNOWN] == 0.0:
@@ -201,7 +201,7 @@ def ends_known(s, r, b, last, event):
         ahead = AHEAD * (t1 - t)
         for c in range(b.y2.size):
             b.y2[c] = b.y1[c] + ahead * b.K[last, c]
-        evaluate(s, t1 + ahead, b.y2, scratch)
+        evaluate_to_measure(s, t1 + ahead, b.y2, scratch)
         measure(s, t1 + ahead, b.y2, done, energy_0)
         for k in range(s.section.shape[0]):
             if s.section[k, KIND] == CROSSING:
