@@ -59,7 +59,7 @@ def test_rows_open_by_more_than_branches_are_apart_end_a_run(method, number):
 
 def test_without_any_stabilisation_it_is_the_same():
     r = turned(2, RATE, "solver.stabilisation=none", tolerance=1e-6, fails=True)
-    assert "branches of the motion meet" in r.outcome.reason
+    assert re.search("branches of the motion (nearly )?meet", r.outcome.reason)
     assert "baumgarte" not in r.outcome.reason
 
 
@@ -135,12 +135,13 @@ def test_rows_inside_steps_feel_drift_alone(rates):
     assert of_plate(r) < 100 * 1e-8
 
 
-def test_accelerations_that_feel_open_joints_say_so_however_close_to_such_a_place():
-    """Without stabilisation nothing closes the rows, at the smallest pivots either."""
-    silent, wrong = {}, 0
+def test_accelerations_that_feel_open_joints_end_a_run_that_closes_none():
+    """Without stabilisation nothing closes the rows, at the smallest pivots either, and what is
+    felt between the ends of steps may be more."""
+    ended = 0
     for seed in (0, 41, 47, 50):
         r, true = (
-            run(drawn(seed)[0], *sets)
+            run(drawn(seed)[0], *sets, fails=None)
             for sets in (
                 ("solver.stabilisation=none", "solver.tolerance=1e-5"),
                 ("solver.method=dop853", "solver.tolerance=1e-7"),
@@ -148,10 +149,11 @@ def test_accelerations_that_feel_open_joints_say_so_however_close_to_such_a_plac
         )
         names = [f"{body}.angular_acceleration" for body in "abc"]
         most = max(np.abs(true[name]).max() for name in names)
-        off = max(np.abs(r[name] - true[name]).max() for name in names) / most
-        told = list(of_drift(r.scenario, r.mechanism, r.outcome.record))
-        wrong += off > 1e-3
-        if off > 1e-3 and not told:
-            silent[seed] = off
-    assert not silent
-    assert wrong > 1  # else nothing was tested
+        rows = len(r.t)
+        off = max(np.abs(r[name] - true[name][:rows]).max() for name in names) / most
+        assert off < 1e-3
+        if r.outcome.status == "failed":
+            assert "open joints change accelerations" in r.outcome.reason
+            assert "stabilisation: projection" in r.outcome.reason
+            ended += 1
+    assert ended > 1  # else nothing was tested

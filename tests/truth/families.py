@@ -1175,3 +1175,13 @@ def stabilised(rng: Any) -> Drawn:
         way = np.array([1, 1, 0, 0, 0, 1.0]) if s.flat else np.ones(6)
         given(s, [a + shaken * way * rng.normal(size=6) for a in v])
     return drawn
+
+
+@family
+def unheld(rng: Any) -> Drawn:
+    """No stabilisation: joints open as errors of accelerations add up."""
+    kind = pick(rng, "chain_planar", "chain_spatial", "loop", "loop", "redundant", "singular")
+    drawn = FAMILIES[kind](rng)
+    drawn.scene.settings.pop("formulation", None)
+    drawn.scene.settings["stabilisation"] = "none"
+    return drawn

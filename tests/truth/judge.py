@@ -154,7 +154,8 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
     """The verdict, written into v."""
     v.exit, v.warnings = r.exit, r.warnings
     if r.exit in (3, 4, 5):
-        chance = scene.rates is not None and "branches of the motion meet" in r.reason
+        drifts = scene.rates is not None or scene.settings.get("stabilisation") == "none"
+        chance = drifts and re.search("branches of the motion (nearly )?meet", r.reason)
         v.verdict, v.why = TOLD if chance else REFUSED, r.reason
         return v
     if r.exit:
