@@ -58,10 +58,11 @@ def derivative(s, t, y, yd):
             if contradictory(s, s.x) and masses_too_unequal(s):
                 s.status[3] += 1
                 s.x[0] = nan
+            x, lam, phi_t = s.x, s.lam, s.phi_t
             for k in range(s.m):  # what follows in x is the motion of hubs
-                s.lam[k] = s.x[k] if again == 0 else s.lam[k] + s.x[k]
+                lam[k] = x[k] if again == 0 else lam[k] + x[k]
                 # a moving constraint is a drive: the power it gives to the mechanism
-                power += s.x[k] * s.phi_t[k]
+                power += x[k] * phi_t[k]
             if again == 1 or s.status[0] != POOR or s.unequal == 0 or s.n_r < s.n:
                 break
             # x has too few digits for inertias so unequal: its last bit turns the small ones by
@@ -190,27 +191,30 @@ def constraints(s, t):
 def free_accelerations(s):
     """M^-1 (F - omega x I omega) of the rigid bodies, in the axes of the solve."""
     X, V, F, a = s.X, s.V, s.F, s.free
+    mass_inverse, inertia, inertia_inverse = s.mass_inverse, s.inertia, s.inertia_inverse
     if s.d == 3:
         for f in range(1, s.n_r):
-            a[f, 0] = F[f, 0] * s.mass_inverse[f]
-            a[f, 1] = F[f, 1] * s.mass_inverse[f]
-            a[f, 2] = F[f, 5] * s.inertia_inverse[f, 8]
+            by_mass, by_inertia = mass_inverse[f], inertia_inverse[f, 8]
+            a[f, 0] = F[f, 0] * by_mass
+            a[f, 1] = F[f, 1] * by_mass
+            a[f, 2] = F[f, 5] * by_inertia
         return
     for f in range(1, s.n_r):
+        by_mass = mass_inverse[f]
         for c in range(3):
-            a[f, c] = F[f, c] * s.mass_inverse[f]
+            a[f, c] = F[f, c] * by_mass
         # torque and angular velocity in body axes
         o0 = X[f, 3] * V[f, 3] + X[f, 6] * V[f, 4] + X[f, 9] * V[f, 5]
         o1 = X[f, 4] * V[f, 3] + X[f, 7] * V[f, 4] + X[f, 10] * V[f, 5]
         o2 = X[f, 5] * V[f, 3] + X[f, 8] * V[f, 4] + X[f, 11] * V[f, 5]
-        I = s.inertia[f]
+        I = inertia[f]
         h0 = I[0] * o0 + I[1] * o1 + I[2] * o2
         h1 = I[3] * o0 + I[4] * o1 + I[5] * o2
         h2 = I[6] * o0 + I[7] * o1 + I[8] * o2
         m0 = X[f, 3] * F[f, 3] + X[f, 6] * F[f, 4] + X[f, 9] * F[f, 5] - (o1 * h2 - o2 * h1)
         m1 = X[f, 4] * F[f, 3] + X[f, 7] * F[f, 4] + X[f, 10] * F[f, 5] - (o2 * h0 - o0 * h2)
         m2 = X[f, 5] * F[f, 3] + X[f, 8] * F[f, 4] + X[f, 11] * F[f, 5] - (o0 * h1 - o1 * h0)
-        K = s.inertia_inverse[f]
+        K = inertia_inverse[f]
         a[f, 3] = K[0] * m0 + K[1] * m1 + K[2] * m2
         a[f, 4] = K[3] * m0 + K[4] * m1 + K[5] * m2
         a[f, 5] = K[6] * m0 + K[7] * m1 + K[8] * m2
@@ -233,42 +237,45 @@ def masses_too_unequal(s):
 @equation
 def right_hand_side(s, feedback):
     """x = J M^-1 F - gamma, with Baumgarte's terms where asked for."""
-    B, free, x = s.B, s.free, s.x
+    B, free, x, gamma = s.B, s.free, s.x, s.gamma
+    slot_row, frame_start = s.slot_row, s.frame_start
     for k in range(s.m):
-        x[k] = -s.gamma[k]
+        x[k] = -gamma[k]
         if feedback:
             x[k] += 2.0 * s.alpha * velocity_residual(s, k) + s.beta * s.beta * s.phi[k]
     if s.n_r < s.n:
         call_beams(s.on_beams[RIGHT], s, x, x, 0)
+    spatial = s.d == 6
     for f in range(1, s.n_r):
-        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+        for p in range(frame_start[f], frame_start[f + 1]):
             total = B[p, 0] * free[f, 0] + B[p, 1] * free[f, 1] + B[p, 2] * free[f, 2]
-            if s.d == 6:
+            if spatial:
                 total += B[p, 3] * free[f, 3] + B[p, 4] * free[f, 4] + B[p, 5] * free[f, 5]
-            x[s.slot_row[p]] += total
+            x[slot_row[p]] += total
 
 
 @equation
 def accelerations(s, y, yd):
     """V' = M^-1 (F - J^T x) into yd and, in world axes, into A; q' into yd."""
-    a = s.free
+    a, A = s.free, s.A
+    n_q, n_v = s.n_q, s.n_v
     for k in range(s.n_z):
-        yd[s.n_q + s.n_v + k] = s.zd[k]
+        yd[n_q + n_v + k] = s.zd[k]
     if s.n_r < s.n:
         call_beams(s.on_beams[PULL], s, s.x, yd, 0)
         call_beams(s.on_beams[RATES], s, y, yd, 0)
     if s.d == 3:
         for f in range(1, s.n_r):
             pull(s, f, s.x)
-            q, v = 3 * (f - 1), s.n_q + 3 * (f - 1)
+            q, v = 3 * (f - 1), n_q + 3 * (f - 1)
             for c in range(3):
                 yd[q + c] = y[v + c]
                 yd[v + c] = a[f, c]
-            s.A[f, 0], s.A[f, 1], s.A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
+            A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
         return
     for f in range(1, s.n_r):
         pull(s, f, s.x)
-        q, v = 7 * (f - 1), s.n_q + 6 * (f - 1)
+        q, v = 7 * (f - 1), n_q + 6 * (f - 1)
         for c in range(3):
             yd[q + c] = y[v + c]
             yd[v + c] = a[f, c]

@@ -77,17 +77,18 @@ def hub_diagonal(s, k):
 def eliminate(s, tiny):
     """Right-looking elimination; returns the smallest pivot if WEAK, as a share of its diagonal."""
     value, target, column_start = s.value, s.target, s.column_start
+    first, row, m = s.first, s.row, s.m
     smallest, u = 1.0, 0
-    for k in range(s.first.size):
+    for k in range(first.size):
         start, end = column_start[k], column_start[k + 1]
         D, sign = value[start], 1.0
-        if s.row[start] >= s.m:
+        if row[start] >= m:
             hub_diagonal(s, k)
             D, sign = -D, -1.0
-        if WEAK * s.first[k] >= D:
-            smallest = min(smallest, D / s.first[k] if s.first[k] > 0.0 else 0.0)
-            if tiny * s.first[k] >= D:
-                D = tiny * s.first[k]
+        if WEAK * first[k] >= D:
+            smallest = min(smallest, D / first[k] if first[k] > 0.0 else 0.0)
+            if tiny * first[k] >= D:
+                D = tiny * first[k]
                 if D == 0.0:
                     D = 1.0
                 value[start] = sign * D

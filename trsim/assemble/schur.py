@@ -30,17 +30,24 @@ def rows(s):
 def planar_rows(s):
     """B and W of x', y' and omega_z, and what they add to S."""
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
+    slot_line, mass_inverse, inertia_inverse, hub = (
+        s.slot_line,
+        s.mass_inverse,
+        s.inertia_inverse,
+        s.hub,
+    )
     pair = 0
     for f in range(1, s.n_r):
-        for p in range(frame_start[f], frame_start[f + 1]):
-            l = s.slot_line[p]
+        first, behind, alone = frame_start[f], frame_start[f + 1], hub[f] < 0
+        by_mass, by_inertia = mass_inverse[f], inertia_inverse[f, 8]
+        for p in range(first, behind):
+            l = slot_line[p]
             b0, b1, b2 = J[l, 0], J[l, 1], J[l, 5]
-            w0, w1 = b0 * s.mass_inverse[f], b1 * s.mass_inverse[f]
-            w2 = b2 * s.inertia_inverse[f, 8]
+            w0, w1, w2 = b0 * by_mass, b1 * by_mass, b2 * by_inertia
             B[p, 0], B[p, 1], B[p, 2] = b0, b1, b2
             W[p, 0], W[p, 1], W[p, 2] = w0, w1, w2
-            if s.hub[f] < 0:
-                for o in range(frame_start[f], p + 1):
+            if alone:
+                for o in range(first, p + 1):
                     value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
                     pair += 1
         if s.hub[f] >= 0:
@@ -170,19 +177,20 @@ def velocity_residual(s, k):
 @equation
 def pull(s, f, x):
     """free -= M^-1 J^T x of one rigid body, in the axes of the solve."""
-    W, a = s.W, s.free
+    W, a, slot_row = s.W, s.free, s.slot_row
+    start, end = s.frame_start[f], s.frame_start[f + 1]
     a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
     if s.d == 3:
-        for p in range(s.frame_start[f], s.frame_start[f + 1]):
-            x_k = x[s.slot_row[p]]
+        for p in range(start, end):
+            x_k = x[slot_row[p]]
             a0 -= W[p, 0] * x_k
             a1 -= W[p, 1] * x_k
             a2 -= W[p, 2] * x_k
         a[f, 0], a[f, 1], a[f, 2] = a0, a1, a2
         return
     a3, a4, a5 = a[f, 3], a[f, 4], a[f, 5]
-    for p in range(s.frame_start[f], s.frame_start[f + 1]):
-        x_k = x[s.slot_row[p]]
+    for p in range(start, end):
+        x_k = x[slot_row[p]]
         a0 -= W[p, 0] * x_k
         a1 -= W[p, 1] * x_k
         a2 -= W[p, 2] * x_k
