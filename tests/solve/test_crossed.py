@@ -10,7 +10,11 @@ never changes its sign while they move; a run that goes straight on changes it.
 import numpy as np
 import pytest
 
+from trsim.assemble.equations import poses
+from trsim.assemble.reduce import in_solve_axes, jacobian, moves, roots, times_roots
+from trsim.elements.scene import workspace
 from trsim.solve.diagnose.doubts import doubts
+from trsim.solve.diagnose.locked import dependent, locked
 
 from ..overconstrained import METHODS, ORDINARY, TILTED, Z, cranks, text
 from ..runs import run
@@ -214,3 +218,40 @@ def test_two_mechanisms_flat_at_once_one_of_them_nearly():
         made = text((bodies, joints), more, planar="true", end=1.0, tolerance=1e-3)
         r = run(made, *sets, "solver.method=dop853")
         assert bool(told(r)) == (longer > 0.0)
+
+
+def stopped_upright(longer, R):
+    """Cranks stopped where they next are flat."""
+    made, sets = upright(longer, R)
+    ends = (f"solver.end={np.pi / 4}", "solver.tolerance=1e-10", "solver.max_step=1e-3")
+    return run(made, *sets, *ends, fails=None)
+
+
+STOPPED = {
+    "equal": lambda R: stopped_upright(0.0, R),
+    "nearly equal": lambda R: stopped_upright(1e-9, R),
+    "drawn flat": lambda R: run(flat(2, "", R, end=1e-7), *turning(2, 3.0, np.asarray(R))),
+    "three drawn flat": lambda R: run(flat(3, "", R, end=1e-7), *turning(3, 3.0, np.asarray(R))),
+}
+
+
+@pytest.mark.parametrize("R", SPACES.values(), ids=SPACES)
+@pytest.mark.parametrize("stopped", STOPPED.values(), ids=STOPPED)
+def test_no_velocity_there_is_said_to_lock(stopped, R):
+    """Along either branch and across both: a step between the branches may end with any."""
+    r = stopped(R)
+    model, y, t = r.mechanism.model, r.outcome.record.y.copy(), r.outcome.time
+    assert dependent(r.mechanism, t, y)[1] < 1e-3
+    planar = model.d == 3
+    C, there = roots(model, y, planar), moves(model, planar)
+    rows = times_roots(jacobian(model, t, y)[2], C)[:, there]
+    free = np.zeros((2, there.size))
+    free[:, there] = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))[2][-2:]
+    free = np.einsum("fij,kfj->kfi", C, free.reshape(2, *C.shape[:2])).reshape(2, -1)
+    work = workspace(model)
+    for angle in np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False):
+        rates = 3.0 * (np.cos(angle) * free[0] + np.sin(angle) * free[1])
+        poses(work, y)
+        y[model.n_q : model.n_q + model.n_v] = in_solve_axes(work, rates)
+        said = locked(r.mechanism, t, y)
+        assert "nearly meet" in said and "locks" not in said, angle

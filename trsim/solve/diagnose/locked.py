@@ -15,6 +15,7 @@ from trsim.assemble.reduce import (
     closest,
     displaced,
     jacobian,
+    moves,
     roots,
     times_roots,
     world_rates,
@@ -28,8 +29,9 @@ AHEAD = 0.02  # rad, or of the mechanism's size: how far is looked for a way on
 CLOSED = 1e-9  # of the mechanism's size
 PARTLY = 0.5  # of that way: a place found nearer is the one it stands at
 BACK = -0.9  # cosine: between branches that nearly meet a motion may turn round, but not go back
-TURNS = np.pi * np.array([0.0, 0.5, -0.5, 0.25, -0.25, 0.75, -0.75])  # from the velocity
-PAIRS = ((2, 1), (0, 2), (1, 0))
+TURNS = np.pi * np.array([0.5, -0.5, 0.25, -0.25, 0.75, -0.75])  # from the velocity
+MOTIONS, APART = 6, 0.1  # how many motions are looked along; the sine of an angle with the velocity
+PAIRS = ((2, 1), (0, 2), (1, 0))  # entries of a skew matrix that are its vector
 TAKES_PART = 0.1  # of the largest entry of the dependent combination of rows
 
 
@@ -60,10 +62,10 @@ def goes_on(model: Model, t: float, y: Array) -> bool:
     derivative(w, t, y, yd)
     unit = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)
     speeds = world_rates(model, y) / unit
-    if not np.any(speeds):
+    speed = float(np.linalg.norm(speeds))
+    if speed == 0.0:
         return False
-    d = AHEAD / float(np.linalg.norm(speeds))
-    before, velocity = places(w), speeds / np.linalg.norm(speeds)
+    d, velocity, before = AHEAD / speed, speeds / speed, places(w)
     for way in ways_on(model, t, y, velocity, unit):
         start = displaced(model, y, AHEAD * way * unit)
         start[model.n_q + model.n_v :] += d * yd[model.n_q + model.n_v :]  # where drives are
@@ -78,15 +80,22 @@ def goes_on(model: Model, t: float, y: Array) -> bool:
 
 
 def ways_on(model: Model, t: float, y: Array, velocity: Array, unit: Array) -> Array:
-    """Unit vectors (7, 6 (n-1)) to look along: the velocity's, then others in the plane of it and
-    of the motion that the rows leave free but for their nearly dependent combination."""
-    C = roots(model, y, model.d == 3)
-    rows = times_roots(jacobian(model, t, y)[2], C)
-    _, _, free = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))
-    motion = np.einsum("fij,fj->fi", C, free[model.m - 1].reshape(C.shape[:2])).ravel() / unit
-    across = motion - (motion @ velocity) * velocity
-    across /= max(float(np.linalg.norm(across)), 1e-300)
-    return np.array([np.cos(x) * velocity + np.sin(x) * across for x in TURNS])
+    """Unit vectors (k, 6 (n-1)) to look along: the velocity's, then others in the planes of it and
+    of each motion that the rows leave free but for their nearly dependent combination."""
+    planar = model.d == 3
+    C, there = roots(model, y, planar), moves(model, planar)
+    rows = times_roots(jacobian(model, t, y)[2], C)[:, there]
+    _, _, motions = np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))
+    ways = [velocity]
+    for motion in motions[model.m - 1 :][:MOTIONS]:
+        whole = np.zeros(there.size)
+        whole[there] = motion
+        free = np.einsum("fij,fj->fi", C, whole.reshape(C.shape[:2])).ravel() / unit
+        across = free - (free @ velocity) * velocity
+        length = float(np.linalg.norm(across))
+        if length > APART * float(np.linalg.norm(free)):  # else it is the velocity's
+            ways += [np.cos(x) * velocity + np.sin(x) * across / length for x in TURNS]
+    return np.array(ways)
 
 
 def places(work: Scene) -> tuple[Array, Array]:
