@@ -103,21 +103,19 @@ def told(r):
 @pytest.mark.parametrize("scene", [(upright, of_cranks), (crank_and_rod, of_rod)], ids=["", "rod"])
 def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
     drawn, branches = scene
-    wrong = ended = 0
-    for k, longer in enumerate((1e-9, 1e-8, 1e-7, 1e-6, 1e-5, -1e-8, -1e-6)):
+    wrong = 0
+    for k, longer in enumerate((1e-9, 1e-8, 1e-7, 1e-6, 1e-5, -1e-8, -1e-6, -1e-9)):
         for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3]:
             made, sets = drawn(longer, R)
             ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
             r = run(made, *sets, *ways, fails=None)
             if r.outcome.status == "failed":  # it says so, where a step came to end between them
                 assert "branches of the motion nearly meet" in r.outcome.reason
-                ended += 1
                 continue
             changed = branches(r, np.asarray(R)) > 0
             assert bool(told(r)) == changed, (longer, tolerance)
             wrong += changed
-    # else nothing was tested; which of them ends between the branches is a matter of rounding
-    assert wrong > 1 and wrong + ended > 4
+    assert wrong > 4  # else nothing was tested
 
 
 def test_a_part_that_ends_between_the_branches_hides_no_change():
