@@ -23,7 +23,14 @@ from trsim.assemble.linear import (
     solve,
 )
 from trsim.assemble.on_beams import FREE, KINETIC, POSES, PULL, RATES, RIGHT, call_beams
-from trsim.assemble.schur import plain_rows, pull, rows, velocity_residual
+from trsim.assemble.schur import (
+    plain_rows,
+    pull,
+    pull_planar,
+    pull_spatial,
+    rows,
+    velocity_residual,
+)
 from trsim.elements.contract import DRIVES, SCENE, call_kernel, compiled
 from trsim.elements.scene import BAUMGARTE
 from trsim.kernels.calls import caller
@@ -257,7 +264,7 @@ def right_hand_side(s, feedback):
 @equation
 def accelerations(s, y, yd):
     """V' = M^-1 (F - J^T x) into yd and, in world axes, into A; q' into yd."""
-    a, A = s.free, s.A
+    X, A = s.X, s.A
     n_q, n_v = s.n_q, s.n_v
     for k in range(s.n_z):
         yd[n_q + n_v + k] = s.zd[k]
@@ -266,21 +273,21 @@ def accelerations(s, y, yd):
         call_beams(s.on_beams[RATES], s, y, yd, 0)
     if s.d == 3:
         for f in range(1, s.n_r):
-            pull(s, f, s.x)
+            a0, a1, a2 = pull_planar(s, f, s.x)
             q, v = 3 * (f - 1), n_q + 3 * (f - 1)
-            for c in range(3):
-                yd[q + c] = y[v + c]
-                yd[v + c] = a[f, c]
-            A[f, 0], A[f, 1], A[f, 5] = a[f, 0], a[f, 1], a[f, 2]
+            yd[q], yd[q + 1], yd[q + 2] = y[v], y[v + 1], y[v + 2]
+            yd[v], yd[v + 1], yd[v + 2] = a0, a1, a2
+            A[f, 0], A[f, 1], A[f, 5] = a0, a1, a2
         return
     for f in range(1, s.n_r):
-        pull(s, f, s.x)
+        a0, a1, a2, a3, a4, a5 = pull_spatial(s, f, s.x)
         q, v = 7 * (f - 1), n_q + 6 * (f - 1)
-        for c in range(3):
-            yd[q + c] = y[v + c]
-            yd[v + c] = a[f, c]
-            yd[v + 3 + c] = a[f, 3 + c]
-        in_world(s, f)
+        yd[q], yd[q + 1], yd[q + 2] = y[v], y[v + 1], y[v + 2]
+        yd[v], yd[v + 1], yd[v + 2], yd[v + 3], yd[v + 4], yd[v + 5] = a0, a1, a2, a3, a4, a5
+        A[f, 0], A[f, 1], A[f, 2] = a0, a1, a2
+        A[f, 3] = X[f, 3] * a3 + X[f, 4] * a4 + X[f, 5] * a5
+        A[f, 4] = X[f, 6] * a3 + X[f, 7] * a4 + X[f, 8] * a5
+        A[f, 5] = X[f, 9] * a3 + X[f, 10] * a4 + X[f, 11] * a5
         # p' = p o (0, omega) / 2 with omega in body axes
         e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
         o0, o1, o2 = y[v + 3], y[v + 4], y[v + 5]

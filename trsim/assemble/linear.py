@@ -57,11 +57,14 @@ def factorise(s):
 @internal
 def diagonal(s):
     """first <- the diagonal of S; of a hub it is known when its turn comes."""
-    for k in range(s.first.size):
-        row = s.row[s.column_start[k]]
-        s.first[k] = s.value[s.column_start[k]]
-        if row < s.m:
-            s.first[k] += s.through[row]
+    first, row, value, through, m = s.first, s.row, s.value, s.through, s.m
+    column_start = s.column_start
+    for k in range(first.size):
+        place = column_start[k]
+        own = value[place]
+        if row[place] < m:
+            own += through[row[place]]
+        first[k] = own
 
 
 @internal
@@ -96,7 +99,12 @@ def eliminate(s, tiny):
         # from the last row up: what is left of the column is still that of S
         for p in range(end - 1, start, -1):
             L = value[p] * inverse
-            for o in range(start + 1, p + 1):
+            o = start + 1
+            while o < p:  # two at a time: most columns have few entries, and a turn costs as much
+                value[target[u]] -= L * value[o]
+                value[target[u + 1]] -= L * value[o + 1]
+                o, u = o + 2, u + 2
+            if o == p:
                 value[target[u]] -= L * value[o]
                 u += 1
             value[p] = L
@@ -111,13 +119,23 @@ def substitute(s, value, x):
         x[k] = 0.0
     for k in range(x.size):
         start = column_start[k]
-        x_k = x[row[start]]
-        for p in range(start + 1, column_start[k + 1]):
+        x_k, last = x[row[start]], column_start[k + 1] - 1
+        p = start + 1
+        while p < last:  # two at a time, as in `eliminate`
+            x[row[p]] -= value[p] * x_k
+            x[row[p + 1]] -= value[p + 1] * x_k
+            p += 2
+        if p == last:
             x[row[p]] -= value[p] * x_k
     for k in range(x.size - 1, -1, -1):
         start = column_start[k]
-        total = x[row[start]] / value[start]
-        for p in range(start + 1, column_start[k + 1]):
+        total, last = x[row[start]] / value[start], column_start[k + 1] - 1
+        p = start + 1
+        while p < last:
+            total -= value[p] * x[row[p]]
+            total -= value[p + 1] * x[row[p + 1]]
+            p += 2
+        if p == last:
             total -= value[p] * x[row[p]]
         x[row[start]] = total
 

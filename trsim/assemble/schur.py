@@ -47,7 +47,14 @@ def planar_rows(s):
             B[p, 0], B[p, 1], B[p, 2] = b0, b1, b2
             W[p, 0], W[p, 1], W[p, 2] = w0, w1, w2
             if alone:
-                for o in range(first, p + 1):
+                o = first
+                while o < p:  # two at a time: there are few
+                    value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
+                    value[entry[pair + 1]] += (
+                        B[o + 1, 0] * w0 + B[o + 1, 1] * w1 + B[o + 1, 2] * w2
+                    )
+                    o, pair = o + 2, pair + 2
+                if o == p:
                     value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
                     pair += 1
         if s.hub[f] >= 0:
@@ -59,23 +66,31 @@ def planar_rows(s):
 def spatial_rows(s):
     """B and W of the velocity and the body-axes angular velocity, and what they add to S."""
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
-    X, K, mass_inverse = s.X, s.inertia_inverse, s.mass_inverse
+    X, K, slot_line, mass_inverse, hub = s.X, s.inertia_inverse, s.slot_line, s.mass_inverse, s.hub
     pair = 0
     for f in range(1, s.n_r):
-        for p in range(frame_start[f], frame_start[f + 1]):
-            l = s.slot_line[p]
+        first, behind, alone = frame_start[f], frame_start[f + 1], hub[f] < 0
+        by_mass = mass_inverse[f]
+        r0, r1, r2, r3, r4, r5, r6, r7, r8 = (
+            X[f, 3], X[f, 4], X[f, 5], X[f, 6], X[f, 7], X[f, 8], X[f, 9], X[f, 10], X[f, 11],
+        )  # fmt: skip
+        k0, k1, k2, k3, k4, k5, k6, k7, k8 = (
+            K[f, 0], K[f, 1], K[f, 2], K[f, 3], K[f, 4], K[f, 5], K[f, 6], K[f, 7], K[f, 8],
+        )  # fmt: skip
+        for p in range(first, behind):
+            l = slot_line[p]
             b0, b1, b2, t0, t1, t2 = J[l, 0], J[l, 1], J[l, 2], J[l, 3], J[l, 4], J[l, 5]
-            b3 = X[f, 3] * t0 + X[f, 6] * t1 + X[f, 9] * t2
-            b4 = X[f, 4] * t0 + X[f, 7] * t1 + X[f, 10] * t2
-            b5 = X[f, 5] * t0 + X[f, 8] * t1 + X[f, 11] * t2
-            w0, w1, w2 = b0 * mass_inverse[f], b1 * mass_inverse[f], b2 * mass_inverse[f]
-            w3 = K[f, 0] * b3 + K[f, 1] * b4 + K[f, 2] * b5
-            w4 = K[f, 3] * b3 + K[f, 4] * b4 + K[f, 5] * b5
-            w5 = K[f, 6] * b3 + K[f, 7] * b4 + K[f, 8] * b5
+            b3 = r0 * t0 + r3 * t1 + r6 * t2
+            b4 = r1 * t0 + r4 * t1 + r7 * t2
+            b5 = r2 * t0 + r5 * t1 + r8 * t2
+            w0, w1, w2 = b0 * by_mass, b1 * by_mass, b2 * by_mass
+            w3 = k0 * b3 + k1 * b4 + k2 * b5
+            w4 = k3 * b3 + k4 * b4 + k5 * b5
+            w5 = k6 * b3 + k7 * b4 + k8 * b5
             B[p, 0], B[p, 1], B[p, 2], B[p, 3], B[p, 4], B[p, 5] = b0, b1, b2, b3, b4, b5
             W[p, 0], W[p, 1], W[p, 2], W[p, 3], W[p, 4], W[p, 5] = w0, w1, w2, w3, w4, w5
-            if s.hub[f] < 0:
-                for o in range(frame_start[f], p + 1):
+            if alone:
+                for o in range(first, p + 1):
                     value[entry[pair]] += (
                         B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
                         + (B[o, 3] * w3 + B[o, 4] * w4 + B[o, 5] * w5)
@@ -177,19 +192,33 @@ def velocity_residual(s, k):
 @equation
 def pull(s, f, x):
     """free -= M^-1 J^T x of one rigid body, in the axes of the solve."""
-    W, a, slot_row = s.W, s.free, s.slot_row
-    start, end = s.frame_start[f], s.frame_start[f + 1]
-    a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
     if s.d == 3:
-        for p in range(start, end):
-            x_k = x[slot_row[p]]
-            a0 -= W[p, 0] * x_k
-            a1 -= W[p, 1] * x_k
-            a2 -= W[p, 2] * x_k
-        a[f, 0], a[f, 1], a[f, 2] = a0, a1, a2
-        return
+        pull_planar(s, f, x)
+    else:
+        pull_spatial(s, f, x)
+
+
+@equation
+def pull_planar(s, f, x):
+    """`pull` of a body in the plane; what is left, too: to read it again at once is slow."""
+    W, a, slot_row = s.W, s.free, s.slot_row
+    a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
+    for p in range(s.frame_start[f], s.frame_start[f + 1]):
+        x_k = x[slot_row[p]]
+        a0 -= W[p, 0] * x_k
+        a1 -= W[p, 1] * x_k
+        a2 -= W[p, 2] * x_k
+    a[f, 0], a[f, 1], a[f, 2] = a0, a1, a2
+    return a0, a1, a2
+
+
+@equation
+def pull_spatial(s, f, x):
+    """`pull` of a body in space; what is left, too: to read it again at once is slow."""
+    W, a, slot_row = s.W, s.free, s.slot_row
+    a0, a1, a2 = a[f, 0], a[f, 1], a[f, 2]
     a3, a4, a5 = a[f, 3], a[f, 4], a[f, 5]
-    for p in range(start, end):
+    for p in range(s.frame_start[f], s.frame_start[f + 1]):
         x_k = x[slot_row[p]]
         a0 -= W[p, 0] * x_k
         a1 -= W[p, 1] * x_k
@@ -199,3 +228,4 @@ def pull(s, f, x):
         a5 -= W[p, 5] * x_k
     a[f, 0], a[f, 1], a[f, 2] = a0, a1, a2
     a[f, 3], a[f, 4], a[f, 5] = a3, a4, a5
+    return a0, a1, a2, a3, a4, a5

@@ -62,15 +62,15 @@ def examine(work: Scene, r: Record, other_rows: bool) -> None:
     other_rows: are solved from here on, so the last way must be judged now, and sigma begins anew.
     """
     n, many = r.y.size, int(r.n_passed)
+    if other_rows:
+        r.kept = 0
+    if not many:
+        return
     ways = [
         (*line[:2].tolist(), line[2 : 2 + n], line[2 + n : 2 + 2 * n], line[2 + 2 * n :])
         for line in r.passed[:many]
     ]
     r.n_passed = 0
-    if other_rows:
-        r.kept = 0
-    if not ways:
-        return
     scratch = scene(work)
     scratch.mem[:] = work.mem
     for t0, t1, y0, y1, branch in ways:
