@@ -45,6 +45,7 @@ from .scene import (
     Spring,
     Torsion,
     Wall,
+    Writer,
 )
 
 ENGINE, RIGID, INVALID, TIGHT_RUN, ONE = "engine", "rigid", "invalid", "tight", "one"
@@ -1169,12 +1170,17 @@ def stabilised(rng: Any) -> Drawn:
     s.settings["formulation"] = "ggl"
     if kind == "towed":
         s.tolerance = decades(rng, 1e-6, 1e-3)
-        s.gravity = np.zeros(3)
-        v = [np.r_[b.velocity, b.spin] for b in s.bodies]
-        shaken = float(np.abs(v).max()) * s.tolerance * decades(rng, 1.0, 300.0)
-        way = np.array([1, 1, 0, 0, 0, 1.0]) if s.flat else np.ones(6)
-        given(s, [a + shaken * way * rng.normal(size=6) for a in v])
+        shaken(rng, s, s.tolerance * decades(rng, 1.0, 300.0))
     return drawn
+
+
+def shaken(rng: Any, s: Scene, part: float) -> None:
+    """Without gravity, and with speeds off those given by a part of the largest."""
+    s.gravity = np.zeros(3)
+    v = [np.r_[b.velocity, b.spin] for b in s.bodies]
+    most = part * float(np.abs(v).max())
+    way = np.array([1, 1, 0, 0, 0, 1.0]) if s.flat else np.ones(6)
+    given(s, [a + most * way * rng.normal(size=6) for a in v])
 
 
 @family
@@ -1184,4 +1190,31 @@ def unheld(rng: Any) -> Drawn:
     drawn = FAMILIES[kind](rng)
     drawn.scene.settings.pop("formulation", None)
     drawn.scene.settings["stabilisation"] = "none"
+    return drawn
+
+
+@family
+def beside(rng: Any) -> Drawn:
+    """Bodies at rest beside a motion, to which they are nothing."""
+    kind = pick(rng, *6 * ("towed",), "chain_planar", "loop", "redundant", "stops", "clearance")
+    drawn = FAMILIES[kind](rng)
+    s = drawn.scene
+    if kind == "towed":  # errors of a fast vibration, of one body, add up
+        s.method = pick(rng, "auto", "dop853", "radau", "radau", "scipy:Radau")
+        s.step, s.tolerance = None, decades(rng, 1e-6, 1e-3)
+        s.settings.pop("formulation", None)
+        if s.method == "radau":
+            s.settings["formulation"] = pick(rng, "ggl", "index1")
+        shaken(rng, s, decades(rng, 1e-3, 1e-1))
+        s.forces = [replace(f, c=0.0) for f in s.forces]
+        s.end *= between(rng, 1.0, 4.0)
+    write, of = Writer(s), s.bodies[-1]
+    count = int(rng.integers(5, 31))
+    rest = [replace(of, name=f"rest{k}", velocity=None, spin=None) for k in range(count)]
+    s.extra["bodies"] = {b.name: write.body(b) for b in rest}
+    if np.any(s.gravity):
+        s.extra["joints"] = {
+            f"weld{k}": write.joint(Joint(f"weld{k}", "fixed", "ground", f"rest{k}", of.at))
+            for k in range(count)
+        }
     return drawn

@@ -3,7 +3,8 @@
 An amplitude A beside a motion of the size L at w times its rate has w^2 A/L of the accelerations.
 With A below the tolerance and w in the thousands steps are not held to them (accelerations.py),
 since rounding would make them; the largest estimate of such a step is told here instead, or the
-sum over the run of what was more than its share (of DOP853, which alone adds it up).
+sum over the run of what was more than its share, or of what rounding makes of places where
+something is stiff (both of DOP853, which alone knows).
 """
 
 from collections.abc import Iterator
@@ -11,13 +12,14 @@ from math import pi
 from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.solve.march.accelerations import ALLOWED, RUN
+from trsim.solve.march.accelerations import ALLOWED, ROUNDED, RUN
 from trsim.solve.outcome import Outcome
 
 TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
 SUM = 5.0 * RUN  # tolerances, of all steps together: estimates are a few times too large
 ADDS = 0.1  # of the tolerance that leaves ALLOWED in one step: errors add up
 NOTHING = 1e-9  # of what the speed expected takes on the mechanism's size: at rest
+ROUNDS = 3.0 * ALLOWED  # tolerances, of each evaluation by the rounding of places: it adds up
 FINEST = 1e-11  # tolerance: less leaves what rounding makes of such accelerations
 
 
@@ -33,10 +35,13 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     largest = float(r.top_acceleration)
     tolerance = scenario.solver.tolerance
     natural = outcome.start.speed**2 / mechanism.model.size
-    in_one, in_all = off > TOLD * tolerance * largest, total > SUM * tolerance * largest
+    rounding = ROUNDED * (r.vibration * mechanism.model.size + r.decay * r.speed)
+    one = tolerance * largest
+    in_one, in_all = off > TOLD * one, total > SUM * one or rounding > ROUNDS * one
     if largest < NOTHING * natural or not (in_one or in_all):
         return
     if not in_one:
+        total = max(total, float(rounding))
         yield (
             "solver.tolerance: accelerations, and with them forces, may be off by "
             f"{min(total / largest, 1.0):.1g} of the largest over the run: something vibrates "

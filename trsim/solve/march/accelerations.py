@@ -10,6 +10,9 @@ what is slow, w^2 = |D v'| / |D x|: any phase and, of motions of several frequen
 fastest that is seen.  In units of the tolerance and the largest acceleration met this is no more
 than the error of the motion, unless accelerations are small for the speeds there are.
 
+Errors of several bodies are put together by sum e^2 / sum e of their squares e: their mean where
+all take part alike, and that of one body whatever others are at rest beside it.
+
 What lies inside a step may be off by more than its end: a method whose dense output is tells so by
 its `inside`, and complete.py asks where output rows lie there.
 

@@ -133,7 +133,7 @@ def of_accelerations(s, r, b, setting, h):
     r.top_acceleration = most = largest(s, K[0], r.top_acceleration)
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
-    error5 = error3 = seen5 = seen3 = least = moved = turned = 0.0
+    error5 = error3 = seen5 = seen3 = least = moved = turned = squares = 0.0
     stiff, rounding = stiffness(r, h), unknown(s, r) ** 2
     for _ in range(1, s.n_r):
         x5 = x3 = v5 = v3 = placed = 0.0
@@ -151,7 +151,7 @@ def of_accelerations(s, r, b, setting, h):
             by = ww * length * x5 + speed * v5
             moved, turned = moved + by, turned + ww * by
             by5, by3 = far * far * ww * by, far * far * ww * (ww * length * x3 + speed * v3)
-            error5, error3 = error5 + by5, error3 + by3
+            error5, error3, squares = error5 + by5, error3 + by3, squares + by5 * by5
             if speed * v5 > rounding:
                 seen5, seen3 = seen5 + by5, seen3 + by3
                 if v5 * x3 > APART**2 * v3 * x5:
@@ -159,7 +159,7 @@ def of_accelerations(s, r, b, setting, h):
                     least += by5 * min((turns / HOLDS**2) ** 3, 1.0)
     if error5 == 0.0:
         return 0.0
-    bodies = EACH * (s.n_r - 1)
+    bodies = EACH * error5 * error5 / squares
     off = h * error5 / sqrt((error5 + 0.01 * error3) * bodies)
     # stages of a step too long may be anywhere: no more than the speeds so far may turn to
     mean = turned / moved
@@ -215,18 +215,24 @@ def inside(scene, r, b, setting, t, h):
     Places and velocities are polynomials of degree 7 in theta, off by about LEFT of their last
     terms: the end of the step, and the estimate of that, may be better by far.
     """
-    places = rates = 0.0
-    for c in range(scene.n_q):
-        places += (LEFT * b.P[6, c] * b.weight[c]) ** 2
-    for c in range(scene.n_q, scene.n_q + scene.v_node):
-        rates += (LEFT * b.P[6, c] * b.weight[c]) ** 2
     length, speed = setting.step_error * r.length, setting.step_error * r.speed
-    if sqrt(places) * length < ROUNDED * scene.size:
-        return 0.0
     ww = stiffness(r, h)
-    of_places = min(r.vibration, ww) * length
-    of_rates = min(r.decay, sqrt(ww)) * speed
-    off = sqrt(of_places**2 * places + of_rates**2 * rates) / sqrt(EACH * (scene.n_r - 1))
+    of_places = (min(r.vibration, ww) * LEFT * length) ** 2
+    of_rates = (min(r.decay, sqrt(ww)) * LEFT * speed) ** 2
+    q, v, of_q, of_v = 0, scene.n_q, 3 if scene.d == 3 else 7, scene.d
+    moved = off = squares = 0.0
+    for _ in range(1, scene.n_r):
+        places = rates = 0.0
+        for c in range(q, q + of_q):
+            places += (b.P[6, c] * b.weight[c]) ** 2
+        for c in range(v, v + of_v):
+            rates += (b.P[6, c] * b.weight[c]) ** 2
+        q, v, moved = q + of_q, v + of_v, moved + places
+        by = of_places * places + of_rates * rates
+        off, squares = off + by, squares + by * by
+    if LEFT * sqrt(moved) * length < ROUNDED * scene.size or off == 0.0:
+        return 0.0
+    off = sqrt(squares / (EACH * off))
     most = largest(scene, r.yd, r.top_acceleration)
     doubted(scene, r, setting, h, off, most, sqrt(ww))
     return in_units(scene, r, setting, h, off, most, ww, share(setting, h))

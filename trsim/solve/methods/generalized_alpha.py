@@ -11,7 +11,7 @@ index 3 with both stabilised, one right-hand side for all.  Meant where two or t
 enough and the motion is stiff: beams, hard springs.
 """
 
-from math import isfinite, sqrt
+from math import isfinite
 
 import numpy as np
 
@@ -123,7 +123,7 @@ def arrive(s, r, b, h):
 def newton(s, r, b, t, h):
     """Solve for b_1.  1: converged, 0: not, -1: a value is not finite."""
     K, weight, n_w = b.K, b.weight, active(s)
-    counted, floor = resolution(r, weight, h)
+    floor = resolution(r, weight, h)
     kappa, before = max(KAPPA, floor), 0.0
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
@@ -144,8 +144,7 @@ def newton(s, r, b, t, h):
         for i in range(n_w):
             c = w_index(s, i)
             K[B1, c] += K[SCRATCH, i]
-            moved += (h * GAMMA * K[SCRATCH, i] * weight[c]) ** 2
-        moved = sqrt(moved / max(counted, 1))
+            moved = max(moved, abs(h * GAMMA * K[SCRATCH, i] * weight[c]))
         if not isfinite(moved):
             return -1
         verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)

@@ -172,12 +172,10 @@ def nothing(s, K):
 
 
 @internal
-def moved_on(s, K, weight, n, multipliers):
-    """Add the increments in F, RP and RR to the stages; the sum of their weighed squares."""
-    total = 0.0
+def moved_on(s, K, n, multipliers):
+    """Add the increments in F, RP and RR to the stages."""
     for i in range(3):
         for k in range(n):
-            total += (K[F + i, k] * weight[k]) ** 2
             K[W + i, k] += K[F + i, k]
     for i in range(3):
         for k in range(n):
@@ -186,4 +184,3 @@ def moved_on(s, K, weight, n, multipliers):
             for j in range(3):
                 K[LAM + i, k] += T[i, j] * K[RP + j, k]
                 K[MU + i, k] += T[i, j] * K[RR + j, k]
-    return total

@@ -4,6 +4,8 @@ With d the size of the last change in units of the error allowed, and theta = d 
 at which changes become smaller, what is left after it is d theta / (1 - theta).
 """
 
+from math import sqrt
+
 from trsim.kernels.vectors import internal
 
 GOES_ON, FAILS, CONVERGED, NEXT_TO_NOTHING = range(4)
@@ -12,13 +14,40 @@ LITTLE = 0.1  # of what may be left: so small a change is taken for the last wit
 
 @internal
 def resolution(r, weight, h):
-    """How many entries have weight, and the size of the smallest change that is not rounding."""
-    counted, floor = 0, 0.0
+    """The size of the smallest change that is not rounding."""
+    floor = 0.0
     for c in range(r.y.size):
-        if weight[c] > 0.0:
-            counted += 1
-            floor = max(floor, (2.0e-15 * abs(r.y[c]) + h * r.noise[c]) * weight[c])
-    return counted, floor
+        floor = max(floor, (2.0e-15 * abs(r.y[c]) + h * r.noise[c]) * weight[c])
+    return floor
+
+
+@internal
+def size_of_change(s, K, first, weight):
+    """The size of the change of three stages in the rows of K from `first`: with S_b the sum of
+    weighed squares of the n_b entries of body b,
+
+        sqrt(sum S_b^2 / sum 3 n_b S_b)
+
+    the root of their mean square where all bodies take part alike, and the same whatever bodies are
+    at rest beside.  Nodes and states count as one body.
+    """
+    of_q, of_v = 3 if s.d == 3 else 7, s.d
+    squares, counted, rest, others = 0.0, 0.0, 0.0, 0
+    for body in range(s.n_r - 1):
+        total = 0.0
+        for i in range(first, first + 3):
+            for c in range(of_q * body, of_q * (body + 1)):
+                total += (K[i, c] * weight[c]) ** 2
+            for c in range(s.n_q + of_v * body, s.n_q + of_v * (body + 1)):
+                total += (K[i, c] * weight[c]) ** 2
+        squares, counted = squares + total * total, counted + 3 * (of_q + of_v) * total
+    for c in range(of_q * (s.n_r - 1), weight.size):
+        if weight[c] > 0.0 and not s.n_q <= c < s.n_q + s.v_node:
+            others += 1
+            for i in range(first, first + 3):
+                rest += (K[i, c] * weight[c]) ** 2
+    squares, counted = squares + rest * rest, counted + 3 * others * rest
+    return sqrt(squares / counted) if counted > 0.0 else 0.0
 
 
 @internal

@@ -20,7 +20,7 @@ from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, internal
-from trsim.solve.march.accelerations import EACH, doubted, frequency, held, in_units, largest, share
+from trsim.solve.march.accelerations import doubted, frequency, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import jitter, noted, to_look
@@ -34,7 +34,14 @@ from trsim.solve.methods.dense_lu import (
 )
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
-from trsim.solve.methods.newton import FAILS, GOES_ON, NEXT_TO_NOTHING, judged, resolution
+from trsim.solve.methods.newton import (
+    FAILS,
+    GOES_ON,
+    NEXT_TO_NOTHING,
+    judged,
+    resolution,
+    size_of_change,
+)
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, A, C, E, T
 
 ESTIMATE = 4  # the error estimate falls with h^4
@@ -53,6 +60,9 @@ MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
 SHARPEST = 0.01  # contraction that is believed without a second iteration
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
+# entries of a body that an error of accelerations is the mean of: with those of others hardly any
+# margin is left where a step holds some rad of a vibration, where this estimate is as the error
+FEW, LIKELY = 2.0, 0.4  # and what it is likely to be, as a part of that, which is told
 HALVE = NO_STEP  # Newton failed: take about half the step
 
 
@@ -155,7 +165,7 @@ def newton(s, r, b, t, h):
     """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite."""
     K, n, weight = b.K, r.y.size, b.weight
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
-    counted, floor = resolution(r, weight, h)
+    floor = resolution(r, weight, h)
     kappa, before = max(KAPPA, floor), 0.0
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
     expected = max(r.contraction, SHARPEST) ** 0.8
@@ -179,12 +189,10 @@ def newton(s, r, b, t, h):
             K[F + 2, k] = v - (c * w1 + a * w2)
         corrected(s, r, K[F], K[DW], g)
         corrected_pair(s, r, K[F + 1], K[F + 2], b.pair, complex(a, c))
-        moved = 0.0
         for i in range(3):
             for k in range(n):
-                moved += (K[F + i, k] * weight[k]) ** 2
                 K[W + i, k] += K[F + i, k]
-        moved = sqrt(moved / max(3 * counted, 1))
+        moved = size_of_change(s, K, F, weight)
         for i in range(3):
             for k in range(n):
                 K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
@@ -287,7 +295,7 @@ def of_accelerations(s, r, b, setting, h):
             most = max(most, s.scale[c] * abs(rate) / h)
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
-    off = bent = 0.0
+    off = squares = bent = 0.0
     moved, begins = 1e-300, r.history != BEHIND and r.old_h == 0.0
     for _ in range(1, s.n_r):
         x = w = placed = turned = bare = 0.0
@@ -305,10 +313,10 @@ def of_accelerations(s, r, b, setting, h):
             ww = frequency(speed * turned / h**2, length * placed, h)
             by = ww * length * x + speed * w
             moved, bent = moved + by, bent + ww * by
-            off += ww * by
-            off += speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
-    off, mean = sqrt(off / (EACH * (s.n_r - 1))), bent / moved
-    doubted(s, r, setting, h, off, most, sqrt(mean))
+            by = ww * by + speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
+            off, squares = off + by, squares + by * by
+    off, mean = sqrt(squares / (FEW * off)) if off > 0.0 else 0.0, bent / moved
+    doubted(s, r, setting, h, LIKELY * off, most, sqrt(mean))
     return in_units(s, r, setting, h, off, most, mean, share(setting, h))
 
 

@@ -18,11 +18,12 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.kernels.packed import f8
 from trsim.kernels.signatures import float64
-from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.accelerations import held
+from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.solve.march.accelerations import held, in_units, largest
 from trsim.solve.march.calls import DENSE
 from trsim.solve.march.record import NO_JACOBIAN, OLD, SETTINGS
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
+from trsim.solve.methods.ggl_equations import across, moving
 from trsim.solve.methods.ggl_jacobian import sparse_jacobian
 from trsim.solve.methods.ggl_newton import eigenvalue, solved, sparse_factors
 from trsim.solve.methods.ggl_stages import (
@@ -38,7 +39,7 @@ from trsim.solve.methods.ggl_stages import (
 )
 from trsim.solve.methods.ggl_tables import SparseBuffers, SparseRecord
 from trsim.solve.methods.jacobian import missing
-from trsim.solve.methods.newton import resolution
+from trsim.solve.methods.newton import resolution, size_of_change
 from trsim.solve.methods.radau import (
     HALVE,
     KAPPA,
@@ -64,6 +65,14 @@ QUICK = 0.02  # contraction with which a matrix is kept: a new one is cheap
 # where no row of a constraint turns with its bodies: the same, and what Newton may leave, as a part
 # of the error allowed [HairerWanner1996]
 QUICK_FIXED, KAPPA_FIXED = 0.06, 0.03
+# a place is off its collocation polynomial by a part of x (x - c_1) (x - c_2) (x - c_3), so that mu
+# of stage i is TURNED_BY[i] times what changes slowly: mu of the end from the first two stages, as
+# it would be seen from the start of the step
+TURNED_BY = C * (C - np.roll(C, 1)) * (C - np.roll(C, 2))
+SEEN_FROM_START = TURNED_BY[2] / (C[1] - C[0]) * np.array([C[1], -C[0]]) / TURNED_BY[:2]
+# times the tolerance as written: what mu may make of accelerations, at most half of what they are
+# off by [measured: a third to all of it]; it dies out from step to step and does not add up
+BY_MULTIPLIERS = 10.0
 UNKNOWN = 1e-2  # error of a first step, as a part of that allowed
 KEPT = radau.DENSE_ROWS  # rows of the dense output from which on lam of the stages is kept
 DENSE_ROWS = KEPT + 3
@@ -165,13 +174,13 @@ def newton(s, r, b, setting, t, h, stabilised):
     stabilised: on the equations of ggl_equations.py; on those of equations.py otherwise.
     """
     K, n, weight = b.K, r.y.size, b.weight
-    counted, floor = resolution(r, weight, h)
+    floor = resolution(r, weight, h)
     strict = stabilised and b.turns > 0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
     # rows that turn with their bodies leave more in an iteration than those of radau.py: to make
     # errors as small, less is wanted, and what the method errs, h^6, where its estimate, h^4, is
     # small
-    made = r.past_error if r.past_error > 0.0 else UNKNOWN
+    made = r.moved_off[0] if r.past_error > 0.0 else UNKNOWN
     made = min(made * sqrt(made), 1.0)
     wanted = max(min(KAPPA, sqrt(setting.step_error)) * made, floor) if strict else enough
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
@@ -186,7 +195,8 @@ def newton(s, r, b, setting, t, h, stabilised):
         nothing(s, K)
         for part in range(2):
             solved(s, r, b, sides(K, part), eigenvalue(part, h), held)
-        moved = sqrt(moved_on(s, K, weight, n, stabilised) / max(3 * counted, 1))
+        moved = size_of_change(s, K, F, weight)
+        moved_on(s, K, n, stabilised)
         if not isfinite(moved):
             return -1
         if moved == 0.0:
@@ -232,12 +242,41 @@ def estimate(s, r, b, setting, t, h):
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
+    if error < 1.0:
+        r.moved_off[0] = max(error, booked, 1e-10)
     if held(s):
         copy_to(e, K[F + 2])
         constrained(s, b, sides(K, 0))
         solved(s, r, b, sides(K, 0), g, 1.0)
         error = max(error, of_accelerations(s, r, b, setting, h))
+        error = max(error, of_multipliers(s, r, b, setting, h))
     return max(error, booked, 1e-10)
+
+
+@internal
+def of_multipliers(s, r, b, setting, h):
+    """The error of accelerations that mu makes.
+
+    M^-1 B^T mu moves bodies without their velocities, and what is stiff between them answers, by
+    e = (GAMMA/h - J)^-1 (-M^-1 B^T mu, 0) and accelerations GAMMA/h e_v.  No error of places and
+    speeds tells of it.  Bodies turn in a step, and what is stiff with them: J is that of its start,
+    and so is mu.
+    """
+    K, g, mu, x = b.K, eigenvalue(0, h), b.mu[0], b.pull0
+    for k in range(s.m):
+        mu[k] = SEEN_FROM_START[0] * K[MU, k] + SEEN_FROM_START[1] * K[MU + 1, k]
+    clear(x)
+    across(s, r.at_rows, b.across, mu, x)
+    clear(K[F])
+    moving(s, r.y, x, K[F])
+    nothing(s, K)
+    unconstrained(s, r, b, sides(K, 0), g)
+    solved(s, r, b, sides(K, 0), g, 0.0)
+    off = 0.0
+    for c in range(s.n_q, s.n_q + s.v_node):
+        off = max(off, s.scale[c] * abs(g.real * K[F, c]))
+    most = largest(s, r.yd, r.top_acceleration)
+    return in_units(s, r, setting, h, off, most, 0.0, BY_MULTIPLIERS)
 
 
 @compiled(DENSE)

@@ -252,7 +252,8 @@ def of_accelerations(
     v = h * speed * max(float(np.linalg.norm(third)) - SHOWN * allowed, 0.0)
     w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
     most = max(most, w * speed / FURTHEST)
-    made = w * np.hypot(w * length, speed)
+    # all of a mean over the bodies may be of one
+    made = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
     finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
     return (
         max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
