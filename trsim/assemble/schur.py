@@ -50,9 +50,7 @@ def planar_rows(s):
                 o = first
                 while o < p:  # two at a time: there are few
                     value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
-                    value[entry[pair + 1]] += (
-                        B[o + 1, 0] * w0 + B[o + 1, 1] * w1 + B[o + 1, 2] * w2
-                    )
+                    value[entry[pair + 1]] += B[o + 1, 0] * w0 + B[o + 1, 1] * w1 + B[o + 1, 2] * w2
                     o, pair = o + 2, pair + 2
                 if o == p:
                     value[entry[pair]] += B[o, 0] * w0 + B[o, 1] * w1 + B[o, 2] * w2
