@@ -224,6 +224,7 @@ def estimate(s, r, b, setting, t, h):
     alone: across them they are solved for from stages that are on them."""
     K, n, weight, g = b.K, r.y.size, b.weight, eigenvalue(0, h)
     e, error, booked = K[F], 0.0, 0.0
+    moved = of_multipliers(s, r, b, setting, h) if held(s) else 0.0
     copy_to(e, r.yd)
     for c in range(n):
         K[F + 1, c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
@@ -248,14 +249,13 @@ def estimate(s, r, b, setting, t, h):
         copy_to(e, K[F + 2])
         constrained(s, b, sides(K, 0))
         solved(s, r, b, sides(K, 0), g, 1.0)
-        error = max(error, of_accelerations(s, r, b, setting, h))
-        error = max(error, of_multipliers(s, r, b, setting, h))
+        error = max(error, moved, of_accelerations(s, r, b, setting, h))
     return max(error, booked, 1e-10)
 
 
 @internal
 def of_multipliers(s, r, b, setting, h):
-    """The error of accelerations that mu makes.
+    """The error of accelerations that mu makes; K[F] is scratch.
 
     M^-1 B^T mu moves bodies without their velocities, and what is stiff between them answers, by
     e = (GAMMA/h - J)^-1 (-M^-1 B^T mu, 0) and accelerations GAMMA/h e_v.  No error of places and
