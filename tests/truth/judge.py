@@ -140,6 +140,7 @@ def stated(r: Ran) -> float:
         if "energy book does not close" in text:
             told += [float(x) / 100 for x in re.findall(r"by ([0-9.e+-]+) %", text)]
         told += [float(x) for x in re.findall(r"joints were open by up to ([0-9.e+-]+)", text)]
+        told += [float(x) / 100 for x in re.findall(r"joints and drives did ([0-9.e+-]+) %", text)]
         told += [float(x) for x in re.findall(r"makes RK4 err by about ([0-9.e+-]+)", text)]
     return max(told)
 

@@ -35,7 +35,7 @@ from trsim.elements.scene import PROJECTION, scene
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import of_drift
 from trsim.solve.diagnose.bar_scales import largest
-from trsim.solve.diagnose.chance import of_extremes
+from trsim.solve.diagnose.chance import GIVEN, of_extremes, too_much_given
 from trsim.solve.diagnose.crossed import of_branches
 from trsim.solve.diagnose.faint import of_vibrations
 from trsim.solve.diagnose.mesh_error import of_meshes
@@ -61,7 +61,6 @@ CHANGED = 1e-3  # of a speed that was given
 OF_CLEARANCE, OF_RADIUS = 0.25, 0.05  # penetrations
 LOST = 1e-3  # of the largest energy exchanged: a run that loses more says so
 WORKS = 1e-3  # the same of works in fixed steps, which no error control lengthens or shortens
-GIVEN = 1e-2  # of it: more done by projection says so too
 AT_REST = 1e-9  # of the largest stored energy: kinetic energy of what does not move
 COARSE = 0.2  # rad in a fixed step: 31 steps a turn
 PASSED = 2.0  # periods of the fastest wave in a mean step
@@ -90,7 +89,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_branches(mechanism, outcome.record),
         *of_sections(scenario, mechanism, outcome.record),
         *of_drift(scenario, mechanism, outcome.record),
-        *of_extremes(mechanism, outcome),
+        *of_extremes(scenario, mechanism, outcome),
     )
 
 
@@ -275,17 +274,24 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
     if outcome.record is not None:
         yield from of_jumps(mechanism, outcome.record)
     given = numbers.get("work_of_projection_relative", 0.0)
-    if given > GIVEN and work > least and outcome.status in WELL:
+    near = mechanism.model.near_rows > 0.0
+    if too_much_given(scenario, outcome) and work > least and outcome.status in WELL:
+        back = (
+            f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
+            "largest energy exchanged"
+        )
         bends = (
             "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
             "the way may be those of the other branch?  "
-            if mechanism.model.near_rows > 0.0
+            if near
             else ""
         )
         yield (
-            f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
-            f"largest energy exchanged; does a drive jump?  {bends}"
-            "Else `tolerance` or the step is too coarse"
+            f"{back}, and what follows is off by as much: where rows of joints nearly depend on "
+            "each other rounding makes steps short, and each is brought back.  Another "
+            "`tolerance` may pass such a place in fewer; with clearance or compliance there is none"
+            if near and given <= GIVEN
+            else f"{back}; does a drive jump?  {bends}Else `tolerance` or the step is too coarse"
         )
     apart = numbers.get("joints_open_relative", 0.0)
     if apart > OPEN and mechanism.model.stabilisation != PROJECTION:
