@@ -27,8 +27,8 @@ Wrong: ended `done` with a place, turn, velocity, acceleration, reaction, drive 
 off by more than max(100 tolerance, 10 stated error) of the largest of its kind in the scene
 (speeds between rows included; what a run without projection reports as the effect of open joints
 on accelerations, or of the work that projection did, is a stated error), at a row or as a stored
-extreme beside the reference at all ends of its steps (tests/truth/extremes.py), or missed a crossing (event, touch, point of a section)
-that goes deeper than 10 tolerances of the size.
+extreme beside the reference at all ends of its steps (tests/truth/extremes.py), or missed a
+crossing (event, touch, point of a section) that goes deeper than 10 tolerances of the size.
 The bound grows with what a small change of the start grows by, divided by 20 (where a scene would
 be wrong also by what changes of speeds at eight times on the way do): of places and speeds,
 and at single rows of a channel itself, since forces in contacts grow by more. Where it passes the
