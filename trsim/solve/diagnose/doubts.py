@@ -274,24 +274,10 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
     if outcome.record is not None:
         yield from of_jumps(mechanism, outcome.record)
     given = numbers.get("work_of_projection_relative", 0.0)
-    near = mechanism.model.near_rows > 0.0
     if too_much_given(scenario, outcome) and work > least and outcome.status in WELL:
-        back = (
-            f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
-            "largest energy exchanged"
-        )
-        bends = (
-            "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
-            "the way may be those of the other branch?  "
-            if near
-            else ""
-        )
         yield (
-            f"{back}, and what follows is off by as much: where rows of joints nearly depend on "
-            "each other rounding makes steps short, and each is brought back.  Another "
-            "`tolerance` may pass such a place in fewer; with clearance or compliance there is none"
-            if near and given <= GIVEN
-            else f"{back}; does a drive jump?  {bends}Else `tolerance` or the step is too coarse"
+            f"bringing the mechanism back to its joints and drives did {100 * given:.2g} % of the "
+            f"largest energy exchanged{brought_back(given, mechanism.model.near_rows > 0.0)}"
         )
     apart = numbers.get("joints_open_relative", 0.0)
     if apart > OPEN and mechanism.model.stabilisation != PROJECTION:
@@ -299,6 +285,24 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
             f"joints were open by up to {apart:.2g} of the mechanism's size; "
             "`stabilisation: projection` closes them"
         )
+
+
+def brought_back(given: float, near: bool) -> str:
+    """Why, and what to do.  near: rows of joints may come to depend on each other."""
+    if near and given <= GIVEN:
+        return (
+            ", and what follows is off by as much: where rows of joints nearly depend on each "
+            "other, rounding makes steps short, and each of them is brought back.  Another "
+            "`tolerance` may need fewer steps there; clearance or compliance in a joint avoids such "
+            "a place"
+        )
+    bends = (
+        "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
+        "the way may be those of the other branch?  "
+        if near
+        else ""
+    )
+    return f"; does a drive jump?  {bends}Else `tolerance` or the step is too coarse"
 
 
 def of_events(outcome: Outcome) -> Iterator[str]:

@@ -12,7 +12,7 @@ from math import pi
 from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.solve.march.accelerations import ALLOWED, ROUNDED, RUN
+from trsim.solve.march.accelerations import ALLOWED, RUN, unknown
 from trsim.solve.outcome import Outcome
 
 TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
@@ -35,13 +35,13 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     largest = float(r.top_acceleration)
     tolerance = scenario.solver.tolerance
     natural = outcome.start.speed**2 / mechanism.model.size
-    rounding = ROUNDED * (r.vibration * mechanism.model.size + r.decay * r.speed)
+    rounding = float(unknown.python(mechanism.model, r))
     one = tolerance * largest
     in_one, in_all = off > TOLD * one, total > SUM * one or rounding > ROUNDS * one
     if largest < NOTHING * natural or not (in_one or in_all):
         return
     if not in_one:
-        total = max(total, float(rounding))
+        total = max(total, rounding)
         yield (
             "solver.tolerance: accelerations, and with them forces, may be off by "
             f"{min(total / largest, 1.0):.1g} of the largest over the run: something vibrates "

@@ -10,9 +10,6 @@ what is slow, w^2 = |D v'| / |D x|: any phase and, of motions of several frequen
 fastest that is seen.  In units of the tolerance and the largest acceleration met this is no more
 than the error of the motion, unless accelerations are small for the speeds there are.
 
-Errors of several bodies are put together by sum e^2 / sum e of their squares e: their mean where
-all take part alike, and that of one body whatever others are at rest beside it.
-
 What lies inside a step may be off by more than its end: a method whose dense output is tells so by
 its `inside`, and complete.py asks where output rows lie there.
 
@@ -52,6 +49,18 @@ def largest(s, yd, most):
     for c in range(s.n_q, s.n_q + s.v_node):
         most = max(most, s.scale[c] * abs(yd[c]))
     return most
+
+
+@internal
+def together(total, squares, entries):
+    """The error of several bodies, m/s^2, from the sums of their squared errors e and of e^2:
+
+        sqrt(squares / total / entries)
+
+    the root of the mean of as many entries of each where all bodies take part alike, and that of
+    one body whatever others are at rest beside it.
+    """
+    return sqrt(squares / (entries * total)) if total > 0.0 else 0.0
 
 
 @internal

@@ -22,6 +22,7 @@ from trsim.solve.march.accelerations import (
     largest,
     share,
     stiffness,
+    together,
     unknown,
 )
 from trsim.solve.march.calls import CONTROL, DENSE, INTERPOLATE, STEP
@@ -157,7 +158,7 @@ def of_accelerations(s, r, b, setting, h):
                 if v5 * x3 > APART**2 * v3 * x5:
                     turns = min(h * h * speed * v5 / (length * x5), SLOWER**2 * stiff * h * h)
                     least += by5 * min((turns / HOLDS**2) ** 3, 1.0)
-    if error5 == 0.0:
+    if squares == 0.0:  # or next to nothing: its square is no number
         return 0.0
     bodies = EACH * error5 * error5 / squares
     off = h * error5 / sqrt((error5 + 0.01 * error3) * bodies)
@@ -232,7 +233,7 @@ def inside(scene, r, b, setting, t, h):
         off, squares = off + by, squares + by * by
     if LEFT * sqrt(moved) * length < ROUNDED * scene.size or off == 0.0:
         return 0.0
-    off = sqrt(squares / (EACH * off))
+    off = together(off, squares, EACH)
     most = largest(scene, r.yd, r.top_acceleration)
     doubted(scene, r, setting, h, off, most, sqrt(ww))
     return in_units(scene, r, setting, h, off, most, ww, share(setting, h))

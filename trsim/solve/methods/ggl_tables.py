@@ -26,9 +26,7 @@ class SparseRecord(Record):
     at_rows: A2  # (slots of every row of the mechanism, 6) B
     at_turn: A2  # (slots, 6) derivative of B v + Phi_t against displacements
     at_state: A1  # (rows with a state) Phi against that state
-    moved_off: (
-        A1  # (1) error of places, velocities and states of the last step that kept to its bound
-    )
+    moved_off: A1  # (1) error of the motion in the last step that kept to its bound
 
 
 class SparseBuffers(Buffers):

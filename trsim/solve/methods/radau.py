@@ -20,7 +20,15 @@ from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, internal
-from trsim.solve.march.accelerations import doubted, frequency, held, in_units, largest, share
+from trsim.solve.march.accelerations import (
+    doubted,
+    frequency,
+    held,
+    in_units,
+    largest,
+    share,
+    together,
+)
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import jitter, noted, to_look
@@ -60,9 +68,10 @@ MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
 SHARPEST = 0.01  # contraction that is believed without a second iteration
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
-# entries of a body that an error of accelerations is the mean of: with those of others hardly any
-# margin is left where a step holds some rad of a vibration, where this estimate is as the error
-FEW, LIKELY = 2.0, 0.4  # and what it is likely to be, as a part of that, which is told
+# entries of a body that an error of accelerations is the mean of: with all of them hardly any
+# margin is left where a step holds some rad of a vibration and the estimate is no larger than the
+# error; and what the error is likely to be, as a part of that, which is told
+FEW, LIKELY = 2.0, 0.4
 HALVE = NO_STEP  # Newton failed: take about half the step
 
 
@@ -315,7 +324,7 @@ def of_accelerations(s, r, b, setting, h):
             moved, bent = moved + by, bent + ww * by
             by = ww * by + speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
             off, squares = off + by, squares + by * by
-    off, mean = sqrt(squares / (FEW * off)) if off > 0.0 else 0.0, bent / moved
+    off, mean = together(off, squares, FEW), bent / moved
     doubted(s, r, setting, h, LIKELY * off, most, sqrt(mean))
     return in_units(s, r, setting, h, off, most, mean, share(setting, h))
 
