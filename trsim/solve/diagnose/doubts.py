@@ -293,8 +293,7 @@ def brought_back(given: float, near: bool) -> str:
         return (
             ", and what follows is off by as much: where rows of joints nearly depend on each "
             "other, rounding makes steps short, and each of them is brought back.  Another "
-            "`tolerance` may need fewer steps there; clearance or compliance in a joint avoids such "
-            "a place"
+            "`tolerance` may need fewer steps there; clearance or compliance in a joint avoids it"
         )
     bends = (
         "Or do branches of the motion nearly meet, so that it turns sharply there and rows on "
