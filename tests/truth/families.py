@@ -1123,10 +1123,17 @@ def bars(rng: Any) -> Drawn:
 @family
 def towed(rng: Any) -> Drawn:
     """What is stiff, or strongly damped, and carries little: parts that move on together."""
+    s, w, fast = train(rng, 3, 60)
+    s.end = between(rng, 0.3, 2) * 6.28 / w
+    return Drawn(dressed(rng, s, 3 * fast))
+
+
+def train(rng: Any, least: float, most: float) -> tuple[Scene, float, float]:
+    """A chain that turns with w, and what holds its bodies together, `least` to `most` as fast."""
     flat = bool(rng.random() < 0.5)
     s = chain(rng, int(rng.integers(2, 4)), flat, lambda k: "revolute")
     w = decades(rng, 0.3, 3)
-    fast = w * decades(rng, 3, 60)
+    fast = w * decades(rng, least, most)
     kind = pick(rng, "spring", "damper", "both")
     for k, j in enumerate(s.joints[1:], 1):
         one, other = s.bodies[k - 1], s.bodies[k]
@@ -1143,8 +1150,26 @@ def towed(rng: Any) -> Drawn:
     axis = s.joints[0].axis
     given(s, [np.r_[np.cross(w * axis, b.at), w * axis] for b in s.bodies])
     gravity(rng, s, w**2 * 2)
-    s.end = between(rng, 0.3, 2) * 6.28 / w
-    return Drawn(dressed(rng, s, 3 * fast))
+    return s, w, fast
+
+
+@family
+def stiff(rng: Any) -> Drawn:
+    """Springs hundreds to thousands of times as fast as the motion, whose vibration dies out: what
+    errors of places make of them is larger by the square of that."""
+    s, w, fast = train(rng, 100, 3000)
+    for f in s.forces:
+        if f.c == 0.0:
+            f.c = f.k / fast * between(rng, 0.3, 1)
+    if rng.random() < 0.3:  # a stop that nothing meets
+        j = s.joints[-1].name
+        s.forces.append(Limit("stop", j, -1.0, 1.0, s.forces[0].k, ramp=decades(rng, 1e-4, 0.1)))
+    s.end = min(between(rng, 0.3, 2) * 6.28 / w, decades(rng, 1000, 10000) / fast)
+    dressed(rng, s, 3 * fast, methods=("auto", "radau", "dop853", "scipy:Radau"))
+    s.tolerance = decades(rng, 1e-7, 1e-2)
+    if s.method == "radau":
+        s.settings["formulation"] = pick(rng, "ggl", "index1")
+    return Drawn(s)
 
 
 @family

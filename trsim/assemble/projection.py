@@ -14,6 +14,8 @@ from trsim.kernels.signatures import A1, f8, float64, i8, void
 from trsim.kernels.vectors import clear, clear_table
 
 DOUBTFUL = 1e-2  # a pivot, of its diagonal
+CLOSED = 1e-14  # of the mechanism's size: as nearly as rows are closed
+NEWTON = 8  # steps of Newton's method
 
 
 @compiled(void(SCENE, A1, A1))
@@ -144,6 +146,14 @@ def poses_and_rows(s, t, y):
     constraints(s, t)
     rows(s)
     factorise(s)
+
+
+@equation
+def put_on_rows(s, t, y):
+    """Bring a state to the rows, its velocities too, as closely as rounding lets."""
+    close_positions(s, t, y, CLOSED * s.size, NEWTON)
+    poses_and_rows(s, t, y)
+    project_velocities(s, y)
 
 
 @compiled(float64(SCENE, A1))

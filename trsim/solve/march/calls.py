@@ -8,6 +8,9 @@ STEP        b.y1 <- one step of size h from r.y, with b.K[0] = y'(t, y); returns
 DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
             is y'(t + h, y1) with y1 as finally accepted, projected
 INTERPOLATE y <- solution at t + theta h
+RATE        rate <- y' of what is slow, theta of a step h: that of its dense output P, or at the end
+            of the step just made (AT_END of settle.py) that of its stages
+SOFTEN      c <- (mu - J)^-1 c with what the last step was solved with; returns mu, 0: none is there
 CONTROL     net <- control points of the solution less y, in Bernstein's basis; where a method has
             none they are taken from values                                   spread.py
 """
@@ -33,6 +36,10 @@ STEP = types.float64(SCENE, RECORD, BUFFERS, SETTINGS, f8, f8)
 DENSE = types.void(SCENE, A2, f8, A1, f8, A1, A2)
 #                        P   y   theta out
 INTERPOLATE = types.void(A2, A1, f8, A1)
+#                 K   P   h   theta rate
+RATE = types.void(A2, A2, f8, f8, A1)
+#                      scene  record  buffers  c
+SOFTEN = types.float64(SCENE, RECORD, BUFFERS, A1)
 #                    P   net
 CONTROL = types.void(A2, A2)
 # what locates points of sections, for runs that have some
@@ -65,12 +72,13 @@ FIELDS = (
     "sample", "finish",  # what keeps extremes, and what does where samples end
     "passes",  # what notes steps past places where branches of the motion may meet
     "inside",  # what tells the error of accelerations inside a step, as `step` does that of its end
+    "rate", "soften",  # what brings to rest what is stiff in a state             settle.py
     "stiff",  # what looks at how stiff the mechanism is, for methods that ask     stiffness.py
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
-    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, STIFF_AT,
+    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, RATE_AT, SOFTEN_AT, STIFF_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 
@@ -86,6 +94,8 @@ call_step = caller(STEP)
 call_dense = caller(DENSE)
 call_interpolate = caller(INTERPOLATE)
 call_control = caller(CONTROL)
+call_rate = caller(RATE)
+call_soften = caller(SOFTEN)
 call_sections = caller(SECTIONS)
 call_look = caller(LOOK)
 call_search = caller(SEARCH)

@@ -25,9 +25,11 @@ from trsim.solve.march.calls import (
     MEET_AT,
     NO_STEP,
     PASSES_AT,
+    RATE_AT,
     SAMPLE_AT,
     SEARCH_AT,
     SECTIONS_AT,
+    SOFTEN_AT,
     STEP_AT,
     TURN_AT,
     call_interpolate,
@@ -93,11 +95,15 @@ def complete(s, r, b, setting, method):
     """
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
+    b.restless = 0
+    b.rate, b.soften = method[RATE_AT], method[SOFTEN_AT]
     b.t1 = reached(setting, b.t + h)
     worst, worst_rate = r.worst_phi, r.worst_phi_dot
-    b.projected = land(s, r, b, b.t1, b.y1, b.K[last])
+    b.projected = land(s, r, b, b.t1, b.y1, b.K[last], b.rate)
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
+    if b.restless > 0 and setting.fixed_step == 0.0 and h > BRIEF * setting.t_end:
+        return undone(r, worst, worst_rate, STRAYED)
     if s.steep > 0 and strayed(s, r, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
     if s.status[4] > 0 and leaked(s, r, b, setting):
@@ -281,7 +287,7 @@ def exact(s, r, b, setting, method, theta):
             return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
-        projected = land(s, r, b, t + h1, b.y1, b.K[last])
+        projected = land(s, r, b, t + h1, b.y1, b.K[last], b.rate)
         if gap_of < 0:
             if method[BEYOND_AT] == 0:
                 return h1, 0.0, projected

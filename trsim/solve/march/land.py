@@ -6,17 +6,20 @@ from trsim.assemble.equations import constraints, corners, evaluate, gaps, kinet
 from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import (
+    CLOSED,
     DOUBTFUL,
-    close_positions,
+    NEWTON,
     normalise,
     poses_and_rows,
     project_positions,
     project_velocities,
+    put_on_rows,
 )
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.own_rows import ends_in, keep_roots, keep_rows, look_at
+from trsim.solve.march.settle import AT_END, at_rest
 from trsim.solve.march.watch import watch
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
@@ -24,8 +27,6 @@ PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be belo
 # velocities are brought to them with factors of the place that far away
 PHI_SQUARED, PHI_BELOW = 1e-6, 1e-12
 PHI_LOST = 1e-6  # still off by so much after NEWTON steps: there is no position to come back to
-NEWTON = 8
-CLOSED = 1e-14  # of the mechanism's size, where rows nearly depend on each other
 ASTRAY = 0.1  # of the fastest rate: by as much velocities of another branch are others
 INTERPOLATED = 10.0  # tolerances: what a state inside a step is off by
 UNKNOWN = 1e-15  # of the diagonal: rounding of a pivot
@@ -33,12 +34,13 @@ NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it 
 
 
 @internal
-def land(s, r, b, t, y, yd):
+def land(s, r, b, t, y, yd, rest=0):
     """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
 
     Returns the work done by the projection (J): the change of kinetic energy, and minus the work
     of the applied forces on the small displacement.  Where no position is found y and y' are not
-    finite.
+    finite.  rest: more than 0 at the end of the step just made by a method that knows what is
+    stiff, which comes to rest then.
     """
     done = 0.0
     normalise(s, y)
@@ -72,6 +74,8 @@ def land(s, r, b, t, y, yd):
         done += kinetic(s, y) - T0
     flush(y)
     evaluate(s, t, y, yd)
+    if rest > 0:
+        at_rest(s, r, b, b.P, t - b.t, AT_END, t, y, yd)
     if s.near_rows > 0.0:
         keep_roots(s, s.root[2])
         if s.status[0] == SINGULAR:  # its factors are shifted
@@ -128,18 +132,10 @@ def evaluate_inside(s, r, t, y, yd, kept):
         if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
             return
     copy_to(kept, y)
-    bring_inside(s, t, y)
+    put_on_rows(s, t, y)
     if s.near_rows > 0.0 and elsewhere(s, y, kept):
         copy_to(y, kept)
     evaluate_to_measure(s, t, y, yd)
-
-
-@internal
-def bring_inside(s, t, y):
-    """Bring a state inside a step to the rows, its velocities too, as closely as rounding lets."""
-    close_positions(s, t, y, CLOSED * s.size, NEWTON)
-    poses_and_rows(s, t, y)
-    project_velocities(s, y)
 
 
 @internal
@@ -151,7 +147,7 @@ def evaluate_stage(s, t, y, yd):
     """
     evaluate(s, t, y, yd)
     if s.near_rows > 0.0 and s.stabilisation != NONE and smallest_pivot(s) < DOUBTFUL:
-        bring_inside(s, t, y)
+        put_on_rows(s, t, y)
         evaluate_to_measure(s, t, y, yd)
 
 

@@ -115,6 +115,8 @@ def method_table(method, **called):
         step=method.step.address(),
         dense=method.dense.address(),
         interpolate=method.interpolate.address(),
+        rate=method.rate.address() if hasattr(method, "rate") else 0,
+        soften=method.soften.address() if hasattr(method, "soften") else 0,
         complete=complete.address(),
         last=method.LAST,
         estimate=method.ESTIMATE,

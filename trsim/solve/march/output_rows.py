@@ -6,6 +6,7 @@ from trsim.solve.march.calls import LOOK_AT, STEP_AT, call_look
 from trsim.solve.march.dense_output import measure_inside
 
 SOON = 0.05  # of a step: a row so near to its start is as right as that
+SOONEST = 1e-3  # the same, of what is stiff
 # a pivot at which the dense output's error is felt a hundredfold; long steps of loose tolerances,
 # from the one there on, may reach past such a place and are further off
 FELT, LOOSE, MORE = 2e-5, 1e-6, 0.2
@@ -27,9 +28,11 @@ def at_end(t_o, t1):
 def felt(s, b, setting, method):
     """Whether the row just measured inside the step feels the error of the dense output so much
     that the step is to end there, and may."""
+    chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
+    if b.restless > 0 and chosen:
+        return True
     if b.firm[0] >= FELT * max(1.0, s.tolerance / LOOSE) ** MORE:
         return False
-    chosen = setting.fixed_step == 0.0 and method[STEP_AT] > 0  # and by whom: not scipy
     return chosen and s.stabilisation == PROJECTION  # else rows are closed inside steps only
 
 
@@ -52,12 +55,14 @@ def rows_until(s, r, b, setting, method):
             copy_to(row[1:], b.out)
             b.row_firm[r.rows] = b.firm[1]
         else:
+            b.restless = 0
             measure_inside(s, r, b, t_o, (t_o - b.t) / b.h)
             copy_to(row[1:], s.out)
             b.row_firm[r.rows] = b.firm[0]
             if method[LOOK_AT] > 0:
                 call_look(method[LOOK_AT], s, r, b, setting, t_o, 0)
-            if t_o - b.t > SOON * b.h and felt(s, b, setting, method):
+            soon = SOON if b.restless == 0 else SOONEST
+            if t_o - b.t > soon * b.h and felt(s, b, setting, method):
                 b.until = t_o - b.t
         if not all_finite(row) or b.until > 0.0:
             r.rows, r.next_row, r.opened = rows, next_row, 0

@@ -28,6 +28,7 @@ ACT = 9  # a user event happened: the caller does what it says
 JOLTS_KEPT = 8
 PASSES_KEPT, MEETINGS_KEPT = 32, 8
 PARTS = 8  # in which the top of a polynomial is looked for
+CHANGES_KEPT = 6  # of states tried, that are learned from                          settle.py
 FOUND = 200  # places between two samples where extremes are looked for
 
 # columns of the event buffer
@@ -251,6 +252,7 @@ class Buffers(Packed):
     lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
     inverse: A2  # (POINTS, POINTS) of the distances of nodes
     bound: A2  # (2, n_k) of channels between two samples: see `bounds` of samples.py
+    tried: A2  # (5 + 2 CHANGES_KEPT, n_y) states tried               settle.py
     part: A2  # (2, n_y) both ends of a part of a step                            passes.py
     mean: A2  # (2, n_out) channels where rows of the solve depend on each other
     unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
@@ -274,7 +276,10 @@ class Buffers(Packed):
     doubt: F8  # what stands for the last divided difference in the error of a polynomial
     count: I1  # and the whole ones
     interpolate: I8  # address of what evaluates the dense output
+    rate: I8  # of the rate of what is slow in it, 0: none                        settle.py
+    soften: I8  # and of what takes away what is stiff
     built: I8  # 1: P holds it
+    restless: I8  # 1: what is stiff did not come to rest
     moved: I8  # 1: the end of the step was moved on along its tangent
     n_found: I8  # places between two samples that were looked at                peaks.py
     laid: I8  # how many there were when a lattice was laid
@@ -314,6 +319,7 @@ def fresh_buffers(
         lattice=np.zeros((POINTS, 1 + PARTS)),
         inverse=np.zeros((POINTS, POINTS)),
         bound=np.zeros((2, len(model.kin))),
+        tried=np.zeros((5 + 2 * CHANGES_KEPT, n_y)),
         part=np.zeros((2, n_y)),
         mean=np.zeros((2, model.n_out)),
         root=np.zeros(contacts + watched),

@@ -29,9 +29,10 @@ from trsim.solve.march.accelerations import (
     share,
     together,
 )
-from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
+from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, RATE, SOFTEN, STEP
 from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
-from trsim.solve.march.rounding import jitter, noted, to_look
+from trsim.solve.march.rounding import MARGIN, jitter, noted, to_look
+from trsim.solve.march.settle import AT_END, settles
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods.dense_lu import (
     factorise_complex,
@@ -43,6 +44,7 @@ from trsim.solve.methods.dense_lu import (
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
 from trsim.solve.methods.newton import (
+    CONVERGED,
     FAILS,
     GOES_ON,
     NEXT_TO_NOTHING,
@@ -66,6 +68,7 @@ BENT = np.array([1.0 / ((C[0] - C[1]) * (C[0] - 1.0)), 1.0 / ((C[1] - C[0]) * (C
 TURNED, LEAVING = BENT @ inverse(A), inverse(A)[2]
 MOST_ITERATIONS = 8
 KAPPA = 0.01  # of the error allowed: what Newton may leave
+RATES = 1.0  # times the tolerance and the largest acceleration: what it may leave of rates
 SHARPEST = 0.01  # contraction that is believed without a second iteration
 QUICK = 0.1  # contraction with which a matrix is kept for the next step
 # entries of a body that an error of accelerations is the mean of: with all of them hardly any
@@ -89,7 +92,7 @@ def step(s, r, b, setting, t, h):
             r.factored_h = 0.0
             return HALVE
         guess(s, r, b, h)
-        converged = newton(s, r, b, t, h)
+        converged = newton(s, r, b, setting, t, h)
         if converged > 0:
             break
         if converged < 0 and r.jacobian == FRESH:
@@ -170,7 +173,7 @@ def guess(s, r, b, h):
 
 
 @internal
-def newton(s, r, b, t, h):
+def newton(s, r, b, setting, t, h):
     """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite."""
     K, n, weight = b.K, r.y.size, b.weight
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
@@ -179,6 +182,10 @@ def newton(s, r, b, t, h):
     # once measured, a contraction is trusted less with every use              [HairerWanner1996]
     expected = max(r.contraction, SHARPEST) ** 0.8
     r.contraction = expected
+    told, changed = settles(s), 0.0
+    most = largest(s, r.yd, r.top_acceleration) if told else 0.0
+    r.top_acceleration = max(most, r.top_acceleration)
+    quiet, near = RATES * setting.tolerance * most, False
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
         for i in range(3):
@@ -202,6 +209,8 @@ def newton(s, r, b, t, h):
             for k in range(n):
                 K[W + i, k] += K[F + i, k]
         moved = size_of_change(s, K, F, weight)
+        if told:  # rates of what is stiff, which errors of places and speeds say little of
+            changed = g * largest_change(s, K)
         for i in range(3):
             for k in range(n):
                 K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
@@ -210,15 +219,40 @@ def newton(s, r, b, t, h):
         verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
         if iteration > 0:
             r.contraction = rate
-        elif expected < 1.0 and moved * expected / (1.0 - expected) < kappa:
-            return 1
-        if verdict == FAILS:
-            return 0
-        r.newton_rate = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
+        believed = iteration == 0 and expected < 1.0
+        if believed and moved * expected / (1.0 - expected) < kappa:
+            verdict, rate = CONVERGED, expected
+        elif verdict == FAILS:
+            break
+        else:
+            r.newton_rate = min(rate, 1e-4) if verdict == NEXT_TO_NOTHING else rate
         if verdict != GOES_ON:
-            return 1
+            if changed * min(rate, 1.0) <= quiet or moved <= floor:
+                return 1
+            near = True
         before = moved
-    return 0
+    return int(near and rustles(s, r, b, setting, t, changed, g))
+
+
+@internal
+def rustles(s, r, b, setting, t, changed, g):
+    """Whether rates that change so much do so by rounding of places and rates."""
+    K = b.K
+    jitter(s, r, b, setting, t, K[F], K[F + 1])
+    corrected(s, r, K[F], K[DW], g)
+    clear(K[F + 1])
+    clear(K[F + 2])
+    return changed <= MARGIN * g * largest_change(s, K)
+
+
+@internal
+def largest_change(s, K):
+    """The largest change of a velocity, of turns at their arm, in the rows F of K."""
+    most = 0.0
+    for i in range(F, F + 3):
+        for c in range(s.n_q, s.n_q + s.v_node):
+            most = max(most, s.scale[c] * abs(K[i, c]))
+    return most
 
 
 @internal
@@ -273,14 +307,14 @@ def estimate(s, r, b, setting, t, h):
     corrected(s, r, e, K[DW], GAMMA / h)
     booked = of_works(s, r, b, setting, h)
     error = norm(e, weight)
-    if error >= 1.0 and (r.history != BEHIND or r.after_rejection > 0):
+    if booked >= 1.0 or (error >= 1.0 and (r.history != BEHIND or r.after_rejection > 0)):
         for c in range(n):
             K[F + 2, c] = r.y[c] + e[c]
         evaluate(s, t, K[F + 2], e)
         for c in range(n):
             e[c] += K[F + 1, c]
         corrected(s, r, e, K[DW], GAMMA / h)
-        error = norm(e, weight)
+        booked, error = of_works(s, r, b, setting, h), norm(e, weight)
     if held(s):
         error = max(error, of_accelerations(s, r, b, setting, h))
     return max(error, booked, 1e-10)
@@ -372,6 +406,30 @@ def collocation(K, y, y1, P):
 def polynomial(P, c, s):
     """Entry c of the solution at t + h + s h, from that at t + h."""
     return s * (P[0, c] + (s - C[1] + 1.0) * (P[1, c] + (s - C[0] + 1.0) * P[2, c]))
+
+
+@compiled(RATE)
+def rate(K, P, h, theta, out):
+    """Of the collocation polynomial: by the stages at the end of a step, by P inside it."""
+    if theta == AT_END:
+        for c in range(out.size):
+            z = LEAVING[0] * K[Z, c] + LEAVING[1] * K[Z + 1, c] + LEAVING[2] * K[Z + 2, c]
+            out[c] = z / h
+        return
+    s, p, q = theta - 1.0, theta - C[1], theta - C[0]
+    for c in range(out.size):
+        rest = P[1, c] + q * P[2, c]
+        out[c] = (P[0, c] + p * rest + s * (rest + p * P[2, c])) / h
+
+
+@compiled(SOFTEN)
+def soften(s, r, b, c):
+    """c <- (mu - J)^-1 c with the real factors of the last step."""
+    if r.factored_h == 0.0:
+        return 0.0
+    mu = GAMMA / r.factored_h
+    corrected(s, r, c, b.K[DW], mu)
+    return mu
 
 
 @compiled(INTERPOLATE)

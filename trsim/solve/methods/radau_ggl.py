@@ -16,7 +16,7 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import DRIVES, SCENE, compiled
-from trsim.kernels.packed import f8
+from trsim.kernels.packed import A1, f8
 from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.accelerations import held, in_units, largest
@@ -59,7 +59,7 @@ ESTIMATE, LAST = radau.ESTIMATE, radau.LAST
 IMPLICIT = True
 STAGES = ggl_stages.STAGES
 SPARSE = ggl_tables  # its records have tables of their own
-interpolate = radau.interpolate
+interpolate, rate = radau.interpolate, radau.rate
 
 QUICK = 0.02  # contraction with which a matrix is kept: a new one is cheap
 # where no row of a constraint turns with its bodies: the same, and what Newton may leave, as a part
@@ -80,6 +80,7 @@ DENSE_DEGREE = 3
 
 #                   scene  record  buffers  setting t h
 STEP = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, SETTINGS, f8, f8)
+SOFTEN = float64(SCENE, SparseRecord.kind, SparseBuffers.kind, A1)
 
 
 @compiled(STEP)
@@ -277,6 +278,20 @@ def of_multipliers(s, r, b, setting, h):
         off = max(off, s.scale[c] * abs(g.real * K[F, c]))
     most = largest(s, r.yd, r.top_acceleration)
     return in_units(s, r, setting, h, off, most, 0.0, BY_MULTIPLIERS)
+
+
+@compiled(SOFTEN)
+def soften(s, r, b, c):
+    """c <- (mu - J)^-1 c along the rows, with mu of the real system."""
+    if b.made_for == 0.0:
+        return 0.0
+    K, mu = b.K, eigenvalue(0, b.made_for)
+    copy_to(K[F], c)
+    nothing(s, K)
+    constrained(s, b, sides(K, 0))
+    solved(s, r, b, sides(K, 0), mu, 1.0)
+    copy_to(c, K[F])
+    return mu.real
 
 
 @compiled(DENSE)

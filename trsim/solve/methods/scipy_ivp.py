@@ -23,7 +23,7 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
-from trsim.solve.march.accelerations import FURTHEST, WIDEST, held, largest, share
+from trsim.solve.march.accelerations import ALLOWED, FURTHEST, WIDEST, held, largest, share
 from trsim.solve.march.anew import anew, begun_with
 from trsim.solve.march.calls import INTERPOLATE, method_row
 from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
@@ -32,6 +32,7 @@ from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
 from trsim.solve.march.peaks import finish, sample
 from trsim.solve.march.record import Buffers, Record, Settings, crowded, fresh_buffers
+from trsim.solve.march.settle import settles
 from trsim.solve.march.works import ROUNDING
 from trsim.solve.methods.jacobian import PART
 from trsim.solve.outcome import (
@@ -56,6 +57,8 @@ NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(9) / 8)  # Chebyshev-Lobatto on 0..
 SIGNS = np.array([0.5, -1, 1, -1, 1, -1, 1, -1, 0.5])  # their barycentric weights
 # by values at the nodes: second and third derivative in the middle of a step as long as one
 SECOND, THIRD = np.linalg.inv(np.vander(NODES - 0.5, increasing=True))[2:4] * [[2.0], [6.0]]
+# and its first at the end
+LEAVING = np.linalg.inv(np.vander(NODES - 1.0, increasing=True))[1]
 LAST = 2  # row of K with y' at the end of a step; row 1 is scratch of the march
 SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thousand compiled ones
 # of the unit of errors: local errors of BDF add up from turn to turn; RK45 estimates a kink in the
@@ -65,6 +68,7 @@ EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its ord
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
 SHOWN = 0.5  # of the error allowed: what Newton's method leaves of it in third derivatives
 TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
+OWN = 4.0  # over h: what is slow beside it, and stiff
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
 
@@ -148,6 +152,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         if r.weak:
             s = anew(mechanism, s, r, b, setting)
         if outcome == SMOOTH_STEP and s is changed:
+            of_what_is_stiff(s, r, b, solver, h)
             nudge(solver, r)
             r.h = h
             if r.speed_cap > 0.0:
@@ -258,6 +263,25 @@ def of_accelerations(
     return (
         max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
     )
+
+
+def of_what_is_stiff(s: Scene, r: Record, b: Buffers, solver: Any, h: float) -> None:
+    """Note what accelerations are off by at the end of a step, as what is stiff answers to what
+    Newton's method and projection leave of places: R - mu (mu - J)^-1 R, as in settle.py."""
+    J = getattr(solver, "J", None)
+    if J is None or not settles.python(s):
+        return
+    first, rates = s.n_q, slice(s.n_q, s.n_q + s.v_node)
+    left, mu, scale = np.zeros(r.y.size), OWN / h, np.asarray(s.scale)[rates]
+    end = s.n_q + s.n_v + s.n_z
+    left[first:end] = (np.asarray(r.yd) - LEAVING @ b.P / h)[first:end]
+    allowed = ALLOWED * s.tolerance * float(largest.python(s, r.yd, r.top_acceleration))
+    if np.abs(scale * left[rates]).max(initial=0.0) <= allowed:
+        return
+    slow = mu * np.linalg.solve(mu * np.eye(r.y.size) - J, left)
+    off = float(np.abs(scale * (left - slow)[rates]).max())
+    if off > max(allowed, float(r.blurred)):
+        r.blurred, r.blurred_h, r.blurred_w = off, h, 0.0
 
 
 def books(s: Scene) -> slice:
