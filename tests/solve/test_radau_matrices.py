@@ -70,10 +70,10 @@ def stopped(steps):
 @cache
 def to_corner():
     """Steps to a corner of friction, while Radau is at work."""
-    for steps in range(LATER, LATER + 20):
+    for steps in range(LATER, LATER + 100):
         if stopped(steps).record.jacobian == rec.NO_RATES:
             return steps
-    raise AssertionError("no corner in twenty steps of sticking and slipping")
+    raise AssertionError("no corner in a hundred steps of sticking and slipping")
 
 
 @pytest.fixture

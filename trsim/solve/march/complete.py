@@ -287,7 +287,10 @@ def exact(s, r, b, setting, method, theta):
             return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
+        b.restless = 0
         projected = land(s, r, b, t + h1, b.y1, b.K[last], b.rate)
+        if b.restless > 0 and setting.fixed_step == 0.0 and h1 > BRIEF * setting.t_end:
+            return -1.0, 0.0, 0.0
         if gap_of < 0:
             if method[BEYOND_AT] == 0:
                 return h1, 0.0, projected

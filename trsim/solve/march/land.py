@@ -75,7 +75,9 @@ def land(s, r, b, t, y, yd, rest=0):
     flush(y)
     evaluate(s, t, y, yd)
     if rest > 0:
+        T0 = kinetic(s, y)
         at_rest(s, r, b, b.P, t - b.t, AT_END, t, y, yd)
+        done += kinetic(s, y) - T0
     if s.near_rows > 0.0:
         keep_roots(s, s.root[2])
         if s.status[0] == SINGULAR:  # its factors are shifted

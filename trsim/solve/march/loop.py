@@ -273,7 +273,7 @@ def next_step(s, r, b, setting, method):
         return left if left < setting.fixed_step * (1.0 + 1e-9) else setting.fixed_step
     if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
         most = min(most, longest_turn(s, r))
-    if method[STIFF_AT] > 0 and r.vibration > 0.0 and smooth(s, r):
+    if method[STIFF_AT] > 0 and r.vibration > 0.0:
         most = min(most, longest_calm(r))
     h = min(r.h, most)
     if min(STRETCH * h, most) >= left * (1.0 - 1e-12):

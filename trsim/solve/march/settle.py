@@ -20,6 +20,7 @@ from math import sqrt
 from trsim.assemble.equations import evaluate
 from trsim.assemble.linear import SOUND, smallest_pivot
 from trsim.assemble.projection import DOUBTFUL, normalise, onto_rows, put_on_rows
+from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION
 from trsim.kernels.vectors import all_finite, clear, copy_to, internal
 from trsim.solve.march.accelerations import ALLOWED, largest
@@ -32,6 +33,7 @@ STATES = 15  # tried
 FURTHER = 3.0  # times what was left before: too far to learn from
 RESOLVED = 1e-15  # of an entry or its unit: no change of it
 NEW = 1e-6  # of a change: what is not known from those before
+BITS = 1e-15  # of a place: what its last bits, and those of what is added to it, are
 AT_END = 2.0  # in place of theta: the end of the step just made, as its stages say
 # rows of `tried`: P'; the state as it was; F; the next change; the best state so far; changes
 SLOW, GIVEN, LEFT, CHANGE, BEST, DY = range(6)
@@ -58,24 +60,44 @@ def at_rest(s, r, b, P, h, theta, t, y, yd):
     call_rate(b.rate, b.K, P, h, theta, K[SLOW])
     if not apart(s, yd, 1.0, K[SLOW]) > quiet or (s.m > 0 and not smallest_pivot(s) > DOUBTFUL):
         return
-    rest = solved(s, r, b, theta, t, y, yd, quiet)
-    if rest > MORE * quiet:
+    rest, known = solved(s, r, b, theta, t, y, yd, quiet)
+    if rest > MORE * quiet and rest > rounding(s, K, y, known):
         b.restless = 1
         if rest > ALLOWED * s.tolerance * most:
             r.blur, r.blur_w = max(rest, r.blur), 0.0
 
 
 @internal
+def rounding(s, K, y, known):
+    """What the last bits of places make of accelerations, m/s^2: no step leaves less.
+
+    By the stiffest of the changes that are known, which make 1 m/s^2 each.
+    """
+    width, places = (3, 2) if s.d == 3 else (7, 3)
+    furthest, stiffest = s.size, 0.0
+    for f in range(s.n_r - 1):
+        for c in range(width * f, width * f + places):
+            furthest = max(furthest, abs(y[c]))
+    for i in range(known):
+        moved = 0.0
+        for f in range(s.n_r - 1):
+            for c in range(width * f, width * f + places):
+                moved = max(moved, abs(K[DY + i, c]))
+        stiffest = max(stiffest, 1.0 / moved) if moved > 0.0 else stiffest
+    return BITS * furthest * stiffest
+
+
+@internal
 def solved(s, r, b, theta, t, y, yd, quiet):
-    """y, y' <- the best state found; what it leaves of F, 0 if no more than rounding, less than 0
-    where nothing is stiff, and nothing was changed."""
+    """y, y' <- the best state found.  Returns what it leaves of F, 0 if no more than rounding, less
+    than 0 where nothing is stiff, and nothing was changed; and how many changes are known."""
     K = b.tried
     left, change, n, fine = K[LEFT], K[CHANGE], 0, False
     remaining(s, K, y, yd, y, 0.0)
     copy_to(change, left)
     mu = call_soften(b.soften, s, r, b, change)
     if mu == 0.0 or not apart(s, left, mu, change) > quiet or not resolved(s, b, y, change):
-        return -1.0
+        return -1.0, 0
     copy_to(K[BEST], y)
     copy_to(K[GIVEN], y)
     best, before = apart(s, yd, 1.0, K[SLOW]), apart(s, left, 0.0, left)
@@ -117,10 +139,11 @@ def solved(s, r, b, theta, t, y, yd, quiet):
             break
     copy_to(y, K[BEST])
     evaluate(s, t, y, yd)
+    known = min(n, CHANGES_KEPT)
     if fine:
-        return 0.0
+        return 0.0, known
     remaining(s, K, y, yd, K[GIVEN], mu)
-    return apart(s, left, 0.0, left)
+    return apart(s, left, 0.0, left), known
 
 
 @internal
@@ -128,7 +151,7 @@ def remaining(s, K, y, yd, given, mu):
     """K[LEFT] <- F(y), as far as rows of joints allow it; places follow their rates."""
     left, rate = K[LEFT], K[SLOW]
     for k in range(y.size):
-        own = s.n_q <= k < s.n_q + s.n_v + s.n_z
+        own = s.n_q <= k < s.n_q + s.n_v + s.n_z and not 0 <= k - s.n_q - s.n_v < N_BOOK
         left[k] = yd[k] - rate[k] - mu * (y[k] - given[k]) if own else 0.0
     onto_rows(s, left[s.n_q : s.n_q + s.n_v])
 

@@ -32,6 +32,7 @@ FIRST, OFTEN, SELDOM = 3, 4, 32
 RISEN = 2.0  # times what it was: looked at OFTEN again
 FADING = 0.5  # of what was found before: at least that stays with a look
 NUDGE = 1e-7  # of the units of lengths and speeds: the size of d and u
+DEEP = 1e-3  # of the unit of lengths
 GOLDEN = 0.6180339887498949
 NOTHING = 1e-300  # nothing holds anything
 # the longest steps of an explicit method in which what is stiff dies out, w h and c h.  DOP853 is
@@ -44,12 +45,16 @@ call_look_stiff = caller(LOOK_STIFF)
 
 @internal
 def smooth(s, r):
-    """Whether accelerations are smooth in places and rates here: nothing touches, no rows depend on
-    others."""
+    """Whether accelerations are smooth in places and rates here: nothing touches, or touches only
+    begin or end far from here; no rows depend on others."""
     if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
         return False
+    # what was found in flight holds in touch; before anything was found, touches that a nudge does
+    # not end are looked at as they are
+    deep = DEEP * r.length if r.vibration == 0.0 else 1e300
     for c in range(s.contact.size):
-        if r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT:
+        touches = r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT
+        if touches and not r.gap[c, 0] > deep:
             return False
     return True
 

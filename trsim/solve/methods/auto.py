@@ -111,7 +111,7 @@ def change(s, r, b, method, load):
     r.method = method
     r.stiff, r.not_stiff = 0, 0
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
-    r.past_error, r.factored_h, r.vibration = 0.0, 0.0, 0.0
+    r.past_error, r.factored_h, r.next_look = 0.0, 0.0, r.steps
     forget(r)
     r.method_switches += 1
     line = b.events[r.event_rows]

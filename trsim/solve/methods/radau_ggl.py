@@ -19,7 +19,7 @@ from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.kernels.packed import A1, f8
 from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import clear, copy_to, internal
-from trsim.solve.march.accelerations import held, in_units, largest
+from trsim.solve.march.accelerations import ROUNDED, doubted, held, in_units, largest
 from trsim.solve.march.calls import DENSE
 from trsim.solve.march.record import NO_JACOBIAN, OLD, SETTINGS
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
@@ -277,6 +277,10 @@ def of_multipliers(s, r, b, setting, h):
     for c in range(s.n_q, s.n_q + s.v_node):
         off = max(off, s.scale[c] * abs(g.real * K[F, c]))
     most = largest(s, r.yd, r.top_acceleration)
+    rounding = ROUNDED * s.size * g.real**2
+    if off <= rounding:  # of places, which mu takes for what joints are open by
+        doubted(s, r, setting, h, off, most, 0.0)
+        return 0.0
     return in_units(s, r, setting, h, off, most, 0.0, BY_MULTIPLIERS)
 
 
