@@ -207,8 +207,8 @@ output: {every: 0.02}
 @pytest.mark.parametrize("method", ["auto", "dop853"])
 @pytest.mark.parametrize("tolerance", ["1e-3", "1e-4"])
 def test_what_is_stiff_is_known_in_touch_too(method, tolerance):
-    """Before a step beyond the limit of stability 105 rad/s^2 at most, by every method at 1e-8;
-    there were 4,700 to 9,200 while the stop was in touch."""
+    """By every method at 1e-8 there are 105 rad/s^2 at most; steps beyond the limit of stability
+    made 4,700 to 9,200 of it while the stop was in touch."""
     r = run(AT_A_STOP, f"solver.method={method}", f"solver.tolerance={tolerance}")
     largest = np.abs(r.outcome.peaks[r.place["b.angular_acceleration"][0] + 2, [0, 2]]).max()
     assert 104.5 < largest < 106.0

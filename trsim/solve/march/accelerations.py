@@ -39,8 +39,13 @@ def held(s):
     Contacts have units of their own, and waves in bars are to be passed over.  Where the rows of a
     loop nearly depend on each other accelerations tell of what a state is off them, not of motion.
     """
-    sound = s.status[6] == 0 or s.near_rows == 0.0
-    return sound and s.contact.size == 0 and 1 < s.n_r == s.n
+    return settles(s) and s.contact.size == 0
+
+
+@internal
+def settles(s):
+    """Whether what is stiff is brought to rest (settle.py): waves in bars are passed over."""
+    return (s.status[6] == 0 or s.near_rows == 0.0) and 1 < s.n_r == s.n
 
 
 @internal

@@ -95,14 +95,13 @@ def complete(s, r, b, setting, method):
     """
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
-    b.restless = 0
-    b.rate, b.soften = method[RATE_AT], method[SOFTEN_AT]
+    b.rate, b.soften, b.restless = method[RATE_AT], method[SOFTEN_AT], 0
     b.t1 = reached(setting, b.t + h)
     worst, worst_rate = r.worst_phi, r.worst_phi_dot
     b.projected = land(s, r, b, b.t1, b.y1, b.K[last], b.rate)
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
-    if b.restless > 0 and setting.fixed_step == 0.0 and h > BRIEF * setting.t_end:
+    if restless(b, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
     if s.steep > 0 and strayed(s, r, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
@@ -187,6 +186,12 @@ def complete(s, r, b, setting, method):
             turned = call_turn(method[TURN_AT], s, r, b, setting, method, t1, met + int(event))
             outcome = WITH_CORNER if turned > 0 and not event else outcome
     return outcome
+
+
+@internal
+def restless(b, setting, h):
+    """Whether what is stiff did not come to rest at the end of a step that may be shorter."""
+    return b.restless > 0 and setting.fixed_step == 0.0 and h > BRIEF * setting.t_end
 
 
 @internal
@@ -287,9 +292,8 @@ def exact(s, r, b, setting, method, theta):
             return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
-        b.restless = 0
         projected = land(s, r, b, t + h1, b.y1, b.K[last], b.rate)
-        if b.restless > 0 and setting.fixed_step == 0.0 and h1 > BRIEF * setting.t_end:
+        if restless(b, setting, h1):
             return -1.0, 0.0, 0.0
         if gap_of < 0:
             if method[BEYOND_AT] == 0:

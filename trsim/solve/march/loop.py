@@ -108,6 +108,8 @@ def method_table(method, **called):
     searched = called.get("search", 0) > 0 or called.get("corners", 0) > 0
     if searched and hasattr(method, "control"):
         called["control"] = method.control.address()
+    if hasattr(method, "soften"):
+        called["rate"], called["soften"] = method.rate.address(), method.soften.address()
     if hasattr(method, "inside"):
         called["inside"] = method.inside.address()
         called["stiff"] = look_stiff.address()
@@ -115,8 +117,6 @@ def method_table(method, **called):
         step=method.step.address(),
         dense=method.dense.address(),
         interpolate=method.interpolate.address(),
-        rate=method.rate.address() if hasattr(method, "rate") else 0,
-        soften=method.soften.address() if hasattr(method, "soften") else 0,
         complete=complete.address(),
         last=method.LAST,
         estimate=method.ESTIMATE,

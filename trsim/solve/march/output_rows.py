@@ -55,7 +55,6 @@ def rows_until(s, r, b, setting, method):
             copy_to(row[1:], b.out)
             b.row_firm[r.rows] = b.firm[1]
         else:
-            b.restless = 0
             measure_inside(s, r, b, t_o, (t_o - b.t) / b.h)
             copy_to(row[1:], s.out)
             b.row_firm[r.rows] = b.firm[0]

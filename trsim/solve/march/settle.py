@@ -23,7 +23,7 @@ from trsim.assemble.projection import DOUBTFUL, normalise, onto_rows, put_on_row
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION
 from trsim.kernels.vectors import all_finite, clear, copy_to, internal
-from trsim.solve.march.accelerations import ALLOWED, largest
+from trsim.solve.march.accelerations import ALLOWED, largest, settles
 from trsim.solve.march.calls import call_rate, call_soften
 from trsim.solve.march.record import CHANGES_KEPT
 
@@ -41,17 +41,12 @@ DF = DY + CHANGES_KEPT
 
 
 @internal
-def settles(s):
-    """Whether what is stiff is brought to rest: waves in bars are passed over."""
-    return (s.status[6] == 0 or s.near_rows == 0.0) and 1 < s.n_r == s.n
-
-
-@internal
 def at_rest(s, r, b, P, h, theta, t, y, yd):
     """y, y' <- a state near y in which what is stiff is at rest, theta of a step h.
 
     y' is that of y, evaluated last, and so it is again.  b.restless: 1 if it did not come to rest.
     """
+    b.restless = 0
     if not settles(s) or s.status[0] != SOUND:
         return
     K = b.tried
@@ -73,18 +68,21 @@ def rounding(s, K, y, known):
 
     By the stiffest of the changes that are known, which make 1 m/s^2 each.
     """
+    stiffest = 0.0
+    for i in range(known):
+        moved = furthest(s, K[DY + i], 0.0)
+        stiffest = max(stiffest, 1.0 / moved) if moved > 0.0 else stiffest
+    return BITS * furthest(s, y, s.size) * stiffest
+
+
+@internal
+def furthest(s, y, most):
+    """The larger of `most` and the coordinates of bodies in y, m."""
     width, places = (3, 2) if s.d == 3 else (7, 3)
-    furthest, stiffest = s.size, 0.0
     for f in range(s.n_r - 1):
         for c in range(width * f, width * f + places):
-            furthest = max(furthest, abs(y[c]))
-    for i in range(known):
-        moved = 0.0
-        for f in range(s.n_r - 1):
-            for c in range(width * f, width * f + places):
-                moved = max(moved, abs(K[DY + i, c]))
-        stiffest = max(stiffest, 1.0 / moved) if moved > 0.0 else stiffest
-    return BITS * furthest * stiffest
+            most = max(most, abs(y[c]))
+    return most
 
 
 @internal
@@ -100,7 +98,7 @@ def solved(s, r, b, theta, t, y, yd, quiet):
         return -1.0, 0
     copy_to(K[BEST], y)
     copy_to(K[GIVEN], y)
-    best, before = apart(s, yd, 1.0, K[SLOW]), apart(s, left, 0.0, left)
+    best, before = apart(s, yd, 1.0, K[SLOW]), largest(s, left, 0.0)
     for _ in range(STATES):
         p = n % CHANGES_KEPT
         copy_to(K[DY + p], y)
@@ -115,7 +113,7 @@ def solved(s, r, b, theta, t, y, yd, quiet):
         if not all_finite(yd):
             break
         remaining(s, K, y, yd, K[GIVEN], mu)
-        size = apart(s, left, 0.0, left)
+        size = largest(s, left, 0.0)
         if size > FURTHER * before:  # by a change of what is slow, on its way out of what is linear
             copy_to(y, K[DY + p])
             copy_to(left, K[DF + p])
@@ -143,7 +141,7 @@ def solved(s, r, b, theta, t, y, yd, quiet):
     if fine:
         return 0.0, known
     remaining(s, K, y, yd, K[GIVEN], mu)
-    return apart(s, left, 0.0, left), known
+    return largest(s, left, 0.0), known
 
 
 @internal

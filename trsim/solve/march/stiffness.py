@@ -49,12 +49,11 @@ def smooth(s, r):
     begin or end far from here; no rows depend on others."""
     if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
         return False
-    # what was found in flight holds in touch; before anything was found, touches that a nudge does
-    # not end are looked at as they are
-    deep = DEEP * r.length if r.vibration == 0.0 else 1e300
     for c in range(s.contact.size):
         touches = r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT
-        if touches and not r.gap[c, 0] > deep:
+        # what was found in flight holds in touch; before anything was found, touches that a nudge
+        # does not end are looked at as they are
+        if touches and (r.vibration > 0.0 or r.gap[c, 0] <= DEEP * r.length):
             return False
     return True
 

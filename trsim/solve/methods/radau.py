@@ -26,13 +26,14 @@ from trsim.solve.march.accelerations import (
     held,
     in_units,
     largest,
+    settles,
     share,
     together,
 )
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, RATE, SOFTEN, STEP
 from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import MARGIN, jitter, noted, to_look
-from trsim.solve.march.settle import AT_END, settles
+from trsim.solve.march.settle import AT_END
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods.dense_lu import (
     factorise_complex,
@@ -183,9 +184,9 @@ def newton(s, r, b, setting, t, h):
     expected = max(r.contraction, SHARPEST) ** 0.8
     r.contraction = expected
     told, changed = settles(s), 0.0
-    most = largest(s, r.yd, r.top_acceleration) if told else 0.0
-    r.top_acceleration = max(most, r.top_acceleration)
-    quiet, near = RATES * setting.tolerance * most, False
+    if told:
+        r.top_acceleration = largest(s, r.yd, r.top_acceleration)
+    quiet, near = RATES * setting.tolerance * r.top_acceleration, False
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
         for i in range(3):
@@ -210,7 +211,7 @@ def newton(s, r, b, setting, t, h):
                 K[W + i, k] += K[F + i, k]
         moved = size_of_change(s, K, F, weight)
         if told:  # rates of what is stiff, which errors of places and speeds say little of
-            changed = g * largest_change(s, K)
+            changed = g * largest(s, K[F], largest(s, K[F + 1], largest(s, K[F + 2], 0.0)))
         for i in range(3):
             for k in range(n):
                 K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
@@ -240,19 +241,7 @@ def rustles(s, r, b, setting, t, changed, g):
     K = b.K
     jitter(s, r, b, setting, t, K[F], K[F + 1])
     corrected(s, r, K[F], K[DW], g)
-    clear(K[F + 1])
-    clear(K[F + 2])
-    return changed <= MARGIN * g * largest_change(s, K)
-
-
-@internal
-def largest_change(s, K):
-    """The largest change of a velocity, of turns at their arm, in the rows F of K."""
-    most = 0.0
-    for i in range(F, F + 3):
-        for c in range(s.n_q, s.n_q + s.v_node):
-            most = max(most, s.scale[c] * abs(K[i, c]))
-    return most
+    return changed <= MARGIN * g * largest(s, K[F], 0.0)
 
 
 @internal

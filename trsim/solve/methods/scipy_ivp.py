@@ -23,7 +23,7 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
-from trsim.solve.march.accelerations import ALLOWED, FURTHEST, WIDEST, held, largest, share
+from trsim.solve.march.accelerations import ALLOWED, FURTHEST, WIDEST, largest, settles, share
 from trsim.solve.march.anew import anew, begun_with
 from trsim.solve.march.calls import INTERPOLATE, method_row
 from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
@@ -32,7 +32,6 @@ from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
 from trsim.solve.march.peaks import finish, sample
 from trsim.solve.march.record import Buffers, Record, Settings, crowded, fresh_buffers
-from trsim.solve.march.settle import settles
 from trsim.solve.march.works import ROUNDING
 from trsim.solve.methods.jacobian import PART
 from trsim.solve.outcome import (
@@ -245,7 +244,7 @@ def of_accelerations(
     w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
     b.P; a solver outside keeps its estimates to itself.
     """
-    if not held.python(s):
+    if s.contact.size > 0 or not settles.python(s):  # `held`, as plain Python
         return 1.0
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
     length, speed = float(r.length), float(r.speed)
@@ -271,11 +270,11 @@ def of_what_is_stiff(s: Scene, r: Record, b: Buffers, solver: Any, h: float) -> 
     J = getattr(solver, "J", None)
     if J is None or not settles.python(s):
         return
-    first, rates = s.n_q, slice(s.n_q, s.n_q + s.v_node)
-    left, mu, scale = np.zeros(r.y.size), OWN / h, np.asarray(s.scale)[rates]
-    end = s.n_q + s.n_v + s.n_z
-    left[first:end] = (np.asarray(r.yd) - LEAVING @ b.P / h)[first:end]
-    allowed = ALLOWED * s.tolerance * float(largest.python(s, r.yd, r.top_acceleration))
+    rates, mu = slice(s.n_q, s.n_q + s.v_node), OWN / h
+    left, scale = np.asarray(r.yd) - LEAVING @ b.P / h, np.asarray(s.scale)[rates]
+    left[: s.n_q] = left[books(s)] = 0.0
+    r.top_acceleration = largest.python(s, r.yd, r.top_acceleration)
+    allowed = ALLOWED * s.tolerance * float(r.top_acceleration)
     if np.abs(scale * left[rates]).max(initial=0.0) <= allowed:
         return
     slow = mu * np.linalg.solve(mu * np.eye(r.y.size) - J, left)
