@@ -27,6 +27,7 @@ from trsim.analyse.pair import Pair
 from trsim.analyse.scaling import line, weights
 from trsim.analyse.window import Window
 from trsim.errors import UsageError
+from trsim.store import torn
 from trsim.store.read import Run, opened
 
 Array = NDArray[np.float64]
@@ -77,12 +78,13 @@ def motions(run: Run, other: Run, within: Window | None = None) -> tuple[Array, 
     with opened(run.path) as mine, opened(other.path) as theirs:
         pair = Pair(mine, theirs)
         names = [name for name in pair.names if pair.moves(name)]
-        time = mine["time"][: pair.rows]
+        time = torn.rows(mine["time"], 0, pair.rows)
         inside = within.of(time) if within else np.ones(len(time), bool)
         if not names or not inside.any():
             what = f"{run.path} and {other.path} have no rows of motion in common"
             raise UsageError(what, "Compare two runs of one scenario with the same output times.")
-        values = {n: [f[n][: pair.rows][inside] for f in (mine, theirs)] for n in names}
+        both = (mine, theirs)
+        values = {n: [torn.rows(f[n], 0, pair.rows)[inside] for f in both] for n in names}
     ranges = {n: float(np.max(np.ptp(a, axis=0))) for n, (a, _) in values.items()}
     largest = {n: float(np.max(np.abs(a))) for n, (a, _) in values.items()}
     rests = still(ranges, largest, pair.units)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.store.certificate import Onset, Onsets
+from trsim.store.read import table
 
 Array = NDArray[np.float64]
 
@@ -18,19 +19,19 @@ def changes(file: h5py.File, contact: str) -> tuple[Array, NDArray[np.bool_]]:
 
     Of a contact that is closed throughout, the beginning.
     """
-    events = file["events"]
-    kind, element = (events[key][:].astype(str) for key in ("kind", "element"))
+    events = table(file["events"])
+    kind, element = (events[key].astype(str) for key in ("kind", "element"))
     mine = (element == contact) & np.isin(kind, ("onset", "separation"))
     if not mine.any() and len(file["steps"][contact]["time"]):
         return file["time"][:1], np.array([True])
-    return events["time"][:][mine], kind[mine] == "onset"
+    return events["time"][mine], kind[mine] == "onset"
 
 
 def closings(file: h5py.File, contact: str) -> Array:
     """Times (s) of the onsets of a contact."""
-    events = file["events"]
-    kind, element = (events[key][:].astype(str) for key in ("kind", "element"))
-    return np.asarray(events["time"][:][(element == contact) & (kind == "onset")])
+    events = table(file["events"])
+    kind, element = (events[key].astype(str) for key in ("kind", "element"))
+    return np.asarray(events["time"][(element == contact) & (kind == "onset")])
 
 
 def numbers(run: h5py.File, twin: h5py.File, before: float) -> list[Onsets]:

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 import h5py
 import numpy as np
 
+from trsim.store import torn
 from trsim.store.content import content_hash
 from trsim.store.grow import Array
 
@@ -197,7 +198,7 @@ def common_rows(one: h5py.File, two: h5py.File) -> int:
     """How many rows two runs share: as many as have the same times."""
     n = min(len(one["time"]), len(two["time"]))
     for k in range(0, n, ROWS):
-        a, b = one["time"][k : min(k + ROWS, n)], two["time"][k : min(k + ROWS, n)]
+        a, b = (torn.rows(file["time"], k, min(k + ROWS, n)) for file in (one, two))
         other = np.abs(a - b) > 1e-9 * np.maximum(np.abs(a), np.abs(b))
         if other.any():
             return k + int(np.argmax(other))
@@ -209,6 +210,7 @@ def pieces(
 ) -> Iterator[tuple[int, Array, Array]]:
     """First row, and the columns (n, m) of both runs, of stretches of the rows begin..end."""
     for k in range(begin, end, ROWS):
-        rows = slice(k, min(k + ROWS, end))
-        both = [np.column_stack([file[name][rows] for name in names]) for file in (one, two)]
+        last = min(k + ROWS, end)
+        read = [[torn.rows(file[name], k, last) for name in names] for file in (one, two)]
+        both = [np.column_stack(columns) for columns in read]
         yield k, both[0], both[1]

@@ -6,6 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
+from trsim.store import torn
 from trsim.store.read import Run, opened
 from trsim.store.target import TABLE, file_errors, fresh
 
@@ -47,5 +48,6 @@ def _tables(run: Run, places: list[tuple[str, int]]) -> Iterator[np.ndarray]:
 
 
 def _table(file: h5py.File, places: list[tuple[str, int]], begin: int, end: int) -> np.ndarray:
-    stored = {c: file[c][begin:end].reshape(end - begin, -1) for c, _ in places}
-    return np.column_stack([file["time"][begin:end], *(stored[c][:, k] for c, k in places)])
+    time = torn.rows(file["time"], begin, end)
+    stored = {c: torn.rows(file[c], begin, end).reshape(end - begin, -1) for c, _ in places}
+    return np.column_stack([time, *(stored[c][:, k] for c, k in places)])

@@ -2,7 +2,7 @@
 
 All groups, names and attributes of the running file are made before it is opened for one writer
 and any number of readers (SWMR); from then on it can be read at any moment, also after the writer
-was killed.  What is known only at the end is added after reopening it in normal mode.
+was killed, see torn.py.  What is known only at the end is added after reopening it in normal mode.
 """
 
 import contextlib

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
+from trsim.store import torn
 from trsim.store.grow import Field, Growing
 
 Array = NDArray[np.float64]
@@ -254,7 +255,7 @@ def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str, parts: l
 def stored(group: h5py.Group) -> Points:
     """The points of a group, also while it is written."""
     n = min(len(group[axis]) for axis in ("time", "x", "y"))
-    table = np.array([group[axis][:n] for axis in ("time", "x", "y")])
+    table = np.array([torn.rows(group[axis], 0, n) for axis in ("time", "x", "y")])
     table = table[:, ~np.isnan(table).any(axis=0)]  # room that a killed writer never filled
     units = str(group["x"].attrs["units"]), str(group["y"].attrs["units"])
     return Points(plain(group.attrs), table[0], table[1], table[2], *units)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.errors import FileError, UsageError, known, unreadable
-from trsim.store import certificate
+from trsim.store import certificate, torn
 from trsim.store.content import content_hash
 from trsim.store.grow import LONGEST, Array
 from trsim.store.peaks import Peak
@@ -81,8 +81,8 @@ class Run:
         if not self.stores(name):
             raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
         with opened(self.path) as file:
-            rows = file[stored][: self.rows]
-        return rows if component is None else rows[:, component]
+            found = torn.rows(file[stored], 0, self.rows)
+        return found if component is None else found[:, component]
 
     def stores(self, name: str) -> bool:
         """Whether there are rows of a channel or of a component."""
@@ -100,7 +100,7 @@ class Run:
         if joint not in self.contacts:
             raise UsageError(f"{self.path}: no contact '{joint}'", known(joint, self.contacts))
         with opened(self.path) as file:
-            return _table(file["steps"][joint])
+            return table(file["steps"][joint])
 
     def contact_unit(self, joint: str, *channels: str) -> str:
         """The unit of the first of the channels that a contact has, force or speed."""
@@ -113,23 +113,23 @@ class Run:
     def events(self) -> Events:
         with opened(self.path) as file:
             none: dict[str, Any] = {"did": np.array([], "S1"), "work": np.array([])}
-            table = {**none, **_table(file["events"])}
-            words = {name: table[name].astype(str) for name in ("kind", "element", "did")}
-        return Events(**{name: {**table, **words}[name] for name in Events._fields})
+            there = {**none, **table(file["events"])}
+            words = {name: there[name].astype(str) for name in ("kind", "element", "did")}
+        return Events(**{name: {**there, **words}[name] for name in Events._fields})
 
     @property
     def fired(self) -> dict[str, int]:
         """How often each user event of the scenario happened."""
         with opened(self.path) as file:
             names = [str(name) for name in file["events"].attrs.get("user", ())]
-            happened = _table(file["events"])["element"].astype(str).tolist()
+            happened = table(file["events"])["element"].astype(str).tolist()
         return {name: happened.count(name) for name in names}
 
     @property
     def recorded(self) -> dict[str, Array]:
         """`time`, `event` and the channels at user events that record; empty without any."""
         with opened(self.path) as file:
-            return _table(file["recorded"]) if "recorded" in file else {}
+            return table(file["recorded"]) if "recorded" in file else {}
 
     @property
     def peaks(self) -> tuple[Peak, ...]:
@@ -239,7 +239,7 @@ def reached(file: h5py.File) -> float:
     last = [0.0]
     for group in (file, file["events"], *file["steps"].values(), *file["poincare"].values()):
         n = _written([group["time"]])
-        last += group["time"][max(n - 1, 0) : n].tolist()
+        last += torn.rows(group["time"], max(n - 1, 0), n).tolist()
     return max(last)
 
 
@@ -308,9 +308,10 @@ def _parts(group: h5py.Group) -> dict[str, Part]:
     }
 
 
-def _table(group: h5py.Group) -> dict[str, Any]:
+def table(group: h5py.Group) -> dict[str, Any]:
+    """The rows that all datasets of a group have."""
     n = _written(list(group.values()))
-    return {name: dataset[:n] for name, dataset in group.items()}
+    return {name: torn.rows(dataset, 0, n) for name, dataset in group.items()}
 
 
 def _written(datasets: list[h5py.Dataset]) -> int:
@@ -327,7 +328,7 @@ def _written(datasets: list[h5py.Dataset]) -> int:
             continue
         while n and dataset.dtype.kind == "f":
             begin = max(n - LONGEST, 0)
-            filled = ~np.isnan(dataset[begin:n].reshape(n - begin, -1)).any(axis=1)
+            filled = ~np.isnan(torn.rows(dataset, begin, n).reshape(n - begin, -1)).any(axis=1)
             if filled.any():
                 n = begin + int(np.flatnonzero(filled)[-1]) + 1
                 break

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
+from trsim.store import torn
 from trsim.store.grow import AXES, Array
 from trsim.store.peaks import Peak
 from trsim.store.peaks import store as store_peaks
@@ -189,17 +190,17 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
 def _readable(item: h5py.Dataset, begin: int, end: int) -> Any:
     """Rows up to the first chunk that cannot be read."""
     try:
-        return item[begin : max(begin, end)]
+        return torn.rows(item, begin, max(begin, end))
     except OSError:
         pass
     good, step = begin, item.chunks[0]
     for k in range(begin, end, step):
         try:
-            item[k : min(k + step, end)]
+            torn.rows(item, k, min(k + step, end))
         except OSError:
             break
         good = min(k + step, end)
-    return item[begin:good]
+    return torn.rows(item, begin, good)
 
 
 def _first(bad: Any, n: int) -> int:
