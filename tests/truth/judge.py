@@ -146,8 +146,10 @@ def stated(r: Ran) -> float:
 
 
 def stated_of_accelerations(r: Ran) -> float:
-    """The error of accelerations that a run reports, of joints open without projection."""
-    told = [re.findall(r"change accelerations by ([0-9.e+-]+) of", text) for text in r.warnings]
+    """The error of accelerations that a run reports: of joints open without projection, and of what
+    no step is held to."""
+    said = r"change accelerations by ([0-9.e+-]+) of|off by ([0-9.e+-]+) of the largest in a single"
+    told = [filter(None, sum(re.findall(said, text), ())) for text in r.warnings]
     return max((float(x) for found in told for x in found), default=0.0)
 
 

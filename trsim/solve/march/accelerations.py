@@ -19,6 +19,7 @@ stiff, of places and rates.
 
 from math import sqrt
 
+from trsim.elements.contract import FLIGHT, PHASE
 from trsim.kernels.vectors import internal
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
@@ -30,16 +31,30 @@ FURTHEST = 3000.0  # times their share of the largest: what errors of speeds cou
 # times the tolerance as written: what accelerations of a step may be off by at most, those of a run
 # if each estimate were right and of one sign, and what is left to a step of very many
 ALLOWED, RUN, ONE = 10.0, 100.0, 0.5
+TWICE = 2.0  # what is told of a jump, see `jumped`
+TURNED = 3.0  # rad, by what is stiff in a step: units of touches say nothing of it
 
 
 @internal
-def held(s):
-    """Whether accelerations of the step at hand are held to the tolerance.
+def held(s, r, h):
+    """Whether accelerations of a step h are held to the tolerance.
 
-    Contacts have units of their own, and waves in bars are to be passed over.  Where the rows of a
-    loop nearly depend on each other accelerations tell of what a state is off them, not of motion.
+    Waves in bars are to be passed over.  Touches have units of their own, which say nothing of what
+    else is stiff: in touch they are enough where that turns by less than TURNED in the step.  Where
+    the rows of a loop nearly depend on each other accelerations tell of what a state is off them,
+    not of motion.
     """
-    return settles(s) and s.contact.size == 0
+    stiff = max(r.vibration, r.decay**2)
+    return settles(s) and (stiff == 0.0 or stiff * h * h > TURNED**2 or apart(s, r))
+
+
+@internal
+def apart(s, r):
+    """Whether nothing touches at the start of the step."""
+    for c in range(s.contact.size):
+        if r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT:
+            return False
+    return True
 
 
 @internal
@@ -110,6 +125,31 @@ def doubted(s, r, setting, h, off, most, w):
     """
     if off > ALLOWED * setting.tolerance * most and off > rounded(s, r, w * h):
         r.blur, r.blur_w = off, w
+
+
+@internal
+def jump(s, raw, e, mu):
+    """What is stiff of raw = f(y) - P'(0), the jump of the dense output's rate from the step before
+    to this one, m/s^2; e = (mu - J)^-1 raw.
+
+    To stages far longer than what is stiff a spring is a constraint whose force is right to h^2,
+    and no estimate of places and velocities sees it.
+    """
+    off = 0.0
+    for c in range(s.n_q, s.n_q + s.v_node):
+        off = max(off, s.scale[c] * abs(raw[c] - mu * e[c]))
+    return off
+
+
+@internal
+def jumped(s, r, setting, h, off):
+    """Note what a jump says: in equal steps of a smooth motion half of it is off at their ends.
+
+    Where the motion is not smooth it says too much: it counts from TWICE what other errors do.
+    """
+    most = largest(s, r.yd, r.top_acceleration)
+    if 0.5 * off > max(TWICE * ALLOWED * setting.tolerance * most, r.blur, rounded(s, r, 0.0)):
+        r.blur = 0.5 * off
 
 
 @internal

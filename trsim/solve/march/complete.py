@@ -211,7 +211,7 @@ def loose(s, r, b, setting, method):
     """Whether accelerations inside the step are not right, though those at its end are."""
     if method[INSIDE_AT] == 0 or setting.fixed_step > 0.0 or b.h <= BRIEF * setting.t_end:
         return False
-    return held(s) and call_step(method[INSIDE_AT], s, r, b, setting, b.t, b.h) > 1.0
+    return held(s, r, b.h) and call_step(method[INSIDE_AT], s, r, b, setting, b.t, b.h) > 1.0
 
 
 @internal

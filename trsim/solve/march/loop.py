@@ -11,7 +11,7 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.packed import I2, i8
 from trsim.kernels.vectors import clear_table, copy_to, internal
-from trsim.solve.march.accelerations import blurred
+from trsim.solve.march.accelerations import blurred, largest
 from trsim.solve.march.calls import (
     COMPLETE_AT,
     ESTIMATE_AT,
@@ -202,6 +202,7 @@ def march(s, r, b, setting, methods, most):
             continue
         accepted += 1
         remember(s, r, setting, h)
+        r.top_acceleration = largest(s, r.yd, r.top_acceleration)
         blurred(r, h)
         if r.torn > 0:
             return LEAPT

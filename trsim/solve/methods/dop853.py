@@ -117,7 +117,7 @@ def step(scene, r, b, setting, t, h):
     stage(K, y, h, 12, y1)
     bottom = error5 + 0.01 * error3
     error = abs(h) * error5 / sqrt(bottom * max(counted, 1)) if bottom > 0.0 else 0.0
-    if held(scene):
+    if held(scene, r, h):
         error = max(error, of_accelerations(scene, r, b, setting, h))
     return max(error, of_works(scene, r, b, setting, h))
 

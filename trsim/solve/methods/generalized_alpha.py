@@ -177,9 +177,9 @@ def estimate(s, r, b, setting, t, h):
         if weight[c] > 0.0:
             moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
     ratio = h / r.past_h if r.history > 0 else 0.0
-    if ratio == 0.0 and held(s):
+    if ratio == 0.0 and held(s, r, h):
         halved(s, r, b, t, h)
-    if ratio > 0.0 or held(s):
+    if ratio > 0.0 or held(s, r, h):
         moved = max(moved, accelerated(s, r, b, setting, h, ratio, FURTHER * moved))
     worst = size = 0.0
     for c in range(first_work(s), first_work(s) + N_BOOK):
@@ -224,9 +224,9 @@ def accelerated(s, r, b, setting, h, ratio, further):
         bent = max(bent, abs(bend) * weight[c])
         moved = max(moved, abs(by) * weight[c])
     off, strict = setting.step_error * r.speed * bent / 12.0, 0.0
-    if held(s):
+    if held(s, r, h):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
-    if held(s) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
+    if held(s, r, h) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
         units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
         strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.speed**2 / r.length)  # at the largest speed

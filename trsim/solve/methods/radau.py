@@ -19,12 +19,14 @@ import numpy as np
 from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, clear, internal
+from trsim.kernels.vectors import all_finite, clear, copy_to, internal
 from trsim.solve.march.accelerations import (
     doubted,
     frequency,
     held,
     in_units,
+    jump,
+    jumped,
     largest,
     settles,
     share,
@@ -293,7 +295,9 @@ def estimate(s, r, b, setting, t, h):
         e[c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
         K[F + 1, c] = e[c]
         e[c] += r.yd[c]
+    copy_to(K[F + 2], e)
     corrected(s, r, e, K[DW], GAMMA / h)
+    off = jump(s, K[F + 2], e, GAMMA / h)
     booked = of_works(s, r, b, setting, h)
     error = norm(e, weight)
     if booked >= 1.0 or (error >= 1.0 and (r.history != BEHIND or r.after_rejection > 0)):
@@ -304,8 +308,10 @@ def estimate(s, r, b, setting, t, h):
             e[c] += K[F + 1, c]
         corrected(s, r, e, K[DW], GAMMA / h)
         booked, error = of_works(s, r, b, setting, h), norm(e, weight)
-    if held(s):
+    if held(s, r, h):
         error = max(error, of_accelerations(s, r, b, setting, h))
+    if settles(s):
+        jumped(s, r, setting, h, off)
     return max(error, booked, 1e-10)
 
 
@@ -314,8 +320,8 @@ def of_accelerations(s, r, b, setting, h):
     """The error of accelerations that the estimate in K[F] makes, by body.
 
     What it consists of turns by w^2 = |D v'| / |D x|, D the second difference over the stages.  In
-    a first step, which may be of any length, the filter of the estimate may have left nothing of
-    it: there what was filtered counts as well.
+    a first step, of the run or behind an event, which may be of any length, the filter of the
+    estimate may have left nothing of it: there what was filtered counts as well.
     """
     K, weight, tolerance = b.K, b.weight, setting.step_error
     r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
@@ -328,7 +334,7 @@ def of_accelerations(s, r, b, setting, h):
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     off = squares = bent = 0.0
-    moved, begins = 1e-300, r.history != BEHIND and r.old_h == 0.0
+    moved, begins = 1e-300, r.history != BEHIND and r.past_error == 0.0
     for _ in range(1, s.n_r):
         x = w = placed = turned = bare = 0.0
         for c in range(q, q + of_q):

@@ -19,7 +19,16 @@ from trsim.elements.contract import DRIVES, SCENE, compiled
 from trsim.kernels.packed import A1, f8
 from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import clear, copy_to, internal
-from trsim.solve.march.accelerations import ROUNDED, doubted, held, in_units, largest
+from trsim.solve.march.accelerations import (
+    ROUNDED,
+    doubted,
+    held,
+    in_units,
+    jump,
+    jumped,
+    largest,
+    settles,
+)
 from trsim.solve.march.calls import DENSE
 from trsim.solve.march.record import NO_JACOBIAN, OLD, SETTINGS
 from trsim.solve.methods import ggl_stages, ggl_tables, radau
@@ -224,8 +233,8 @@ def estimate(s, r, b, setting, t, h):
     system; filtered once more if large.  Of accelerations as in radau.py, of what is along the rows
     alone: across them they are solved for from stages that are on them."""
     K, n, weight, g = b.K, r.y.size, b.weight, eigenvalue(0, h)
-    e, error, booked = K[F], 0.0, 0.0
-    moved = of_multipliers(s, r, b, setting, h) if held(s) else 0.0
+    e, error, booked, off = K[F], 0.0, 0.0, 0.0
+    moved = of_multipliers(s, r, b, setting, h) if held(s, r, h) else 0.0
     copy_to(e, r.yd)
     for c in range(n):
         K[F + 1, c] = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
@@ -239,6 +248,7 @@ def estimate(s, r, b, setting, t, h):
         error = norm(e, weight)
         if turn == 0:
             booked = of_works(s, r, b, setting, h)
+            off = jump(s, K[F + 2], e, g.real)
         if turn > 0 or error < 1.0 or (r.history > 0 and r.after_rejection == 0):
             break
         for c in range(n):
@@ -246,11 +256,13 @@ def estimate(s, r, b, setting, t, h):
         evaluate(s, t, K[F + 2], e)
     if error < 1.0:
         r.moved_off[0] = max(error, booked, 1e-10)
-    if held(s):
+    if held(s, r, h):
         copy_to(e, K[F + 2])
         constrained(s, b, sides(K, 0))
         solved(s, r, b, sides(K, 0), g, 1.0)
         error = max(error, moved, of_accelerations(s, r, b, setting, h))
+    if settles(s):
+        jumped(s, r, setting, h, off)
     return max(error, booked, 1e-10)
 
 
