@@ -154,3 +154,25 @@ def test_what_no_flush_left_is_damage(story, expected, tmp_path):
         torn.rows(file["B.force"], 0, 1)
     with pytest.raises(FileError, match="damaged"):
         read(path)
+
+
+@pytest.mark.parametrize("status, kept", [("running", 7), ("done", 7), ("running", 0)])
+def test_only_a_file_that_was_written_to_is_torn(status, kept, tmp_path):
+    """In a finished file rows would be lost without a word; and all text of a chunk where a checksum
+    of zeros, which a lost page leaves, is that of no rows."""
+    with h5py.File(tmp_path / "x.h5", "w") as file:
+        file.attrs["status"] = status
+        table = file.create_dataset("kind", (64,), "S8", chunks=(64,), fletcher32=True)
+        table[:kept] = b"onset"
+        table.flush()
+        before = table.id.read_direct_chunk((0,))[1]
+        table[:] = b"onset"
+        table.flush()
+        after = table.id.read_direct_chunk((0,))[1]
+        table.id.write_direct_chunk((0,), after[: -torn.CHECKSUM] + before[-torn.CHECKSUM :])
+    with h5py.File(tmp_path / "x.h5") as file:
+        if status == "running" and kept:
+            assert torn.rows(file["kind"], 0, 64).tolist() == [b"onset"] * 7 + [b""] * 57
+        else:
+            with pytest.raises(OSError, match="filter"):
+                torn.rows(file["kind"], 0, 64)

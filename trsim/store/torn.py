@@ -8,7 +8,11 @@ between two pages: HDF5 then finds a wrong checksum and gives no row of the chun
     torn      rows 0 .. m   new rows, perhaps half of one, fill values   checksum of `before`
 
 The first m rows are the same bytes in both, and the checksum proves them: with the right m, and
-fill values in place of what follows, it is right.  These are the rows of the last flush.
+fill values in place of what follows, it is right.  These are the rows of the last flush, of which
+there are some: room for rows is made by a flush before.
+
+Only a file that is still written to, or was when its writer ended, has such chunks; elsewhere a
+wrong checksum is damage.
 """
 
 from typing import Any
@@ -31,7 +35,8 @@ def rows(dataset: h5py.Dataset, begin: int, end: int) -> Any:
     try:
         return dataset[begin:end]
     except OSError:
-        if not dataset.chunks or not dataset.fletcher32:
+        writing = dataset.file.attrs.get("status") == "running"
+        if not (writing and dataset.chunks and dataset.fletcher32):
             raise
     size, end = dataset.chunks[0], min(end, len(dataset))
     found = np.empty((end - begin, *dataset.shape[1:]), dataset.dtype)
@@ -71,7 +76,7 @@ def _mended(dataset: h5py.Dataset, begin: int) -> NDArray[Any] | None:
     told = int.from_bytes(stored[-CHECKSUM:], "little")
     of = np.array([[told & 0xFFFF], [told >> 16]])
     right = np.flatnonzero(((sums - of) % BASE == 0).all(axis=0))
-    if not len(right):
+    if not len(right) or right[-1] == 0:  # nothing before proves nothing
         return None
     return np.concatenate([values[: right[-1]], fill[right[-1] :]])
 
