@@ -12,7 +12,7 @@ from math import pi
 from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
-from trsim.solve.march.accelerations import ALLOWED, RUN, unknown
+from trsim.solve.march.accelerations import ALLOWED, RUN, furthest, unknown
 from trsim.solve.outcome import Outcome
 
 TOLD = 1.1 * ALLOWED  # tolerances, of the largest acceleration
@@ -35,7 +35,8 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
     largest = float(r.top_acceleration)
     tolerance = scenario.solver.tolerance
     natural = outcome.start.speed**2 / mechanism.model.size
-    rounding = float(unknown.python(mechanism.model, r))
+    far = furthest.python(mechanism.model, r.y, mechanism.model.size)
+    rounding = float(unknown.python(r, far))
     one = tolerance * largest
     in_one, in_all = off > TOLD * one, total > SUM * one or rounding > ROUNDS * one
     if largest < NOTHING * natural or not (in_one or in_all):

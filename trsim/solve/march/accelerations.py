@@ -32,7 +32,7 @@ FURTHEST = 3000.0  # times their share of the largest: what errors of speeds cou
 # if each estimate were right and of one sign, and what is left to a step of very many
 ALLOWED, RUN, ONE = 10.0, 100.0, 0.5
 TWICE = 2.0  # what is told of a jump, see `jumped`
-TURNED = 3.0  # rad, by what is stiff in a step: units of touches say nothing of it
+TURNED = 0.1  # rad, by what is stiff in a step: units of touches say nothing of it
 
 
 @internal
@@ -179,9 +179,20 @@ def rounded(s, r, turned):
 
 
 @internal
-def unknown(s, r):
-    """What the rounding of places and rates makes of accelerations, by what is stiff, m/s^2."""
-    return ROUNDED * (r.vibration * s.size + r.decay * r.speed)
+def unknown(r, far):
+    """What the rounding of rates and of places as far as `far` makes of accelerations, by what is
+    stiff, m/s^2."""
+    return ROUNDED * (r.vibration * far + r.decay * r.speed)
+
+
+@internal
+def furthest(s, y, most):
+    """The larger of `most` and the coordinates of bodies in y, m."""
+    width, places = (3, 2) if s.d == 3 else (7, 3)
+    for f in range(s.n_r - 1):
+        for c in range(width * f, width * f + places):
+            most = max(most, abs(y[c]))
+    return most
 
 
 @internal

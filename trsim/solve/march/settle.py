@@ -23,7 +23,7 @@ from trsim.assemble.projection import DOUBTFUL, normalise, onto_rows, put_on_row
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION
 from trsim.kernels.vectors import all_finite, clear, copy_to, internal
-from trsim.solve.march.accelerations import ALLOWED, largest, settles
+from trsim.solve.march.accelerations import ALLOWED, furthest, largest, settles
 from trsim.solve.march.calls import call_rate, call_soften
 from trsim.solve.march.record import CHANGES_KEPT
 
@@ -73,16 +73,6 @@ def rounding(s, K, y, known):
         moved = furthest(s, K[DY + i], 0.0)
         stiffest = max(stiffest, 1.0 / moved) if moved > 0.0 else stiffest
     return BITS * furthest(s, y, s.size) * stiffest
-
-
-@internal
-def furthest(s, y, most):
-    """The larger of `most` and the coordinates of bodies in y, m."""
-    width, places = (3, 2) if s.d == 3 else (7, 3)
-    for f in range(s.n_r - 1):
-        for c in range(width * f, width * f + places):
-            most = max(most, abs(y[c]))
-    return most
 
 
 @internal

@@ -25,6 +25,7 @@ from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.vectors import copy_to, internal
+from trsim.solve.march.accelerations import furthest
 from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.methods.displacements import active, displace, w_index
 
@@ -32,6 +33,7 @@ FIRST, OFTEN, SELDOM = 3, 4, 32
 RISEN = 2.0  # times what it was: looked at OFTEN again
 FADING = 0.5  # of what was found before: at least that stays with a look
 NUDGE = 1e-7  # of the units of lengths and speeds: the size of d and u
+FINEST = 1e-12  # of a place: smaller changes of it are lost in its last bits
 DEEP = 1e-3  # of the unit of lengths
 GOLDEN = 0.6180339887498949
 NOTHING = 1e-300  # nothing holds anything
@@ -113,7 +115,9 @@ def turned(s, r, b, of_rates):
     place, rates, swing = b.rough[0], b.rough[1], r.swing[of_rates]
     many = active(s) if of_rates > 0 else s.n_v
     speed = max(r.speed, r.speed_cap)
-    nudge = NUDGE * (speed if of_rates > 0 else r.length)
+    nudge = (
+        NUDGE * speed if of_rates > 0 else max(NUDGE * r.length, FINEST * furthest(s, r.y, s.size))
+    )
     by = nudge / size_of(s, swing, speed, many)
     copy_to(place, r.y)
     for k in range(many):

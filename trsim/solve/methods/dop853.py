@@ -17,6 +17,7 @@ from trsim.solve.march.accelerations import (
     doubted,
     exceeded,
     frequency,
+    furthest,
     held,
     in_units,
     largest,
@@ -135,7 +136,7 @@ def of_accelerations(s, r, b, setting, h):
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     error5 = error3 = seen5 = seen3 = least = moved = turned = squares = 0.0
-    stiff, rounding = stiffness(r, h), unknown(s, r) ** 2
+    stiff, rounding = stiffness(r, h), unknown(r, furthest(s, r.y, s.size)) ** 2
     for _ in range(1, s.n_r):
         x5 = x3 = v5 = v3 = placed = 0.0
         for c in range(q, q + of_q):
@@ -148,12 +149,13 @@ def of_accelerations(s, r, b, setting, h):
         q, v = q + of_q, v + of_v
         if v5 > 0.0:
             ww = max(frequency(speed * v5, h * h * length * placed, h), stiff)
-            far = max(1.0, ww * h * h / FAR**2)
+            seen = speed * v5 > rounding
+            far = max(1.0, ww * h * h / FAR**2) if seen else 1.0
             by = ww * length * x5 + speed * v5
             moved, turned = moved + by, turned + ww * by
             by5, by3 = far * far * ww * by, far * far * ww * (ww * length * x3 + speed * v3)
             error5, error3, squares = error5 + by5, error3 + by3, squares + by5 * by5
-            if speed * v5 > rounding:
+            if seen:
                 seen5, seen3 = seen5 + by5, seen3 + by3
                 if v5 * x3 > APART**2 * v3 * x5:
                     turns = min(h * h * speed * v5 / (length * x5), SLOWER**2 * stiff * h * h)
@@ -231,7 +233,7 @@ def inside(scene, r, b, setting, t, h):
         q, v, moved = q + of_q, v + of_v, moved + places
         by = of_places * places + of_rates * rates
         off, squares = off + by, squares + by * by
-    if LEFT * sqrt(moved) * length < ROUNDED * scene.size or off == 0.0:
+    if LEFT * sqrt(moved) * length < ROUNDED * furthest(scene, r.y, scene.size) or off == 0.0:
         return 0.0
     off = together(off, squares, EACH)
     most = largest(scene, r.yd, r.top_acceleration)
