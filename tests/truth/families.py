@@ -1173,6 +1173,27 @@ def stiff(rng: Any) -> Drawn:
 
 
 @family
+def kicked(rng: Any) -> Drawn:
+    """Springs 10 to 300 times as fast as a chain that meets a soft stop, which kicks them."""
+    s, w, fast = train(rng, 10, 300)
+    for f in s.forces:
+        f.c = max(f.c, f.k / fast * decades(rng, 0.01, 1))
+    j = s.joints[0]
+    inertia = sum(b.mass * float((b.at - j.at) @ (b.at - j.at)) for b in s.bodies)
+    stop = w * decades(rng, 2, 20)
+    k, c = inertia * stop**2, inertia * stop * pick(rng, 0.0, between(rng, 0, 0.5))
+    s.forces.append(
+        Limit("stop", j.name, -2.0, between(rng, 0.05, 1), k, c, ramp=decades(rng, 1e-3, 0.1))
+    )
+    s.end = min(between(rng, 0.3, 2) * 6.28 / w, decades(rng, 300, 3000) / fast)
+    dressed(rng, s, 3 * fast, methods=("auto", "radau", "dop853"))
+    s.tolerance = decades(rng, 1e-8, 1e-2)
+    if s.method == "radau":
+        s.settings["formulation"] = pick(rng, "ggl", "index1")
+    return Drawn(s)
+
+
+@family
 def drifting(rng: Any) -> Drawn:
     """Baumgarte's stabilisation instead of projection, from far too slow to nearly stiff rates."""
     kind = pick(rng, "chain_planar", "chain_spatial", "loop", "loop", "redundant", "singular")
