@@ -171,7 +171,7 @@ def test_rest_where_branches_meet_is_told():
     """Whether the two cranks turn as one or against each other nobody has said."""
 
     def said(load, *more):
-        r = run(flat(2, load, end=0.01), *more)
+        r = run(flat(2, load, end=0.01), *more, "output.every=1e-3")
         return [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "branches" in x]
 
     torque = "forces: {s: {type: torsion_spring, joint: F0, stiffness: 0, preload: 3}}"

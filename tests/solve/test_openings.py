@@ -249,7 +249,7 @@ def test_cranks_start_lying_flat(R, method):
     parts = cranks((1, 1, 1), (0, 1.2, 2.5), 0.0, 0.0)
     planar = "true" if R is ORDINARY else "false"
     r = run(text(parts, "drives: {motor: {joint: F1, velocity: 3}}", R, planar=planar),
-            f"solver.method={method}", "solver.tolerance=1e-7")  # fmt: skip
+            f"solver.method={method}", "solver.tolerance=1e-7", "output.every=0.01")  # fmt: skip
     assert r.mechanism.mobility == 0
     assert len(r.mechanism.redundant) == (1 if planar == "true" else 7)
     way = (r["plate.position"] - r["plate.position"][0]) @ R
