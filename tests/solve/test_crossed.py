@@ -24,6 +24,10 @@ from .test_branches import flat, turning
 TOLERANCES = ("1e-2", "1e-3", "1e-4", "1e-6", "5e-7")
 # a row next to such a place is the end of a step, which then seldom goes past it
 SELDOM = "output: {every: 0.05}"
+# all that branches are told by: extremes of forces, which are chance here, are sought for long
+MOTION = "output.channels=['*.position', '*.angular_velocity']"
+# past four such places: runs that change their branch do so at one of the first
+SHORTER = "solver.end=6"
 SPACES = {"plane": ORDINARY, "tilted": TILTED}
 
 
@@ -108,7 +112,7 @@ def test_a_run_says_when_it_changed_its_branch_and_only_then(scene, method, R):
         for tolerance in TOLERANCES if RELEASE else TOLERANCES[k % 3 :: 3]:
             made, sets = drawn(longer, R)
             ways = (f"solver.method={method}", f"solver.tolerance={tolerance}")
-            r = run(made, *sets, *ways, fails=None)
+            r = run(made, *sets, *ways, MOTION, SHORTER, fails=None)
             if r.outcome.status == "failed":  # it says so, where a step came to end between them
                 assert "branches of the motion nearly meet" in r.outcome.reason
                 continue
@@ -133,7 +137,7 @@ def test_a_part_that_ends_between_the_branches_hides_no_change():
 def test_nothing_is_said_where_branches_meet(number, method, R):
     for tolerance in ("1e-2", "1e-4", "1e-6"):
         sets = (*METHODS[method], f"solver.tolerance={tolerance}")
-        r = run(flat(number, "", R, end=5.0), *turning(number, 6.0, R), *sets)
+        r = run(flat(number, "", R, end=5.0), *turning(number, 6.0, R), *sets, MOTION)
         assert not told(r), tolerance
 
 
@@ -141,7 +145,7 @@ def test_nothing_is_said_where_branches_meet(number, method, R):
 def test_crank_and_rod_of_one_length_go_on_along_their_branch(R):
     made, sets = crank_and_rod(0.0, R)
     for tolerance in ("1e-2", "1e-4", "1e-6"):
-        r = run(made, *sets, f"solver.tolerance={tolerance}")
+        r = run(made, *sets, f"solver.tolerance={tolerance}", MOTION)
         assert of_rod(r, np.asarray(R)) > 4
         assert not told(r)
 
@@ -162,7 +166,7 @@ def test_no_first_step_hides_a_change(method):
         tolerance, first = 10 ** rng.uniform(-6, -2), rng.choice(np.geomspace(1e-3, 1.0, 60))
         ways = (f"method={method}", f"tolerance={tolerance}", f"first_step={first}")
         given = [f"solver.{way}" for way in ways]
-        r = run(made, *sets, *given, "output.every=0.01", fails=None)
+        r = run(made, *sets, *given, "output.every=0.01", MOTION, SHORTER, fails=None)
         if r.outcome.status == "failed":
             continue  # it says so
         changed = branches(r, np.asarray(R)) > 0
@@ -214,7 +218,7 @@ def test_two_mechanisms_flat_at_once_one_of_them_nearly():
             ]
         more = f"gravity: [0, 0, 0]\n{SELDOM}"
         made = text((bodies, joints), more, planar="true", end=1.0, tolerance=1e-3)
-        r = run(made, *sets, "solver.method=dop853")
+        r = run(made, *sets, "solver.method=dop853", MOTION)
         assert bool(told(r)) == (longer > 0.0)
 
 
@@ -222,14 +226,20 @@ def stopped_upright(longer, R):
     """Cranks stopped where they next are flat."""
     made, sets = upright(longer, R)
     ends = (f"solver.end={np.pi / 4}", "solver.tolerance=1e-10", "solver.max_step=1e-3")
-    return run(made, *sets, *ends, fails=None)
+    return run(made, *sets, *ends, MOTION, fails=None)
+
+
+def drawn_flat(number, R):
+    """Cranks that have hardly left where they are flat: there a row is as dear as many steps."""
+    ways = ("output.every=1e-7", MOTION)
+    return run(flat(number, "", R, end=1e-7), *turning(number, 3.0, np.asarray(R)), *ways)
 
 
 STOPPED = {
     "equal": lambda R: stopped_upright(0.0, R),
     "nearly equal": lambda R: stopped_upright(1e-9, R),
-    "drawn flat": lambda R: run(flat(2, "", R, end=1e-7), *turning(2, 3.0, np.asarray(R))),
-    "three drawn flat": lambda R: run(flat(3, "", R, end=1e-7), *turning(3, 3.0, np.asarray(R))),
+    "drawn flat": lambda R: drawn_flat(2, R),
+    "three drawn flat": lambda R: drawn_flat(3, R),
 }
 
 

@@ -98,7 +98,8 @@ def test_none_changes_its_branch_in_silence(first):
     wrong = 0
     for seed in range(first, first + TOGETHER):
         made, branch = drawn(seed)
-        r = run(made, fails=None)
+        # forces have extremes there that are chance, and are sought for long
+        r = run(made, "output.channels=['*.position']", fails=None)
         if r.outcome.status == "failed":
             continue  # it says so
         A = 2.0 * r["a.position"][:, :2]

@@ -116,7 +116,10 @@ solver: {{end: 10 s, {}}}
 """
 
 
-@pytest.mark.parametrize("method", ["auto", "radau", "rk4, step: 1e-3", "generalized_alpha"])
+@pytest.mark.parametrize(
+    "method",  # of second order: at the usual tolerance it takes half a million steps
+    ["auto", "radau", "rk4, step: 1e-3", "generalized_alpha, tolerance: 1e-6"],
+)
 def test_a_crank_that_cannot_turn_through(method):
     """It locks where coupler (0.2828 m) and rocker (0.2 m) lie stretched between crank and D."""
     r = run(LOCKING.format(f"method: {method}"), fails=True)
@@ -142,7 +145,7 @@ joints:
   B: {{type: revolute, bodies: [coupler, rocker], at: {}}}
   D: {{type: revolute, bodies: [ground, rocker], at: [1, 0]}}
 drives: {{motor: {{joint: O, velocity: 5 rad/s}}}}
-solver: {{end: {}, tolerance: 1e-8}}
+solver: {{end: {}, tolerance: 1e-6}}
 """
 
 
@@ -175,7 +178,8 @@ def test_one_that_locks_where_all_its_joints_lie_in_line(method):
     lock = "do: {lock: [T1]}"
     event = f"events: {{a: {{when: q, value: -2e-8, crosses: both, times: 1, {lock}}}}}"
     made = flat(3, f"sensors: {{q: {{joint: F0}}}}\n{event}", TILTED, end=0.9)
-    ways = (f"solver.method={method}", "solver.tolerance=1e-5")
+    # extremes of forces, which are without bound here, are sought for long
+    ways = (f"solver.method={method}", "solver.tolerance=1e-5", "output.channels=[]")
     r = run(made, *turning(3, -4.0, np.asarray(TILTED)), *ways, fails=True)
     assert "the mechanism locks here: " in r.outcome.reason
     # at 4 rad/s, until joints would be open by the tolerance: theta^2 / 2

@@ -9,7 +9,9 @@ large ones; and stages that only the dense output is made of felt what they were
 so that rows came out with a plate that turned.
 """
 
+from functools import cache
 from itertools import chain
+from math import cos, sin
 
 import numpy as np
 import pytest
@@ -58,13 +60,19 @@ def parallelogram(name, at, l, theta, rate, R):
 def exact(l, theta, rate, R, t):
     """Velocity of the plate and turning rate at times t."""
     x, y, _ = R.T @ G
+    angle, w = turned(l, theta, rate, x, y, tuple(t))
+    return (R @ (l * w * np.array([-np.sin(angle), np.cos(angle), 0.0 * w]))).T, w
+
+
+@cache
+def turned(l, theta, rate, x, y, times):
+    """Angle and rate of the cranks in a gravity of x and y; of both methods the same."""
     J = 2.0 * (0.1 * M * l**2 + M * l**2 / 4.0) + M * l**2
     of = solve_ivp(
-        lambda _, u: [u[1], 2.0 * M * l * (y * np.cos(u[0]) - x * np.sin(u[0])) / J],
-        (0.0, t[-1]), [theta, rate], "DOP853", t, rtol=1e-12, atol=1e-12,
+        lambda _, u: [u[1], 2.0 * M * l * (y * cos(u[0]) - x * sin(u[0])) / J],
+        (0.0, times[-1]), [theta, rate], "DOP853", times, rtol=1e-12, atol=1e-12,
     )  # fmt: skip
-    angle, w = of.y
-    return (R @ (l * w * np.array([-np.sin(angle), np.cos(angle), 0.0 * w]))).T, w
+    return of.y
 
 
 def drawn(seed):

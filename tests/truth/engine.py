@@ -60,7 +60,7 @@ class Arrays(NamedTuple):
     watch_par: np.ndarray  # (w, 4) value, sense and origin of a sensor, rate of the pulses
 
 
-compiled = njit(cache=True, error_model="numpy")
+compiled = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)
 
 
 @compiled
