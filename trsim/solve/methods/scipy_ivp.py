@@ -244,7 +244,7 @@ def of_accelerations(
     w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
     b.P; a solver outside keeps its estimates to itself.
     """
-    if s.contact.size > 0 or not settles.python(s):  # `held`, as plain Python
+    if s.contact.size > 0 or not settles.python(s):  # units of contacts are enough here
         return 1.0
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
     length, speed = float(r.length), float(r.speed)
@@ -260,7 +260,9 @@ def of_accelerations(
     made = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
     finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
     return (
-        max(finest, min(1.0, float(share.python(setting, h) * most / made))) if made > 0.0 else 1.0
+        max(finest, min(1.0, float(share.python(s, setting, h) * most / made)))
+        if made > 0.0
+        else 1.0
     )
 
 
