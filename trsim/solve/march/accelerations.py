@@ -23,7 +23,7 @@ from trsim.elements.contract import FLIGHT, PHASE
 from trsim.kernels.vectors import internal
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
-ROUNDED = 5e-16  # of the mechanism's size, and of speeds: what places and rates are rounded to
+ROUNDED = 5e-16  # of places, the mechanism's size and speeds: what places and rates are rounded to
 WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 # entries of a body that errors of DOP853 are the mean of: drawn vibrations are off by 25 tolerances
 EACH = 9.0
@@ -45,7 +45,7 @@ def held(s, r, h):
     the rows of a loop nearly depend on each other accelerations tell of what a state is off them,
     not of motion.
     """
-    stiff = max(r.vibration, r.decay**2)
+    stiff = max(r.vibration, r.decay**2)  # 0 with methods that do not look for it: there may be any
     return settles(s) and (stiff == 0.0 or stiff * h * h > TURNED**2 or apart(s, r))
 
 

@@ -22,6 +22,7 @@ from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.accelerations import (
     ROUNDED,
     doubted,
+    furthest,
     held,
     in_units,
     jump,
@@ -289,7 +290,7 @@ def of_multipliers(s, r, b, setting, h):
     for c in range(s.n_q, s.n_q + s.v_node):
         off = max(off, s.scale[c] * abs(g.real * K[F, c]))
     most = largest(s, r.yd, r.top_acceleration)
-    rounding = ROUNDED * s.size * g.real**2
+    rounding = ROUNDED * furthest(s, r.y, s.size) * g.real**2
     if off <= rounding:  # of places, which mu takes for what joints are open by
         doubted(s, r, setting, h, off, most, 0.0)
         return 0.0
