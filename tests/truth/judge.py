@@ -228,7 +228,7 @@ def compared(
     for one in t.about:
         soft = np.fmax(soft, np.abs(one[name].values[k] - want))
     share_of_it = bound[k, None]
-    if name.endswith("acceleration"):
+    if name.endswith("acceleration") or c.kind in ("force", "moment"):
         share_of_it = np.fmax(share_of_it, STATED * stated_of_accelerations(r))
     allowed = share_of_it * top[c.kind] + soft
     if name in t.felt:

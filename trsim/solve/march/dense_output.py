@@ -7,7 +7,7 @@ from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpol
 from trsim.solve.march.earlier import this_step
 from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.samples import firmness
-from trsim.solve.march.settle import at_rest
+from trsim.solve.march.settle import answered, at_rest
 
 # rows are closed to rounding, which is felt 1 / pivot^1.5 times in what they share
 NOISE, PLAIN = 1e-12, 1e-2  # 100 times that; a pivot that always serves
@@ -106,7 +106,9 @@ def measure_at(s, r, b, step, at, theta):
     """All channels at the place itself, wherever the polynomial through others would be taken."""
     y, P, start, work, projected = step
     call_interpolate(b.interpolate, P, y, theta, b.y2)
-    evaluate_inside(s, r, at, b.y2, b.rough[0], b.rough[1])
+    moved = evaluate_inside(s, r, at, b.y2, b.rough)
+    if b.rate == 0 and moved:
+        answered(s, r, b.rough[0], b.rough[2])
     if b.rate > 0 and theta > 0.0:
         at_rest(s, r, b, P, (at - start) / theta, theta, at, b.y2, b.rough[0])
     measure(s, at, b.y2, work + theta * projected, r.energy_0)

@@ -115,7 +115,7 @@ def still_open(s, t, y):
 
 
 @internal
-def evaluate_inside(s, r, t, y, yd, kept):
+def evaluate_inside(s, r, t, y, rough):
     """y' at an interpolated y, brought to the constraints where rows depend on others, or nearly.
 
     With an eigenvalue of S of d^2 accelerations feel 1/d^2 times what interpolation opens rows by;
@@ -123,21 +123,26 @@ def evaluate_inside(s, r, t, y, yd, kept):
     what interpolation opens is not drift.  Without any it would hide the drift.
 
     Where branches meet, nearer than interpolation is off the rows by, the nearest place on them may
-    be on another branch, whose velocities are others: then y stays as it is.  kept: room for it.
+    be on another branch, whose velocities are others: then y stays as it is.
+
+    rough: y', room for y, and y' as it was before.  Returns whether y was brought there.
     """
+    yd, kept = rough[0], rough[1]
     evaluate(s, t, y, yd)
     if s.m == 0 or s.stabilisation == NONE:
-        return
+        return False
     past = s.status[4] > 0  # a place where branches meet: the interpolation may feel it
     if s.redundant.shape[0] == 0 and not past:
         pivot = smallest_pivot(s)
         if pivot > DOUBTFUL and not off_the_rows(s, r, pivot):
-            return
+            return False
     copy_to(kept, y)
+    copy_to(rough[2], yd)
     put_on_rows(s, t, y)
     if s.near_rows > 0.0 and elsewhere(s, y, kept):
         copy_to(y, kept)
     evaluate_to_measure(s, t, y, yd)
+    return True
 
 
 @internal

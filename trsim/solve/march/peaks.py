@@ -241,7 +241,7 @@ def guess(s, r, b, method, ahead, inner):
         v, way = 1.0 - u, u * u * (3.0 - 2.0 * u)
         for k in range(b.y2.size):
             b.y2[k] = y0[k] + way * (y1[k] - y0[k]) + h * u * v * (v * yd0[k] - u * yd1[k])
-        evaluate_inside(s, r, t + u * h, b.y2, b.rough[0], b.rough[1])
+        evaluate_inside(s, r, t + u * h, b.y2, b.rough)
         measure(s, t + u * h, b.y2, work + u * done, r.energy_0)
         gather(s, b.full, s.out, b.inside[i])
         b.n_found, b.found[i] = i + 1, t + u * h

@@ -63,6 +63,17 @@ def at_rest(s, r, b, P, h, theta, t, y, yd):
 
 
 @internal
+def answered(s, r, yd, before):
+    """Note by how much projection changed accelerations at a place that nothing is brought to rest
+    at: what is stiff answers to it."""
+    if not settles(s):
+        return
+    off, most = apart(s, yd, 1.0, before), largest(s, r.yd, r.top_acceleration)
+    if off > ALLOWED * s.tolerance * most:
+        r.blurred = max(r.blurred, off)
+
+
+@internal
 def rounding(s, K, y, known):
     """What the last bits of places make of accelerations, m/s^2: no step leaves less.
 
