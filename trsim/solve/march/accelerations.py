@@ -29,8 +29,9 @@ WIDEST = 20.0  # rad: w h of a step that sees what it passes over
 EACH = 9.0
 FURTHEST = 3000.0  # times their share of the largest: what errors of speeds count at most
 # times the tolerance as written: what accelerations of a step may be off by at most, those of a run
-# if each estimate were right and of one sign, and what is left to a step of very many
-ALLOWED, RUN, ONE = 10.0, 100.0, 0.25
+# if each estimate were right and of one sign, and what is left to a step of very many, without and
+# with touches
+ALLOWED, RUN, ONE, KICKED = 10.0, 100.0, 0.5, 0.25
 TWICE = 2.0  # what is told of a jump, see `jumped`
 TURNED = 0.1  # rad, by what is stiff in a step: units of touches say nothing of it
 
@@ -111,10 +112,11 @@ def in_units(s, r, setting, h, off, most, mean, times):
 
 
 @internal
-def share(setting, h):
+def share(s, setting, h):
     """What a step h may be off by, times the tolerance: of a vibration errors add up, step by step,
-    to RUN of a run of many; not less than ONE in a step."""
-    return max(ONE, min(ALLOWED, RUN * h / setting.t_end))
+    to RUN of a run of many; not less than ONE in a step, or KICKED where touches begin it anew."""
+    least = KICKED if s.contact.size > 0 else ONE
+    return max(least, min(ALLOWED, RUN * h / setting.t_end))
 
 
 @internal
@@ -153,9 +155,9 @@ def jumped(s, r, setting, h, off):
 
 
 @internal
-def exceeded(r, setting, h, off, most):
+def exceeded(s, r, setting, h, off, most):
     """Note what accelerations are off by where it is more than their share, rounding or not."""
-    if off > share(setting, h) * setting.tolerance * most:
+    if off > share(s, setting, h) * setting.tolerance * most:
         r.excess = off
 
 

@@ -169,11 +169,11 @@ def of_accelerations(s, r, b, setting, h):
     inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.top_speed)
     most = max(most, inside)
     doubted(s, r, setting, h, off, most, sqrt(mean))
-    exceeded(r, setting, h, off, most)
+    exceeded(s, r, setting, h, off, most)
     if seen5 == 0.0:
         return 0.0
     off = h * sqrt(max(seen5 / (seen5 + 0.01 * seen3) * seen5, least) / bodies)
-    return in_units(s, r, setting, h, off, most, mean, share(setting, h))
+    return in_units(s, r, setting, h, off, most, mean, share(s, setting, h))
 
 
 @internal
@@ -238,7 +238,7 @@ def inside(scene, r, b, setting, t, h):
     off = together(off, squares, EACH)
     most = largest(scene, r.yd, r.top_acceleration)
     doubted(scene, r, setting, h, off, most, sqrt(ww))
-    return in_units(scene, r, setting, h, off, most, ww, share(setting, h))
+    return in_units(scene, r, setting, h, off, most, ww, share(scene, setting, h))
 
 
 @compiled(INTERPOLATE)

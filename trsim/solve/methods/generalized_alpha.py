@@ -227,7 +227,7 @@ def accelerated(s, r, b, setting, h, ratio, further):
     if held(s, r, h):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
     if held(s, r, h) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
-        units = in_units(s, r, setting, h, off, most, 0.0, share(setting, h))
+        units = in_units(s, r, setting, h, off, most, 0.0, share(s, setting, h))
         strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.speed**2 / r.length)  # at the largest speed
     return max(strict, min(off / (setting.step_error * turned), further)) if turned > 0.0 else 0.0

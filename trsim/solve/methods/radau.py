@@ -355,7 +355,7 @@ def of_accelerations(s, r, b, setting, h):
             off, squares = off + by, squares + by * by
     off, mean = together(off, squares, FEW), bent / moved
     doubted(s, r, setting, h, LIKELY * off, most, sqrt(mean))
-    return in_units(s, r, setting, h, off, most, mean, share(setting, h))
+    return in_units(s, r, setting, h, off, most, mean, share(s, setting, h))
 
 
 @internal

@@ -66,7 +66,6 @@ ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
 SHOWN = 0.5  # of the error allowed: what Newton's method leaves of it in third derivatives
-KNOWN = 0.5  # tolerances of accelerations: less than that scipy's Newton iterations do not settle
 TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
 OWN = 4.0  # over h: what is slow beside it, and stiff
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
@@ -260,8 +259,11 @@ def of_accelerations(
     # all of a mean over the bodies may be of one
     made = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
     finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
-    mine = max(KNOWN, float(share.python(setting, h))) * most
-    return max(finest, min(1.0, mine / made)) if made > 0.0 else 1.0
+    return (
+        max(finest, min(1.0, float(share.python(s, setting, h) * most / made)))
+        if made > 0.0
+        else 1.0
+    )
 
 
 def of_what_is_stiff(s: Scene, r: Record, b: Buffers, solver: Any, h: float) -> None:
