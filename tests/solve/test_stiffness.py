@@ -296,7 +296,7 @@ def test_a_light_vibration_on_a_stop_is_held(method):
 
 def test_rounding_far_from_the_origin_is_not_held():
     """3 km away the last bit of a place makes more of the spring's force than the tolerance is of
-    the largest: it took 25 minutes."""
+    the largest: held to it, the run would take 25 minutes."""
     r = run(DRIVEN.replace("AT", "3000"), "solver.tolerance=1e-6", "solver.max_steps=20000")
     assert r.outcome.statistics["steps"] < 5000
     true = driven_onto_a_stop(r.t)

@@ -48,16 +48,15 @@ def rows(dataset: h5py.Dataset, begin: int, end: int) -> Any:
 
 def _chunk(dataset: h5py.Dataset, begin: int) -> Any:
     """The chunk from a row on.  Raises OSError where it is damaged."""
-    for attempt in range(ATTEMPTS):
+    refused = OSError()
+    for _ in range(ATTEMPTS):
         try:
             return dataset[begin : begin + dataset.chunks[0]]
-        except OSError:
-            mended = _mended(dataset, begin)
+        except OSError as error:
+            refused, mended = error, _mended(dataset, begin)
             if mended is not None:
                 return mended
-            if attempt == ATTEMPTS - 1:
-                raise
-    raise AssertionError
+    raise refused
 
 
 def _mended(dataset: h5py.Dataset, begin: int) -> NDArray[Any] | None:

@@ -46,16 +46,22 @@ def held(s, r, h):
     not of motion.
     """
     stiff = max(r.vibration, r.decay**2)  # 0 with methods that do not look for it: there may be any
-    return settles(s) and (stiff == 0.0 or stiff * h * h > TURNED**2 or apart(s, r))
+    return settles(s) and (stiff == 0.0 or stiff * h * h > TURNED**2 or untouched(s, r))
 
 
 @internal
-def apart(s, r):
+def untouched(s, r):
     """Whether nothing touches at the start of the step."""
-    for c in range(s.contact.size):
-        if r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT:
+    for c in range(s.contact.size):  # noqa: SIM110 - a generator does not compile
+        if touches(s, r, c):
             return False
     return True
+
+
+@internal
+def touches(s, r, c):
+    """Whether the contact c has begun, or a step is about to begin it."""
+    return r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT
 
 
 @internal
@@ -69,6 +75,15 @@ def largest(s, yd, most):
     """The larger of `most` and the accelerations in yd, of turns at their arm."""
     for c in range(s.n_q, s.n_q + s.v_node):
         most = max(most, s.scale[c] * abs(yd[c]))
+    return most
+
+
+@internal
+def apart(s, a, times, c):
+    """The largest acceleration in a - times c, of turns at their arm, m/s^2."""
+    most = 0.0
+    for k in range(s.n_q, s.n_q + s.v_node):
+        most = max(most, s.scale[k] * abs(a[k] - times * c[k]))
     return most
 
 
@@ -130,27 +145,16 @@ def doubted(s, r, setting, h, off, most, w):
 
 
 @internal
-def jump(s, raw, e, mu):
-    """What is stiff of raw = f(y) - P'(0), the jump of the dense output's rate from the step before
-    to this one, m/s^2; e = (mu - J)^-1 raw.
+def jumped(s, r, setting, off):
+    """Note what is stiff of f(y) - P'(0), `off`, the jump of the dense output's rate from the step
+    before to this one: in equal steps of a smooth motion half of it is off at their ends.
 
     To stages far longer than what is stiff a spring is a constraint whose force is right to h^2,
-    and no estimate of places and velocities sees it.
+    and no estimate of places and velocities sees it.  Where the motion is not smooth a jump says
+    too much: it counts from TWICE what other errors do.
     """
-    off = 0.0
-    for c in range(s.n_q, s.n_q + s.v_node):
-        off = max(off, s.scale[c] * abs(raw[c] - mu * e[c]))
-    return off
-
-
-@internal
-def jumped(s, r, setting, h, off):
-    """Note what a jump says: in equal steps of a smooth motion half of it is off at their ends.
-
-    Where the motion is not smooth it says too much: it counts from TWICE what other errors do.
-    """
-    most = largest(s, r.yd, r.top_acceleration)
-    if 0.5 * off > max(TWICE * ALLOWED * setting.tolerance * most, r.blur, rounded(s, r, 0.0)):
+    allowed = TWICE * ALLOWED * setting.tolerance * r.top_acceleration
+    if 0.5 * off > max(allowed, r.blur, rounded(s, r, 0.0)):
         r.blur = 0.5 * off
 
 

@@ -164,6 +164,7 @@ def march(s, r, b, setting, methods, most):
             s.left[s.contact[c]] = -1.0
         s.status[4] = s.status[6] = 0
         r.blur = r.excess = 0.0
+        r.top_acceleration = largest(s, r.yd, r.top_acceleration)
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)
         if s.status[4] > 0 and error < NO_STEP:
             error *= min(1.0, setting.step_error / OF_LIMITS)
@@ -202,7 +203,6 @@ def march(s, r, b, setting, methods, most):
             continue
         accepted += 1
         remember(s, r, setting, h)
-        r.top_acceleration = largest(s, r.yd, r.top_acceleration)
         blurred(r, h)
         if r.torn > 0:
             return LEAPT

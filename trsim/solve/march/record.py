@@ -139,7 +139,7 @@ class Record(Packed):
     longest: F8  # s, the longest step since then, see `looked`
     last_way: F8  # rad, or of the mechanism's size: how far the last step went, 0: none  passes.py
     crossed_t: F8  # s, when the run first changed its branch  crossed.py
-    top_acceleration: F8  # m/s^2, the largest acceleration so far  generalized_alpha.py
+    top_acceleration: F8  # m/s^2, the largest acceleration so far  loop.py
     blur: F8  # m/s^2, error of accelerations the last trial was not held for  accelerations.py
     excess: F8  # m/s^2, the same where it was more than its share, rounding or not
     blur_w: F8  # rad/s, how fast what it consists of turns, 0: not known

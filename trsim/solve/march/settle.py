@@ -23,7 +23,7 @@ from trsim.assemble.projection import DOUBTFUL, normalise, onto_rows, put_on_row
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION
 from trsim.kernels.vectors import all_finite, clear, copy_to, internal
-from trsim.solve.march.accelerations import ALLOWED, furthest, largest, settles
+from trsim.solve.march.accelerations import ALLOWED, apart, furthest, largest, settles
 from trsim.solve.march.calls import call_rate, call_soften
 from trsim.solve.march.record import CHANGES_KEPT
 
@@ -191,15 +191,6 @@ def learned(s, K, n):
     for k in range(K.shape[1]):
         K[DY + p, k], K[DF + p, k] = K[DY + p, k] / rest, K[DF + p, k] / rest
     return 1
-
-
-@internal
-def apart(s, a, times, c):
-    """The largest acceleration in a - times c, of turns at their arm, m/s^2."""
-    most = 0.0
-    for k in range(s.n_q, s.n_q + s.v_node):
-        most = max(most, s.scale[k] * abs(a[k] - times * c[k]))
-    return most
 
 
 @internal

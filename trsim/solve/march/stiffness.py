@@ -20,12 +20,12 @@ from math import sqrt
 
 from trsim.assemble.equations import evaluate
 from trsim.assemble.projection import onto_rows
-from trsim.elements.contract import FLIGHT, PHASE, SCENE, compiled
+from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.accelerations import furthest
+from trsim.solve.march.accelerations import furthest, touches
 from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.methods.displacements import active, displace, w_index
 
@@ -52,10 +52,9 @@ def smooth(s, r):
     if s.n_v == 0 or (s.status[6] != 0 and s.near_rows > 0.0):
         return False
     for c in range(s.contact.size):
-        touches = r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT
         # what was found in flight holds in touch; before anything was found, touches that a nudge
         # does not end are looked at as they are
-        if touches and (r.vibration > 0.0 or r.gap[c, 0] <= DEEP * r.length):
+        if touches(s, r, c) and (r.vibration > 0.0 or r.gap[c, 0] <= DEEP * r.length):
             return False
     return True
 

@@ -132,7 +132,7 @@ def of_accelerations(s, r, b, setting, h):
     """
     K, weight, tolerance = b.K, b.weight, setting.step_error
     combined(K, OF_PLACES, 0, s.n_q, K[PLACES])
-    r.top_acceleration = most = largest(s, K[0], r.top_acceleration)
+    most = r.top_acceleration
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
     error5 = error3 = seen5 = seen3 = least = moved = turned = squares = 0.0
@@ -236,7 +236,7 @@ def inside(scene, r, b, setting, t, h):
     if LEFT * sqrt(moved) * length < ROUNDED * furthest(scene, r.y, scene.size) or off == 0.0:
         return 0.0
     off = together(off, squares, EACH)
-    most = largest(scene, r.yd, r.top_acceleration)
+    most = r.top_acceleration
     doubted(scene, r, setting, h, off, most, sqrt(ww))
     return in_units(scene, r, setting, h, off, most, ww, share(scene, setting, h))
 

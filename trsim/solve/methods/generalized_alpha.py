@@ -213,8 +213,7 @@ def accelerated(s, r, b, setting, h, ratio, further):
     pass over them.
     """
     K, weight = b.K, b.weight
-    r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
-    most, bent, moved = largest(s, K[NEW], most), 0.0, 0.0
+    most, bent, moved = largest(s, K[NEW], r.top_acceleration), 0.0, 0.0
     for c in range(s.n_q, s.n_q + s.v_node):
         by = K[NEW, c] - r.yd[c]
         if ratio > 0.0:
@@ -226,9 +225,9 @@ def accelerated(s, r, b, setting, h, ratio, further):
     off, strict = setting.step_error * r.speed * bent / 12.0, 0.0
     if held(s, r, h):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
-    if held(s, r, h) and (ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most):
-        units = in_units(s, r, setting, h, off, most, 0.0, share(s, setting, h))
-        strict = min(STRICT * units, FURTHEST * further)
+        if ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most:
+            units = in_units(s, r, setting, h, off, most, 0.0, share(s, setting, h))
+            strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.speed**2 / r.length)  # at the largest speed
     return max(strict, min(off / (setting.step_error * turned), further)) if turned > 0.0 else 0.0
 

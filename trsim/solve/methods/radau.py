@@ -21,11 +21,11 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, copy_to, internal
 from trsim.solve.march.accelerations import (
+    apart,
     doubted,
     frequency,
     held,
     in_units,
-    jump,
     jumped,
     largest,
     settles,
@@ -186,8 +186,6 @@ def newton(s, r, b, setting, t, h):
     expected = max(r.contraction, SHARPEST) ** 0.8
     r.contraction = expected
     told, changed = settles(s), 0.0
-    if told:
-        r.top_acceleration = largest(s, r.yd, r.top_acceleration)
     quiet, near = RATES * setting.tolerance * r.top_acceleration, False
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
@@ -297,7 +295,7 @@ def estimate(s, r, b, setting, t, h):
         e[c] += r.yd[c]
     copy_to(K[F + 2], e)
     corrected(s, r, e, K[DW], GAMMA / h)
-    off = jump(s, K[F + 2], e, GAMMA / h)
+    off = apart(s, K[F + 2], GAMMA / h, e) if settles(s) else 0.0
     booked = of_works(s, r, b, setting, h)
     error = norm(e, weight)
     if booked >= 1.0 or (error >= 1.0 and (r.history != BEHIND or r.after_rejection > 0)):
@@ -310,8 +308,7 @@ def estimate(s, r, b, setting, t, h):
         booked, error = of_works(s, r, b, setting, h), norm(e, weight)
     if held(s, r, h):
         error = max(error, of_accelerations(s, r, b, setting, h))
-    if settles(s):
-        jumped(s, r, setting, h, off)
+    jumped(s, r, setting, off)
     return max(error, booked, 1e-10)
 
 
@@ -324,7 +321,7 @@ def of_accelerations(s, r, b, setting, h):
     estimate may have left nothing of it: there what was filtered counts as well.
     """
     K, weight, tolerance = b.K, b.weight, setting.step_error
-    r.top_acceleration = most = largest(s, r.yd, r.top_acceleration)
+    most = r.top_acceleration
     for c in range(s.n_q + s.n_v):
         K[F + 1, c] = BENT[0] * K[Z, c] + BENT[1] * K[Z + 1, c] + BENT[2] * K[Z + 2, c]
         K[F + 2, c] = TURNED[0] * K[Z, c] + TURNED[1] * K[Z + 1, c] + TURNED[2] * K[Z + 2, c]

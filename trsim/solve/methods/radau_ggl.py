@@ -21,13 +21,12 @@ from trsim.kernels.signatures import float64
 from trsim.kernels.vectors import clear, copy_to, internal
 from trsim.solve.march.accelerations import (
     ROUNDED,
+    apart,
     doubted,
     furthest,
     held,
     in_units,
-    jump,
     jumped,
-    largest,
     settles,
 )
 from trsim.solve.march.calls import DENSE
@@ -249,7 +248,7 @@ def estimate(s, r, b, setting, t, h):
         error = norm(e, weight)
         if turn == 0:
             booked = of_works(s, r, b, setting, h)
-            off = jump(s, K[F + 2], e, g.real)
+            off = apart(s, K[F + 2], g.real, e) if settles(s) else 0.0
         if turn > 0 or error < 1.0 or (r.history > 0 and r.after_rejection == 0):
             break
         for c in range(n):
@@ -262,8 +261,7 @@ def estimate(s, r, b, setting, t, h):
         constrained(s, b, sides(K, 0))
         solved(s, r, b, sides(K, 0), g, 1.0)
         error = max(error, moved, of_accelerations(s, r, b, setting, h))
-    if settles(s):
-        jumped(s, r, setting, h, off)
+    jumped(s, r, setting, off)
     return max(error, booked, 1e-10)
 
 
@@ -289,7 +287,7 @@ def of_multipliers(s, r, b, setting, h):
     off = 0.0
     for c in range(s.n_q, s.n_q + s.v_node):
         off = max(off, s.scale[c] * abs(g.real * K[F, c]))
-    most = largest(s, r.yd, r.top_acceleration)
+    most = r.top_acceleration
     rounding = ROUNDED * furthest(s, r.y, s.size) * g.real**2
     if off <= rounding:  # of places, which mu takes for what joints are open by
         doubted(s, r, setting, h, off, most, 0.0)

@@ -259,11 +259,8 @@ def of_accelerations(
     # all of a mean over the bodies may be of one
     made = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
     finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
-    return (
-        max(finest, min(1.0, float(share.python(s, setting, h) * most / made)))
-        if made > 0.0
-        else 1.0
-    )
+    mine = float(share.python(s, setting, h)) * most
+    return max(finest, min(1.0, mine / made)) if made > 0.0 else 1.0
 
 
 def of_what_is_stiff(s: Scene, r: Record, b: Buffers, solver: Any, h: float) -> None:
