@@ -91,6 +91,6 @@ def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z,
     b.K[0] = r.yd
     estimate = dop853.step(s, r, b, setting, 0.0, h)
     missed = RATE * abs(b.y1[s.n_q + 1] - v * exp(-z))
-    allowed = setting.tolerance * SLOW * share.python(s, setting, h)
+    allowed = setting.tolerance * SLOW * share.python(s, setting, h, dop853.STEADY)
     assert missed > 10.0 * allowed  # so it must be refused
     assert estimate > 0.2 * missed / allowed

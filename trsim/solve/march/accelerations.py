@@ -127,10 +127,11 @@ def in_units(s, r, setting, h, off, most, mean, times):
 
 
 @internal
-def share(s, setting, h):
+def share(s, setting, h, one):
     """What a step h may be off by, times the tolerance: of a vibration errors add up, step by step,
-    to RUN of a run of many; not less than ONE in a step, or KICKED where touches begin it anew."""
-    least = KICKED if s.contact.size > 0 else ONE
+    to RUN of a run of many; not less than `one` in a step, or KICKED where touches begin it anew.
+    """
+    least = min(one, KICKED) if s.contact.size > 0 else one
     return max(least, min(ALLOWED, RUN * h / setting.t_end))
 
 
@@ -159,9 +160,10 @@ def jumped(s, r, setting, off):
 
 
 @internal
-def exceeded(s, r, setting, h, off, most):
-    """Note what accelerations are off by where it is more than their share, rounding or not."""
-    if off > share(s, setting, h) * setting.tolerance * most:
+def exceeded(r, setting, off, most, part):
+    """Note what accelerations are off by where that is more than `part` tolerances, be it rounding
+    or not."""
+    if off > part * setting.tolerance * most:
         r.excess = off
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, copy_to, internal
-from trsim.solve.march.accelerations import FURTHEST, doubted, held, in_units, largest, share
+from trsim.solve.march.accelerations import FURTHEST, ONE, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.record import FRESH, NO_JACOBIAN, OLD
 from trsim.solve.march.works import first_work, works
@@ -226,7 +226,7 @@ def accelerated(s, r, b, setting, h, ratio, further):
     if held(s, r, h):
         doubted(s, r, setting, h, LEFT * off, most, 0.0)
         if ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most:
-            units = in_units(s, r, setting, h, off, most, 0.0, share(s, setting, h))
+            units = in_units(s, r, setting, h, off, most, 0.0, share(s, setting, h, ONE))
             strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.speed**2 / r.length)  # at the largest speed
     return max(strict, min(off / (setting.step_error * turned), further)) if turned > 0.0 else 0.0

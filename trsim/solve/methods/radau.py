@@ -21,6 +21,7 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, clear, copy_to, internal
 from trsim.solve.march.accelerations import (
+    ONE,
     apart,
     doubted,
     frequency,
@@ -352,7 +353,7 @@ def of_accelerations(s, r, b, setting, h):
             off, squares = off + by, squares + by * by
     off, mean = together(off, squares, FEW), bent / moved
     doubted(s, r, setting, h, LIKELY * off, most, sqrt(mean))
-    return in_units(s, r, setting, h, off, most, mean, share(s, setting, h))
+    return in_units(s, r, setting, h, off, most, mean, share(s, setting, h, ONE))
 
 
 @internal
