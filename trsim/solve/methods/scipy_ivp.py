@@ -23,7 +23,7 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
-from trsim.solve.march.accelerations import ALLOWED, FURTHEST, WIDEST, largest, settles, share
+from trsim.solve.march.accelerations import ALLOWED, FURTHEST, ONE, WIDEST, largest, settles, share
 from trsim.solve.march.anew import anew, begun_with
 from trsim.solve.march.calls import INTERPOLATE, method_row
 from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
@@ -259,7 +259,7 @@ def of_accelerations(
     # all of a mean over the bodies may be of one
     made = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
     finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
-    mine = float(share.python(s, setting, h)) * most
+    mine = float(share.python(s, setting, h, ONE)) * most
     return max(finest, min(1.0, mine / made)) if made > 0.0 else 1.0
 
 
