@@ -23,7 +23,16 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
-from trsim.solve.march.accelerations import ALLOWED, FURTHEST, ONE, WIDEST, largest, settles, share
+from trsim.solve.march.accelerations import (
+    ALLOWED,
+    FURTHEST,
+    ONE,
+    WIDEST,
+    apart,
+    largest,
+    settles,
+    share,
+)
 from trsim.solve.march.anew import anew, begun_with
 from trsim.solve.march.calls import INTERPOLATE, method_row
 from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
@@ -32,6 +41,7 @@ from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
 from trsim.solve.march.peaks import finish, sample
 from trsim.solve.march.record import Buffers, Record, Settings, crowded, fresh_buffers
+from trsim.solve.march.rounding import EPS, MARGIN
 from trsim.solve.march.works import ROUNDING
 from trsim.solve.methods.jacobian import PART
 from trsim.solve.outcome import (
@@ -66,6 +76,7 @@ ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
 SHOWN = 0.5  # of the error allowed: what Newton's method leaves of it in third derivatives
+NOISE = 25.0  # of rates, in third derivatives: as what Newton's method leaves, a fiftieth of that
 TOO_LONG = 0.03  # of how fine steps were: one that asks for less is made again
 OWN = 4.0  # over h: what is slow beside it, and stiff
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
@@ -176,6 +187,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
                    bent=bends.states)  # fmt: skip
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what is not finite is told as such
 def stopped(solver: Any) -> str:
     """Make a step; why it could not be made."""
     try:
@@ -235,6 +247,7 @@ def allowed(
     return absolute
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what is not finite is told as such
 def of_accelerations(
     scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, h: float, finer: float
 ) -> float:
@@ -251,16 +264,38 @@ def of_accelerations(
     r.top_acceleration = most = float(largest.python(s, r.yd, r.top_acceleration))
     weight = b.weight * setting.step_error
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
-    third = THIRD @ b.P[:, rates] * weight[rates]
+    third = speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
     allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting.step_error
-    v = h * speed * max(float(np.linalg.norm(third)) - SHOWN * allowed, 0.0)
-    w = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST) / h
-    most = max(most, w * speed / FURTHEST)
-    # all of a mean over the bodies may be of one
-    made = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
-    finest = min(1.0, RELATIVE / setting.step_error)  # below it only rounding is left
     mine = float(share.python(s, setting, h, ONE)) * most
-    return max(finest, min(1.0, mine / made)) if made > 0.0 else 1.0
+
+    def made(unseen: float) -> tuple[float, float]:
+        """How far an error turns in the step, and what it makes of accelerations."""
+        v = h * max(third - SHOWN * speed * allowed - unseen, 0.0)
+        turns = min(np.sqrt(v / max(x, BLIND * s.size)), WIDEST)
+        w = turns / h
+        # all of a mean over the bodies may be of one
+        off = w * np.hypot(w * length, speed) * np.sqrt(s.n_r - 1)
+        return turns, off * most / max(most, w * speed / FURTHEST)
+
+    if made(0.0)[1] <= mine:
+        return 1.0
+    # neither steps nor Newton's method of scipy end on what is rounding
+    rounding = of_rounding(s, r, b, setting)
+    turns, off = made(NOISE * h * rounding)
+    mine = max(mine, max(turns, 1.0) * rounding)
+    finest = RELATIVE / setting.step_error  # below it only rounding is left
+    return min(1.0, max(finest, mine / off)) if off > 0.0 else 1.0
+
+
+def of_rounding(s: Scene, r: Record, b: Buffers, setting: Settings) -> float:
+    """What rounding makes of accelerations, m/s^2: f(y + d) + f(y - d) - 2 f(y), as rounding.py."""
+    used = b.weight > 0.0
+    unit = np.divide(1.0, b.weight * setting.step_error, where=used, out=np.zeros_like(r.y))
+    signs = np.where(np.arange(r.y.size) % 2 > 0, 1.0, -1.0)
+    moved, rates = EPS * np.maximum(np.abs(r.y), unit) * signs, np.empty((3, r.y.size))
+    for sign, out in zip((1.0, -1.0, 0.0), rates, strict=True):
+        derivative(s, float(r.t), r.y + sign * moved, out)
+    return MARGIN * float(apart.python(s, rates[0] + rates[1], 2.0, rates[2]))
 
 
 def of_what_is_stiff(s: Scene, r: Record, b: Buffers, solver: Any, h: float) -> None:
