@@ -1,14 +1,14 @@
 """Work against precision as a figure and a table: error to the right, CPU time upwards."""
 
-import csv
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trsim.report.asked import table
 from trsim.scenario.methods import METHODS
-from trsim.store.target import FIGURE, check_writable, file_errors, fresh, headed, replaceable
+from trsim.store.target import FIGURE, check_writable, headed, replaceable
 
 if TYPE_CHECKING:
     from trsim.analyse.precision import Point, Study
@@ -28,7 +28,8 @@ def draw(study: "Study", folder: Path) -> list[Path]:
 
     with look():
         picture = save(figure(study), folder / f"{NAME}.png")
-    return [picture, write(study, folder / f"{NAME}.csv")]
+    rows = [(*p.setting, *(getattr(p, name) for name in FIELDS)) for p in study.points]
+    return [picture, table(folder / f"{NAME}.csv", TITLES, rows, TABLE)]
 
 
 def check_room(folder: Path) -> None:
@@ -36,21 +37,6 @@ def check_room(folder: Path) -> None:
     check_writable(folder)
     replaceable(folder / f"{NAME}.png", FIGURE)
     replaceable(folder / f"{NAME}.csv", TABLE)
-
-
-def write(study: "Study", path: Path) -> Path:
-    """The table as CSV, SI units, numbers in full."""
-    with (
-        file_errors(path),
-        fresh(path, TABLE) as unfinished,
-        unfinished.open("w", newline="", encoding="utf-8") as file,
-    ):
-        table = csv.writer(file)
-        table.writerow(TITLES)
-        for p in study.points:
-            values = [*p.setting, *(getattr(p, name) for name in FIELDS)]
-            table.writerow([repr(v) if isinstance(v, float) else v for v in values])
-    return path
 
 
 def figure(study: "Study") -> Any:
