@@ -55,9 +55,9 @@ def paper(
     drawn: list[tuple[Drawn, Path]] = []
     with look():
         for one in figures:
-            if runs.has(*one.cases):
-                drawn.append((one, save(one.draw(runs), folder / f"{one.anchor}.png")))
-    absent = [one for one in figures if not runs.has(*one.cases)]
+            if runs.has(*one.names):
+                drawn.append((one, save(one.made(runs), folder / f"{one.anchor}.png")))
+    absent = [one for one in figures if not runs.has(*one.names)]
     files = [*tables.write(rows, folder), *peaks.write(runs, folder)]
     page = write_page(folder / "index.html", content.TITLE, content.LEAD,
                       sections(runs, rows, drawn, absent))  # fmt: skip
