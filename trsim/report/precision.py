@@ -24,10 +24,9 @@ TABLE = headed(*TITLES)
 
 def draw(study: "Study", folder: Path) -> list[Path]:
     """work_precision.png and work_precision.csv; raises FileError."""
-    from trsim.report.style import look, save
+    from trsim.report import style
 
-    with look():
-        picture = save(figure(study), folder / f"{NAME}.png")
+    picture = style.draw(folder / f"{NAME}.png", figure, study)
     rows = [(*p.setting, *(getattr(p, name) for name in FIELDS)) for p in study.points]
     return [picture, table(folder / f"{NAME}.csv", TITLES, rows, TABLE)]
 
@@ -53,8 +52,7 @@ def figure(study: "Study") -> Any:
     if peaks:
         curves(axes[0, 1], study, "peak_error", "peak_unresolved", to.peak_uncertainty)
         axes[0, 1].set_xlabel("relative error of peak contact forces (-)")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    made.legend(handles, labels, loc="outside lower center", ncols=2)
+    made.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     head = textwrap.fill("Work against precision" + (study.title and f": {study.title}"), 74)
     told = f"reference {to.setting.method}, tolerance {to.setting.tolerance:.0e}"
     made.suptitle(f"{head}\n{told}", fontsize=10)

@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim import elements
+from trsim.report import style
 from trsim.report.asked import table
 from trsim.report.display import Shown, short
-from trsim.report.style import WIDTH, look, panels, save, titled
+from trsim.report.style import WIDTH, panels, titled
 from trsim.store.target import headed
 
 NOISE = 1e-9  # of the largest load of the same unit: rounding
@@ -37,8 +38,7 @@ def draw(runs: list[Shown], folder: Path) -> list[Path]:
     if not loads:
         return happened
     written = table(folder / "peaks.csv", Load._fields, loads, headed(*Load._fields))
-    with look():
-        return [written, save(picture(runs, loads), folder / "peaks.png"), *happened]
+    return [written, style.draw(folder / "peaks.png", picture, runs, loads), *happened]
 
 
 def user_events(runs: list[Shown], path: Path) -> list[Path]:
@@ -131,15 +131,12 @@ def picture(runs: list[Shown], loads: list[Load]) -> Any:
 def lines(loads: list[Load], second: tuple[float, str]) -> tuple[list[str], list[list[str]]]:
     """Head and cells of one run."""
     stroke = next((load.stroke_unit for load in loads if np.isfinite(load.stroke)), "")
-    head = ["pin", "load", "peak", f"time ({second[1]})"] + (
-        [f"stroke ({stroke})"] if stroke else []
-    )
-    cells = [
-        [load.element, load.load, number(load), f"{load.time * second[0]:.4f}"]
-        + ([short(load.stroke)] if stroke else [])
-        for load in loads
-    ]
-    return head, cells
+    head, cells = ["pin", "load", "peak", f"time ({second[1]})"], []
+    for load in loads:
+        cells.append([load.element, load.load, number(load), f"{load.time * second[0]:.4f}"])
+        if stroke:
+            cells[-1].append(short(load.stroke))
+    return head + ([f"stroke ({stroke})"] if stroke else []), cells
 
 
 def columns(
