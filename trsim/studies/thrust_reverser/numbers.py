@@ -135,12 +135,8 @@ def apart(member: Member, asked: Word, reference: Member | None) -> Number:
     """The largest difference to the reference at equal strokes, or at equal times without one."""
     if reference is None:
         raise UsageError(f"{member.file}: there is no run to measure from")
-    mine, other = (
-        (m.stroke, m.channel(asked.of))
-        if "stroke" in m.run.units
-        else (m.time, m.channel(asked.of))
-        for m in (member, reference)
-    )
+    mine, other = ((m.stroke if "stroke" in m.run.units else m.time, m.channel(asked.of))
+                   for m in (member, reference))  # fmt: skip
     common = (mine[0] >= max(other[0][0], asked.begin)) & (mine[0] <= min(other[0][-1], asked.end))
     at, found = mine[0][common], mine[1][common]
     away = [np.interp(at, other[0], column) for column in np.atleast_2d(other[1].T)]

@@ -83,8 +83,7 @@ class Runs:
 
     def has(self, *cases: str) -> bool:
         """Whether the first member of every one of these cases is there."""
-        return all(self.members.get(case, ()) and self.members[case][0].index == 0
-                   for case in cases)  # fmt: skip
+        return all(self.of(case, 0) for case in cases)
 
     def stated(self, case: str) -> Member:
         """The member with the values as stated."""

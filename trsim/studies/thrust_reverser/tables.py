@@ -91,9 +91,8 @@ def figure(text: str, figures: Sequence[Drawn]) -> str:
 def tally(rows: Sequence[Row]) -> Table:
     """How many readings have which verdict, those apart whose agreement proves nothing."""
     lines = []
-    for worth, text in ((INDEPENDENT, "independent of our choices"), *WORTH.items()):
-        if worth != INDEPENDENT or text:
-            mine = [row.judged.verdict for row in rows if row.claim.worth == worth]
-            found = [str(mine.count(v)) for v in ("confirmed", "contradicted", "undetermined")]
-            lines.append(Line([Cell(text or worth), *map(Cell, found)]))
+    for worth, text in (WORTH | {INDEPENDENT: "independent of our choices"}).items():
+        mine = [row.judged.verdict for row in rows if row.claim.worth == worth]
+        found = [str(mine.count(v)) for v in ("confirmed", "contradicted", "undetermined")]
+        lines.append(Line([Cell(text), *map(Cell, found)]))
     return Table(("agreement", "confirmed", "contradicted", "undetermined"), lines)

@@ -11,6 +11,7 @@ from trsim.studies.thrust_reverser.claims.claim import (
     Claim,
     Reading,
     Series,
+    b_above_a,
     one,
     over,
 )
@@ -156,9 +157,7 @@ CLAIMS = (
         "chaos_b", "7.1.1", "10",
         "The motion at B is more chaotic than that at A.",
         rising(),
-        tuple(Reading(f"spread of the section, {label}",
-                      (Series("A", case, f"dispersion:A_orbit{OVERTURN}"),
-                       Series("B", case, f"dispersion:B_orbit{OVERTURN}"))) for label, case in AB),
+        b_above_a(AB, "spread of the section, {}"),
         CHOSEN, "chaos taken as spread of the section",
     ),
 )  # fmt: skip

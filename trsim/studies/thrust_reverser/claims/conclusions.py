@@ -1,6 +1,6 @@
 """Section 8 of the study, where it says more than section 7: number of joints, speed."""
 
-from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, over
+from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, of, over
 from trsim.studies.thrust_reverser.claims.speed import pins
 from trsim.studies.thrust_reverser.rules import rising
 
@@ -18,10 +18,8 @@ CLAIMS = (
         "number_velocity", "8", "",
         "The vibration grows with the number of joints with clearance.",
         rising(),
-        (*(r._replace(name=f"velocity, {r.name}")
-           for r in readings(f"fluctuation:door_angle.rate{OVERTURN}")),
-         *(r._replace(name=f"driving force, {r.name}")
-           for r in readings(f"fluctuation:actuator.force{OVERTURN}"))),
+        (*of("velocity", readings(f"fluctuation:door_angle.rate{OVERTURN}")),
+         *of("driving force", readings(f"fluctuation:actuator.force{OVERTURN}"))),
         note="0.3 mm at each",
     ),
     Claim(

@@ -1,6 +1,6 @@
 """Section 7.1.4 of the study: rigid and flexible rod, five of them, 0.3 mm at B, and at A."""
 
-from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, Series
+from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, Series, of
 from trsim.studies.thrust_reverser.rules import falling, within
 
 RODS = (
@@ -62,10 +62,8 @@ CLAIMS = (
         "rod_phase", "7.1.4", "20",
         "The door's phase diagram is smaller with the flexible rod.",
         falling(),
-        (*(r._replace(name=f"velocity, {r.name}")
-           for r in readings(f"range:door_angle.rate{OVERTURN}", ("B",))),
-         *(r._replace(name=f"acceleration, {r.name}")
-           for r in readings(f"range:door_angle.acceleration{OVERTURN}", ("B",)))),
+        (*of("velocity", readings(f"range:door_angle.rate{OVERTURN}", ("B",))),
+         *of("acceleration", readings(f"range:door_angle.acceleration{OVERTURN}", ("B",)))),
     ),
     Claim(
         "rod_map", "7.1.4", "21",

@@ -3,7 +3,7 @@
 from trsim.studies.thrust_reverser.claims.claim import TUNED, Claim, Reading, Series
 from trsim.studies.thrust_reverser.figures import sticking
 from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS, SHAFTS, case
-from trsim.studies.thrust_reverser.rules import exact
+from trsim.studies.thrust_reverser.rules import Rule, exact
 from trsim.studies.thrust_reverser.single import (
     above,
     apart,
@@ -49,6 +49,12 @@ def trend(odd: int, of: tuple[int, ...], speeds: tuple[int, ...]) -> tuple[Readi
                  for k in of)  # fmt: skip
 
 
+def of_odd(k: int, odds: tuple[int, ...], speeds: tuple[int, ...]) -> tuple[Series, ...]:
+    """The largest force of an actuator where one after the other has a speed of its own."""
+    return tuple(Series(f"{odd} at {speed} mm/s", case(odd, speed), PEAK.format(k))
+                 for odd in odds for speed in speeds)  # fmt: skip
+
+
 def one_speed(word: str, *of: int) -> tuple[Series, ...]:
     return tuple(Series(f"actuator {k}", "spatial_420", word.format(k)) for k in of)
 
@@ -64,7 +70,30 @@ def most(*cases: tuple[str, str]) -> tuple[Series, ...]:
     return tuple(Series(label, name, "most:actuator_?.force") for label, name in cases)
 
 
-SYNCHRONOUS = (
+def largest_and_each(
+    key: str, odd: int, rule: Rule, of: tuple[int, ...], unfitted: tuple[int, ...], *told: str
+) -> tuple[Claim, Claim]:
+    """A claim on the largest forces where one actuator has a speed of its own, and the same on the
+    forces at each speed; unfitted: those where nothing was fitted."""
+    largest, at_each = (f"With actuator {odd} asynchronous {what}" for what in told)
+    whole = (Reading("", forces(odd, of, ODD)),)
+    figure = str(23 + odd)
+    return (
+        Claim(key, "7.2", figure, largest, greatest(rule, 4), whole, TUNED, FITTED),
+        Claim(f"{key}_each", "7.2", figure, at_each, rule, each(odd, of, unfitted), note=ONLY),
+    )
+
+
+def moves(
+    key: str, odd: int, told: str, side: int, of: tuple[int, ...], speeds: tuple[int, ...]
+) -> Claim:
+    """A claim that forces rise (side 1) or fall (-1) with the speed of one actuator."""
+    readings = trend(odd, of, speeds)
+    return Claim(key, "7.2", str(23 + odd), told, steps(side), readings, note=ASSISTING)
+
+
+CLAIMS = (
+    # all at one speed
     Claim(
         "synchronous_alike", "7.2", "23",
         "At one speed the forces of actuators 1 and 3 are basically alike.",
@@ -83,75 +112,39 @@ SYNCHRONOUS = (
         (Reading("", one_speed("sideways:actuator_{}.reaction", 1, 2, 3)),),
         TUNED, "ball ends, which we assume, let no other force through than one along the line",
     ),
-)  # fmt: skip
-
-ONE = (
-    Claim(
-        "one_alike", "7.2", "24",
-        "With actuator 1 asynchronous the forces of 1 and 3 are similar, and unlike that of 2.",
-        greatest(apart(), 4), (Reading("", forces(1, ACTUATORS, ODD)),), TUNED, FITTED,
+    # actuator 1 at another speed
+    *largest_and_each(
+        "one_alike", 1, apart(), ACTUATORS, UNFITTED,
+        "the forces of 1 and 3 are similar, and unlike that of 2.",
+        "they are so at each speed, not the largest alone.",
     ),
-    Claim(
-        "one_alike_each", "7.2", "24",
-        "With actuator 1 asynchronous they are so at each speed, not the largest alone.",
-        apart(), each(1, ACTUATORS, UNFITTED), note=ONLY,
+    *largest_and_each(
+        "one_above", 1, above(), (3, 1), UNFITTED,
+        "the force of 1 is above that of 3.",
+        "its force is above that of 3 at each speed.",
     ),
-    Claim(
-        "one_above", "7.2", "24",
-        "With actuator 1 asynchronous the force of 1 is above that of 3.",
-        greatest(above(), 4), (Reading("", forces(1, (3, 1), ODD)),), TUNED, FITTED,
+    moves("one_rises", 1, "The forces of 1 and 3 rise as actuator 1 becomes slower.",
+          1, (1, 3), FALLING),
+    moves("one_falls", 1, "The force of 2 falls as actuator 1 becomes slower.",
+          -1, (2,), FALLING),
+    # actuator 2
+    *largest_and_each(
+        "two_alike", 2, apart(), ACTUATORS, UNFITTED[:-1],
+        "the forces of 1 and 3 are alike, and unlike that of 2.",
+        "they are so at each speed, not the largest alone.",
     ),
-    Claim(
-        "one_above_each", "7.2", "24",
-        "With actuator 1 asynchronous its force is above that of 3 at each speed.",
-        above(), each(1, (3, 1), UNFITTED), note=ONLY,
-    ),
-    Claim(
-        "one_rises", "7.2", "24",
-        "The forces of 1 and 3 rise as actuator 1 becomes slower.",
-        steps(1), trend(1, (1, 3), FALLING), note=ASSISTING,
-    ),
-    Claim(
-        "one_falls", "7.2", "24",
-        "The force of 2 falls as actuator 1 becomes slower.",
-        steps(-1), trend(1, (2,), FALLING), note=ASSISTING,
-    ),
-)  # fmt: skip
-
-TWO = (
-    Claim(
-        "two_alike", "7.2", "25",
-        "With actuator 2 asynchronous the forces of 1 and 3 are alike, and unlike that of 2.",
-        greatest(apart(), 4), (Reading("", forces(2, ACTUATORS, ODD)),), TUNED, FITTED,
-    ),
-    Claim(
-        "two_alike_each", "7.2", "25",
-        "With actuator 2 asynchronous they are so at each speed, not the largest alone.",
-        apart(), each(2, ACTUATORS, UNFITTED[:-1]), note=ONLY,
-    ),
-    Claim(
-        "two_rises", "7.2", "25",
-        "The forces of 1 and 3 rise as actuator 2 becomes faster.",
-        steps(1), trend(2, (1, 3), RISING), note=ASSISTING,
-    ),
-    Claim(
-        "two_falls", "7.2", "25",
-        "The force of 2 falls as it becomes faster.",
-        steps(-1), trend(2, (2,), RISING), note=ASSISTING,
-    ),
+    moves("two_rises", 2, "The forces of 1 and 3 rise as actuator 2 becomes faster.",
+          1, (1, 3), RISING),
+    moves("two_falls", 2, "The force of 2 falls as it becomes faster.", -1, (2,), RISING),
     Claim(
         "two_opposite", "7.2", "25",
         "That is opposite to what the speed of actuator 1 does.",
         opposite(),
-        tuple(Reading(f"actuator {k}", tuple(
-            Series(f"{odd} at {speed} mm/s", case(odd, speed), PEAK.format(k))
-            for odd in (1, 2) for speed in (418, 422))) for k in ACTUATORS),
+        tuple(Reading(f"actuator {k}", of_odd(k, (1, 2), (418, 422))) for k in ACTUATORS),
         note="forces follow the second difference of the three strokes, in which 2 has the "
         "other sign: so it is for 1 and 3 about 2, too",
     ),
-)  # fmt: skip
-
-THREE = (
+    # actuator 3, and all compared
     Claim(
         "three_mirrors", "7.2", "26",
         "Actuator 3 asynchronous is the mirror of actuator 1 asynchronous.",
@@ -165,14 +158,10 @@ THREE = (
         "two_largest", "7.2", "24, 25, 26",
         "All forces are largest where actuator 2 is the asynchronous one.",
         greatest(above(), 4),
-        tuple(Reading(f"actuator {k}", tuple(
-            Series(f"{odd} at {speed} mm/s", case(odd, speed), PEAK.format(k))
-            for odd in (1, 3, 2) for speed in ODD)) for k in ACTUATORS),
+        tuple(Reading(f"actuator {k}", of_odd(k, (1, 3, 2), ODD)) for k in ACTUATORS),
         TUNED, FITTED,
     ),
-)  # fmt: skip
-
-SHAFT = (
+    # a synchronising shaft
     Claim(
         "shaft_adjusts", "7.2", "25",
         "A synchronising shaft adjusts the motion of actuators that have come apart.",
@@ -209,8 +198,6 @@ SHAFT = (
         note="our reading; stalls at 3 kN of the supply",
     ),
 )  # fmt: skip
-
-CLAIMS = (*SYNCHRONOUS, *ONE, *TWO, *THREE, *SHAFT)
 
 CONCLUSIONS = (
     Claim(

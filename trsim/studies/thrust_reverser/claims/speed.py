@@ -7,7 +7,7 @@ from trsim.studies.thrust_reverser.claims.claim import (
     OVERTURN,
     Claim,
     Reading,
-    Series,
+    b_above_a,
     over,
 )
 from trsim.studies.thrust_reverser.rules import falling, ratio, rising
@@ -29,6 +29,7 @@ def pins(word: str) -> tuple[Reading, ...]:
     )
 
 
+FORCES = (*readings("peak:B.contact_force"), Reading("at A", over("peak:A.contact_force", *AB)))
 CLAIMS = (
     Claim(
         "speed_velocity", "7.1.3", "14a, 14b",
@@ -50,14 +51,12 @@ CLAIMS = (
     Claim(
         "speed_force", "7.1.3", "14e, 14f",
         "Contact forces grow with the driving speed.",
-        rising(),
-        (*readings("peak:B.contact_force"), Reading("at A", over("peak:A.contact_force", *AB))),
+        rising(), FORCES,
     ),
     Claim(
         "speed_triple", "7.1.3", "14e, 14f",
         "The largest contact force almost triples when the speed doubles.",
-        ratio(2.5, 3.0),
-        (*readings("peak:B.contact_force"), Reading("at A", over("peak:A.contact_force", *AB))),
+        ratio(2.5, 3.0), FORCES,
         note="almost three taken as 2.5 to 3.0",
     ),
     Claim(
@@ -85,10 +84,6 @@ CLAIMS = (
     Claim(
         "speed_map_b", "7.1.3", "17",
         "The points at B are more dispersed than those at A.",
-        rising(),
-        tuple(Reading(label, (Series("A", case, f"dispersion:A_orbit{OVERTURN}"),
-                              Series("B", case, f"dispersion:B_orbit{OVERTURN}")))
-              for label, case in AB),
-        CHOSEN,
+        rising(), b_above_a(AB), CHOSEN,
     ),
 )  # fmt: skip

@@ -62,11 +62,10 @@ class Canvas:
         """Put everything on axes of equal scales."""
         from matplotlib.collections import PolyCollection
 
-        order = sorted(range(len(self.faces)), key=lambda k: self.faces[k][0])
-        colours = [self.faces[k][2] for k in order]
+        _, places, colours = zip(*sorted(self.faces, key=lambda face: face[0]), strict=True)
         opaque = [(*c[:3], c[3] if c[3] == 1.0 else 0.0) for c in colours]  # hides the seams
-        axes.add_collection(PolyCollection([self.faces[k][1] for k in order], facecolors=colours,
-                                           edgecolors=opaque, linewidths=0.3))  # fmt: skip
+        axes.add_collection(PolyCollection(places, facecolors=colours, edgecolors=opaque,
+                                           linewidths=0.3))  # fmt: skip
         axes.set_aspect("equal")
         axes.autoscale_view()
         axes.axis("off")

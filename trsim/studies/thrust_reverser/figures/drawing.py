@@ -143,12 +143,8 @@ def journal(
 
 def phase(shown: Shown, joint: str) -> tuple[Array, Array]:
     """Place and velocity in x (mm, mm/s): the rows, and the steps in touch between them."""
-    steps, names = shown.run.steps(joint), ("eccentricity_x", "eccentricity_x_rate")
-    time = np.concatenate([shown.run.time, steps["time"]])
-    both = [np.concatenate([shown.run.channel(f"{joint}.{n}"), steps[n]]) for n in names]
-    order = np.argsort(time, kind="stable")
-    order = order[:: max(1, -(-len(order) // MOST))]
-    return 1e3 * both[0][order], 1e3 * both[1][order]
+    _, x, rate = path(shown, joint, y="eccentricity_x_rate", most=MOST)
+    return 1e3 * x, 1e3 * rate
 
 
 def section(axes: Any, runs: Sequence[Shown], name: str, letter: str, text: str) -> None:

@@ -46,8 +46,7 @@ def figure_23(shown: list[Shown]) -> Any:
         lettered(a, letter, f"{axis} direction")
     timed(axes[-1])
     figure.align_ylabels()
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
