@@ -279,7 +279,7 @@ def test_a_hash_tells_a_damaged_file_from_a_bug(whole, tmp_path, monkeypatch):
     def broken(*_):
         raise ZeroDivisionError("nobody expected this")
 
-    monkeypatch.setattr("trsim.cli.show.dispersions", broken)
+    monkeypatch.setattr("trsim.cli.show.lines", broken)
     code, said = ended(["show", str(whole)])
     assert (code, "This is a bug in trsim" in said) == (1, True)
     path = tmp_path / "x.h5"

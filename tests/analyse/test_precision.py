@@ -40,7 +40,7 @@ def true_error(run):
 def test_uncertainty_covers_the_error_of_the_reference(tight):
     assert true_error(tight.run) <= 2.0 * tight.uncertainty
     assert tight.uncertainty < 1e-9
-    assert (tight.apart, tight.rows, tight.reason) == (None, len(tight.run.time), "")
+    assert (tight.apart, tight.rows, tight.second_failed) == (None, len(tight.run.time), "")
 
 
 @pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha"])
@@ -117,8 +117,8 @@ def test_a_reference_that_fails_is_an_error():
 def test_a_second_reference_that_fails_leaves_the_uncertainty_open():
     of = problem(loads(TEXT, ["solver.max_steps=100"]))
     to = reference(of, Setting("dop853", 1e-9))
-    assert to.other == "radau"
-    assert to.reason.startswith("more than 100 steps, at t = ")
+    assert to.second_method == "radau"
+    assert to.second_failed.startswith("more than 100 steps, at t = ")
     assert np.isnan(to.uncertainty)
     assert not point(of, to, Setting("dop853", 1e-4), repeats=1).unresolved
 

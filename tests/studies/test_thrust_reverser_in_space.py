@@ -28,13 +28,13 @@ from trsim.studies.thrust_reverser.peaks import STUDY, ends, peaks
 from trsim.studies.thrust_reverser.rules import CONFIRMED, CONTRADICTED, UNDETERMINED
 from trsim.studies.thrust_reverser.runs import Runs
 from trsim.studies.thrust_reverser.single import (
-    Above,
-    Apart,
-    Below,
-    Greatest,
-    Near,
-    Opposite,
-    Steps,
+    above,
+    apart,
+    below,
+    greatest,
+    near,
+    opposite,
+    steps,
 )
 from trsim.sweep.go import go
 from trsim.sweep.plan import plan
@@ -133,14 +133,14 @@ def column(*values):
 @pytest.mark.parametrize(
     ("rule", "holds", "fails"),
     [
-        (Steps(1), (0, 20, 40), (0, 20, 25)),
-        (Steps(-1), (40, -20, -40), (40, 20, 15)),
-        (Above(), (1, 2, 3), (1, 3, 3.02)),
-        (Below(), (2, 3, 1), (2, 1, 0.995)),
-        (Near(0.05), (1.0, 1.04), (1.0, 1.06)),
-        (Apart(), (10, 5, 9), (10, 5, 7)),
-        (Opposite(), (1, 2, 2, 1), (1, 2, 3, 4)),
-        (Greatest(Above(), 2), (1, 2, 3, 0), (1, 3, 2, 3)),
+        (steps(1), (0, 20, 40), (0, 20, 25)),
+        (steps(-1), (40, -20, -40), (40, 20, 15)),
+        (above(), (1, 2, 3), (1, 3, 3.02)),
+        (below(), (2, 3, 1), (2, 1, 0.995)),
+        (near(0.05), (1.0, 1.04), (1.0, 1.06)),
+        (apart(), (10, 5, 9), (10, 5, 7)),
+        (opposite(), (1, 2, 2, 1), (1, 2, 3, 4)),
+        (greatest(above(), 2), (1, 2, 3, 0), (1, 3, 2, 3)),
     ],
 )
 def test_rules_of_single_runs(rule, holds, fails):
@@ -243,7 +243,7 @@ def test_the_nearer_is_painted_over_the_farther():
     canvas.paint(axes)
     far, near = found[0].get_facecolors()
     assert far[2] > 0.5 > far[0] and near[0] > 0.5 > near[2]
-    assert canvas.view.seen(np.array([0.0, 1.0, 0.0])) == pytest.approx([1.0, 0.0, 0.0])
+    assert canvas.seen(np.array([0.0, 1.0, 0.0])) == pytest.approx([1.0, 0.0, 0.0])
 
 
 def test_the_mechanism_is_drawn(tmp_path):
@@ -253,9 +253,8 @@ def test_the_mechanism_is_drawn(tmp_path):
     scenario = load(SCENARIOS / "spatial_synchronous.yaml", sets)
     built = assemble(scenario)
     write(tmp_path / "a.h5", scenario, built, simulate(scenario, built))
-    runs = SimpleNamespace(stated=lambda case: SimpleNamespace(run=read(tmp_path / "a.h5")))
     with look():
-        figure = mechanism.figure_22(runs)
+        figure = mechanism.figure_22([SimpleNamespace(run=read(tmp_path / "a.h5"))])
     written = [text.get_text() for axes in figure.axes for text in axes.texts]
     assert written == ["1", "2", "3", "1", "2", "3", "4", "5"] * 2
     figure.savefig(tmp_path / "a.png")

@@ -111,9 +111,14 @@ def swept(study: Any, over: str | None) -> str:
         if not keys:
             raise UsageError("the study sweeps nothing", "Give the scenario a `sweep:`.")
         return str(keys[0])
-    if over not in study.keys:
-        raise UsageError(f"the study does not sweep '{over}'", known(over, study.keys))
+    check_swept(study, over)
     return over
+
+
+def check_swept(study: Any, over: str | None) -> None:
+    """Check that a study varies a key that is named; raises UsageError."""
+    if over is not None and over not in study.keys:
+        raise UsageError(f"the study does not sweep '{over}'", known(over, study.keys))
 
 
 def spread(parts: list[Array]) -> float:

@@ -39,18 +39,28 @@ TIGHTER, TIGHTEST, LOOSEST = 100.0, 1e-14, 1e-1  # tolerances: of a reference; t
 
 @dataclass(frozen=True)
 class Reference:
-    """What errors are taken against."""
+    """What errors are taken against.
+
+    second_method     of another run, at the same tolerance
+    second_failed     why that one did not reach its end, or ""
+    uncertainty       error of the second run
+    peak_uncertainty  peak error of the second run; null without contacts
+    apart             s; from here on the two differ by more than 1 % of a range, and errors are
+                      taken over the rows before; null where they never do
+    ranges            quantity -> its largest less its smallest value, SI
+    still             quantities that do not move, and are left out
+    """
 
     setting: Setting
-    other: str  # the method that says how far it can be trusted
     run: Trajectory
-    ranges: dict[str, float]  # quantity -> largest less smallest value
-    still: tuple[str, ...]  # quantities that do not move, which have no error
     rows: int  # compared: those before `apart`
-    apart: float | None  # s: from here on the two references are different motions
-    uncertainty: float  # error of the other one; nan where it failed
+    second_method: str
+    second_failed: str
+    uncertainty: float  # nan where the second one failed
     peak_uncertainty: float
-    reason: str  # why it failed, or ""
+    apart: float | None
+    ranges: dict[str, float]
+    still: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -144,8 +154,8 @@ def reference(
         peak_uncertainty = peak_error(second, run)
     except SolverError as error:
         reason = error.what
-    return Reference(setting, other, run, ranges, rests, rows, apart, uncertainty,
-                     peak_uncertainty, reason)  # fmt: skip
+    return Reference(setting, run, rows, other, reason, uncertainty, peak_uncertainty, apart,
+                     ranges, rests)  # fmt: skip
 
 
 def motionless(of: Problem, run: Trajectory, ranges: dict[str, float]) -> tuple[str, ...]:

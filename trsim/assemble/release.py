@@ -48,12 +48,17 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Release:
-    """Changes that leave no row redundant and no reaction undetermined."""
+    """Changes that leave no row redundant and no reaction undetermined.
+
+    rows          "joint.axis", as many as are redundant
+    alternatives  other choices that are as good; the first in the file is given
+    proven        whether nothing depends on anything without these rows, as drawn and nearby
+    """
 
     changes: tuple[Change, ...]
-    rows: tuple[str, ...]  # "joint.axis"
-    alternatives: int  # other choices that are as good
-    proven: bool  # no dependent row as drawn and nearby
+    rows: tuple[str, ...]
+    alternatives: int
+    proven: bool
 
 
 class Stress(NamedTuple):

@@ -1,7 +1,8 @@
 """trsim bench: work against precision of a scenario, method by method."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
@@ -13,6 +14,7 @@ from trsim.errors import ScenarioError, TrsimError
 from trsim.scenario.methods import METHODS
 
 MEASURED = "auto,dop853,radau"
+NOT_TOLD = ("setting", "run", "rows")  # as such, of references and points
 MARK = "<"  # beside an error that the reference does not resolve
 
 
@@ -42,7 +44,7 @@ def command(answer: Answer, scenario: str, output: str | None, **options: Any) -
     keeps what was measured.
     """
     folder = Path(output or f"runs/{stem(scenario)}.bench")
-    study = one(answer, scenario, folder, **options)
+    study = one(answer, scenario, folder, Options(**options))
     answer.data |= {"file": scenario, "folder": str(folder), **described(study)}
     for text in lines(study):
         answer.put(text)
@@ -57,15 +59,23 @@ def command(answer: Answer, scenario: str, output: str | None, **options: Any) -
         raise KeyboardInterrupt
 
 
-def one(
-    answer: Answer, source: str, folder: Path, methods: str, tolerances: str | None,
-    steps: str | None, reference: str | None, quantities: tuple[str, ...], repeats: int,
-    sets: tuple[str, ...],
-) -> Any:  # fmt: skip
+class Options(NamedTuple):
+    """What is to be measured, as the command line says."""
+
+    methods: str
+    tolerances: str | None
+    steps: str | None
+    reference: str | None
+    quantities: tuple[str, ...]
+    repeats: int
+    sets: tuple[str, ...]
+
+
+def one(answer: Answer, source: str, folder: Path, given: Options) -> Any:
     """The study of a scenario; what was measured until a signal, if one came."""
     from trsim.cli.progress import compiling
 
-    scenario = loaded(source, sets)
+    scenario = loaded(source, given.sets)
     if scenario.solver.end is None:
         what = "field required: end (s)"
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
@@ -73,15 +83,20 @@ def one(
     from trsim.analyse import precision
     from trsim.report.precision import check_room
 
-    named = [known_method(name) for name in methods.split(",")]
-    asked = [tolerance(x) for x in tolerances.split(",")] if tolerances else precision.TOLERANCES
-    ends = [scenario.solver.end / n for n in precision.FIXED]
-    fixed = [seconds(x) for x in steps.split(",")] if steps else ends
-    against = chosen(reference) if reference else precision.reference_setting(named, asked)
+    named = [known_method(name) for name in given.methods.split(",")]
+    tolerances: Sequence[float] = precision.TOLERANCES
+    if given.tolerances:
+        tolerances = [tolerance(text) for text in given.tolerances.split(",")]
+    steps = [scenario.solver.end / n for n in precision.FIXED]
+    if given.steps:
+        steps = [seconds(text) for text in given.steps.split(",")]
+    against = precision.reference_setting(named, tolerances)
+    if given.reference:
+        against = chosen(given.reference)
     check_room(folder)
     try:
-        return measured(answer, scenario, precision.plan(named, asked, fixed), against,
-                        quantities, repeats)  # fmt: skip
+        settings = precision.plan(named, tolerances, steps)
+        return measured(answer, scenario, settings, against, given.quantities, given.repeats)
     except TrsimError as error:
         raise placed(error, scenario) from None
 
@@ -123,19 +138,13 @@ def described(study: Any) -> dict[str, Any]:
         "reference": {
             "method": r.setting.method,
             "tolerance": r.setting.tolerance,
-            "second_method": r.other,
-            "second_failed": r.reason,
-            "uncertainty": r.uncertainty,
-            "peak_uncertainty": r.peak_uncertainty,
-            "apart": r.apart,
-            "ranges": r.ranges,
-            "still": list(r.still),
+            **{key: value for key, value in vars(r).items() if key not in NOT_TOLD},
         },
         "points": [
             {
                 **p.setting._asdict(),
                 "status": "failed" if p.reason else "done",
-                **{key: value for key, value in vars(p).items() if key != "setting"},
+                **{key: value for key, value in vars(p).items() if key not in NOT_TOLD},
             }
             for p in study.points
         ],
@@ -148,7 +157,14 @@ def lines(study: Any) -> list[str]:
     """The table for a reader, and what is to be known about it."""
     r = study.reference
     first = f"reference  {r.setting.method}, tolerance {r.setting.tolerance:.0e}"
-    out = [first + (f"; {r.other} failed: {r.reason}" if r.reason else f", beside {r.other}")]
+    out = [
+        first
+        + (
+            f"; {r.second_method} failed: {r.second_failed}"
+            if r.second_failed
+            else f", beside {r.second_method}"
+        )
+    ]
     out.append(f"  uncertainty {size(r.uncertainty)}, of peaks {size(r.peak_uncertainty)}")
     out += [f"  compared    {', '.join(r.ranges)}"]
     out += [f"  left out    {', '.join(r.still)}: no motion"] if r.still else []

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trsim.cli.frame import Answer, Stop
-from trsim.cli.running import look, placed, ran
+from trsim.cli.running import Wanted, look, placed, ran
 from trsim.cli.source import loaded
 from trsim.errors import FileError, TrsimError, UsageError, some
 
@@ -22,18 +22,15 @@ def beside(target: Path) -> Path:
     return target.with_name(f"{target.name.removesuffix('.h5')}.twin.h5")
 
 
-def twin(
-    answer: Answer, source: str, target: Path, scenario: Any, sets: tuple[str, ...],
-    resume: bool, checkpoint: float | None, asked: Any,
-) -> Closing:  # fmt: skip
+def twin(answer: Answer, source: str, target: Path, scenario: Any, wanted: Wanted) -> Closing:
     """Have the twin's file; what is to be done with it at the end of the run."""
     from trsim.store.checkpoint import beside as kept
     from trsim.store.checkpoint import keys
 
     path = beside(target)
-    other = other_scenario(answer, source, scenario, sets, asked)
+    other = other_scenario(answer, source, scenario, wanted)
     known = json.dumps(keys(other), sort_keys=True)
-    if resume and was_for(path) == known:
+    if wanted.resume and was_for(path) == known:
         answer.say(f"{source}: the twin is there already: {path}")
     else:
         if path.exists() and was_for(path) is None:
@@ -46,15 +43,14 @@ def twin(
             file["provenance"].attrs["keys"] = known
             return {}
 
-        goes_on = resume and kept(path).is_file()
-        ran(answer, f"twin of {source}", path, other, goes_on, checkpoint, mark, twin=True)
+        goes_on = wanted.resume and kept(path).is_file()
+        ran(answer, f"twin of {source}", path, other, wanted._replace(resume=goes_on, twin=True),
+            mark)  # fmt: skip
     return lambda file: compared(answer, file, path)
 
 
-def other_scenario(
-    answer: Answer, source: str, scenario: Any, sets: tuple[str, ...], asked: Any
-) -> Any:
-    """The scenario of the twin; `asked`: its setting, or True to have it found."""
+def other_scenario(answer: Answer, source: str, scenario: Any, wanted: Wanted) -> Any:
+    """The scenario of the twin, whose setting is given or to be found."""
     from trsim.cli.progress import compiling
 
     compiling(answer, scenario.solver.method)
@@ -63,12 +59,14 @@ def other_scenario(
 
     Stop.patient = True
     try:
-        setting = twin_setting(scenario, assemble(scenario), look) if asked is True else asked
+        setting = wanted.certify
+        if setting is True:
+            setting = twin_setting(scenario, assemble(scenario), look)
     except TrsimError as error:
         raise placed(error, scenario) from None
     finally:
         Stop.patient = False
-    return loaded(source, (*sets, *overrides(scenario, setting)))
+    return loaded(source, (*wanted.sets, *overrides(scenario, setting)))
 
 
 def was_for(path: Path) -> str | None:

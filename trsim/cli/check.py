@@ -12,6 +12,11 @@ from trsim.cli.modes import mode_lines
 from trsim.cli.source import loaded
 from trsim.errors import TrsimError
 
+FACTS = (  # of a mechanism, that are told under their names
+    "planar", "planar_assumed", "spatial_because", "mobility", "mobility_by_count", "redundant",
+    "singular", "unique", "not_unique",
+)  # fmt: skip
+
 
 @click.command("check")
 @click.argument("scenarios", nargs=-1, required=True, type=click.Path())
@@ -90,17 +95,9 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "forces": {name: spec.type for name, spec in scenario.forces.items()},
         "contacts": [mechanism.instances[e].name for e in model.contact],
         "events": {e.name: e.in_words() for e in mechanism.stages.switches.events},
-        "planar": mechanism.planar,
-        "planar_assumed": mechanism.planar_assumed,
-        "spatial_because": list(mechanism.spatial_because),
         "unknowns": int(model.n_v),
         "constraints": int(model.m),
-        "mobility": int(mechanism.mobility),
-        "mobility_by_count": int(mechanism.mobility_by_count),
-        "redundant": list(mechanism.redundant),
-        "singular": list(mechanism.singular),
-        "unique": list(mechanism.unique),
-        "not_unique": list(mechanism.not_unique),
+        **{name: getattr(mechanism, name) for name in FACTS},
         "release": released(scenario, mechanism),
         "notes": [*mechanism.notes, *lint(scenario), *scenario.bare],
     }
@@ -114,11 +111,9 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
     if found is None:
         return None
     return {
-        "rows": list(found.rows),
+        **{key: value for key, value in vars(found).items() if key != "changes"},
         "joints": {change.joint: change.becomes for change in found.changes},
         "types": {change.joint: change.type for change in found.changes if change.type},
-        "alternatives": found.alternatives,
-        "proven": found.proven,
     }
 
 

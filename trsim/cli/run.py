@@ -8,7 +8,7 @@ import click
 from trsim.cli.frame import NAMED, Answer, framed
 from trsim.cli.redundancy import redundancy
 from trsim.cli.resume import Seconds
-from trsim.cli.running import placed, ran
+from trsim.cli.running import Wanted, placed, ran
 from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
 from trsim.store.target import RESULT, replaceable
@@ -30,8 +30,8 @@ from trsim.store.target import RESULT, replaceable
 @click.option("--certify-with", metavar="METHOD:TOL", help="The same, with this twin.")
 @framed
 def command(
-    answer: Answer, scenarios: tuple[str, ...], output: str | None, sets: tuple[str, ...],
-    resume: bool, checkpoint: float | None, certify: bool, certify_with: str | None,
+    answer: Answer, scenarios: tuple[str, ...], output: str | None, certify_with: str | None,
+    **options: Any,
 ) -> None:  # fmt: skip
     """Simulate SCENARIO files and write result files (HDF5).
 
@@ -44,15 +44,15 @@ def command(
     With --certify the twin comes first, into FILE.twin.h5, and is removed when both are compared.
     """
     answer.data["runs"] = []
-    asked: Any = certify
+    wanted = Wanted(**options)
     if certify_with is not None:
         from trsim.cli.given import chosen
 
-        asked = chosen(certify_with, "twin", "--certify-with")
+        wanted = wanted._replace(certify=chosen(certify_with, "twin", "--certify-with"))
     for source, target in targets(scenarios, output):
         try:
             file = replaceable(target, RESULT, [source])
-            summary = one(answer, source, file, sets, resume, checkpoint, asked)
+            summary = one(answer, source, file, wanted)
         except TrsimError as error:
             answer.fail(error, about=source)
             continue
@@ -80,24 +80,18 @@ def targets(scenarios: tuple[str, ...], output: str | None) -> list[tuple[str, P
     return [(source, target) for target, source in found.items()]
 
 
-def one(
-    answer: Answer, source: str, target: Path, sets: tuple[str, ...], resume: bool,
-    checkpoint: float | None, certify: Any = False,
-) -> dict[str, Any]:  # fmt: skip
-    """Run one scenario; the summary of its result.
-
-    certify: whether to compare it with a twin, or the `Setting` of that.
-    """
-    scenario = loaded(source, sets)
+def one(answer: Answer, source: str, target: Path, wanted: Wanted) -> dict[str, Any]:
+    """Run one scenario; the summary of its result."""
+    scenario = loaded(source, wanted.sets)
     if scenario.solver.end is None:
         what = "field required: end (s)"
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
     closing = None
-    if certify:
+    if wanted.certify:
         from trsim.cli.certify import twin
 
-        closing = twin(answer, source, target, scenario, sets, resume, checkpoint, certify)
-    summary = ran(answer, source, target, scenario, resume, checkpoint, closing)
+        closing = twin(answer, source, target, scenario, wanted)
+    summary = ran(answer, source, target, scenario, wanted, closing)
     answer.say(line(summary))
     remark(answer, source, summary)
     if "certificate" in summary:

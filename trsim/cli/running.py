@@ -3,22 +3,31 @@
 import shlex
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from trsim.cli.frame import Answer, Stop
 from trsim.cli.resume import found, interval
 from trsim.errors import TrsimError, some
 
 
+class Wanted(NamedTuple):
+    """How scenarios are to be run, as the command line says."""
+
+    sets: tuple[str, ...]
+    resume: bool
+    checkpoint: float | None  # s of wall time between two
+    certify: Any = False  # whether to compare with a twin, or the `Setting` of that
+    twin: bool = False  # which repeats no warnings
+
+
 def ran(
-    answer: Answer, source: str, target: Path, scenario: Any, resume: bool,
-    checkpoint: float | None, closing: Any = None, twin: bool = False,
-) -> dict[str, Any]:  # fmt: skip
-    """Simulate a scenario into a file; its summary.  A twin repeats no warnings."""
+    answer: Answer, source: str, target: Path, scenario: Any, wanted: Wanted, closing: Any = None
+) -> dict[str, Any]:
+    """Simulate a scenario into a file; its summary."""
     from trsim.cli.progress import compiling, compiling_sparse, watched
 
-    every = interval(answer, source, scenario, checkpoint)
-    kept = found(answer, source, target, scenario, resume)
+    every = interval(answer, source, scenario, wanted.checkpoint)
+    kept = found(answer, source, target, scenario, wanted.resume)
     compiling(answer, scenario.solver.method)
     from trsim.assemble.assemble import assemble
     from trsim.scenario.lint import lint
@@ -28,9 +37,9 @@ def ran(
     try:
         mechanism = assemble(scenario)
         compiling_sparse(answer, scenario, mechanism)
-        for note in () if twin else (*mechanism.notes, *lint(scenario)):
+        for note in () if wanted.twin else (*mechanism.notes, *lint(scenario)):
             answer.warn(source, note)
-        if mechanism.spatial_because and not twin:
+        if mechanism.spatial_because and not wanted.twin:
             told = some(mechanism.spatial_because, 1, ", and {} more (see `trsim check`)")
             answer.say(f"{source}: spatial motion: {told}")
         running = simulate(scenario, mechanism, kept.state if kept else None)

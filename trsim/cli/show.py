@@ -1,5 +1,6 @@
 """trsim show: what is in a result file."""
 
+from math import isnan
 from typing import Any
 
 import click
@@ -25,6 +26,7 @@ def command(answer: Answer, run: str, verify: bool) -> None:
     found = read(run)
     if verify:
         check_same(found)
+    sections = found.poincare
     answer.data |= {
         "file": str(found.path),
         **{name: found.attributes[name] for name in TOLD if name in found.attributes},
@@ -39,8 +41,8 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         "not_unique": list(found.text("mechanism/not_unique")),
         "provenance": found.group("provenance"),
         "phase": list(found.phase),
-        "poincare": {name: len(points.x) for name, points in found.poincare.items()},
-        "dispersion": dispersions(found),
+        "poincare": {name: len(points.x) for name, points in sections.items()},
+        "dispersion": {name: points.dispersion._asdict() for name, points in sections.items()},
         "fired": found.fired,
     }
     certified = found.certificate
@@ -107,7 +109,7 @@ def lines(run: Any, data: dict[str, Any]) -> list[str]:
         out.append(f"  redundant {redundancy(data)}{opening(data)}")
     out += [f"  warning   {text}" for text in data["warnings"]]
     out.append(f"  phase     {', '.join(data['phase']) or '-'}")
-    sections = [section(run, name, told) for name, told in data["dispersion"].items()]
+    sections = [section(name, points) for name, points in run.poincare.items()]
     out += [f"  poincare  {text}" for text in sections or ["-"]]
     out.append("  channels")
     width = max((len(name) for name in run.names), default=0)
@@ -121,26 +123,17 @@ def opening(data: dict[str, Any]) -> str:
     return "" if worst is None else f"; open by at most {worst:.1e} of the mechanism's size or rad"
 
 
-def dispersions(run: Any) -> dict[str, dict[str, Any]]:
-    """How far the points of each section lie apart; None for what no number tells."""
-    found = {}
-    for name, points in run.poincare.items():
-        told = points.dispersion._asdict()
-        found[name] = {key: value if value == value else None for key, value in told.items()}
-    return found
-
-
-def section(run: Any, name: str, told: dict[str, Any]) -> str:
+def section(name: str, points: Any) -> str:
     """A Poincare section in one line."""
     from trsim.store.points import surface
 
-    points = run.poincare[name]
-    text = f"{name}: {surface(points.definition)}, {told['points']} points"
-    if told["radius"] is not None:
-        return f"{text}, dispersion {told['radius']:.3g} {points.x_unit}"
-    if told["x"] is None:
+    told = points.dispersion
+    text = f"{name}: {surface(points.definition)}, {told.points} points"
+    if not isnan(told.radius):
+        return f"{text}, dispersion {told.radius:.3g} {points.x_unit}"
+    if isnan(told.x):
         return text
-    return f"{text}, dispersion {told['x']:.3g} {points.x_unit}, {told['y']:.3g} {points.y_unit}"
+    return f"{text}, dispersion {told.x:.3g} {points.x_unit}, {told.y:.3g} {points.y_unit}"
 
 
 SHOWN = 20  # lines of user events

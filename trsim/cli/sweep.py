@@ -2,6 +2,7 @@
 
 import re
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +15,9 @@ from trsim.errors import CasesFailed, Problems, TrsimError, some
 from trsim.system import LIMITS_MEMORY, processors
 
 SHOWN = 10  # cases that are told one by one
-BYTES = {
-    "": 1,
-    "b": 1,
-    "kb": 10**3,
-    "mb": 10**6,
-    "gb": 10**9,
-    "kib": 2**10,
-    "mib": 2**20,
-    "gib": 2**30,
-}
+BYTES = {"": 1, "b": 1}  # and kb, mb, gb, kib, mib, gib
+BYTES |= {f"{letter}b": 1000**k for k, letter in enumerate("kmg", 1)}
+BYTES |= {f"{letter}ib": 1024**k for k, letter in enumerate("kmg", 1)}
 
 
 class Bytes(click.ParamType):
@@ -48,12 +42,10 @@ class Share(click.ParamType):
     name = "i/n"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
-        match = (
-            re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", value) if isinstance(value, str) else None
-        )
+        if isinstance(value, tuple):
+            return value
+        match = re.fullmatch(r"([0-9]{1,6})/([0-9]{1,6})", value)
         if not match:
-            if isinstance(value, tuple):
-                return value
             self.fail(f"{value} is no share: write 1/3 for the first of three.", param, ctx)
         i, n = int(match[1]), int(match[2])
         if not 1 <= i <= n:
@@ -120,8 +112,8 @@ def command(
     if dry_run:
         assembled(answer, planned, part)
         return
-    limits = Limits(time_limit, memory, retries)
-    ran(answer, planned, folder, identity, part, limits, jobs, address)
+    run = runner(answer, planned, Limits(time_limit, memory, retries), jobs, address)
+    ran(answer, planned, folder, identity, part, run)
 
 
 def checked(planned: Any) -> None:
@@ -178,24 +170,30 @@ def assembled(answer: Answer, planned: Any, part: Any) -> None:
     answer.say(f"{len(mine)} cases are well formed and assemble")
 
 
-def ran(
-    answer: Answer, planned: Any, folder: Path, identity: str, part: Any, limits: Any,
-    jobs: int | None, address: str | None,
-) -> None:  # fmt: skip
-    """Run what is needed, and tell how it went."""
-    from trsim.sweep import local
-    from trsim.sweep.folder import strays
-    from trsim.sweep.go import differing, go
-    from trsim.sweep.ledger import counts, in_a_line
-
-    count = jobs or processors()
+def runner(
+    answer: Answer, planned: Any, limits: Any, jobs: int | None, address: str | None
+) -> Callable[[Any], Any]:
+    """What runs cases: processes of this machine, or the workers of a Dask scheduler."""
 
     def run(tasks: Any) -> Any:
         if address:
             from trsim.sweep.dask import run as by_dask
 
             return by_dask(tasks, address, limits)
-        return local.run(tasks, count, limits, warming(answer, planned))
+        from trsim.sweep import local
+
+        return local.run(tasks, jobs or processors(), limits, warming(answer, planned))
+
+    return run
+
+
+def ran(
+    answer: Answer, planned: Any, folder: Path, identity: str, part: Any, run: Callable[[Any], Any]
+) -> None:
+    """Run what is needed, and tell how it went."""
+    from trsim.sweep.folder import strays
+    from trsim.sweep.go import differing, go
+    from trsim.sweep.ledger import counts, in_a_line
 
     if part.n > 1 and (other := differing(planned, folder)):
         text = f"{other} cases of the plan that is there are not in this one: give all shards"

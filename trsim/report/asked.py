@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from trsim.errors import UsageError
-from trsim.store.target import file_errors, fresh, headed
+from trsim.store.target import Kind, file_errors, fresh, headed
 
 
 class Asked(NamedTuple):
@@ -65,11 +65,16 @@ def file_name(kind: str, word: str) -> str:
     return "_".join([kind, *"".join(c if c.isalnum() else " " for c in word).split()])
 
 
-def table(path: Path, titles: Sequence[str], rows: Iterable[Sequence[Any]]) -> Path:
-    """Write rows as CSV, numbers in full."""
+def table(
+    path: Path, titles: Sequence[str], rows: Iterable[Sequence[Any]], kind: Kind | None = None
+) -> Path:
+    """Write rows as CSV, numbers in full.
+
+    kind: of the older tables it may replace; those with the same first two titles unless given.
+    """
     with (
         file_errors(path),
-        fresh(path, headed(*titles[:2])) as unfinished,
+        fresh(path, kind or headed(*titles[:2])) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
         out = csv.writer(file)

@@ -6,7 +6,7 @@ import numpy as np
 
 from trsim.report.display import Shown
 from trsim.report.marks import spaced
-from trsim.report.style import DASHES, apart, colour, legend, panels, thinned, titled
+from trsim.report.style import DASHES, apart, colour, finished, panels, thinned, titled
 from trsim.store.grow import Array
 
 SHAPES = 9  # of one run
@@ -43,10 +43,8 @@ def forces(runs: list[Shown], bar: str) -> Any:
         a.margins(x=0.01)
         apart(a)
     axes[-1, 0].set_xlabel(one.time_label)
-    figure.align_ylabels()
-    titled(figure, there, f"{spaced(bar).capitalize()}: largest and (dashed) least along the bar")
-    legend(figure, axes[0, 0], there)
-    return figure
+    text = f"{spaced(bar).capitalize()}: largest and (dashed) least along the bar"
+    return finished(figure, axes[0, 0], there, text)
 
 
 def shapes(runs: list[Shown], bar: str) -> Any:

@@ -16,11 +16,12 @@ from trsim.analyse.compare import (
     reference,
 )
 from trsim.errors import UsageError, known
+from trsim.report import style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.display import Shown, short
 from trsim.report.marks import spaced
 from trsim.report.spectra import label
-from trsim.report.style import apart, colour, look, panels, save, thinned, titled
+from trsim.report.style import apart, colour, panels, thinned, titled
 
 TITLES = ("channel", "run", "unit", "largest difference", "at", "rms", "of range", "apart from",
           "mean of first", "mean", "rms of first", "rms of run")  # fmt: skip
@@ -43,9 +44,8 @@ def draw(runs: list[Shown], asked: Asked, folder: Path) -> Found:
             named.append((label(shown), one, off))
             rows.append(row(channel, label(shown), off))
             note(found, label(shown), off, asked.against)
-        with look():
-            drawn = figure(runs, channel, asked.against, named)
-            found.files.append(save(drawn, folder / f"{file_name('compare', channel)}.png"))
+        path = folder / f"{file_name('compare', channel)}.png"
+        found.files.append(style.draw(path, figure, runs, channel, asked.against, named))
     found.files.append(table(folder / "compare.csv", TITLES, rows))
     return found
 
@@ -68,9 +68,9 @@ def overlay(runs: list[Shown], word: str, against: str, folder: Path) -> Found:
         rows.append(row(channel, label(shown), off))
         note(found, label(shown), off, against)
     name = file_name("overlay", f"{Path(file).stem} {channel}")
-    with look():
-        drawn = figure(runs, channel, against, named, coarse=len(given.s) < COARSE)
-        found.files.append(save(drawn, folder / f"{name}.png"))
+    drawn = style.draw(folder / f"{name}.png", figure, runs, channel, against, named,
+                       coarse=len(given.s) < COARSE)  # fmt: skip
+    found.files.append(drawn)
     found.files.append(table(folder / f"{name}.csv", TITLES, rows))
     return found
 
@@ -92,8 +92,8 @@ def chosen(runs: list[Shown], patterns: tuple[str, ...]) -> list[str]:
 
 
 def row(channel: str, name: str, off: Difference) -> tuple[Any, ...]:
-    pairs = (off.means[0], off.means[1], off.levels[0], off.levels[1])
-    return (channel, name, off.unit, off.largest, off.at, off.rms, off.of_range, off.apart, *pairs)
+    return (channel, name, off.unit, off.largest, off.at, off.rms, off.of_range, off.apart,
+            *off.means, *off.levels)  # fmt: skip
 
 
 def note(found: Found, name: str, off: Difference, against: str) -> None:
@@ -123,8 +123,8 @@ def figure(
     over, over_unit = first.display(first.run.unit(against) if against else "s")
     factor, unit = first.display(first.run.unit(channel))
     for k, (name, one, off) in enumerate(named):
-        style = points if coarse and not k else {"ls": "--" if k and not coarse else "-"}
-        upper.plot(*thinned(one.s * over, one.x * factor), color=colour(k), label=name, **style)
+        line = points if coarse and not k else {"ls": "--" if k and not coarse else "-"}
+        upper.plot(*thinned(one.s * over, one.x * factor), color=colour(k), label=name, **line)
         if off is None:
             continue
         lower.plot(*thinned(off.rest.s * over, off.rest.x * factor), color=colour(k),

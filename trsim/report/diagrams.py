@@ -10,7 +10,8 @@ from trsim.analyse.cases import numeric, reasons
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown
 from trsim.report.keys import Units, axis, named_value
-from trsim.report.style import colour, look, missed, panels, save
+from trsim.report.marks import spaced
+from trsim.report.style import colour, draw, missed, panels
 
 DRAWN = 60_000  # points
 FEW = 200  # points of a case that are drawn large
@@ -21,8 +22,7 @@ def bifurcation(one: Shown, of: Diagram, folder: Path) -> Found:
     """The diagram, its points and the period of each case."""
     found = nothing()
     name = file_name("bifurcation", f"{of.section} {of.axis}")
-    with look():
-        found.files.append(save(bifurcated(one, of), folder / f"{name}.png"))
+    found.files.append(draw(folder / f"{name}.png", bifurcated, one, of))
     rows = [
         (each.case, each.over, each.period, x, y)
         for each in of.cases
@@ -71,7 +71,7 @@ def bifurcated(one: Shown, of: Diagram) -> Any:
     with_points = {each.case for each in of.cases if len(each.x)}
     bare = [place(over) for case, over in of.places.items() if case not in with_points]
     missed(a, bare, "without points")
-    a.set_ylabel(f"{of.channel.replace('.', ', ').replace('_', ' ')}\n({unit})")
+    a.set_ylabel(f"{spaced(of.channel)}\n({unit})")
     highest = max([1, *(each.period for each in of.cases)])
     b.set_ylim(-0.6, highest + 0.6)
     ticks = sorted({0, *(e.period for e in of.cases if e.period > 0)})[:TICKS]

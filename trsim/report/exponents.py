@@ -9,12 +9,14 @@ import numpy as np
 from trsim.analyse.growth import of_runs
 from trsim.analyse.lyapunov import Exponent, exponent
 from trsim.analyse.window import parted, scalar_channel, window
+from trsim.report import style
 from trsim.report.asked import Found, Value, file_name, nothing
 from trsim.report.display import Shown, short
 from trsim.report.marks import spaced
 from trsim.report.spectra import label
-from trsim.report.style import colour, look, panels, save, titled
+from trsim.report.style import colour, panels, titled
 
+PARTED = "ln(distance / ranges) (-)"  # label of an axis
 WIDE = 70  # characters of the legend that fit under the figure
 
 
@@ -30,14 +32,13 @@ def draw(runs: list[Shown], word: str, folder: Path) -> Found:
         add(found, label(shown), f"{channel}: largest Lyapunov exponent", one)
     said = f"Neighbours in {spaced(channel)}"
     y = "mean of ln(distance /\nstandard deviation) (-)"
-    with look():
-        drawn = figure(runs, each, [s.label for s in runs], said, y)
-        found.files.append(save(drawn, folder / f"{file_name('lyapunov', word)}.png"))
-        if len(runs) == 2:
-            two = of_runs(runs[0].run, runs[1].run, window(runs[0].run, text))
-            add(found, "both runs", "rate at which they part", two)
-            drawn = figure(runs, [two], [""], "Distance of two runs", "ln(distance / ranges) (-)")
-            found.files.append(save(drawn, folder / f"{file_name('parting', text)}.png"))
+    path = folder / f"{file_name('lyapunov', word)}.png"
+    found.files.append(style.draw(path, figure, runs, each, [s.label for s in runs], said, y))
+    if len(runs) == 2:
+        two = of_runs(runs[0].run, runs[1].run, window(runs[0].run, text))
+        add(found, "both runs", "rate at which they part", two)
+        path, said, y = folder / f"{file_name('parting', text)}.png", "Distance of two runs", PARTED
+        found.files.append(style.draw(path, figure, runs, [two], [""], said, y))
     return found
 
 

@@ -10,7 +10,7 @@ from trsim.report import bars, style
 from trsim.report.display import Shown, short
 from trsim.report.marks import happened, spaced
 from trsim.report.orbits import impact_map, orbit, section
-from trsim.report.style import colour, legend, look, panels, save, thinned, titled
+from trsim.report.style import colour, finished, look, panels, save, thinned, titled
 from trsim.store.grow import Array
 from trsim.store.peaks import Peak
 
@@ -49,11 +49,9 @@ def everything(runs: list[Shown]) -> Iterator[tuple[str, Any]]:
         yield f"contact_{name}", contact_force(runs, name)
         if some(runs, f"{name}.eccentricity_x", f"{name}.eccentricity_y"):
             yield f"orbit_{name}", orbit(runs, name)
-            if any(name in s.run.contacts and len(s.run.impacts(name).time) for s in runs):
-                yield (
-                    f"impact_{name}",
-                    impact_map([s for s in runs if name in s.run.contacts], name),
-                )
+            there = [shown for shown in runs if name in shown.run.contacts]
+            if any(len(shown.run.impacts(name).time) for shown in there):
+                yield f"impact_{name}", impact_map(there, name)
     for name in dict.fromkeys(n for shown in runs for n in shown.run.phase):
         yield f"phase_{name}", portrait(runs, name)
     for name in dict.fromkeys(n for shown in runs for n in shown.run.poincare):
@@ -107,10 +105,7 @@ def motion(runs: list[Shown], sensor: str) -> Any:
         # what rounding of this value over the length of the run may look like in its rate
         noise = 1e-9 * largest / max(one.run.reached, 1e-300)
     axes[-1, 0].set_xlabel(runs[0].time_label)
-    figure.align_ylabels()
-    titled(figure, runs, spaced(sensor).capitalize())
-    legend(figure, axes[0, 0], runs)
-    return figure
+    return finished(figure, axes[0, 0], runs, spaced(sensor).capitalize())
 
 
 def body_motion(runs: list[Shown], body: str) -> Iterator[tuple[str, Any]]:
@@ -155,9 +150,7 @@ def drive_force(runs: list[Shown], drive: str) -> Any:
     a.set_xlabel(one.time_label)
     a.margins(x=0.01, y=0.12)
     style.apart(a)
-    titled(figure, runs, f"Drive {spaced(drive)}")
-    legend(figure, a, runs)
-    return figure
+    return finished(figure, a, runs, f"Drive {spaced(drive)}")
 
 
 def mark(axes: Any, shown: Shown, peak: Peak, k: int, told: bool = True) -> None:
@@ -289,6 +282,4 @@ def portrait(runs: list[Shown], name: str) -> Any:
         a.plot(x[:1], y[:1], "o", ms=4, color=colour(k), mec="white", mew=0.6, zorder=5)
         a.set_xlabel(f"{spaced(points.definition['x'])} ({shown.display(points.x_unit)[1]})")
         a.set_ylabel(f"{spaced(points.definition['y'])} ({shown.display(points.y_unit)[1]})")
-    titled(figure, runs, f"Phase portrait {name}, dot: start")
-    legend(figure, a, runs)
-    return figure
+    return finished(figure, a, runs, f"Phase portrait {name}, dot: start")

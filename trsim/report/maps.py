@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.bifurcation import check_swept
 from trsim.analyse.cases import Numbers, reasons
-from trsim.errors import UsageError, known
+from trsim.errors import UsageError
 from trsim.report.asked import Found, file_name, nothing, table
 from trsim.report.display import Shown, short
 from trsim.report.keys import Units, axis, in_words
@@ -54,8 +55,7 @@ def drawn(study: Any, one: Shown, of: Numbers, over: str | None, folder: Path) -
 def gridded(study: Any, of: Numbers, over: str | None) -> Grid:
     """The cases of a study of two keys; raises UsageError for any other."""
     keys = list(study.keys)
-    if over is not None and over not in keys:
-        raise UsageError(f"the study does not sweep '{over}'", known(over, keys))
+    check_swept(study, over)
     if len(keys) != 2:
         what = f"a map is over two keys, the study varies {len(keys)}: {', '.join(keys)}"
         raise UsageError(what, "Sweep two keys, and give the others one value each with --set.")

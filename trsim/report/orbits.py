@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from trsim.report.display import Shown, short
-from trsim.report.style import WIDTH, colour, legend, panels, titled
+from trsim.report.marks import spaced
+from trsim.report.style import WIDTH, colour, finished, panels, titled
 from trsim.store.grow import Array
 from trsim.store.points import surface
 from trsim.store.read import Points
@@ -93,10 +94,9 @@ def impact_map(runs: list[Shown], name: str) -> Any:
     figure, axes = panels(1, height=3.2)
     a, (factor, unit) = axes[0, 0], runs[0].display("rad")
     for k, shown in enumerate(runs):
-        if name in shown.run.contacts:
-            _, angle, speed = shown.run.impacts(name)
-            label = f"{shown.label} ({len(angle)})".strip() if shown.label else ""
-            a.plot(factor * angle, speed, ".", ms=7, mew=0, color=colour(k), alpha=0.7, label=label)
+        _, angle, speed = shown.run.impacts(name)
+        label = f"{shown.label} ({len(angle)})".strip() if shown.label else ""
+        a.plot(factor * angle, speed, ".", ms=7, mew=0, color=colour(k), alpha=0.7, label=label)
     a.set_xlim(-factor * np.pi, factor * np.pi)
     if unit in ("deg", "\u00b0"):
         a.set_xticks(np.arange(-180, 181, 45))
@@ -104,9 +104,7 @@ def impact_map(runs: list[Shown], name: str) -> Any:
     a.set_xlabel(f"angle of the touch around the bearing ({unit})")
     a.set_ylabel(f"speed of approach ({runs[0].display('m/s')[1]})")
     count = len(runs[0].run.impacts(name).time) if len(runs) == 1 else 0
-    titled(figure, runs, f"Impacts at {name}" + (f": {count}" if count else ""))
-    legend(figure, a, runs)
-    return figure
+    return finished(figure, a, runs, f"Impacts at {name}" + (f": {count}" if count else ""))
 
 
 def side_by_side(n: int) -> tuple[Any, Any]:
@@ -117,17 +115,18 @@ def side_by_side(n: int) -> tuple[Any, Any]:
     return figure, axes[0]
 
 
-def path(shown: Shown, name: str) -> tuple[Array, Array, Array]:
-    """Time and eccentricity of the journal (m): the rows, and the steps in touch between them."""
-    run, channels = shown.run, [f"{name}.eccentricity_x", f"{name}.eccentricity_y"]
+def path(
+    shown: Shown, name: str, x: str = "eccentricity_x", y: str = "eccentricity_y", most: int = MOST
+) -> tuple[Array, Array, Array]:
+    """Time and two numbers of a journal, SI: the rows, and the steps in touch between them."""
+    run, channels = shown.run, [f"{name}.{x}", f"{name}.{y}"]
     rows = [run.time, *map(run.channel, channels)] if shown.has(*channels) else []
     steps = run.steps(name)
-    inner = [steps["time"], steps["eccentricity_x"], steps["eccentricity_y"]]
+    inner = [steps["time"], steps[x], steps[y]]
     merged = [np.concatenate(pair) for pair in zip(rows, inner, strict=True)] if rows else inner
     order = np.argsort(merged[0], kind="stable")
-    order = order[:: max(1, -(-len(order) // MOST))]
-    time, x, y = (column[order] for column in merged)
-    return time, x, y
+    order = order[:: max(1, -(-len(order) // most))]
+    return merged[0][order], merged[1][order], merged[2][order]
 
 
 def coloured(axes: Any, time: Array, x: Array, y: Array) -> Any:
@@ -180,4 +179,4 @@ def bearing(shown: Shown, definition: Any) -> str:
 
 
 def words(channel: str, shown: Shown, unit: str) -> str:
-    return f"{channel.replace('.', ', ').replace('_', ' ')} ({shown.display(unit)[1]})"
+    return f"{spaced(channel)} ({shown.display(unit)[1]})"

@@ -1,14 +1,14 @@
 """Work against precision as a figure and a table: error to the right, CPU time upwards."""
 
-import csv
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trsim.report.asked import table
 from trsim.scenario.methods import METHODS
-from trsim.store.target import FIGURE, check_writable, file_errors, fresh, headed, replaceable
+from trsim.store.target import FIGURE, check_writable, headed, replaceable
 
 if TYPE_CHECKING:
     from trsim.analyse.precision import Point, Study
@@ -24,11 +24,11 @@ TABLE = headed(*TITLES)
 
 def draw(study: "Study", folder: Path) -> list[Path]:
     """work_precision.png and work_precision.csv; raises FileError."""
-    from trsim.report.style import look, save
+    from trsim.report import style
 
-    with look():
-        picture = save(figure(study), folder / f"{NAME}.png")
-    return [picture, write(study, folder / f"{NAME}.csv")]
+    picture = style.draw(folder / f"{NAME}.png", figure, study)
+    rows = [(*p.setting, *(getattr(p, name) for name in FIELDS)) for p in study.points]
+    return [picture, table(folder / f"{NAME}.csv", TITLES, rows, TABLE)]
 
 
 def check_room(folder: Path) -> None:
@@ -36,21 +36,6 @@ def check_room(folder: Path) -> None:
     check_writable(folder)
     replaceable(folder / f"{NAME}.png", FIGURE)
     replaceable(folder / f"{NAME}.csv", TABLE)
-
-
-def write(study: "Study", path: Path) -> Path:
-    """The table as CSV, SI units, numbers in full."""
-    with (
-        file_errors(path),
-        fresh(path, TABLE) as unfinished,
-        unfinished.open("w", newline="", encoding="utf-8") as file,
-    ):
-        table = csv.writer(file)
-        table.writerow(TITLES)
-        for p in study.points:
-            values = [*p.setting, *(getattr(p, name) for name in FIELDS)]
-            table.writerow([repr(v) if isinstance(v, float) else v for v in values])
-    return path
 
 
 def figure(study: "Study") -> Any:
@@ -67,8 +52,7 @@ def figure(study: "Study") -> Any:
     if peaks:
         curves(axes[0, 1], study, "peak_error", "peak_unresolved", to.peak_uncertainty)
         axes[0, 1].set_xlabel("relative error of peak contact forces (-)")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    made.legend(handles, labels, loc="outside lower center", ncols=2)
+    made.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     head = textwrap.fill("Work against precision" + (study.title and f": {study.title}"), 74)
     told = f"reference {to.setting.method}, tolerance {to.setting.tolerance:.0e}"
     made.suptitle(f"{head}\n{told}", fontsize=10)

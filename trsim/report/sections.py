@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from trsim.analyse.section import Interpolated, asked, section
+from trsim.report import style
 from trsim.report.display import Shown, short
 from trsim.report.orbits import scattered
-from trsim.report.style import look, save
 from trsim.store.points import surface
 from trsim.store.read import Points
 from trsim.store.target import fresh, headed
@@ -24,8 +24,7 @@ def draw(runs: list[Shown], wanted: tuple[str, ...], folder: Path) -> list[Path]
         found = [(shown, section(shown.run, **what)) for shown in runs]
         stem = "_".join(["section", what["when"], what["crosses"], what["x"], what["y"]])
         written.append(table(found, folder / f"{stem}.csv"))
-        with look():
-            written.append(save(figure(runs, found), folder / f"{stem}.png"))
+        written.append(style.draw(folder / f"{stem}.png", figure, runs, found))
     return written
 
 

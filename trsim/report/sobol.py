@@ -11,7 +11,7 @@ from trsim.errors import Problems, TrsimError, UsageError
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown, short
 from trsim.report.keys import in_words, readable
-from trsim.report.style import COLOURS, colour, look, panels, save
+from trsim.report.style import COLOURS, colour, draw, panels
 
 
 def sobol(study: Any, one: Shown, of: Numbers, folder: Path) -> Found:
@@ -39,8 +39,7 @@ def sobol(study: Any, one: Shown, of: Numbers, folder: Path) -> Found:
 def written(of: Indices, name: str, one: Shown, folder: Path) -> Found:
     """The figure, the table and the lines of the indices of one named case."""
     found, file = nothing(), file_name("sobol", f"{of.word} {name}")
-    with look():
-        found.files.append(save(indexed(of, name, one), folder / f"{file}.png"))
+    found.files.append(draw(folder / f"{file}.png", indexed, of, name, one))
     titles = ("key", "first", "first low", "first high", "total", "total low", "total high")
     found.files.append(table(folder / f"{file}.csv", titles, [tuple(i[:7]) for i in of.indices]))
     for each in of.indices:

@@ -7,10 +7,11 @@ import numpy as np
 
 from trsim.analyse.spectrum import Spectrum, of_channel
 from trsim.analyse.window import parted, window
+from trsim.report import style
 from trsim.report.asked import Found, Value, file_name, nothing, table
 from trsim.report.display import Shown, short
 from trsim.report.marks import spaced
-from trsim.report.style import colour, legend, look, panels, save, titled
+from trsim.report.style import colour, legend, panels, titled
 
 NAMED = 3  # peaks written into the figure of one run
 DECADES = 7  # below the largest value that are shown
@@ -21,8 +22,7 @@ def draw(runs: list[Shown], word: str, folder: Path) -> Found:
     channel, text = parted(word)
     spectra = [of_channel(s.run, channel, window(s.run, text)) for s in runs]
     name, found = file_name("spectrum", word), nothing()
-    with look():
-        found.files.append(save(figure(runs, spectra, channel), folder / f"{name}.png"))
+    found.files.append(style.draw(folder / f"{name}.png", figure, runs, spectra, channel))
     rows = [
         (label(s), f, d)
         for s, one in zip(runs, spectra, strict=True)

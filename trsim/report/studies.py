@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.analyse.bifurcation import diagram
+from trsim.analyse.bifurcation import check_swept, diagram
 from trsim.analyse.cases import (
     Numbers,
     no_result,
@@ -18,14 +18,15 @@ from trsim.analyse.cases import (
     without,
 )
 from trsim.analyse.fluctuation import shows
-from trsim.errors import FileError, UsageError, known
-from trsim.report import maps
+from trsim.errors import FileError, UsageError
+from trsim.report import maps, style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.diagrams import bifurcation
 from trsim.report.display import Shown, compared
 from trsim.report.keys import Units, axis, in_words, named_value
 from trsim.report.sobol import sobol
-from trsim.report.style import NO_NUMBER, colour, look, missed, panels, save
+from trsim.report.style import NO_NUMBER, colour, missed, panels
+from trsim.scenario.vary import SAMPLED
 from trsim.statuses import WELL
 
 SERIES = 8  # curves of a family that have a line in the legend
@@ -102,25 +103,19 @@ def outputs(study: Any, one: Shown, of: list[Numbers], over: str | None, folder:
     found.files.append(table(folder / "sweep.csv", titles, rows))
     for each in of:
         found.lines.extend(reasons(each.why))
-        with look():
-            y = np.array([each.values[name] for name in names])
-            drawn = figure(study, one, each.word, each.unit, y, over)
-            found.files.append(save(drawn, folder / f"{file_name('sweep', each.word)}.png"))
+        y = np.array([each.values[name] for name in names])
+        path = folder / f"{file_name('sweep', each.word)}.png"
+        found.files.append(style.draw(path, figure, study, one, each.word, each.unit, y, over))
     for key in keys:
         found.lines.extend(without(study, key))
     return found
 
 
-def sampled(study: Any) -> bool:
-    return study.method in ("latin_hypercube", "monte_carlo", "sobol")
-
-
 def drawn_over(study: Any, over: str | None) -> list[str]:
     """The keys that figures are over: of samples each, else the first unless one is named."""
     keys = [key for key in study.keys if key != "case"] or list(study.keys)
-    if over is not None and over not in study.keys:
-        raise UsageError(f"the study does not sweep '{over}'", known(over, study.keys))
-    return [over] if over else keys if sampled(study) else keys[:1]
+    check_swept(study, over)
+    return [over] if over else keys if study.method in SAMPLED else keys[:1]
 
 
 def figure(study: Any, one: Shown, word: str, unit: str, y: Any, over: str | None) -> Any:
@@ -131,7 +126,7 @@ def figure(study: Any, one: Shown, word: str, unit: str, y: Any, over: str | Non
                         sharey=True)  # fmt: skip
     factor, text = one.display(unit)
     for a, key in zip(axes.flat, drawn, strict=False):
-        lines(a, study, one, key, y * factor, joined=not sampled(study))
+        lines(a, study, one, key, y * factor, joined=study.method not in SAMPLED)
         a.set_xlabel(axis(one, units(study), key))
     for a in axes.flat[len(drawn) :]:
         a.axis("off")

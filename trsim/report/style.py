@@ -1,6 +1,7 @@
 """The look of all figures: sizes for print, light grid, colours that survive a photocopier."""
 
 import textwrap
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,12 @@ def save(figure: Figure, path: Path) -> Path:
     return path
 
 
+def draw(path: Path, make: Callable[..., Figure], *given: Any, **options: Any) -> Path:
+    """Make a figure and write it."""
+    with look():
+        return save(make(*given, **options), path)
+
+
 def titled(figure: Figure, runs: list[Shown], text: str) -> None:
     """What is shown, and of which run; a run that did not end well says so."""
     run = runs[0].run
@@ -86,6 +93,14 @@ def legend(figure: Figure, axes: Any, runs: list[Shown]) -> None:
             return
         figure.legend(once.values(), once.keys(), loc="outside lower center",
                       ncols=1 if max(map(len, once)) > 34 else min(3, len(once)))  # fmt: skip
+
+
+def finished(figure: Figure, axes: Any, runs: list[Shown], text: str) -> Figure:
+    """The figure with its title, and with its legend where it shows several runs."""
+    figure.align_ylabels()
+    titled(figure, runs, text)
+    legend(figure, axes, runs)
+    return figure
 
 
 def thinned(x: Array, y: Array) -> tuple[Array, Array]:

@@ -1,6 +1,5 @@
 """Tables: the peak load of every pin, drive and stop, with time and stroke."""
 
-import csv
 import textwrap
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -8,9 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trsim import elements
+from trsim.report import style
+from trsim.report.asked import table
 from trsim.report.display import Shown, short
-from trsim.report.style import WIDTH, look, panels, save, titled
-from trsim.store.target import file_errors, fresh, headed
+from trsim.report.style import WIDTH, panels, titled
+from trsim.store.target import headed
 
 NOISE = 1e-9  # of the largest load of the same unit: rounding
 EVENTS = ("run", "event", "did", "time", "work")  # columns
@@ -36,9 +37,8 @@ def draw(runs: list[Shown], folder: Path) -> list[Path]:
     happened = user_events(runs, folder / "events.csv")
     if not loads:
         return happened
-    table = write(loads, folder / "peaks.csv")
-    with look():
-        return [table, save(picture(runs, loads), folder / "peaks.png"), *happened]
+    written = table(folder / "peaks.csv", Load._fields, loads, headed(*Load._fields))
+    return [written, style.draw(folder / "peaks.png", picture, runs, loads), *happened]
 
 
 def user_events(runs: list[Shown], path: Path) -> list[Path]:
@@ -55,13 +55,7 @@ def user_events(runs: list[Shown], path: Path) -> list[Path]:
         ]
     if not lines:
         return []
-    with (
-        file_errors(path),
-        fresh(path, headed(*EVENTS)) as unfinished,
-        unfinished.open("w", newline="", encoding="utf-8") as file,
-    ):
-        csv.writer(file).writerows([EVENTS, *lines])
-    return [path]
+    return [table(path, EVENTS, lines, headed(*EVENTS))]
 
 
 def peak_loads(shown: Shown) -> list[Load]:
@@ -110,20 +104,6 @@ def stroke_unit(shown: Shown) -> tuple[float, str]:
     return shown.display(shown.run.unit("stroke"))
 
 
-def write(loads: list[Load], path: Path) -> Path:
-    """The table as CSV, numbers in full."""
-    with (
-        file_errors(path),
-        fresh(path, headed(*Load._fields)) as unfinished,
-        unfinished.open("w", newline="", encoding="utf-8") as file,
-    ):
-        table = csv.writer(file)
-        table.writerow(Load._fields)
-        for load in loads:
-            table.writerow([repr(v) if isinstance(v, float) else v for v in load])
-    return path
-
-
 def picture(runs: list[Shown], loads: list[Load]) -> Any:
     """The table as a figure; of several runs, one column each."""
     second = runs[0].display("s")
@@ -134,12 +114,12 @@ def picture(runs: list[Shown], loads: list[Load]) -> Any:
     a.axis("off")
     a.set_title("of the motion, between steps and rows too", fontsize=8)
     widths = [max(longest(row[k]) for row in [head, *cells]) + 3 for k in range(len(head))]
-    table = a.table(cells, colLabels=head, loc="center", cellLoc="left", edges="horizontal",
+    drawn = a.table(cells, colLabels=head, loc="center", cellLoc="left", edges="horizontal",
                     colWidths=[w / sum(widths) for w in widths])  # fmt: skip
-    table.auto_set_font_size(False)
-    table.set_fontsize(8)
+    drawn.auto_set_font_size(False)
+    drawn.set_fontsize(8)
     high = 1 + max(name.count("\n") for name in head)
-    for (row, _), cell in table.get_celld().items():
+    for (row, _), cell in drawn.get_celld().items():
         cell.set_linewidth(0.9 if row == 0 else 0.3)
         cell.set_height((high if row == 0 else 1.0) / (len(cells) + high))
         if row == 0:
@@ -151,15 +131,12 @@ def picture(runs: list[Shown], loads: list[Load]) -> Any:
 def lines(loads: list[Load], second: tuple[float, str]) -> tuple[list[str], list[list[str]]]:
     """Head and cells of one run."""
     stroke = next((load.stroke_unit for load in loads if np.isfinite(load.stroke)), "")
-    head = ["pin", "load", "peak", f"time ({second[1]})"] + (
-        [f"stroke ({stroke})"] if stroke else []
-    )
-    cells = [
-        [load.element, load.load, number(load), f"{load.time * second[0]:.4f}"]
-        + ([short(load.stroke)] if stroke else [])
-        for load in loads
-    ]
-    return head, cells
+    head, cells = ["pin", "load", "peak", f"time ({second[1]})"], []
+    for load in loads:
+        cells.append([load.element, load.load, number(load), f"{load.time * second[0]:.4f}"])
+        if stroke:
+            cells[-1].append(short(load.stroke))
+    return head + ([f"stroke ({stroke})"] if stroke else []), cells
 
 
 def columns(

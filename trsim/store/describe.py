@@ -19,6 +19,7 @@ from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION
 from trsim.version import __version__
 
+PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic")  # have a part in results
 CPU = "integration_cpu"  # differs from run to run: kept apart from the statistics
 GROUPS = ("steps", "events", "peaks", "summary", "solver", "scenario", "mechanism", "provenance")
 TEXT = h5py.string_dtype()
@@ -211,8 +212,7 @@ def versions() -> dict[str, str]:
     """The versions of the packages that have a part in results, as they were installed."""
     from importlib.metadata import version
 
-    used = "numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic"
-    return {package: version(package) for package in used}
+    return {package: version(package) for package in PACKAGES}
 
 
 def stamp(date: float) -> str:

@@ -157,22 +157,18 @@ def write_index(folder: Path, told: Mapping[str, Any], entries: Mapping[str, Ent
     table.writerow(["name", "status", "reason", *titles, *columns, *LAST])
     for case in cases:
         entry = entries.get(case["name"])
-        values = [_cell(case["values"].get(key)) for key in keys]
+        values = [case["values"].get(key) for key in keys]
         if entry is None or entry.digest != case["digest"]:
             table.writerow([case["name"], "missing", "", *values])
             continue
-        numbers = [_cell(entry.summary.get(column)) for column in columns]
-        last = [entry.attempts, _cell(round(entry.wall, 3)), entry.content]
+        numbers = [entry.summary.get(column) for column in columns]
+        last = [entry.attempts, round(entry.wall, 3), entry.content]
         reason = in_a_line(entry.reason)
         table.writerow([case["name"], entry.status, reason, *values, *numbers, *last])
     path = folder / "index.csv"
     with fresh(path, INDEX) as unfinished:
         unfinished.write_bytes(out.getvalue().encode())
     return path
-
-
-def _cell(value: Any) -> Any:
-    return "" if value is None else repr(value) if isinstance(value, float) else value
 
 
 def strays(folder: Path, names: set[str]) -> list[str]:

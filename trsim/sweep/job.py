@@ -24,9 +24,8 @@ STATISTICS = (
 
 def prepare() -> None:
     """Load what every case needs."""
-    import_module("trsim.assemble.assemble")
-    import_module("trsim.solve.simulate")
-    import_module("trsim.store.hdf5")
+    for name in ("assemble.assemble", "solve.simulate", "store.hdf5"):
+        import_module(f"trsim.{name}")
     import_module("llvmlite.binding")
 
 
@@ -45,13 +44,12 @@ def run(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
         return {"status": "failed", "reason": error.show()}
     except TrsimError as error:
         return {"status": REFUSED, "reason": error.show()}
-    kept = brief(summary)
     return {
         "status": summary["status"],
         "reason": summary["reason"],
         "content": summary["content_sha256"],
         "wall": time.perf_counter() - clock,
-        "summary": kept,
+        "summary": brief(summary),
     }
 
 

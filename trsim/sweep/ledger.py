@@ -7,6 +7,7 @@ is left out; the result file it was about is found by what the file says of itse
 
 import json
 import os
+from collections import Counter
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
@@ -130,7 +131,4 @@ def in_a_line(reason: str) -> str:
 
 def counts(statuses: Iterable[str]) -> dict[str, int]:
     """How many cases there are of each status."""
-    found: dict[str, int] = {}
-    for status in statuses:
-        found[status] = found.get(status, 0) + 1
-    return dict(sorted(found.items(), key=lambda item: -item[1]))
+    return dict(Counter(statuses).most_common())

@@ -64,26 +64,15 @@ def adopted(name: str, digest: str, file: Path, engine: str) -> Entry | None:
             provenance = inner["provenance"].attrs
             if provenance.get(DIGEST) != digest or "content_sha256" not in inner.attrs:
                 return None
-            told = {name: inner.attrs[name] for name in ("status", "reason", "content_sha256")}
+            told = [str(inner.attrs[name]) for name in ("status", "reason", "content_sha256")]
             summary = _summary(inner)
             wall = float(provenance.get("wall_time", 0.0))
     except DAMAGED:
         return None
     size, changed = stamp(file)
-    return Entry(
-        name,
-        digest,
-        engine,
-        status=str(told["status"]),
-        reason=str(told["reason"]),
-        attempts=1,
-        content=str(told["content_sha256"]),
-        size=size,
-        changed=changed,
-        at=changed * 1e-9,
-        wall=wall,
-        summary=summary,
-    )
+    status, reason, content = told
+    return Entry(name, digest, engine, status, reason, 1, content, size, changed,
+                 at=changed * 1e-9, wall=wall, summary=summary)  # fmt: skip
 
 
 def _summary(file: Any) -> dict[str, Any]:

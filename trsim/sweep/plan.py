@@ -168,20 +168,16 @@ def _with_axes(
                                 tuple(key.split(".")), at)  # fmt: skip
     if not set(block) - set(vary.SETTINGS) and not axes and isinstance(given, dict) and fixed:
         return _Named(tree, text, vary.Sweep(), {})
-    places = {key: value for key, value, *_ in axes}
-    where: dict[str, tuple[Place, Place]] = {key: rest for key, _, *rest in axes}  # type: ignore[misc]
-    block.update(places)
+    where = {key: (at, key_place) for key, _, at, key_place in axes}
+    block |= {key: value for key, value, *_ in axes}
     try:
         sweep = vary.sweep(block if given is None or isinstance(given, dict) else given)
         settings = {}
         for axis in sweep.axes:
             path = ("sweep", axis.key)
             unknown = Place("--set", 0, 1, "")
-            mine = where.get(axis.key) or (
-                tree.place(path) or unknown,
-                tree.key_place(path) or unknown,
-            )
-            settings[axis.key] = _Setting(axis, *mine)
+            in_file = tree.place(path) or unknown, tree.key_place(path) or unknown
+            settings[axis.key] = _Setting(axis, *where.get(axis.key, in_file))
     except ScenarioError as error:
         key = error.path[0] if error.path else ""
         path = ("sweep", *error.path)

@@ -5,6 +5,7 @@ named case: Latin hypercube [McKay1979], independent draws, or Saltelli's blocks
 [Saltelli2010] on a scrambled Sobol sequence.
 """
 
+from functools import partial
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -32,7 +33,7 @@ def points(sweep: Sweep) -> list[Point]:
         count = np.prod([float(len(axis.values)) for axis in own])
         if sweep.method == "grid" and count > MOST:
             raise ScenarioError(f"a grid of {count:.3g} cases", f"At most {MOST}; draw samples.")
-        joined = product if sweep.method == "grid" else _side_by_side
+        joined = product if sweep.method == "grid" else partial(zip, strict=True)
         keys = [axis.key for axis in own]
         rows = joined(*(axis.values for axis in own))
         found = [Point("", dict(zip(keys, row, strict=True))) for row in rows]
@@ -40,10 +41,6 @@ def points(sweep: Sweep) -> list[Point]:
         for point in found if axis.same_as else ():
             point.values[axis.key] = point.values[axis.same_as]
     return found
-
-
-def _side_by_side(*values: Any) -> Any:
-    return zip(*values, strict=True)
 
 
 def _samples(sweep: Sweep, own: list[Axis]) -> list[Point]:
@@ -74,11 +71,10 @@ def _samples(sweep: Sweep, own: list[Axis]) -> list[Point]:
 
 def _shares(sweep: Sweep, d: int, n: int) -> Any:
     """Points (n, d) of the unit cube."""
+    generator = np.random.default_rng(sweep.seed)
     if sweep.method == "monte_carlo":
-        return np.random.default_rng(sweep.seed).random((n, d))
+        return generator.random((n, d))
     from scipy.stats import qmc
 
-    generator = np.random.default_rng(sweep.seed)
-    if sweep.method == "latin_hypercube":
-        return qmc.LatinHypercube(d, seed=generator).random(n)
-    return qmc.Sobol(d, seed=generator).random(n)
+    kind = qmc.LatinHypercube if sweep.method == "latin_hypercube" else qmc.Sobol
+    return kind(d, seed=generator).random(n)

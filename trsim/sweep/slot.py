@@ -78,8 +78,7 @@ class Slot:
         code = process.wait()
         self.process = None
         if late:
-            reason = f"not done after {self.limits.time:g} s"
-            return {"status": "over time", "reason": reason}
+            return {"status": "over time", "reason": f"not done after {self.limits.time:g} s"}
         self.said.seek(0)
         words = self.said.read().decode(errors="replace").strip()[-TAIL:].splitlines()
         how = f"by {signal.Signals(-code).name}" if code < 0 else f"with code {code}"

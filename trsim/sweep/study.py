@@ -83,16 +83,6 @@ def study(folder: str | Path) -> Study:
         if entry and entry.content and not stands(entry, file, told["engine"]):
             status, reason = MISSING, CHANGED if stamp(file)[0] else ""
         cases.append(Case(one["name"], file, status, reason, one["values"], entry))
-    keys, method = tuple(told["keys"]), told["method"]
-    samples, seed = told["samples"], told["seed"]
-    return Study(
-        folder,
-        told["source"],
-        keys,
-        told["units"],
-        told.get("written", {}),
-        method,
-        samples,
-        seed,
-        tuple(cases),
-    )
+    same = {name: told[name] for name in ("source", "units", "method", "samples", "seed")}
+    keys, written = tuple(told["keys"]), told.get("written", {})
+    return Study(folder=folder, keys=keys, written=written, cases=tuple(cases), **same)

@@ -11,17 +11,15 @@ from trsim.units import quantity, si
 
 def value(written: Any) -> float | str:
     """A value as a number in SI, where it is one."""
-    if isinstance(written, bool) or written is None:
-        return json.dumps(written)
-    if isinstance(written, int | float):
+    if isinstance(written, int | float) and not isinstance(written, bool):
         return float(written)
+    if not isinstance(written, str):
+        return json.dumps(written)
     try:
-        found = quantity(written) if isinstance(written, str) else None
+        found = quantity(written)
     except TrsimError:
-        found = None
-    if found:
-        return found[0]
-    return written if isinstance(written, str) else json.dumps(written)
+        return written
+    return found[0] if found else written
 
 
 def written(found: Sequence[Any], keys: tuple[str, ...]) -> dict[str, str]:

@@ -1,40 +1,23 @@
 """The document of measurements of work against precision."""
 
-from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
-
-from trsim.analyse.precision import Point
+from trsim.analyse import precision
 from trsim.analyse.trajectory import Setting
 from trsim.cli.documents.common import Document, Number, of
 from trsim.statuses import Ended
 
 
-class Reference(TypedDict):
+class Reference(of(precision.Reference, "setting", "run", "rows")):
     """What errors are taken against.
 
-    method            of the run
-    tolerance         of that run
-    second_method     of another run, at the same tolerance
-    second_failed     why that one did not reach its end, or ""
-    uncertainty       error of the second run
-    peak_uncertainty  peak error of the second run; null without contacts
-    apart             s; from here on the two differ by more than 1 % of a range, and errors are
-                      taken over the rows before; null where they never do
-    ranges            quantity -> its largest less its smallest value, SI
-    still             quantities that do not move, and are left out
+    method     of the run
+    tolerance  of that run
     """
 
     method: str
     tolerance: float
-    second_method: str
-    second_failed: str
-    uncertainty: Number
-    peak_uncertainty: Number
-    apart: Number
-    ranges: dict[str, Number]
-    still: list[str]
 
 
-class Measured(of(Setting), of(Point, "setting")):
+class Measured(of(Setting), of(precision.Point, "setting")):
     """One method at one setting.
 
     status  how the runs ended; nothing is measured of one that failed

@@ -4,7 +4,8 @@ from typing import NotRequired
 
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
-from trsim.cli.documents.common import Document, Number, of
+from trsim.assemble import release
+from trsim.cli.documents.common import Document, Number, Subject, of
 from trsim.solve.diagnose.bar_scales import BarScale
 from trsim.solve.diagnose.mesh_error import MeshError
 from trsim.solve.diagnose.modes import Mode
@@ -12,21 +13,15 @@ from trsim.solve.diagnose.scales import Scales
 from trsim.solve.start.projected import Projected
 
 
-class Release(TypedDict):
+class Release(of(release.Release, "changes")):
     """What to let go: no row is redundant then, all reactions are unique, no freedom is gained.
 
-    rows          "joint.axis", as many as are redundant
-    joints        joint -> what it is without its rows, in words; "" where it has no name
-    types         joint -> its type in a scenario, where there is one
-    alternatives  other choices that are as good; the first in the file is given
-    proven        whether nothing depends on anything without these rows, as drawn and nearby
+    joints  joint -> what it is without its rows, in words; "" where it has no name
+    types   joint -> its type in a scenario, where there is one
     """
 
-    rows: list[str]
     joints: dict[str, str]
     types: dict[str, str]
-    alternatives: int
-    proven: bool
 
 
 class Start(TypedDict):
@@ -66,11 +61,10 @@ class Bar(of(BarScale)):
     mesh: of(MeshError) | None
 
 
-class Checked(TypedDict):
+class Checked(Subject):
     """What a scenario is once assembled, and what a run of it will meet.
 
     file               as given
-    title              of the scenario
     bodies             names
     joints             name -> type
     drives             names
@@ -82,7 +76,6 @@ class Checked(TypedDict):
     spatial_because    what reaches out of the x-y plane; none where `planar: false` is given
     unknowns           velocities
     constraints        rows kept, drives included
-    mobility           degrees of freedom by rank, drives counted as constraints
     mobility_by_count  unknowns less all rows
     redundant          rows dropped
     singular           rows that depend on others only as drawn
@@ -98,8 +91,6 @@ class Checked(TypedDict):
     skipped            what a run leaves out, and why
     """
 
-    file: str
-    title: str
     bodies: list[str]
     joints: dict[str, str]
     drives: list[str]
@@ -111,12 +102,9 @@ class Checked(TypedDict):
     spatial_because: list[str]
     unknowns: int
     constraints: int
-    mobility: int
     mobility_by_count: int
-    redundant: list[str]
     singular: list[str]
     unique: list[str]
-    not_unique: list[str]
     release: Release | None
     notes: list[str]
     start: Start

@@ -32,6 +32,33 @@ def _json(kind: Any) -> Any:
     return kind
 
 
+class Subject(TypedDict):
+    """A mechanism, and what the assembly found out.
+
+    title       of the scenario
+    mobility    degrees of freedom by rank, drives counted as constraints
+    not_unique  reactions that the motion does not determine
+    """
+
+    file: str
+    title: str
+    mobility: int
+    redundant: list[str]
+    not_unique: list[str]
+
+
+class Result(Subject):
+    """A run of it.
+
+    warnings  what looks wrong: in the scenario, at the start, in the results
+    fired     user event -> how often it happened
+    """
+
+    reason: str
+    warnings: list[str]
+    fired: dict[str, int]
+
+
 class Error(TypedDict):
     """What is wrong.
 

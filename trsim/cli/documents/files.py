@@ -5,10 +5,11 @@ from typing import Literal, NotRequired, Required
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
 from trsim.cli.documents.certificate import Certificate
-from trsim.cli.documents.common import Document, Number, of
+from trsim.cli.documents.common import Document, Number, Result, of
 from trsim.cli.documents.runs import Contact, Results, Statistics
 from trsim.report.asked import Value
 from trsim.statuses import Status
+from trsim.store.describe import PACKAGES
 from trsim.store.points import Dispersion
 
 
@@ -52,7 +53,10 @@ class Summary(TypedDict, total=False):
     contacts: Required[dict[str, Contact]]
 
 
-class Provenance(TypedDict, total=False):
+Versions = TypedDict("Versions", dict.fromkeys(PACKAGES, str), total=False)  # type: ignore[misc]
+
+
+class Provenance(Versions, total=False):
     """Where the file comes from: command, machine, versions; times in s.
 
     twin_integration_cpu  of the twin of a certified run, s
@@ -72,25 +76,18 @@ class Provenance(TypedDict, total=False):
     trsim: str
     python: str
     hdf5: str
-    numpy: str
-    numba: str
-    llvmlite: str
-    scipy: str
-    h5py: str
-    pydantic: str
     twin_integration_cpu: Number
     keys: str
     recovered_from: str
     recovered_by: str
 
 
-class Show(Document):
+class Show(Document, Result):
     """trsim show.
 
     file            as given
     format          of all result files
     format_version  of this one
-    title           of the scenario
     status          how the run stands or ended
     reason          why
     content_sha256  of all results; only in a complete file
@@ -100,38 +97,27 @@ class Show(Document):
     summary         the run in a few numbers
     solver          its settings, and what it did
     warnings        what looked wrong: in the scenario, at the start, in the results
-    mobility        degrees of freedom by rank, drives counted as constraints
     redundant       constraint rows dropped, "joint.axis"; their reactions are zero
-    not_unique      reactions that the motion does not determine
     provenance      where the file comes from
     phase           names of phase portraits
     poincare        section -> number of points
     dispersion      section -> how far its points lie apart
-    fired           user event -> how often it happened
     certificate     what a twin says of the run, where it had one
     """
 
-    file: str
     format: str
     format_version: int
-    title: str
     status: Status
-    reason: str
     content_sha256: NotRequired[str]
     verified: Literal[True] | None
     rows: int
     channels: dict[str, str]
     summary: Summary
     solver: Solver
-    warnings: list[str]
-    mobility: int
-    redundant: list[str]
-    not_unique: list[str]
     provenance: Provenance
     phase: list[str]
     poincare: dict[str, int]
     dispersion: dict[str, of(Dispersion)]
-    fired: dict[str, int]
     certificate: NotRequired[Certificate]
 
 

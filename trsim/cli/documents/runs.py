@@ -5,7 +5,7 @@ from typing import NotRequired
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
 from trsim.cli.documents.certificate import Certified
-from trsim.cli.documents.common import Document, Number
+from trsim.cli.documents.common import Document, Number, Result
 from trsim.statuses import Ended
 
 
@@ -109,36 +109,23 @@ class Results(TypedDict):
     contacts: dict[str, Contact]
 
 
-class Ran(Results):
+class Ran(Results, Result):
     """A run that ended.
 
     file            its result file
-    title           of the scenario
     status          how it ended; after `failed` the exit code is 5
     reason          why it failed, or which user event ended it
     statistics      what the solver did
-    warnings        what looks wrong: in the scenario, at the start, in the results
-    mobility        degrees of freedom by rank, drives counted as constraints
     redundant       constraint rows dropped, "joint.axis"; their reactions are stored as zero
-    not_unique      reactions that the motion does not determine
     content_sha256  of all results; the same for the same results
-    fired           user event -> how often it happened
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again
     certificate     what a twin says of it, with --certify
     """
 
-    file: str
-    title: str
     status: Ended
-    reason: str
     statistics: RunStatistics
-    warnings: list[str]
-    mobility: int
-    redundant: list[str]
-    not_unique: list[str]
     content_sha256: str
-    fired: dict[str, int]
     resumed_from: Number
     identical: NotRequired[bool]
     certificate: NotRequired[Certified]

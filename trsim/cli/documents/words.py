@@ -41,34 +41,40 @@ class Channel(TypedDict):
     meaning: str
 
 
-class ElementPage(TypedDict):
+class Page(TypedDict):
+    """What there is to say of a word.
+
+    law      equations and conventions
+    about    what it is
+    keys     what one writes
+    example  a scenario that runs
+    """
+
+    word: str
+    law: str
+    about: str
+    keys: list[Key]
+    example: str
+
+
+class ElementPage(Page):
     """An element.
 
     word         after `type:`
     section      where it stands
-    law          equations and conventions
-    about        what it is
-    keys         what one writes
     coordinates  of a joint, or of a sensor
     channels     what is recorded
-    example      a scenario that runs
     """
 
-    word: str
     section: str
-    law: str
-    about: str
-    keys: list[Key]
     coordinates: list[str]
     channels: list[Channel]
-    example: str
 
 
-class SectionPage(TypedDict):
+class SectionPage(Page):
     """A section of a scenario file.
 
     word      its name
-    about     what it is
     law       equations and conventions, or ""
     type      what it may be, in words
     unit      SI, or null
@@ -77,14 +83,9 @@ class SectionPage(TypedDict):
     example   a scenario that runs, or ""
     """
 
-    word: str
-    about: str
-    law: str
     type: str
     unit: str | None
     elements: list[str]
-    keys: list[Key]
-    example: str
 
 
 class Explain(Document):

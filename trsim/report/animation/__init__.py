@@ -34,15 +34,12 @@ def write(
     from trsim.store.target import Kind, file_errors, fresh
 
     made = film(read(path), magnified)
-    contents = {"animation.glb": made.glb, "animation.html": whole(made).encode()}
-    kinds = {
-        "animation.glb": Kind("animation of trsim", lambda start: b'"generator":"trsim"' in start),
-        "animation.html": Kind("page of trsim", lambda start: b'content="trsim"' in start),
-    }
+    glb = Kind("animation of trsim", lambda start: b'"generator":"trsim"' in start)
+    page = Kind("page of trsim", lambda start: b'content="trsim"' in start)
     written = []
-    for name, data in contents.items():
-        target = Path(folder) / name
-        with file_errors(target), fresh(target, kinds[name], [path]) as unfinished:
+    for ending, kind, data in (("glb", glb, made.glb), ("html", page, whole(made).encode())):
+        target = Path(folder) / f"animation.{ending}"
+        with file_errors(target), fresh(target, kind, [path]) as unfinished:
             unfinished.write_bytes(data)
         written.append(target)
     return written, made.warnings

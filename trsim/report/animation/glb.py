@@ -17,12 +17,14 @@ METALLIC, ROUGH = 0.1, 0.6
 
 
 class Store:
-    """The binary part: arrays one after the other; the same array is stored once."""
+    """Arrays one after the other, the binary part, and meshes; what is the same is stored once."""
 
     def __init__(self, gltf: Any) -> None:
         self.gltf, self.size = gltf, 0
         self.chunks: list[bytes] = []
         self.known: dict[tuple[bytes, tuple[int, ...]], int] = {}
+        self.meshes: dict[tuple[tuple[int, str], ...], int] = {}
+        self.materials: dict[str, int] = {}
 
     def add(self, values: NDArray[Any], target: int | None = None, bounds: bool = False) -> int:
         """The number of the accessor of an array (n) or (n, m)."""
@@ -52,6 +54,33 @@ class Store:
         self.known[key] = len(self.gltf.accessors) - 1
         return self.known[key]
 
+    def mesh(self, thing: Thing) -> int:
+        """The number of the meshes of a thing, as one."""
+        from pygltflib import Mesh as Shape
+
+        key = tuple((id(mesh), colour) for mesh, colour in thing.pieces)
+        if key not in self.meshes:
+            parts = [self.primitive(mesh, colour) for mesh, colour in thing.pieces]
+            self.gltf.meshes.append(Shape(primitives=parts, name=thing.name))
+            self.meshes[key] = len(self.gltf.meshes) - 1
+        return self.meshes[key]
+
+    def primitive(self, mesh: Mesh, colour: str) -> Any:
+        from pygltflib import Attributes, Primitive
+
+        small = len(mesh.points) <= 1 << 16
+        corners = mesh.triangles.reshape(-1).astype(np.uint16 if small else np.uint32)
+        places = self.add(mesh.points.astype(np.float32), VERTICES, bounds=True)
+        normals = self.add(mesh.normals.astype(np.float32), VERTICES)
+        if colour not in self.materials:
+            self.gltf.materials.append(material(colour))
+            self.materials[colour] = len(self.gltf.materials) - 1
+        return Primitive(
+            attributes=Attributes(POSITION=places, NORMAL=normals),
+            indices=self.add(corners, INDICES),
+            material=self.materials[colour],
+        )
+
 
 def glb(things: Sequence[Thing], time: Array, extras: dict[str, Any]) -> bytes:
     """The file: y up, metres, seconds from the first frame."""
@@ -59,11 +88,11 @@ def glb(things: Sequence[Thing], time: Array, extras: dict[str, Any]) -> bytes:
 
     gltf = GLTF2(asset=Asset(version="2.0", generator="trsim"), scene=0)
     gltf.scenes = [Scene(nodes=list(range(len(things))), extras=extras)]
-    store, meshes = Store(gltf), Meshes()
+    store = Store(gltf)
     animation = Animation(name="motion")
     times = (time - time[0]).astype(np.float32)
     for k, thing in enumerate(things):
-        gltf.nodes.append(node(thing, meshes.number(gltf, store, thing)))
+        gltf.nodes.append(node(thing, store.mesh(thing)))
         if len(time) > 1:
             animate(animation, store, times, thing, k)
     if animation.channels:
@@ -71,40 +100,6 @@ def glb(things: Sequence[Thing], time: Array, extras: dict[str, Any]) -> bytes:
     gltf.buffers = [Buffer(byteLength=store.size)]
     gltf.set_binary_blob(b"".join(store.chunks))
     return b"".join(gltf.save_to_bytes())
-
-
-class Meshes:
-    """Meshes and materials that were stored already."""
-
-    def __init__(self) -> None:
-        self.meshes: dict[tuple[tuple[int, str], ...], int] = {}
-        self.materials: dict[str, int] = {}
-
-    def number(self, gltf: Any, store: Store, thing: Thing) -> int:
-        from pygltflib import Mesh as Shape
-
-        key = tuple((id(mesh), colour) for mesh, colour in thing.pieces)
-        if key not in self.meshes:
-            parts = [self.primitive(gltf, store, mesh, colour) for mesh, colour in thing.pieces]
-            gltf.meshes.append(Shape(primitives=parts, name=thing.name))
-            self.meshes[key] = len(gltf.meshes) - 1
-        return self.meshes[key]
-
-    def primitive(self, gltf: Any, store: Store, mesh: Mesh, colour: str) -> Any:
-        from pygltflib import Attributes, Primitive
-
-        small = len(mesh.points) <= 1 << 16
-        corners = mesh.triangles.reshape(-1).astype(np.uint16 if small else np.uint32)
-        places = store.add(mesh.points.astype(np.float32), VERTICES, bounds=True)
-        normals = store.add(mesh.normals.astype(np.float32), VERTICES)
-        if colour not in self.materials:
-            gltf.materials.append(material(colour))
-            self.materials[colour] = len(gltf.materials) - 1
-        return Primitive(
-            attributes=Attributes(POSITION=places, NORMAL=normals),
-            indices=store.add(corners, INDICES),
-            material=self.materials[colour],
-        )
 
 
 def material(colour: str) -> Any:

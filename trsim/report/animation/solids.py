@@ -105,8 +105,7 @@ def bar(a: Array, b: Array, radius: float, thickness: float, axis: Array) -> Mes
 def ring(inner: float, outer: float, length: float, axis: Array) -> Mesh:
     """A tube about its middle."""
     axes = frame(axis)
-    angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
-    spokes = np.stack([np.cos(angle), np.sin(angle)], axis=1) @ axes[:2]
+    spokes = circle(1.0) @ axes[:2]
     up = np.tile(axes[2], (ROUND, 1))
     corners = [(outer, -1.0), (outer, 1.0), (inner, 1.0), (inner, -1.0)]
     edges = [r * spokes + 0.5 * side * length * up for r, side in corners]

@@ -85,21 +85,17 @@ class Problem:
 
     def jacobian(self, turn: Mapping[str, Array]) -> Array:
         """Derivatives against small turns of the bodies, (equations, 3 bodies)."""
+        parts = [(joint, -skew(turned(turn[joint.i], a)), skew(turned(turn[joint.j], b)))
+                 for joint in self.drawn.joints for _, a, b in self.equations(joint)]  # fmt: skip
+        parts += [(joint, np.cross(a, b)[None], -np.cross(a, b)[None])
+                  for joint, a, b in self.crosses(turn)]  # fmt: skip
         rows = []
-        for joint in self.drawn.joints:
-            for _, a, b in self.equations(joint):
-                row = np.zeros((3, 3 * len(self.names)))
-                for body, v, sign in ((joint.i, a, -1.0), (joint.j, b, 1.0)):
-                    if body in self.drawn.bodies:
-                        k = 3 * self.names.index(body)
-                        row[:, k : k + 3] = sign * skew(turned(turn[body], v))
-                rows.append(row)
-        for joint, a, b in self.crosses(turn):
-            row = np.zeros((1, 3 * len(self.names)))
-            for body, sign in ((joint.i, 1.0), (joint.j, -1.0)):
+        for joint, of_i, of_j in parts:
+            row = np.zeros((len(of_i), 3 * len(self.names)))
+            for body, part in ((joint.i, of_i), (joint.j, of_j)):
                 if body in self.drawn.bodies:
                     k = 3 * self.names.index(body)
-                    row[:, k : k + 3] = sign * np.cross(a, b)
+                    row[:, k : k + 3] = part
             rows.append(row)
         return np.concatenate(rows)
 

@@ -32,9 +32,7 @@ MOVING, MAGNIFIED = "ab_03", 30.0  # the case of the animation, and how large it
 
 
 def paper(
-    study: str | os.PathLike,
-    folder: str | os.PathLike,
-    figures: Sequence[Drawn] | None = None,
+    study: str | os.PathLike, folder: str | os.PathLike, figures: Sequence[Drawn] | None = None
 ) -> list[Path]:
     """Write the figures, the tables as CSV and index.html of a study into a folder.
 
@@ -43,7 +41,7 @@ def paper(
     the files written.  Raises FileError, UsageError.
     """
     from trsim.report.display import written
-    from trsim.report.style import look, save
+    from trsim.report.style import draw
 
     runs, folder = Runs(Path(study)), Path(folder)
     try:
@@ -52,12 +50,9 @@ def paper(
         raise FileError(f"{folder}: {error.strerror or error}") from None
     figures = FIGURES if figures is None else figures
     rows = list(judged(runs, CLAIMS, lambda si: UNITS.get(si, (1.0, written(si)))))
-    drawn: list[tuple[Drawn, Path]] = []
-    with look():
-        for one in figures:
-            if runs.has(*one.cases):
-                drawn.append((one, save(one.draw(runs), folder / f"{one.anchor}.png")))
-    absent = [one for one in figures if not runs.has(*one.cases)]
+    drawn = [(one, draw(folder / f"{one.anchor}.png", one.made, runs))
+             for one in figures if runs.has(*one.names)]  # fmt: skip
+    absent = [one for one in figures if not runs.has(*one.names)]
     files = [*tables.write(rows, folder), *peaks.write(runs, folder)]
     page = write_page(folder / "index.html", content.TITLE, content.LEAD,
                       sections(runs, rows, drawn, absent))  # fmt: skip

@@ -70,9 +70,8 @@ def evaluated(runs: Runs, claims: Sequence[Claim]) -> Known:
     for case, asked in words.items():
         for member in runs.sound(case):
             for word in asked:
-                known[case, member.index, word] = number(
-                    member, word, reference(runs, member, word)
-                )
+                found = number(member, word, reference(runs, member, word))
+                known[case, member.index, word] = found
             member.forget()
     return known
 
@@ -89,17 +88,15 @@ def row(runs: Runs, claim: Claim, reading: Reading, display: Display, known: Kno
     sources = [[source(runs, claim, reading, series, index, known) for index in members]
                for series in reading.series]  # fmt: skip
     values = np.array([[s.value for s in line] for line in sources])
-    found = claim.rule.judge(values) if np.isfinite(values).all() else nothing(len(members))
+    found = Judged(UNDETERMINED, "not defined in every run", 0, len(members))
+    if np.isfinite(values).all():
+        found = claim.rule.judge(values)
     planned = max((runs.planned[case] for case in cases), default=1)
     if len(members) < planned:
         found = found._replace(told=f"{found.told}; {len(members)} of {planned} members")
     numbers = tuple(f"{line[0].label}: {shown(v, *display(line[0].unit))}"
                     for line, v in zip(sources, values, strict=True))  # fmt: skip
     return Row(claim, reading, found, numbers, tuple(s for line in sources for s in line))
-
-
-def nothing(members: int) -> Judged:
-    return Judged(UNDETERMINED, "not defined in every run", 0, members)
 
 
 def source(

@@ -90,21 +90,15 @@ def largest(member: Member, asked: Word) -> Number:
 def scaled(member: Member, asked: Word) -> Number:
     """The dispersion of a section over the clearance of its joint."""
     found, _ = scalar(member.run, f"dispersion:{asked.text.partition(':')[2]}")
-    joint = member.sections[asked.of].definition["x"].partition(".")[0]
+    joint = member.run.poincare[asked.of].definition["x"].partition(".")[0]
     return Number(found / member.run.parts[joint].clearance, "-")
 
 
 def place(member: Member, asked: Word) -> Number:
-    """The stroke at which the largest value is met, m."""
+    """The stroke at which the largest value is met, of a jolt the largest magnitude, m."""
     at = np.flatnonzero(inside(member, asked))
-    found = at[np.argmax(member.channel(asked.of)[at])]
-    return Number(float(member.stroke[found]), "m")
-
-
-def jolt(member: Member, asked: Word) -> Number:
-    """The stroke at which the magnitude is largest, m."""
-    at = np.flatnonzero(inside(member, asked))
-    found = at[np.argmax(np.abs(member.channel(asked.of)[at]))]
+    values = member.channel(asked.of)[at]
+    found = at[np.argmax(np.abs(values) if asked.kind == "jolt" else values)]
     return Number(float(member.stroke[found]), "m")
 
 
@@ -141,12 +135,8 @@ def apart(member: Member, asked: Word, reference: Member | None) -> Number:
     """The largest difference to the reference at equal strokes, or at equal times without one."""
     if reference is None:
         raise UsageError(f"{member.file}: there is no run to measure from")
-    mine, other = (
-        (m.stroke, m.channel(asked.of))
-        if "stroke" in m.run.units
-        else (m.time, m.channel(asked.of))
-        for m in (member, reference)
-    )
+    mine, other = ((m.stroke if "stroke" in m.run.units else m.time, m.channel(asked.of))
+                   for m in (member, reference))  # fmt: skip
     common = (mine[0] >= max(other[0][0], asked.begin)) & (mine[0] <= min(other[0][-1], asked.end))
     at, found = mine[0][common], mine[1][common]
     away = [np.interp(at, other[0], column) for column in np.atleast_2d(other[1].T)]
@@ -161,7 +151,7 @@ KINDS: dict[str, Callable[..., Number] | None] = {
     "peak": peak,
     "largest": largest,
     "place": place,
-    "jolt": jolt,
+    "jolt": place,
     "scaled": scaled,
     "most": most,
     "sideways": sideways,

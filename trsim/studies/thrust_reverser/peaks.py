@@ -2,14 +2,15 @@
 
 from pathlib import Path
 
+from trsim.report.asked import table
 from trsim.report.page import Block, Cell, Line, Section, Table, Text
+from trsim.store.target import headed
 from trsim.studies.thrust_reverser import content
 from trsim.studies.thrust_reverser.claims.spatial import ODD
 from trsim.studies.thrust_reverser.figures import sticking
 from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS, case
 from trsim.studies.thrust_reverser.numbers import number
 from trsim.studies.thrust_reverser.runs import Runs
-from trsim.studies.thrust_reverser.tables import table
 
 # N: the largest forces of actuators 1, 2, 3 where 1, 2, 3 is the asynchronous one, section 7.2
 STUDY = {1: (2258.0, 1370.0, 2017.0), 2: (2782.0, 2310.0, 2712.0), 3: (2068.0, 1348.0, 2227.0)}
@@ -52,7 +53,7 @@ def ends(runs: Runs) -> Rows:
 def write(runs: Runs, folder: Path) -> list[Path]:
     """peaks.csv and sticking.csv, where their runs are."""
     found = (("peaks.csv", HEAD, peaks(runs)), ("sticking.csv", ENDS, ends(runs)))
-    return [table(folder / name, head, rows) for name, head, rows in found if rows]
+    return [table(folder / name, head, rows, headed(*head)) for name, head, rows in found if rows]
 
 
 def sections(runs: Runs) -> list[Section]:

@@ -13,8 +13,8 @@ In how many members a claim holds is what the chance of a single run would be.
 
 import math
 from collections.abc import Callable
-from functools import partial, wraps
-from typing import Any, NamedTuple, Protocol
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,13 +35,11 @@ class Judged(NamedTuple):
     of: int
 
 
-class Rule(Protocol):
-    """A way to decide."""
+class Rule(NamedTuple):
+    """A way to decide, in words, and what decides so."""
 
-    def judge(self, values: Array) -> Judged: ...
-
-    @property
-    def words(self) -> str: ...
+    words: str
+    judge: Callable[[Array], Judged]
 
 
 class Interval(NamedTuple):
@@ -79,39 +77,36 @@ def counted(told: str, of: str, holds: Any) -> Judged:
     return Judged(told, of, int(holds.sum()), holds.size)
 
 
-def of_positive(judge: Callable[[Any, Array], Judged]) -> Callable[[Any, Array], Judged]:
-    """Ratios are judged of positive numbers alone."""
+def of_positive(words: str, judge: Callable[[Array], Judged]) -> Rule:
+    """A rule on ratios, which are judged of positive numbers alone."""
 
-    @wraps(judge)
-    def judged(rule: Any, values: Array) -> Judged:
+    def judged(values: Array) -> Judged:
         if not (values > 0.0).all():
             return Judged(UNDETERMINED, "not all numbers are positive", 0, values.shape[1])
-        return judge(rule, values)
+        return judge(values)
 
-    return judged
+    return Rule(words, judged)
 
 
-class Trend(NamedTuple):
-    """Each case is above (side 1) or below (-1) the one before it, by more than a margin."""
+def way(side: int) -> str:
+    return "above" if side > 0 else "below"
 
-    side: int
-    margin: float = SEEN  # of the one before
 
-    @property
-    def words(self) -> str:
-        way = "above" if self.side > 0 else "below"
-        return f"each case {way} the one before it by more than {100.0 * self.margin:g} %"
+def trend(side: int, margin: float = SEEN) -> Rule:
+    """Each case is above (side 1) or below (-1) the one before it, by more than a share of that."""
 
-    @of_positive
-    def judge(self, values: Array) -> Judged:
+    def judge(values: Array) -> Judged:
         steps = np.diff(np.log(values), axis=0)
-        far, least = self.side * steps, self.side * math.log1p(self.side * self.margin)
+        far, least = side * steps, side * math.log1p(side * margin)
         bounds = [interval(step) for step in far]
         surely, surely_not = all(b.low > least for b in bounds), any(b.high < least for b in bounds)
         return counted(verdict(surely, surely_not), _ratios(steps), np.all(far > least, axis=0))
 
+    words = f"each case {way(side)} the one before it by more than {100.0 * margin:g} %"
+    return of_positive(words, judge)
 
-Rising, Falling = partial(Trend, 1), partial(Trend, -1)
+
+rising, falling = partial(trend, 1), partial(trend, -1)
 
 
 def _ratios(steps: Array) -> str:
@@ -124,85 +119,58 @@ def _ratios(steps: Array) -> str:
     return f"ratio{'s' if len(parts) > 1 else ''} {', then '.join(parts)}"
 
 
-class Ratio(NamedTuple):
+def ratio(low: float, high: float) -> Rule:
     """The ratio of the second case to the first lies between two numbers."""
 
-    low: float
-    high: float
-
-    @property
-    def words(self) -> str:
-        return f"ratio between {self.low:g} and {self.high:g}"
-
-    @of_positive
-    def judge(self, values: Array) -> Judged:
-        steps, low, high = np.log(values[1:2] / values[:1]), math.log(self.low), math.log(self.high)
-        within, b = (steps[0] >= low) & (steps[0] <= high), interval(steps[0])
-        inside, outside = low <= b.low and b.high <= high, b.high < low or b.low > high
+    def judge(values: Array) -> Judged:
+        steps, least, most = np.log(values[1:2] / values[:1]), math.log(low), math.log(high)
+        within, b = (steps[0] >= least) & (steps[0] <= most), interval(steps[0])
+        inside, outside = least <= b.low and b.high <= most, b.high < least or b.low > most
         return counted(verdict(inside, outside), _ratios(steps), within)
 
+    return of_positive(f"ratio between {low:g} and {high:g}", judge)
 
-class Alike(NamedTuple):
+
+def alike(share: float) -> Rule:
     """The largest case is above the smallest one by no more than a share."""
 
-    share: float
-
-    @property
-    def words(self) -> str:
-        return f"largest and smallest within {100.0 * self.share:g} %"
-
-    @of_positive
-    def judge(self, values: Array) -> Judged:
+    def judge(values: Array) -> Judged:
         spread = values.max(axis=0) / values.min(axis=0) - 1.0
-        holds, b = spread <= self.share, interval(spread)
+        holds, b = spread <= share, interval(spread)
         told = f"spread {100.0 * b.mean:.3g} %{_bounds(100.0 * spread, ' %')}"
-        return counted(bounded(holds, b.high <= self.share, b.low > self.share), told, holds)
+        return counted(bounded(holds, b.high <= share, b.low > share), told, holds)
+
+    return of_positive(f"largest and smallest within {100.0 * share:g} %", judge)
 
 
-class Within(NamedTuple):
-    """Every case lies between two numbers, in SI."""
+def within(low: float, high: float, shown: str) -> Rule:
+    """Every case lies between two numbers, in SI; shown: these for the reader, with a unit."""
 
-    low: float
-    high: float
-    shown: str  # the two numbers for the reader, with a unit
-
-    @property
-    def words(self) -> str:
-        return f"all {self.shown}"
-
-    def judge(self, values: Array) -> Judged:
-        each = (values >= self.low) & (values <= self.high)
+    def judge(values: Array) -> Judged:
+        each = (values >= low) & (values <= high)
         holds = each.all(axis=0)
         bounds = [interval(case) for case in values]
-        surely = values.shape[1] > 1 and all(self.low <= b.low and b.high <= self.high
-                                             for b in bounds)  # fmt: skip
-        surely_not = any(b.high < self.low or b.low > self.high for b in bounds)
-        return counted(bounded(holds, surely, surely_not), f"all {self.shown}", holds)
+        surely = values.shape[1] > 1 and all(low <= b.low and b.high <= high for b in bounds)
+        surely_not = any(b.high < low or b.low > high for b in bounds)
+        return counted(bounded(holds, surely, surely_not), f"all {shown}", holds)
+
+    return Rule(f"all {shown}", judge)
 
 
-class Exact(NamedTuple):
+def exact(low: float, high: float, shown: str) -> Rule:
     """A number that a law gives, without any run, lies between two others."""
 
-    low: float
-    high: float
-    shown: str
+    def judge(values: Array) -> Judged:
+        holds = bool((values >= low).all() and (values <= high).all())
+        return Judged(CONFIRMED if holds else CONTRADICTED, shown, int(holds), 1)
 
-    @property
-    def words(self) -> str:
-        return self.shown
-
-    def judge(self, values: Array) -> Judged:
-        holds = bool((values >= self.low).all() and (values <= self.high).all())
-        return Judged(CONFIRMED if holds else CONTRADICTED, self.shown, int(holds), 1)
+    return Rule(shown, judge)
 
 
-class Steadier(NamedTuple):
+def steadier() -> Rule:
     """The cases of the second half vary less among themselves than those of the first half."""
 
-    words: str = "largest over smallest: less in the second group than in the first"
-
-    @of_positive
-    def judge(self, values: Array) -> Judged:
+    def judge(values: Array) -> Judged:
         half = len(values) // 2
         spread = np.array([np.log(part.max(axis=0) / part.min(axis=0))
                            for part in (values[:half], values[half:])])  # fmt: skip
@@ -212,18 +180,12 @@ class Steadier(NamedTuple):
         told = f"largest over smallest {first:.3g} and {second:.3g}"
         return counted(verdict(b.low > 0.0, b.high < 0.0), told, holds)
 
+    return of_positive("largest over smallest: less in the second group than in the first", judge)
 
-class Open(NamedTuple):
+
+def undecided(reason: str) -> Rule:
     """Nothing that could be measured decides it."""
-
-    reason: str
-
-    @property
-    def words(self) -> str:
-        return "nothing measured decides"
-
-    def judge(self, values: Array) -> Judged:
-        return Judged(UNDETERMINED, self.reason, 0, 0)
+    return Rule("nothing measured decides", lambda _: Judged(UNDETERMINED, reason, 0, 0))
 
 
 def _bounds(values: Array, unit: str) -> str:

@@ -4,7 +4,6 @@ The runs of a grid are no ensemble: each is a case of its own, under the name of
 """
 
 import os
-from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 
@@ -13,7 +12,7 @@ import numpy as np
 from trsim.errors import UsageError
 from trsim.statuses import WELL
 from trsim.store.grow import Array
-from trsim.store.read import Points, Run
+from trsim.store.read import Run
 
 GRIDS = ("spatial_jam",)
 BOOK = 1e-3  # J an energy book may miss; the chain has 6 J, and misses 1e-8 or, with bars, 1e-4
@@ -47,10 +46,6 @@ class Member:
         if "energy.residual" not in self.run.units:
             return 0.0
         return float(np.max(np.abs(self.run.channel("energy.residual")), initial=0.0))
-
-    @cached_property
-    def sections(self) -> Mapping[str, Points]:
-        return self.run.poincare
 
     def forget(self) -> None:
         """Let go of what was read."""
@@ -88,8 +83,7 @@ class Runs:
 
     def has(self, *cases: str) -> bool:
         """Whether the first member of every one of these cases is there."""
-        return all(self.members.get(case, ()) and self.members[case][0].index == 0
-                   for case in cases)  # fmt: skip
+        return all(self.of(case, 0) for case in cases)
 
     def stated(self, case: str) -> Member:
         """The member with the values as stated."""

@@ -1,11 +1,11 @@
 """The claims as tables: claims.csv, and numbers.csv with every number and the file it is from."""
 
-import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
+from trsim.report.asked import table
 from trsim.report.page import Cell, Ensembles, Line, Table
-from trsim.store.target import file_errors, fresh, headed
+from trsim.store.target import headed
 from trsim.studies.thrust_reverser.claims.claim import INDEPENDENT, WORTH
 from trsim.studies.thrust_reverser.figures.drawing import Drawn
 from trsim.studies.thrust_reverser.judge import Row, Source
@@ -28,22 +28,8 @@ def write(rows: Sequence[Row], folder: Path) -> list[Path]:
         for row in rows
     ]
     numbers = [source for row in rows for source in row.sources]
-    return [
-        table(folder / "claims.csv", CLAIMS, claims),
-        table(folder / "numbers.csv", Source._fields, numbers),
-    ]
-
-
-def table(path: Path, head: Sequence[str], lines: Iterable[Sequence[object]]) -> Path:
-    with (
-        file_errors(path),
-        fresh(path, headed(*head)) as unfinished,
-        unfinished.open("w", newline="", encoding="utf-8") as file,
-    ):
-        writer = csv.writer(file)
-        writer.writerow(head)
-        writer.writerows([repr(v) if isinstance(v, float) else v for v in line] for line in lines)
-    return path
+    tables = (("claims.csv", CLAIMS, claims), ("numbers.csv", Source._fields, numbers))
+    return [table(folder / name, head, lines, headed(*head)) for name, head, lines in tables]
 
 
 def assumptions(row: Row) -> str:
@@ -105,9 +91,8 @@ def figure(text: str, figures: Sequence[Drawn]) -> str:
 def tally(rows: Sequence[Row]) -> Table:
     """How many readings have which verdict, those apart whose agreement proves nothing."""
     lines = []
-    for worth, text in ((INDEPENDENT, "independent of our choices"), *WORTH.items()):
-        if worth != INDEPENDENT or text:
-            mine = [row.judged.verdict for row in rows if row.claim.worth == worth]
-            found = [str(mine.count(v)) for v in ("confirmed", "contradicted", "undetermined")]
-            lines.append(Line([Cell(text or worth), *map(Cell, found)]))
+    for worth, text in (WORTH | {INDEPENDENT: "independent of our choices"}).items():
+        mine = [row.judged.verdict for row in rows if row.claim.worth == worth]
+        found = [str(mine.count(v)) for v in ("confirmed", "contradicted", "undetermined")]
+        lines.append(Line([Cell(text), *map(Cell, found)]))
     return Table(("agreement", "confirmed", "contradicted", "undetermined"), lines)

@@ -11,13 +11,8 @@ from trsim.studies.thrust_reverser.claims import (
 )
 from trsim.studies.thrust_reverser.claims.claim import Claim
 
+IN_ORDER = (model, clearance, place, speed, rod, spatial, conclusions)
 CLAIMS: tuple[Claim, ...] = (
-    *model.CLAIMS,
-    *clearance.CLAIMS,
-    *place.CLAIMS,
-    *speed.CLAIMS,
-    *rod.CLAIMS,
-    *spatial.CLAIMS,
-    *conclusions.CLAIMS,
+    *(claim for module in IN_ORDER for claim in module.CLAIMS),
     *spatial.CONCLUSIONS,
 )

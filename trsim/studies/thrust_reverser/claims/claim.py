@@ -1,18 +1,16 @@
 """A claim of the study, in our words, and the readings of it that can be decided."""
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
+from trsim.studies.thrust_reverser.cases import Cases
 from trsim.studies.thrust_reverser.rules import Rule
 
 # what agreement with a claim is worth
 INDEPENDENT = "independent"
 TUNED = "tuned"  # our data were made to agree: it proves nothing
 CHOSEN = "chosen"  # of several pins the one that agrees was taken for B: a selection
-WORTH = {
-    INDEPENDENT: "",
-    TUNED: "by construction",
-    CHOSEN: "by selection",
-}
+WORTH = {INDEPENDENT: "", TUNED: "by construction", CHOSEN: "by selection"}
 
 LAW = "law"  # instead of a case: a number of trsim.laws, see laws.py
 OVERTURN = "@stroke=0.15..0.48"  # m of stroke: from the touch of the lug to before the end
@@ -52,6 +50,18 @@ class Claim(NamedTuple):
 def over(word: str, *cases: tuple[str, str]) -> tuple[Series, ...]:
     """One number of several cases, (label, case)."""
     return tuple(Series(label, case, word) for label, case in cases)
+
+
+def of(what: str, readings: Iterable[Reading]) -> tuple[Reading, ...]:
+    """Readings with what they are of before their names."""
+    return tuple(reading._replace(name=f"{what}, {reading.name}") for reading in readings)
+
+
+def b_above_a(cases: Cases, name: str = "{}") -> tuple[Reading, ...]:
+    """The spread of the section at A and at B; `name` has a place for the label of a case."""
+    return tuple(Reading(name.format(label), tuple(
+        Series(pin, case, f"dispersion:{pin}_orbit{OVERTURN}") for pin in "AB"))
+        for label, case in cases)  # fmt: skip
 
 
 def one(*series: Series, note: str = "") -> tuple[Reading, ...]:

@@ -1,8 +1,8 @@
 """Section 8 of the study, where it says more than section 7: number of joints, speed."""
 
-from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, over
+from trsim.studies.thrust_reverser.claims.claim import OVERTURN, Claim, Reading, of, over
 from trsim.studies.thrust_reverser.claims.speed import pins
-from trsim.studies.thrust_reverser.rules import Rising
+from trsim.studies.thrust_reverser.rules import rising
 
 FROM_A = (("A", "a_03"), ("A, B", "ab_03"), ("A, P, Q, B", "abpq_03"))
 FROM_B = (("B", "b_03"), ("A, B", "ab_03"), ("A, P, Q, B", "abpq_03"))
@@ -17,17 +17,15 @@ CLAIMS = (
     Claim(
         "number_velocity", "8", "",
         "The vibration grows with the number of joints with clearance.",
-        Rising(),
-        (*(r._replace(name=f"velocity, {r.name}")
-           for r in readings(f"fluctuation:door_angle.rate{OVERTURN}")),
-         *(r._replace(name=f"driving force, {r.name}")
-           for r in readings(f"fluctuation:actuator.force{OVERTURN}"))),
+        rising(),
+        (*of("velocity", readings(f"fluctuation:door_angle.rate{OVERTURN}")),
+         *of("driving force", readings(f"fluctuation:actuator.force{OVERTURN}"))),
         note="0.3 mm at each",
     ),
     Claim(
         "number_force", "8", "",
         "Contact forces grow with the number of joints with clearance.",
-        Rising(),
+        rising(),
         (Reading("at A", over("peak:A.contact_force", *FROM_A)),
          Reading("at B", over("peak:B.contact_force", *FROM_B))),
         note="our reading of vibration; 0.3 mm at each",
@@ -35,7 +33,7 @@ CLAIMS = (
     Claim(
         "number_map", "8", "",
         "The nonlinearity grows with the number of joints with clearance.",
-        Rising(),
+        rising(),
         (Reading("spread of the section at A", over(f"dispersion:A_orbit{OVERTURN}", *FROM_A)),
          Reading("spread of the section at B", over(f"dispersion:B_orbit{OVERTURN}", *FROM_B))),
         note="nonlinearity taken as spread of the section; 0.3 mm at each",
@@ -43,7 +41,7 @@ CLAIMS = (
     Claim(
         "speed_nonlinear", "8", "",
         "The nonlinearity grows with the driving speed.",
-        Rising(),
+        rising(),
         pins(f"dispersion:{{}}_orbit{OVERTURN}"),
         note="the study says the opposite of the same section in 7.1.3",
     ),

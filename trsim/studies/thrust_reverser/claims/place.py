@@ -10,10 +10,13 @@ from trsim.studies.thrust_reverser.claims.claim import (
     one,
     over,
 )
-from trsim.studies.thrust_reverser.rules import Rising, Within
+from trsim.studies.thrust_reverser.rules import rising, within
 
 EACH = (("A", "a_03"), ("B", "b_03"))
 SOFT = (("A", "a_03_soft"), ("B", "b_03_soft"))
+FLUCTUATING = (("velocity", "b", "door's velocity", "door_angle.rate"),
+               ("acceleration", "c", "door's acceleration", "door_angle.acceleration"),
+               ("drive", "d", "driving force", "actuator.force"))  # fmt: skip
 SMALL, LARGE = (("A", "a_01"), ("B", "b_01")), (("A", "a_05"), ("B", "b_05"))
 
 
@@ -36,28 +39,21 @@ CLAIMS = (
     Claim(
         "place_displacement", "7.1.2", "11a",
         "The door turns alike wherever the clearance is.",
-        Within(0.0, 0.0157, "below 1 % of 90 deg off the ideal mechanism"),
+        within(0.0, 0.0157, "below 1 % of 90 deg off the ideal mechanism"),
         one(*over("apart:door_angle", *EACH)),
     ),
-    Claim(
-        "place_velocity", "7.1.2", "11b",
-        "Clearance at B makes the door's velocity fluctuate more than clearance at A.",
-        Rising(), readings(f"fluctuation:door_angle.rate{OVERTURN}"), CHOSEN,
-    ),
-    Claim(
-        "place_acceleration", "7.1.2", "11c",
-        "Clearance at B makes the door's acceleration fluctuate more than clearance at A.",
-        Rising(), readings(f"fluctuation:door_angle.acceleration{OVERTURN}"), CHOSEN,
-    ),
-    Claim(
-        "place_drive", "7.1.2", "11d",
-        "Clearance at B makes the driving force fluctuate more than clearance at A.",
-        Rising(), readings(f"fluctuation:actuator.force{OVERTURN}"), CHOSEN,
+    *(
+        Claim(
+            f"place_{key}", "7.1.2", f"11{panel}",
+            f"Clearance at B makes the {what} fluctuate more than clearance at A.",
+            rising(), readings(f"fluctuation:{channel}{OVERTURN}"), CHOSEN,
+        )
+        for key, panel, what, channel in FLUCTUATING
     ),
     Claim(
         "overturn", "7.1.2", "11",
         "Motion and force change suddenly near 0.3 s, where the door begins to turn.",
-        Within(0.145, 0.165, "largest accelerations between 145 and 165 mm (0.29 and 0.33 s)"),
+        within(0.145, 0.165, "largest accelerations between 145 and 165 mm (0.29 and 0.33 s)"),
         one(*over("jolt:door_angle.acceleration", ("ideal", "ideal"), *EACH)),
         TUNED, "the lug was placed so that it touches at 0.30 s; the window was "
         "145 to 160 mm until first runs had it at 160.5 mm",
@@ -65,7 +61,7 @@ CLAIMS = (
     Claim(
         "place_orbit", "7.1.2", "12a, 12c",
         "The journal at B moves over a larger range than that at A.",
-        Rising(),
+        rising(),
         (Reading("orbit", at_each(f"orbit:{{}}{OVERTURN}")),
          Reading("velocity in the phase diagram",
                  at_each(f"range:{{}}.eccentricity_x_rate{OVERTURN}"))),
@@ -74,7 +70,7 @@ CLAIMS = (
     Claim(
         "place_nonlinear", "7.1.2", "12b, 12d",
         "The motion at B is more nonlinear than that at A.",
-        Rising(),
+        rising(),
         (Reading("spread of the section", at_each(f"dispersion:{{}}_orbit{OVERTURN}")),
          Reading("free flight", at_each(f"flight:{{}}{OVERTURN}"))),
         CHOSEN, "nonlinear taken as: spread of the section, share of free flight",
@@ -82,7 +78,7 @@ CLAIMS = (
     Claim(
         "place_door", "7.1.2", "13",
         "The door's phase diagram is wider with clearance at B than at A.",
-        Rising(),
+        rising(),
         (Reading("velocity", over(f"range:door_angle.rate{OVERTURN}", *EACH)),
          Reading("acceleration", over(f"range:door_angle.acceleration{OVERTURN}", *EACH))),
         CHOSEN, "output rows every 0.1 ms",

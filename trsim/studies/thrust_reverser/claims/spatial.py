@@ -3,15 +3,15 @@
 from trsim.studies.thrust_reverser.claims.claim import TUNED, Claim, Reading, Series
 from trsim.studies.thrust_reverser.figures import sticking
 from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS, SHAFTS, case
-from trsim.studies.thrust_reverser.rules import Exact
+from trsim.studies.thrust_reverser.rules import Rule, exact
 from trsim.studies.thrust_reverser.single import (
-    Above,
-    Apart,
-    Below,
-    Greatest,
-    Near,
-    Opposite,
-    Steps,
+    above,
+    apart,
+    below,
+    greatest,
+    near,
+    opposite,
+    steps,
 )
 
 ODD = (418, 419, 421, 422)  # mm/s
@@ -49,6 +49,12 @@ def trend(odd: int, of: tuple[int, ...], speeds: tuple[int, ...]) -> tuple[Readi
                  for k in of)  # fmt: skip
 
 
+def of_odd(k: int, odds: tuple[int, ...], speeds: tuple[int, ...]) -> tuple[Series, ...]:
+    """The largest force of an actuator where one after the other has a speed of its own."""
+    return tuple(Series(f"{odd} at {speed} mm/s", case(odd, speed), PEAK.format(k))
+                 for odd in odds for speed in speeds)  # fmt: skip
+
+
 def one_speed(word: str, *of: int) -> tuple[Series, ...]:
     return tuple(Series(f"actuator {k}", "spatial_420", word.format(k)) for k in of)
 
@@ -64,98 +70,85 @@ def most(*cases: tuple[str, str]) -> tuple[Series, ...]:
     return tuple(Series(label, name, "most:actuator_?.force") for label, name in cases)
 
 
-SYNCHRONOUS = (
+def largest_and_each(
+    key: str, odd: int, rule: Rule, of: tuple[int, ...], unfitted: tuple[int, ...], *told: str
+) -> tuple[Claim, Claim]:
+    """A claim on the largest forces where one actuator has a speed of its own, and the same on the
+    forces at each speed; unfitted: those where nothing was fitted."""
+    largest, at_each = (f"With actuator {odd} asynchronous {what}" for what in told)
+    whole = (Reading("", forces(odd, of, ODD)),)
+    figure = str(23 + odd)
+    return (
+        Claim(key, "7.2", figure, largest, greatest(rule, 4), whole, TUNED, FITTED),
+        Claim(f"{key}_each", "7.2", figure, at_each, rule, each(odd, of, unfitted), note=ONLY),
+    )
+
+
+def moves(
+    key: str, odd: int, told: str, side: int, of: tuple[int, ...], speeds: tuple[int, ...]
+) -> Claim:
+    """A claim that forces rise (side 1) or fall (-1) with the speed of one actuator."""
+    readings = trend(odd, of, speeds)
+    return Claim(key, "7.2", str(23 + odd), told, steps(side), readings, note=ASSISTING)
+
+
+CLAIMS = (
+    # all at one speed
     Claim(
         "synchronous_alike", "7.2", "23",
         "At one speed the forces of actuators 1 and 3 are basically alike.",
-        Apart(), (Reading("", one_speed(PEAK, 1, 2, 3)),), TUNED, FITTED,
+        apart(), (Reading("", one_speed(PEAK, 1, 2, 3)),), TUNED, FITTED,
     ),
     Claim(
         "synchronous_above", "7.2", "23",
         "At one speed the forces of actuators 1 and 3 are above that of actuator 2.",
-        Above(), (Reading("actuator 1", one_speed(PEAK, 2, 1)),
+        above(), (Reading("actuator 1", one_speed(PEAK, 2, 1)),
                   Reading("actuator 3", one_speed(PEAK, 2, 3))), TUNED, FITTED,
     ),
     Claim(
         "synchronous_along", "7.2", "23",
         "The actuators are loaded along X, and hardly in Y and Z.",
-        Exact(0.0, 0.01, "across X below 1 % of along X"),
+        exact(0.0, 0.01, "across X below 1 % of along X"),
         (Reading("", one_speed("sideways:actuator_{}.reaction", 1, 2, 3)),),
         TUNED, "ball ends, which we assume, let no other force through than one along the line",
     ),
-)  # fmt: skip
-
-ONE = (
-    Claim(
-        "one_alike", "7.2", "24",
-        "With actuator 1 asynchronous the forces of 1 and 3 are similar, and unlike that of 2.",
-        Greatest(Apart(), 4), (Reading("", forces(1, ACTUATORS, ODD)),), TUNED, FITTED,
+    # actuator 1 at another speed
+    *largest_and_each(
+        "one_alike", 1, apart(), ACTUATORS, UNFITTED,
+        "the forces of 1 and 3 are similar, and unlike that of 2.",
+        "they are so at each speed, not the largest alone.",
     ),
-    Claim(
-        "one_alike_each", "7.2", "24",
-        "With actuator 1 asynchronous they are so at each speed, not the largest alone.",
-        Apart(), each(1, ACTUATORS, UNFITTED), note=ONLY,
+    *largest_and_each(
+        "one_above", 1, above(), (3, 1), UNFITTED,
+        "the force of 1 is above that of 3.",
+        "its force is above that of 3 at each speed.",
     ),
-    Claim(
-        "one_above", "7.2", "24",
-        "With actuator 1 asynchronous the force of 1 is above that of 3.",
-        Greatest(Above(), 4), (Reading("", forces(1, (3, 1), ODD)),), TUNED, FITTED,
+    moves("one_rises", 1, "The forces of 1 and 3 rise as actuator 1 becomes slower.",
+          1, (1, 3), FALLING),
+    moves("one_falls", 1, "The force of 2 falls as actuator 1 becomes slower.",
+          -1, (2,), FALLING),
+    # actuator 2
+    *largest_and_each(
+        "two_alike", 2, apart(), ACTUATORS, UNFITTED[:-1],
+        "the forces of 1 and 3 are alike, and unlike that of 2.",
+        "they are so at each speed, not the largest alone.",
     ),
-    Claim(
-        "one_above_each", "7.2", "24",
-        "With actuator 1 asynchronous its force is above that of 3 at each speed.",
-        Above(), each(1, (3, 1), UNFITTED), note=ONLY,
-    ),
-    Claim(
-        "one_rises", "7.2", "24",
-        "The forces of 1 and 3 rise as actuator 1 becomes slower.",
-        Steps(1), trend(1, (1, 3), FALLING), note=ASSISTING,
-    ),
-    Claim(
-        "one_falls", "7.2", "24",
-        "The force of 2 falls as actuator 1 becomes slower.",
-        Steps(-1), trend(1, (2,), FALLING), note=ASSISTING,
-    ),
-)  # fmt: skip
-
-TWO = (
-    Claim(
-        "two_alike", "7.2", "25",
-        "With actuator 2 asynchronous the forces of 1 and 3 are alike, and unlike that of 2.",
-        Greatest(Apart(), 4), (Reading("", forces(2, ACTUATORS, ODD)),), TUNED, FITTED,
-    ),
-    Claim(
-        "two_alike_each", "7.2", "25",
-        "With actuator 2 asynchronous they are so at each speed, not the largest alone.",
-        Apart(), each(2, ACTUATORS, UNFITTED[:-1]), note=ONLY,
-    ),
-    Claim(
-        "two_rises", "7.2", "25",
-        "The forces of 1 and 3 rise as actuator 2 becomes faster.",
-        Steps(1), trend(2, (1, 3), RISING), note=ASSISTING,
-    ),
-    Claim(
-        "two_falls", "7.2", "25",
-        "The force of 2 falls as it becomes faster.",
-        Steps(-1), trend(2, (2,), RISING), note=ASSISTING,
-    ),
+    moves("two_rises", 2, "The forces of 1 and 3 rise as actuator 2 becomes faster.",
+          1, (1, 3), RISING),
+    moves("two_falls", 2, "The force of 2 falls as it becomes faster.", -1, (2,), RISING),
     Claim(
         "two_opposite", "7.2", "25",
         "That is opposite to what the speed of actuator 1 does.",
-        Opposite(),
-        tuple(Reading(f"actuator {k}", tuple(
-            Series(f"{odd} at {speed} mm/s", case(odd, speed), PEAK.format(k))
-            for odd in (1, 2) for speed in (418, 422))) for k in ACTUATORS),
+        opposite(),
+        tuple(Reading(f"actuator {k}", of_odd(k, (1, 2), (418, 422))) for k in ACTUATORS),
         note="forces follow the second difference of the three strokes, in which 2 has the "
         "other sign: so it is for 1 and 3 about 2, too",
     ),
-)  # fmt: skip
-
-THREE = (
+    # actuator 3, and all compared
     Claim(
         "three_mirrors", "7.2", "26",
         "Actuator 3 asynchronous is the mirror of actuator 1 asynchronous.",
-        Greatest(Near(0.05), 4),
+        greatest(near(0.05), 4),
         tuple(Reading(name, forces(1, (mine,), ODD) + forces(3, (mirrored,), ODD))
               for name, mine, mirrored in (("the odd one", 1, 3), ("actuator 2", 2, 2),
                                            ("the far one", 3, 1))),
@@ -164,19 +157,15 @@ THREE = (
     Claim(
         "two_largest", "7.2", "24, 25, 26",
         "All forces are largest where actuator 2 is the asynchronous one.",
-        Greatest(Above(), 4),
-        tuple(Reading(f"actuator {k}", tuple(
-            Series(f"{odd} at {speed} mm/s", case(odd, speed), PEAK.format(k))
-            for odd in (1, 3, 2) for speed in ODD)) for k in ACTUATORS),
+        greatest(above(), 4),
+        tuple(Reading(f"actuator {k}", of_odd(k, (1, 3, 2), ODD)) for k in ACTUATORS),
         TUNED, FITTED,
     ),
-)  # fmt: skip
-
-SHAFT = (
+    # a synchronising shaft
     Claim(
         "shaft_adjusts", "7.2", "25",
         "A synchronising shaft adjusts the motion of actuators that have come apart.",
-        Below(),
+        below(),
         tuple(Reading(f"actuator 2 at 418 mm/s, {label}",
                       most(("without", "spatial_shaft_without"), (label, name)))
               for label, name in SHAFTS[1:]),
@@ -186,7 +175,7 @@ SHAFT = (
     Claim(
         "shaft_holds", "7.2", "25",
         "The adjustment keeps the mechanism from sticking.",
-        Steps(1, 0.001, "s"),
+        steps(1, 0.001, "s"),
         tuple(Reading(f"2 slower by {sticking.late(speed)}", ends((speed,), sticking.STIFFNESSES))
               for speed in (416, 408)),
         note="our reading: a stiffer shaft puts the end of the run off; stalls at 3 kN of the "
@@ -195,7 +184,7 @@ SHAFT = (
     Claim(
         "sticks", "7.2", "25",
         "Where the speeds differ enough the adjustment fails and the mechanism sticks.",
-        Exact(0.0, 1.0, "stalls before 1 s, the stroke takes 1.19 s"),
+        exact(0.0, 1.0, "stalls before 1 s, the stroke takes 1.19 s"),
         tuple(Reading(f"2 slower by 12 mm/s, shaft of {k} N\u00b7m/rad", ends((408,), (k,)))
               for k in SOME),
         TUNED, "that it sticks follows from a stall force, 3 kN, which is ours",
@@ -203,20 +192,18 @@ SHAFT = (
     Claim(
         "sticks_earlier", "7.2", "25",
         "The larger the difference of the speeds, the earlier the mechanism sticks.",
-        Steps(-1, 0.001, "s"),
+        steps(-1, 0.001, "s"),
         tuple(Reading(f"shaft of {k} N\u00b7m/rad", ends(sticking.SPEEDS, (k,)))
               for k in SOME),
         note="our reading; stalls at 3 kN of the supply",
     ),
 )  # fmt: skip
 
-CLAIMS = (*SYNCHRONOUS, *ONE, *TWO, *THREE, *SHAFT)
-
 CONCLUSIONS = (
     Claim(
         "advice_faster", "8", "25",
         "Where actuator 2 is to differ, slower than 1 and 3 gives lower peaks than faster.",
-        Below(),
+        below(),
         (*(Reading(f"{slow} and {fast} mm/s", most((f"{fast} mm/s", case(2, fast)),
                                                    (f"{slow} mm/s", case(2, slow))))
            for slow, fast in ((418, 422), (419, 421))),
@@ -228,7 +215,7 @@ CONCLUSIONS = (
     Claim(
         "advice", "8", "25",
         "Running actuator 2 slower than 1 and 3 reduces the peak of the driving force.",
-        Below(),
+        below(),
         (*(Reading(f"{slow} mm/s, against one speed",
                    most(("420 mm/s", "spatial_420"), (f"{slow} mm/s", case(2, slow))))
            for slow in (418, 419)),

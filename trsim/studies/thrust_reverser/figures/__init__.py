@@ -13,14 +13,5 @@ from trsim.studies.thrust_reverser.figures import (
 )
 from trsim.studies.thrust_reverser.figures.drawing import Drawn
 
-FIGURES: tuple[Drawn, ...] = (
-    *laws.FIGURES,
-    *pendulum.FIGURES,
-    *clearance.FIGURES,
-    *place.FIGURES,
-    *speed.FIGURES,
-    *rod.FIGURES,
-    *mechanism.FIGURES,
-    *spatial.FIGURES,
-    *sticking.FIGURES,
-)
+IN_ORDER = (laws, pendulum, clearance, place, speed, rod, mechanism, spatial, sticking)
+FIGURES: tuple[Drawn, ...] = tuple(drawn for module in IN_ORDER for drawn in module.FIGURES)

@@ -7,22 +7,22 @@ import numpy as np
 
 from trsim.report.display import DEFAULT, Shown, display_units
 from trsim.report.figures import contact_history
-from trsim.report.orbits import circle, coloured, path
-from trsim.report.style import colour, thinned
+from trsim.report.orbits import circle, coloured, path, square
+from trsim.report.style import colour, panels, thinned
 from trsim.store.grow import Array
+from trsim.studies.thrust_reverser.cases import Cases
 from trsim.studies.thrust_reverser.runs import Runs
 
 UNITS = display_units(DEFAULT)
 ACCELERATION, VELOCITY = "angular acceleration", "angular velocity"
+DOOR = ("door_angle", "door_angle.rate", "door_angle.acceleration")
 QUANTITIES = {
-    "door_angle": "door angle",
-    "door_angle.rate": VELOCITY,
-    "door_angle.acceleration": ACCELERATION,
+    **dict(zip(DOOR, ("door angle", VELOCITY, ACCELERATION), strict=True)),
     "actuator.force": "driving force",
     "air.magnitude": "load",
 }
 MOST = 100_000  # points of a path
-Cases = tuple[tuple[str, str], ...]  # (label, case)
+ROOM = 1.15  # half width of a panel over the radius of the circle in it
 KILO = {"deg/s\u00b2": (1e-3, "10\u00b3 deg/s\u00b2")}  # of numbers too long for an axis
 
 
@@ -32,46 +32,55 @@ class Drawn(NamedTuple):
     number: str  # of the study, with a letter of ours where it has several versions
     panels: str  # the letters of the study
     caption: str
-    cases: tuple[str, ...]
-    draw: Callable[[Runs], Any]
+    cases: Cases
+    draw: Callable[[list[Shown]], Any]  # of the runs as stated, with the labels of the cases
 
     @property
     def anchor(self) -> str:
         """Its name as a file and as a place on the page."""
         return f"figure_{self.number.replace(' ', '_')}"
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(case for _, case in self.cases)
 
-def names(cases: Cases) -> tuple[str, ...]:
-    return tuple(case for _, case in cases)
-
-
-def those(runs: Runs, *cases: tuple[str, str]) -> list[Shown]:
-    """The runs as stated, (label, case)."""
-    return [Shown(runs.stated(case).run, label, UNITS) for label, case in cases]
+    def made(self, runs: Runs) -> Any:
+        """The figure."""
+        return self.draw([Shown(runs.stated(case).run, label, UNITS) for label, case in self.cases])
 
 
 def lettered(axes: Any, letter: str, text: str) -> None:
     axes.set_title(f"({letter}) {text}" if letter else text, loc="left")
 
 
-def scale(unit: str) -> tuple[float, str]:
-    return KILO.get(unit, (1.0, unit))
-
-
 def values(shown: Shown, channel: str) -> tuple[Array, str]:
     """A channel in the unit of its axis."""
-    factor, unit = scale(shown.unit(channel))
+    factor, unit = KILO.get(shown.unit(channel), (1.0, shown.unit(channel)))
     return factor * shown.values(channel), unit
 
 
+def over_time(runs: Sequence[Shown], of: Sequence[str], **options: Any) -> tuple[Any, Any]:
+    """A figure and its axes, in two columns: a panel for each channel, or joint with a contact."""
+    figure, axes = panels(-(-len(of) // 2), 2, height=2.1, width=7.2, **options)
+    for a, what, letter in zip(axes.flat, of, "abcdef", strict=False):
+        panel(a, runs, what, letter)
+    timed(axes[-1])
+    figure.align_ylabels()
+    return with_legend(figure, axes[0, 0], runs), axes
+
+
+def panel(axes: Any, runs: Sequence[Shown], of: str, letter: str, text: str = "") -> None:
+    """A channel over time, or the contact force at a joint."""
+    draw = curves if of in QUANTITIES else forces
+    draw(axes, runs, of, letter, text)
+
+
 def curves(axes: Any, runs: Sequence[Shown], channel: str, letter: str, text: str = "") -> None:
-    """One channel of all runs over time; the widest behind the others."""
+    """One channel of all runs over time."""
     found = [values(shown, channel) for shown in runs]
-    order = np.argsort([-fluctuates(x) for x, _ in found], kind="stable")
-    for k in order.tolist():
-        axes.plot(*thinned(runs[k].time, found[k][0]), color=colour(k), lw=0.7,
-                  label=runs[k].label)  # fmt: skip
-    quantity = QUANTITIES.get(channel, channel)
+    paths = [thinned(shown.time, x) for shown, (x, _) in zip(runs, found, strict=True)]
+    overlaid(axes, runs, paths, [fluctuates(x) for x, _ in found], lw=0.7)
+    quantity = QUANTITIES[channel]
     axes.set_ylabel(f"{quantity}\n({found[0][1]})")
     axes.margins(x=0.01)
     lettered(axes, letter, text or quantity)
@@ -85,24 +94,30 @@ def fluctuates(x: Array) -> float:
 def forces(axes: Any, runs: Sequence[Shown], joint: str, letter: str, text: str = "") -> None:
     """The force in a contact at accepted steps, zero in flight."""
     found = [contact_history(shown, joint) for shown in runs]
-    order = np.argsort([-np.max(force) for _, force in found], kind="stable")
-    for k in order.tolist():
-        time, force = found[k]
-        axes.plot(*thinned(time, force), color=colour(k), lw=0.7, label=runs[k].label)
+    overlaid(axes, runs, [thinned(*one) for one in found], [np.max(f) for _, f in found], lw=0.7)
     axes.set_ylabel("contact force\n(N)")
     axes.margins(x=0.01)
     axes.set_ylim(bottom=0.0)
     lettered(axes, letter, text or f"contact force at {joint}")
 
 
+def overlaid(
+    axes: Any, runs: Sequence[Shown], paths: Sequence[tuple[Array, Array]],
+    widths: Sequence[float], colours: Sequence[int] = (), **style: Any,
+) -> None:  # fmt: skip
+    """A path of each run; the widest behind the others."""
+    for k in np.argsort(np.negative(widths), kind="stable").tolist():
+        shade = colour(colours[k] if colours else k)
+        axes.plot(*paths[k], color=shade, label=runs[k].label, **style)
+
+
 def plane(
     axes: Any, runs: Sequence[Shown], x: str, y: str, named: tuple[str, str],
     colours: Sequence[int] = (),
 ) -> None:  # fmt: skip
-    """One channel over another; the widest behind the others."""
+    """One channel over another."""
     found = [(values(shown, x), values(shown, y)) for shown in runs]
-    paths = [(one[0][0], one[1][0]) for one in found]
-    portrayed(axes, runs, paths, colours)
+    portrayed(axes, runs, [(one[0][0], one[1][0]) for one in found], colours)
     axes.set_xlabel(f"{named[0]} ({found[0][0][1]})")
     axes.set_ylabel(f"{named[1]}\n({found[0][1][1]})")
 
@@ -111,10 +126,8 @@ def portrayed(
     axes: Any, runs: Sequence[Shown], paths: Sequence[tuple[Array, Array]], colours: Sequence[int]
 ) -> None:
     """Paths in a plane."""
-    order = np.argsort([-np.ptp(y) for _, y in paths], kind="stable")
-    for k in order.tolist():
-        axes.plot(*paths[k], lw=0.45, alpha=0.85, color=colour(colours[k] if colours else k),
-                  label=runs[k].label, rasterized=True)  # fmt: skip
+    widths = [np.ptp(y) for _, y in paths]
+    overlaid(axes, runs, paths, widths, colours, lw=0.45, alpha=0.85, rasterized=True)
 
 
 def journal(
@@ -130,22 +143,15 @@ def journal(
 
 def phase(shown: Shown, joint: str) -> tuple[Array, Array]:
     """Place and velocity in x (mm, mm/s): the rows, and the steps in touch between them."""
-    steps, names = shown.run.steps(joint), ("eccentricity_x", "eccentricity_x_rate")
-    time = np.concatenate([shown.run.time, steps["time"]])
-    both = [np.concatenate([shown.run.channel(f"{joint}.{n}"), steps[n]]) for n in names]
-    order = np.argsort(time, kind="stable")
-    order = order[:: max(1, -(-len(order) // MOST))]
-    return 1e3 * both[0][order], 1e3 * both[1][order]
+    _, x, rate = path(shown, joint, y="eccentricity_x_rate", most=MOST)
+    return 1e3 * x, 1e3 * rate
 
 
-def section(
-    axes: Any, runs: Sequence[Shown], name: str, letter: str, text: str,
-    colours: Sequence[int] = (),
-) -> None:  # fmt: skip
+def section(axes: Any, runs: Sequence[Shown], name: str, letter: str, text: str) -> None:
     """Points of a Poincare section in the bearing, with the circles of clearance."""
     marks, reach = "os^Dv", 0.0
     for k, shown in enumerate(runs):
-        points, shade = shown.run.poincare[name], colour(colours[k] if colours else k)
+        points, shade = shown.run.poincare[name], colour(k)
         joint = str(points.definition["x"]).partition(".")[0]
         c = shown.scaled(shown.run.parts[joint].clearance, "m")
         axes.plot(shown.scaled(points.x, "m"), shown.scaled(points.y, "m"), marks[k % 5], ms=3,
@@ -153,7 +159,7 @@ def section(
         circle(axes, c)
         axes.patches[-1].set_edgecolor(shade)
         reach = max(reach, c)
-    framed([axes], reach)
+    square([axes], ROOM * reach)
     axes.set_xlabel("eccentricity x (mm)")
     axes.set_ylabel("eccentricity y (mm)")
     lettered(axes, letter, text)
@@ -168,14 +174,6 @@ def orbit(axes: Any, shown: Shown, joint: str, letter: str, text: str) -> Any:
     axes.set_ylabel("eccentricity y (mm)")
     lettered(axes, letter, text)
     return shade
-
-
-def framed(axes: Sequence[Any], radius: float) -> None:
-    """Equal scales around a circle of a radius."""
-    for a in axes:
-        a.set_aspect("equal")
-        a.set_xlim(-1.15 * radius, 1.15 * radius)
-        a.set_ylim(-1.15 * radius, 1.15 * radius)
 
 
 def timed(axes: Sequence[Any]) -> None:

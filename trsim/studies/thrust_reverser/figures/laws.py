@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from trsim.errors import UsageError
+from trsim.report.display import Shown
 from trsim.report.style import colour, panels
 from trsim.studies.thrust_reverser.figures.drawing import Drawn
 from trsim.studies.thrust_reverser.numbers import Number
-from trsim.studies.thrust_reverser.runs import Runs
 
 MU, V0, V1 = 0.3, 1e-4, 1e-3  # -, m/s, m/s: of the study
 RADIUS, YOUNG, POISSON, RESTITUTION = 0.010, 207e9, 0.29, 0.9  # m, Pa: of the study
@@ -34,7 +34,7 @@ def number(text: str) -> Number:
     raise UsageError(f"no such number of a law: '{text}'")
 
 
-def figure_3(_: Runs) -> Any:
+def figure_3(_: list[Shown]) -> Any:
     """Both friction laws over sliding speed; the contact law over penetration."""
     from trsim.laws.friction import coulomb, modified_coulomb
 

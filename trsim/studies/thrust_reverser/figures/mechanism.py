@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from trsim.report.animation import solids
 from trsim.report.animation.motion import Motion, motion
+from trsim.report.display import Shown
 from trsim.report.style import panels
 from trsim.studies.thrust_reverser.figures.canvas import Canvas, view
 from trsim.studies.thrust_reverser.figures.drawing import Drawn, alike
 from trsim.studies.thrust_reverser.figures.spatial import ACTUATORS
-from trsim.studies.thrust_reverser.runs import Runs
 
 Array = NDArray[np.float64]
 
@@ -27,9 +27,9 @@ COWL, DOOR, ROD, LINK = "#9fb4c9", "#e07b28", "#2f7fc1", "#2a9d78"
 HOUSING, PISTON, RAIL, GROUND, NUMBER = "#b3202a", "#d9d9d9", "#6b7079", "#555a63", "#222222"
 
 
-def figure_22(runs: Runs) -> Any:
+def figure_22(shown: list[Shown]) -> Any:
     """Fairing, rails, actuators and chains, seen obliquely."""
-    moved = motion(runs.stated("spatial_420").run)
+    moved = motion(shown[0].run)
     figure, (axes,) = panels(1, 2, height=2.75, width=7.6)
     for a, k, text in ((axes[0], 0, "before the stroke"), (axes[1], -1, "at its end, 0.5 m")):
         draw(a, moved, k)
@@ -127,5 +127,5 @@ FIGURES = (
     Drawn("22", "", "The mechanism in space: fairing (grey, one sees through it) on rails at its "
           "edges, pushed by actuators 1 to 3 (red), and five chains with their doors (orange), "
           "large rods (blue) and transfer rods (green). Doors are drawn as the plates they are in "
-          "our data, 0.42 m wide, which meet as they turn.", ("spatial_420",), figure_22),
+          "our data, 0.42 m wide, which meet as they turn.", (("", "spatial_420"),), figure_22),
 )  # fmt: skip

@@ -1,15 +1,17 @@
 """Figures 23 to 26: five doors and three actuators, at one speed and each at another in turn."""
 
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from trsim.report.display import Shown
 from trsim.report.style import COLOURS, colour, panels, thinned
-from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, those, timed, with_legend
-from trsim.studies.thrust_reverser.runs import Runs
+from trsim.studies.thrust_reverser.cases import Cases
+from trsim.studies.thrust_reverser.figures.drawing import Drawn, lettered, timed, with_legend
 
 ACTUATORS = (1, 2, 3)
 SPEEDS = (418, 419, 420, 421, 422)  # mm/s
-SHADES = (0, 5, 6, 4, 1)  # colours of the speeds: from slow, blue, over black to fast, red
+SHADES = [COLOURS[k] for k in (0, 5, 6, 4, 1)]  # of the speeds: from slow, blue, to fast, red
 VARIANTS = (("ideal joints", "spatial_420"), ("play of 0.3 mm at every B", "spatial_play"),
             ("flexible rods", "spatial_flexible"))  # fmt: skip
 SHAFTS = (("without", "spatial_shaft_without"), ("0.176 N\u00b7m/rad", "spatial_shaft_softer"),
@@ -23,13 +25,14 @@ def case(odd: int, speed: int) -> str:
     return "spatial_420" if speed == 420 else f"spatial_{odd}_{speed}"
 
 
-def names(odd: int) -> tuple[str, ...]:
-    return tuple(case(odd, speed) for speed in SPEEDS)
+def speeds(odd: int) -> Cases:
+    """The cases with one actuator at each speed."""
+    return tuple((f"{speed} mm/s", case(odd, speed)) for speed in SPEEDS)
 
 
-def figure_23(runs: Runs) -> Any:
+def figure_23(shown: list[Shown]) -> Any:
     """All three actuators at one speed: along X, across in Y and Z."""
-    (one,) = those(runs, ("", "spatial_420"))
+    [one] = shown
     figure, axes = panels(3, height=1.8, width=6.3, sharex=True)
     for a, letter, axis in zip(axes[:, 0], "abc", "XYZ", strict=True):
         for k in ACTUATORS:
@@ -43,24 +46,13 @@ def figure_23(runs: Runs) -> Any:
         lettered(a, letter, f"{axis} direction")
     timed(axes[-1])
     figure.align_ylabels()
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
 
 
-def asynchronous(runs: Runs, odd: int) -> Any:
-    """The three actuators, a curve for each speed of one of them."""
-    shown = those(runs, *((f"{speed} mm/s", case(odd, speed)) for speed in SPEEDS))
-    return of_each(shown, [COLOURS[k] for k in SHADES], "-" * len(shown))
-
-
-def compared(runs: Runs, cases: tuple[tuple[str, str], ...], dashes: str = "----") -> Any:
-    """The three actuators, a curve for each case."""
-    shown = those(runs, *cases)
-    return of_each(shown, [colour(k) for k in range(len(shown))], dashes)
-
-
-def of_each(shown: list[Shown], shades: list[str], dashes: str) -> Any:
+def of_each(
+    shown: list[Shown], shades: Sequence[str] = COLOURS, dashes: str = "-----"
+) -> Any:  # fmt: skip
     """A panel for each actuator with its hold-back forces, all on one scale."""
     figure, axes = panels(3, height=1.9, width=6.3, sharex=True, sharey=True)
     for a, letter, k in zip(axes[:, 0], "abc", ACTUATORS, strict=True):
@@ -77,14 +69,14 @@ def of_each(shown: list[Shown], shades: list[str], dashes: str) -> Any:
 
 FIGURES = (
     Drawn("23", "abc", "Forces of the actuators at one speed of 420 mm/s; X: positive holds the "
-          "fairing back.", ("spatial_420",), figure_23),
+          "fairing back.", (("", "spatial_420"),), figure_23),
     *(Drawn(str(23 + odd), "abc", f"Forces of the actuators along X where actuator {odd} has a "
-            "speed of its own, the others 420 mm/s; positive holds the fairing back.", names(odd),
-            lambda runs, odd=odd: asynchronous(runs, odd)) for odd in ACTUATORS),
+            "speed of its own, the others 420 mm/s; positive holds the fairing back.", speeds(odd),
+            partial(of_each, shades=SHADES)) for odd in ACTUATORS),
     Drawn("23 with play and with flexible rods", "abc", "As figure 23, with play at the hinges of "
-          "all doors and with flexible rods (ours).", tuple(name for _, name in VARIANTS),
-          lambda runs: compared(runs, VARIANTS, "--:")),
+          "all doors and with flexible rods (ours).", VARIANTS,
+          partial(of_each, dashes="--:")),
     Drawn("25 with a shaft", "abc", "Actuator 2 at 418 mm/s, pistons that give way behind their "
           "supply, and a synchronising shaft, by its stiffness (ours).",
-          tuple(name for _, name in SHAFTS), lambda runs: compared(runs, SHAFTS)),
+          SHAFTS, of_each),
 )  # fmt: skip

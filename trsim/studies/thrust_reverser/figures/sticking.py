@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from trsim.report.display import Shown
 from trsim.report.maps import cells
 from trsim.report.style import panels
 from trsim.studies.thrust_reverser.figures.drawing import Drawn
-from trsim.studies.thrust_reverser.runs import Runs
 
 SPEEDS = (418, 416, 414, 412, 410, 408)  # mm/s, of actuator 2
 STIFFNESSES = ("0", "0.176", "0.53", "1.76", "5.3")  # N m/rad, of the shaft
@@ -25,18 +25,15 @@ def late(speed: int) -> str:
     return f"{420 - speed} mm/s"
 
 
-def jammed(runs: Runs, speed: int, stiffness: str) -> bool:
-    return str(runs.stated(case(speed, stiffness)).run.attributes["status"]) == "jammed"
-
-
-def sticking(runs: Runs) -> Any:
+def sticking(shown: list[Shown]) -> Any:
     """The time at which a run of the grid ends, and whether it is stuck."""
-    values = np.array([[float(runs.stated(case(speed, k)).run.summary["time"])
-                        for k in STIFFNESSES] for speed in SPEEDS])  # fmt: skip
-    ends = [["sticks" if jammed(runs, speed, k) else "full stroke" for k in STIFFNESSES]
-            for speed in SPEEDS]  # fmt: skip
+    grid = len(SPEEDS), len(STIFFNESSES)
+    values = np.reshape([float(one.run.summary["time"]) for one in shown], grid)
+    ends = np.reshape(["sticks" if one.run.attributes["status"] == "jammed" else "full stroke"
+                       for one in shown], grid)  # fmt: skip
     figure, axes = panels(1, height=3.4)
-    shade = cells(axes[0, 0], STIFFNESSES, [str(420 - speed) for speed in SPEEDS], values, ends)
+    late = [str(420 - speed) for speed in SPEEDS]
+    shade = cells(axes[0, 0], STIFFNESSES, late, values, ends.tolist())
     axes[0, 0].set_xlabel("stiffness of the shaft (N\u00b7m/rad)")
     axes[0, 0].set_ylabel("actuator 2 slower by (mm/s)")
     figure.colorbar(shade, label="end of the run (s)")
@@ -46,5 +43,5 @@ def sticking(runs: Runs) -> Any:
 FIGURES = (
     Drawn("25 until it sticks", "", "When an actuator stalls, its supply at 3 kN (ours): actuator "
           "2 slower than the others, over the stiffness of the synchronising shaft. A full stroke "
-          "takes 1.19 s.", CASES, sticking),
+          "takes 1.19 s.", tuple(("", name) for name in CASES), sticking),
 )  # fmt: skip
