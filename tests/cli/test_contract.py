@@ -16,12 +16,16 @@ from tests.cli.conftest import SCHEMAS, faults
 from tests.store import outside
 from trsim.assemble.assemble import assemble
 from trsim.cli import COMMANDS
+from trsim.cli.documents.files import Solver
+from trsim.cli.documents.runs import RunStatistics
 from trsim.cli.frame import EXIT_CODES
 from trsim.cli.published import ENDS, WORDS
 from trsim.errors import TrsimError
 from trsim.scenario.load import loads
+from trsim.scenario.scenario import SolverSpec
 from trsim.solve.simulate import simulate
 from trsim.statuses import STATUSES, Status
+from trsim.store.describe import CPU
 from trsim.store.hdf5 import write
 from trsim.sweep.folder import write_plan
 from trsim.sweep.plan import plan
@@ -441,3 +445,10 @@ def test_exit_codes_of_errors():
     """Every class of errors has a code of the list; every code is one a command can end with."""
     assert {kind.exit_code for kind in TrsimError.__subclasses__()} <= set(EXIT_CODES)
     assert set().union(*ENDS.values()) == set(EXIT_CODES)
+
+
+def test_show_knows_what_a_file_tells_of_the_solver():
+    """Every setting that is one value, and all statistics but times, stand in its document."""
+    settings = {name for name in SolverSpec.model_fields if name != "baumgarte"}
+    told = settings | set(RunStatistics.__annotations__) - {CPU}
+    assert told == set(Solver.__annotations__)

@@ -85,6 +85,16 @@ def test_refused(scenario, trsim, more, code, what, monkeypatch):
     assert (found, what in err) == (code, True), err
 
 
+def test_faults_are_told_once(scenario, trsim):
+    """A fault of many cases is that of the first; another one behind them is told too."""
+    sizes = ", ".join(f"0.{k} mm" for k in range(11, 23))
+    vary = ("--set", "bodies.rod.mass=[-1]", "--set", f"{B}=[{sizes}, -1 mm]")
+    code, _, err = trsim("sweep", "crank.yaml", *vary, *FAST)
+    assert code == 3
+    assert err.count("bodies.rod.mass: must be") == 1 and "clearance=0.11mm" in err
+    assert err.count("  Case: ") == 2 and "joints.B.clearance" in err
+
+
 def test_nothing_to_vary(scenario, trsim):
     code, _, err = trsim("sweep", "crank.yaml")
     assert code == 2 and "says nothing to vary" in err

@@ -123,9 +123,10 @@ def checked(planned: Any) -> None:
     found: dict[str, TrsimError] = {}
     for case, error in faults(planned):
         for problem in error.problems:
-            if problem.show() not in found and len(found) < SHOWN:
+            shown = problem.show()
+            if shown not in found and len(found) < SHOWN:
                 problem.hint = f"{problem.hint}\n  Case: {case.name}".strip()
-                found.setdefault(problem.show(), problem)
+                found[shown] = problem
         if len(found) >= SHOWN:
             break
     unique = {(p.what, p.path, p.place): p for p in found.values()}

@@ -1,16 +1,17 @@
 """Poincare sections asked for after a run: figures, and tables with the error of every point."""
 
-import csv
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from trsim.analyse.section import Interpolated, asked, section
 from trsim.report import style
+from trsim.report.asked import table
 from trsim.report.display import Shown, short
 from trsim.report.orbits import scattered
 from trsim.store.points import surface
 from trsim.store.read import Points
-from trsim.store.target import fresh, headed
+from trsim.store.target import headed
 
 HEAD = ("run", "time", "x", "y", "time_error", "x_error", "y_error")
 INTERPOLATED = "interpolated from output rows"
@@ -23,7 +24,8 @@ def draw(runs: list[Shown], wanted: tuple[str, ...], folder: Path) -> list[Path]
         what = asked(text)
         found = [(shown, section(shown.run, **what)) for shown in runs]
         stem = "_".join(["section", what["when"], what["crosses"], what["x"], what["y"]])
-        written.append(table(found, folder / f"{stem}.csv"))
+        rows = (row for shown, one in found for row in columns(shown, one))
+        written.append(table(folder / f"{stem}.csv", HEAD, rows, headed(*HEAD)))
         written.append(style.draw(folder / f"{stem}.png", figure, runs, found))
     return written
 
@@ -53,13 +55,8 @@ def points(shown: Shown, found: Interpolated) -> Points:
     return Points(definition, found.time, found.x, found.y, *units)
 
 
-def table(found: list[tuple[Shown, Interpolated]], path: Path) -> Path:
-    """The points in SI units, each with the error it may have."""
-    with fresh(path, headed(*HEAD)) as unfinished, unfinished.open("w", newline="") as file:
-        lines = csv.writer(file)
-        lines.writerow(HEAD)
-        for shown, one in found:
-            columns = (one.time, one.x, one.y, one.time_error, one.x_error, one.y_error)
-            rows = zip(*(column.tolist() for column in columns), strict=True)
-            lines.writerows([shown.label, *row] for row in rows)
-    return path
+def columns(shown: Shown, one: Interpolated) -> Iterator[tuple[Any, ...]]:
+    """Points in SI units, each with the error it may have."""
+    found = (one.time, one.x, one.y, one.time_error, one.x_error, one.y_error)
+    for row in zip(*(column.tolist() for column in found), strict=True):
+        yield shown.label, *row

@@ -17,6 +17,7 @@ class Solver(Statistics, total=False):
     """The settings of the solver, and what it did; nothing in a file that was not completed.
 
     method         as in the scenario, all of these
+    formulation    of the equations of motion
     end            s
     step           s
     tolerance      of the run
@@ -24,10 +25,14 @@ class Solver(Statistics, total=False):
     first_step     s
     max_step       s
     max_steps      of a run
+    locate_events  whether steps end where contacts open or close
     force          whether a warning was overruled
+    rounding_of_tolerance  what rounding made of a step at most, in units of what the tolerance
+                           allows; there where it is more
     """
 
     method: str
+    formulation: str
     end: Number
     step: Number
     tolerance: Number
@@ -35,7 +40,9 @@ class Solver(Statistics, total=False):
     first_step: Number
     max_step: Number
     max_steps: int
+    locate_events: bool
     force: bool
+    rounding_of_tolerance: Number
 
 
 class Summary(TypedDict, total=False):
