@@ -47,7 +47,7 @@ class Outcome(NamedTuple):
     time: float
     statistics: dict[str, float]
     peaks: Array  # (n_out, 4) largest, its time, smallest, its time
-    record: Record | None
+    record: Record
     start: Start
     fired: Mapping[str, int] = {}  # user event -> how often it happened
     bent: Mapping[str, tuple[float, Array]] = {}  # bar -> time and y where it was bent most
