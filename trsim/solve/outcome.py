@@ -16,7 +16,7 @@ from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
-from trsim.solve.march.openings import held_to, look, may_open, opened
+from trsim.solve.march.openings import held_to, look, opened
 from trsim.solve.march.record import Record, Settings
 from trsim.solve.march.works import LEAST, N_WORKED
 from trsim.solve.start.consistent import Start
@@ -158,7 +158,7 @@ def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
         from trsim.solve.diagnose.adrift import look_at_drift
 
         found["look"] = look_at_drift.address()
-    elif may_open(mechanism):
+    elif len(model.redundant) or mechanism.stages.switches.names:  # of a stage, too
         found["look"] = look.address()
     if setting.locate > 0 or len(model.watch):
         from trsim.solve.march.search import search

@@ -1,9 +1,12 @@
 """What changes during a run, in one record: a checkpoint is a copy of it."""
 
+from math import nan
+
 import numpy as np
 
 from trsim.elements.scene import Model
 from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8, i8
+from trsim.kernels.vectors import internal
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -19,9 +22,7 @@ CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as sh
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
 ADRIFT = 13  # without projection, where branches of the motion meet
 OPEN = 10  # a row that was dropped as redundant is not
-WINDS = (
-    12  # a fixed step turns a joint by more than is sure to be counted, see solve/march/turns.py
-)
+WINDS = 12  # a fixed step turns a joint by more than is sure to be counted, see turns.py
 LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
@@ -36,6 +37,16 @@ FOUND = 200  # places between two samples where extremes are looked for
     EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
+
+
+@internal
+def note_event(r, b, t, kind, row, speed):
+    """The next line of events, with no angle, neither work nor impulse."""
+    line = b.events[r.event_rows]
+    r.event_rows += 1
+    line[EVENT_TIME], line[EVENT_KIND], line[EVENT_ROW] = t, kind, row
+    line[EVENT_SPEED], line[EVENT_ANGLE] = speed, nan
+    line[EVENT_WORK] = line[EVENT_IMPULSE] = 0.0
 
 
 class Settings(Packed):
@@ -87,9 +98,7 @@ class Record(Packed):
     sight: A1  # (n_sensed) what the sensors that meet corners show at y
     chatter: A2  # (n_features, 3) last time a corner was met, how often in a row, how far it went
     stage: I1  # (n_switches) what user events have switched   assemble/stages.py
-    left_out: (
-        I1  # 1: a row of all there may be is not solved; empty where none can depend on others
-    )
+    left_out: I1  # 1: a row of all there may be is not solved; empty where none can be redundant
     section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
     jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
     passed: A2  # (PASSES_KEPT, 2 + 2 n_y + n_s) ways noted: times, states, branches of angles
@@ -110,7 +119,6 @@ class Record(Packed):
     worst_phi_dot: F8
     largest_energy: F8  # J, largest entry of the energy book so far: the scale of its residual
     largest_residual: F8  # J
-    last_event: F8  # s
     past_h: F8  # s, length of the step whose polynomial is in `past`
     past_error: F8  # error of the last step, for the controller; 0 after an event
     old_h: F8  # s, its length
@@ -341,14 +349,3 @@ def crowded(r: Record, b: Buffers) -> bool:
         (r.rows, b.rows), (r.step_rows, b.steps), (r.event_rows, b.events), (r.point_rows, b.points)
     )  # fmt: skip
     return any(2 * number > len(buffer) for number, buffer in filled)
-
-
-def copy(record: Record) -> dict[str, np.ndarray]:
-    """A checkpoint."""
-    return {name: array.copy() for name, array in record.arrays().items()}
-
-
-def restore(record: Record, checkpoint: dict[str, np.ndarray]) -> None:
-    """Go back to a checkpoint."""
-    for name, array in checkpoint.items():
-        getattr(record, name)[:] = array
