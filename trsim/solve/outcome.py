@@ -16,9 +16,9 @@ from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
-from trsim.solve.march.openings import held_to, look, may_open, opened
+from trsim.solve.march.openings import held_to, look, opened
 from trsim.solve.march.record import Record, Settings
-from trsim.solve.march.works import LEAST, N_WORKED
+from trsim.solve.march.works import LEAST
 from trsim.solve.start.consistent import Start
 from trsim.statuses import Ended
 
@@ -47,7 +47,7 @@ class Outcome(NamedTuple):
     time: float
     statistics: dict[str, float]
     peaks: Array  # (n_out, 4) largest, its time, smallest, its time
-    record: Record | None
+    record: Record
     start: Start
     fired: Mapping[str, int] = {}  # user event -> how often it happened
     bent: Mapping[str, tuple[float, Array]] = {}  # bar -> time and y where it was bent most
@@ -158,7 +158,7 @@ def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
         from trsim.solve.diagnose.adrift import look_at_drift
 
         found["look"] = look_at_drift.address()
-    elif may_open(mechanism):
+    elif len(model.redundant) or mechanism.stages.switches.names:  # of a stage, too
         found["look"] = look.address()
     if setting.locate > 0 or len(model.watch):
         from trsim.solve.march.search import search
@@ -223,41 +223,30 @@ def new_record(
     passes = rec.PASSES_KEPT if model.near_rows > 0.0 else 0
     model.mem[:] = begun.mem
     model.branch[:] = begun.branch
+    n_y, extremes = begun.y.size, len(model.kin) > 0
+    sizes = {
+        "n_y": n_y,
+        "gaps": len(model.contact) + len(model.watch),
+        "channels": model.n_out + len(model.vector),
+        "ends": 4 if extremes else 0,
+        "rows": rows if extremes else 0,
+        "n_w": n_w,
+        "n_dx": n_v,
+        "past_rows": past_rows,
+        "switches": switches,
+        "passes": passes,
+        "way": 2 + 2 * n_y + len(model.branch),
+        "meetings": rec.MEETINGS_KEPT if passes else 0,
+        "n_x": model.n_v + model.n_z - N_BOOK,
+    }
     record = Record(
         y=begun.y.copy(),
-        **{name: np.zeros_like(begun.y) for name in ("yd", "noise", "crossed")},
         mem=model.mem,
         branch=model.branch,
-        turning=np.zeros_like(model.branch),
-        gap=np.zeros((len(model.contact) + len(model.watch), 2)),
-        corner=np.zeros(len(model.contact)),
-        peak=np.zeros((rec.N_PEAK, model.n_out + len(model.vector))),
-        firm=np.ones((2, model.n_out + len(model.vector))),
-        book=np.zeros((1 + N_STORED, 2)),
-        sampled=np.zeros(rec.POINTS),
-        earlier=np.zeros((4 if len(model.kin) else 0, begun.y.size)),
-        stages=np.zeros((rows if len(model.kin) else 0, begun.y.size)),
-        largest=np.zeros(len(model.kin)),
-        **{name: np.zeros((rec.POINTS, len(model.kin))) for name in ("sample", "slope")},
+        firm=np.ones((2, sizes["channels"])),
         impact=begun.depth.copy(),
-        by_place=np.zeros((n_w, n_v)),
-        stale=np.zeros(model.n, np.int64),
-        **{name: np.zeros((n_w, n_w)) for name in ("by_rate", "lu")},
-        lu_pair=np.zeros((n_w, n_w), complex),
-        pivot=np.zeros((2, n_w), np.int64),
-        past=np.zeros((past_rows, begun.y.size)),
-        watch=np.zeros((len(model.watch), rec.N_WATCH)),
-        held=np.zeros(len(model.held)),
-        sight=np.zeros(len(model.sensed)),
-        chatter=np.zeros((len(model.feature), 3)),
-        stage=np.zeros(switches, np.int64),
         left_out=np.array(left_out, np.int64),
-        section=np.zeros((len(model.section), rec.N_SECTION)),
-        jolt=np.zeros((rec.JOLTS_KEPT, 5)),
-        passed=np.zeros((passes, 2 + 2 * begun.y.size + len(model.branch))),
-        meeting=np.zeros((rec.MEETINGS_KEPT if passes else 0, begun.y.size)),
-        swing=np.zeros((2, model.n_v + model.n_z - N_BOOK)),
-        worked=np.zeros((2, N_WORKED)),
+        **rec.zeros(Record, model, sizes),
     )
     record.weakest = 1.0
     record.length, record.speed_cap = begun.length, begun.speed

@@ -21,7 +21,6 @@ from trsim.solve.march.act import act
 from trsim.solve.march.anew import anew, begun_with, resumed, stuck
 from trsim.solve.march.calls import FIELDS
 from trsim.solve.march.checkpoint import State, begun_at, put_back, state
-from trsim.solve.march.features import put_back as put_back_held
 from trsim.solve.march.loop import begin, march, method_table
 from trsim.solve.march.record import Record, Settings, fresh_buffers
 from trsim.solve.outcome import (
@@ -110,8 +109,7 @@ def check_step(scenario: Any, found: Any) -> None:
     if fixed and step > found.explicit_step:
         raise ScenarioError(
             f"a step of {step:g} s is not stable: {method} needs at most "
-            f"{found.explicit_step:.3g} s, "
-            f"for {found.fastest_is} ({found.fastest:.3g}/s)",
+            f"{found.explicit_step:.3g} s, for {found.fastest_is} ({found.fastest:.3g}/s)",
             f"`step: {0.5 * found.explicit_step:.2g} s`, or `method: auto`; "
             "`force: true` tries it all the same",
             ("solver", "step"),
@@ -159,7 +157,7 @@ def compiled(
         clock0 -= put_back(checkpoint, r, work)
         work = resumed(mechanism, work, r)
         b = sparse.buffers(b, mechanism, work) if sparse else b
-        put_back_held(work, r)
+        work.tab[work.held] = r.held  # functions, as the record says
     else:
         begin(work, r, b, setting)
         r.h = first_step(scenario, r)

@@ -111,9 +111,9 @@ def lost_its_way(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     )
 
 
-def of_drift(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+def of_drift(scenario: Any, mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Rows that were open enough for accelerations to feel it where branches nearly meet."""
-    if r is not None and r.felt > TOLD * scenario.solver.tolerance:
+    if r.felt > TOLD * scenario.solver.tolerance:
         yield felt(scenario, r)
 
 

@@ -14,6 +14,7 @@ from trsim.errors import ModelError
 from trsim.solve.diagnose.locked import locked
 from trsim.solve.diagnose.strained import ALMOST, NEARLY, collapsed
 from trsim.solve.march.record import Record
+from trsim.solve.start.angles import posed
 
 Array = NDArray[np.float64]
 
@@ -70,8 +71,7 @@ def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
 
 def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
     """Which actuator has next to no length left, in words; empty where none is so short."""
-    w = workspace(mechanism.model)
-    poses(w, y)
+    w = posed(mechanism.model, y)
     for instance in mechanism.instances:
         length = instance.row.length
         if length == 0.0:

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.instances import Column
-from trsim.assemble.linear import SINGULAR
+from trsim.assemble.linear import SINGULAR, smallest_pivot
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import project_positions
 from trsim.elements.scene import scene
@@ -41,7 +41,7 @@ GIVEN_IN_TOLERANCES = 30.0
 def of_extremes(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """Channels of joints whose extremes are chance, with the largest of them and its time."""
     model, r = mechanism.model, outcome.record
-    if r is None or not model.near_rows > 0.0 or not np.min(r.firm, initial=1.0) < FAR:
+    if not model.near_rows > 0.0 or not np.min(r.firm, initial=1.0) < FAR:
         return
     regular = dependent(mechanism, 0.0, outcome.start.y)[1]
     least = min(FAR, (ROUNDING / model.tolerance) ** (2.0 / 3.0))
@@ -79,8 +79,7 @@ def sentence(mechanism: Mechanism, found: dict[str, tuple[float, float, float, s
 
 def astray(scenario: Any, outcome: Outcome) -> bool:
     """Whether the motion changed its branch there, or lost its energy, as is told elsewhere."""
-    r = outcome.record
-    return too_much_given(scenario, outcome) or (r is not None and r.crossings > 0)
+    return too_much_given(scenario, outcome) or bool(outcome.record.crossings > 0)
 
 
 def too_much_given(scenario: Any, outcome: Outcome) -> bool:
@@ -108,8 +107,7 @@ def forces(mechanism: Mechanism, outcome: Outcome, column: Column) -> list[float
 
 def certain(mechanism: Mechanism, outcome: Outcome, regular: float) -> float:
     """The pivot below which there is a pole, or nobody looked whether there is."""
-    r = outcome.record
-    if len(mechanism.model.redundant) or not regular > REGULAR or (r and r.n_meetings):
+    if len(mechanism.model.redundant) or not regular > REGULAR or outcome.record.n_meetings:
         return KNOWN
     return NEAR if mechanism.model.near > 0.0 else UNSEEN  # methods of scipy
 
@@ -122,7 +120,4 @@ def of_masses(mechanism: Mechanism, outcome: Outcome, regular: float) -> float:
     project_positions(work, 0.0, outcome.start.y.copy())
     if work.status[0] == SINGULAR:
         return 1.0
-    first = work.column_start[:-1]
-    of_rows = work.row[first] < work.m
-    pivot = float(np.min(work.value[first][of_rows] / work.first[of_rows], initial=1.0))
-    return min(1.0, pivot / regular**2)
+    return min(1.0, float(smallest_pivot.python(work)) / regular**2)

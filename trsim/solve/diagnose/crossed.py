@@ -26,7 +26,8 @@ from trsim.assemble.rank import of_length_one
 from trsim.assemble.reduce import all_rows, weights
 from trsim.elements.scene import Scene, scene
 from trsim.solve.diagnose.locked import dependent
-from trsim.solve.march.meetings import CLOSED, MEET, NEWTON, REACHED, known
+from trsim.solve.march.meetings import MEET, REACHED, known
+from trsim.solve.march.openings import CLOSED, NEWTON
 from trsim.solve.march.record import Record
 
 Array = NDArray[np.float64]
@@ -136,10 +137,8 @@ def distance(w: Scene, a: Place, b: Place) -> float:
 
 def coordinate_units(w: Scene) -> Array:
     """The mechanism's size of lengths, 1 of angles and of quaternions."""
-    if w.d == 3:
-        rigid = np.tile([w.size, w.size, 1.0], w.n_r - 1)
-    else:
-        rigid = np.tile([w.size] * 3 + [1.0] * 4, w.n_r - 1)
+    body = [w.size] * 2 + [1.0] if w.d == 3 else [w.size] * 3 + [1.0] * 4
+    rigid = np.tile(body, w.n_r - 1)
     return np.concatenate([rigid, np.full(w.n_q - rigid.size, w.size)])
 
 
@@ -173,9 +172,9 @@ def slope(w: Scene, y: Array) -> Array:
     return found
 
 
-def of_branches(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+def of_branches(mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Tell that a run changed its branch where branches nearly meet."""
-    if r is None or not r.crossings:
+    if not r.crossings:
         return
     t, many = float(r.crossed_t), int(r.crossings)
     names, nearly = dependent(mechanism, t, r.crossed)

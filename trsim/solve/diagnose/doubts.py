@@ -191,7 +191,7 @@ def of_elements(scenario: Any, mechanism: Mechanism, peaks: Array) -> Iterator[s
 
 def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:
     """What a fixed step makes of the fastest turn: no tolerance holds it."""
-    turn = float(outcome.record.step_turn) if outcome.record is not None else 0.0
+    turn = float(outcome.record.step_turn)
     if turn > COARSE:
         step, order = scenario.solver.step, METHODS[scenario.solver.method].order
         yield (
@@ -203,8 +203,6 @@ def of_turns(scenario: Any, outcome: Outcome) -> Iterator[str]:
 
 def of_waves(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """Motion of flexible bars that implicit steps went past: it is damped out, not followed."""
-    if outcome.record is None:
-        return
     energy = outcome.peaks[mechanism.model.column_energy :, 0]
     if energy[0] <= AT_REST * np.max(np.abs(energy[1 : 1 + len(STORED)])):
         return
@@ -237,7 +235,7 @@ def of_jumps(mechanism: Mechanism, r: Record) -> Iterator[str]:
 def of_rounding(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """A tolerance below what the arithmetic can tell."""
     rounded = outcome.statistics.get("rounding_of_tolerance", 0.0)
-    if rounded <= 1.0 or outcome.record is None:
+    if rounded <= 1.0:
         return
     what = whose(mechanism, int(outcome.record.rounded_at))
     much, inside = outcome.record.rounded_by, f" in {what}" if what else ""
@@ -265,14 +263,13 @@ def of_books(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[
             f"exchanged; {remedy}"
         )
     off = numbers.get("work_error_relative", 0.0)
-    if outcome.record is not None and np.any(outcome.record.worked) and off > WORKS:
+    if np.any(outcome.record.worked) and off > WORKS:
         yield (
             "steps are so long that the works of the energy book are wrong by about "
             f"{100 * off:.2g} % of the largest energy exchanged, however well it closes: make "
             "`step` smaller"
         )
-    if outcome.record is not None:
-        yield from of_jumps(mechanism, outcome.record)
+    yield from of_jumps(mechanism, outcome.record)
     given = numbers.get("work_of_projection_relative", 0.0)
     if too_much_given(scenario, outcome) and work > least and outcome.status in WELL:
         yield (
@@ -315,7 +312,7 @@ def of_events(outcome: Outcome) -> Iterator[str]:
 
 def of_rows(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """Redundant rows that were open by more than the accuracy asked for."""
-    if outcome.record is None or outcome.status not in WELL:
+    if outcome.status not in WELL:
         return
     if text := apart(mechanism, outcome.record):
         yield text

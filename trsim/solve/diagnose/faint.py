@@ -28,8 +28,6 @@ def of_vibrations(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iter
 
     Nothing where all of them are nothing; no more than their size where rounding is told of.
     """
-    if outcome.record is None:
-        return
     r = outcome.record
     off, total, w = float(r.blurred), float(r.blurred_sum), float(r.blurred_w)
     largest = float(r.top_acceleration)

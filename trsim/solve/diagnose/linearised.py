@@ -36,6 +36,7 @@ from trsim.assemble.reduce import (
 from trsim.elements.contract import FLIGHT, N_BOOK, PHASE, ContactNumbers
 from trsim.elements.scene import Model, Scene, scene
 from trsim.errors import ModelError
+from trsim.solve.methods.ggl_tables import node_masses
 from trsim.solve.start.consistent import Start
 from trsim.solve.start.elastic import acted_on, bars_alone, elastic_stiffness
 from trsim.solve.start.velocities import with_velocities
@@ -90,10 +91,8 @@ def linearised(mechanism: Mechanism, begun: Start, order: int = 2) -> Linearised
         columns[:, k] = probe.difference(kind, place)
         if order > 2:
             columns[:, k] += (columns[:, k] - probe.difference(kind, place, 2.0)) / 3.0
-    A[f:, :f], A[f:, f : 2 * f] = (
-        columns[:, :r] @ probe.ways.T,
-        columns[:, r : 2 * r] @ probe.ways.T,
-    )
+    A[f:, :f] = columns[:, :r] @ probe.ways.T
+    A[f:, f : 2 * f] = columns[:, r : 2 * r] @ probe.ways.T
     A[f:, 2 * f :] = columns[:, 2 * r :]
     if mechanism.beams:
         A[f : 2 * f, :f] -= probe.twists.T @ elastic_stiffness(work, begun.y) @ probe.twists
@@ -127,16 +126,8 @@ def smooth(mechanism: Mechanism) -> Model:
 def mass_matrix(work: Scene) -> Array:
     """M (n_v, n_v) in the axes of the solve."""
     M = np.zeros((work.n_v, work.n_v))
-    for first, nodes, at, _ in work.beam.tolist():
-        width = work.d_node // 2
-        band = work.consistent[at : at + 2 * nodes]
-        o = work.v_node + work.d_node * (first - work.n_r)
-        for c in range(width):
-            # places and slopes of one direction, node by node
-            own = o + c + width * np.arange(2 * nodes)
-            for p in range(band.shape[1]):
-                M[own[p:], own[: 2 * nodes - p]] = band[: 2 * nodes - p, p]
-                M[own[: 2 * nodes - p], own[p:]] = band[: 2 * nodes - p, p]
+    for place, value in node_masses(work).items():
+        M[place] = value
     for f in range(1, work.n_r):
         o = work.d * (f - 1)
         if work.d == 3:
@@ -175,9 +166,8 @@ class Probe:
         self.given = world_rates(work, self.y)
         # columns: what a unit of every velocity of the solve does to the world-axes rates
         T = np.zeros((6 * (work.n - 1), self.n_v))
-        T[6 * (work.n_r - 1) :, work.v_node :] = np.eye(6 * (work.n - work.n_r))[
-            :, moves(work, work.d == 3)[6 * (work.n_r - 1) :]
-        ]
+        of_nodes = moves(work, work.d == 3)[6 * (work.n_r - 1) :]
+        T[6 * (work.n_r - 1) :, work.v_node :] = np.eye(of_nodes.size)[:, of_nodes]
         for f, R in enumerate(work.X[1 : work.n_r, 3:].reshape(-1, 3, 3)):
             if work.d == 3:
                 T[[6 * f + c for c in IN_PLANE], range(3 * f, 3 * f + 3)] = 1.0

@@ -195,18 +195,13 @@ def turning(g: Array, h: Array) -> Array:
 def holding(r: Array, g: Array, beam: Beam, held: list[tuple[int, bool]]) -> Array:
     """Rows that hold a bar: those of its supports, and of the mean of what they leave free."""
     nodes, width = r.shape
-    rows = []
+    one = unit_rows(nodes, width)
+    rows: list[Array] = []
     for node, clamped in held:
-        for c in range(width):
-            row = np.zeros((nodes, 2, width))
-            row[node, 0, c] = 1.0
-            rows.append(row.ravel())
+        rows.extend(one[node, 0])
         if clamped:
             across = np.linalg.svd(g[node][None])[2][1:]
-            for direction in across:
-                row = np.zeros((nodes, 2, width))
-                row[node, 1] = direction
-                rows.append(row.ravel())
+            rows.extend(across @ one[node, 1])
     supported = np.reshape(rows, (len(rows), 2 * nodes * width))
     motions = rigid(r, g)
     left = motions
@@ -220,15 +215,16 @@ def holding(r: Array, g: Array, beam: Beam, held: list[tuple[int, bool]]) -> Arr
     return np.concatenate([supported, left.T @ np.kron(M, np.eye(width))])
 
 
+def unit_rows(nodes: int, width: int) -> Array:
+    """Of every number of a node the row that holds it alone, (nodes, 2, width, coordinates)."""
+    return np.eye(2 * nodes * width).reshape(nodes, 2, width, -1)
+
+
 def rigid(r: Array, g: Array) -> Array:
     """Orthonormal rigid motions of the nodes, (coordinates, 3 or up to 6)."""
     nodes, width = r.shape
     centred = r - r.mean(axis=0)
-    motions = []
-    for c in range(width):
-        motion = np.zeros((nodes, 2, width))
-        motion[:, 0, c] = 1.0
-        motions.append(motion.ravel())
+    motions = [*unit_rows(nodes, width)[:, 0].sum(axis=0)]
     for a in range(width):
         for b in range(a):
             motion = np.zeros((nodes, 2, width))

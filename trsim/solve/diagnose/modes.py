@@ -119,9 +119,8 @@ def turned(mechanism: Mechanism, begun: Start, rates: np.ndarray) -> np.ndarray:
     poses(w, begun.y)
     nodes = rates.reshape(w.n - 1, 6, -1).copy()
     g = w.G[w.n_r :, :3, None]
-    nodes[w.n_r - 1 :, 3:] = np.cross(g, nodes[w.n_r - 1 :, 3:], axis=1) / np.sum(
-        g * g, axis=1, keepdims=True
-    )
+    square = np.sum(g * g, axis=1, keepdims=True)
+    nodes[w.n_r - 1 :, 3:] = np.cross(g, nodes[w.n_r - 1 :, 3:], axis=1) / square
     return np.asarray(nodes.reshape(rates.shape))
 
 

@@ -21,7 +21,7 @@ HELD = 1e-3  # what is asked for
 def of_sizes(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
     """The body whose turns are held least of those that turn."""
     r, model, solver = outcome.record, mechanism.model, scenario.solver
-    if r is None or not METHODS[solver.method].adaptive:
+    if not METHODS[solver.method].adaptive:
         return
     rates = np.arange(model.n_q, model.n_q + model.v_node)
     y0 = outcome.start.y

@@ -17,8 +17,9 @@ SHOWN = 4  # names of a list
 
 def skipped(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     """Sentences "what: why"."""
-    parts = (_rows, _bars, _contacts, _stabilisation, _start, _peaks, _channels, _points, _keys)
-    return tuple(text for part in parts for text in part(scenario, mechanism))
+    parts = (_rows, _bars, _contacts, _stabilisation, _start, _peaks, _channels, _points)
+    texts = (text for part in parts for text in part(scenario, mechanism))
+    return (*texts, *unread(scenario))
 
 
 def _rows(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
@@ -119,10 +120,6 @@ def _points(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     for name, spec in scenario.phase_portraits.items():
         if joint := without_play(scenario, (spec.x, spec.y)):
             yield f"phase portrait '{name}': the clearance of {joint} is 0"
-
-
-def _keys(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
-    yield from unread(scenario)
 
 
 def unread(scenario: Any) -> Iterator[str]:

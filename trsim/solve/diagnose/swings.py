@@ -23,10 +23,8 @@ from trsim.solve.march.record import Record
 ANGLE, WHOLE = "rad", 1.0
 
 
-def of_sections(scenario: Any, mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+def of_sections(scenario: Any, mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Sections with points between swings too small to be resolved."""
-    if r is None:
-        return
     for k, section in enumerate(mechanism.sections):
         swings = r.section[k, rec.SWINGS :]
         if not section.when or not np.any(swings):

@@ -6,10 +6,8 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.solve.march.record import Record
 
 
-def of_hinges(mechanism: Mechanism, r: Record | None) -> Iterator[str]:
+def of_hinges(mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Each of them as the run ended, and what to do."""
-    if r is None:
-        return
     for (section, name), angle in mechanism.stages.without_hinge(r.stage):
         joint = angle.joint
         what = f"drives.{name}:" if section == "drives" else f"joints.{joint}: its lock"

@@ -19,7 +19,7 @@ stiff, of places and rates.
 
 from math import sqrt
 
-from trsim.elements.contract import FLIGHT, PHASE
+from trsim.elements.contract import FLIGHT, Memory
 from trsim.kernels.vectors import internal
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
@@ -61,7 +61,7 @@ def untouched(s, r):
 @internal
 def touches(s, r, c):
     """Whether the contact c has begun, or a step is about to begin it."""
-    return r.gap[c, 0] > 0.0 or r.mem[s.contact[c], PHASE] != FLIGHT
+    return r.gap[c, 0] > 0.0 or Memory(r, s.contact[c]).phase != FLIGHT
 
 
 @internal
@@ -174,14 +174,12 @@ def rounded(s, r, turned):
     turned: rad, by which what the error consists of turns in the step, 0 where it is not known;
     rounding of speeds is felt that many times.
     """
-    free, noise = r.speed**2 / r.length, 0.0
+    free = r.speed**2 / r.length
     for f in range(1, s.n_r):
         for c in range(s.d):
             turns = c == 2 if s.d == 3 else c > 2
             free = max(free, abs(s.free[f, c]) * (s.reach if turns else 1.0))
-    if r.noisy > 0.0:
-        for c in range(s.n_q, s.n_q + s.v_node):
-            noise = max(noise, s.scale[c] * r.noise[c])
+    noise = largest(s, r.noise, 0.0) if r.noisy > 0.0 else 0.0
     turned = max(min(turned, WIDEST), 1.0) if turned > 0.0 else WIDEST
     return max(ROUNDING * free, turned * noise)
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
-from trsim.elements.contract import SINCE, Row
+from trsim.elements.contract import Memory, Row
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
 from trsim.solve.march.phases import settle
-from trsim.solve.march.record import Buffers, Record, Settings
+from trsim.solve.march.record import Buffers, Record, Settings, note_event
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -47,14 +47,14 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -
         if not r.watch[k, rec.JUST_NOW]:
             continue
         r.watch[k, rec.JUST_NOW] = 0.0
-        line = b.events[r.event_rows]
-        line[:] = (t, rec.USER, len(mechanism.instances) + 1 + k,
-                   r.gap[len(work.contact) + k, 1], np.nan, 0.0, 0.0)  # fmt: skip
-        r.event_rows += 1
+        row, speed = len(mechanism.instances) + 1 + k, r.gap[len(work.contact) + k, 1]
+        note_event.python(r, b, t, rec.USER, row, speed)
         if event.record:
             recorded.append(np.array([t, k, *b.out[: work.n_out]]))
         try:
-            work, line[rec.EVENT_WORK] = turned(mechanism, work, r, b, setting, event)
+            work, b.events[r.event_rows - 1, rec.EVENT_WORK] = turned(
+                mechanism, work, r, b, setting, event
+            )
         except ModelError as error:
             ended = "failed", failure(event, error)
             break
@@ -144,16 +144,16 @@ def take_hold(mechanism: Any, work: Scene, model: Any, r: Record, n: int, before
         if before == LOOSE:
             r.y[first + new] = work.S[AnyDrive(work, e).coordinate, 0]
         elif old < 0:
-            since = t - float(r.mem[e, SINCE])
+            since = t - Memory(r, e).since
             r.y[first + new] = rates_at(work.tab, int(AnyDrive(work, e).motion), since)[0]
     slip = instance.row.slip
     if slip >= 0:
         if before == LOOSE:
             take_along(work, r, instance.row)
         else:
-            r.y[first + slip] += prescribed_rate(work, e, t - float(r.mem[e, SINCE]))
+            r.y[first + slip] += prescribed_rate(work, e, t - Memory(r, e).since)
         r.y[first + slip] -= prescribed_rate(model, e, 0.0)
-    r.mem[e, SINCE] = t
+    Memory(r, e).since = t
 
 
 def take_along(work: Scene, r: Record, row: Row) -> None:

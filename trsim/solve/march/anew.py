@@ -5,12 +5,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import kinetic, poses, stored_energy
-from trsim.assemble.linear import SINGULAR
+from trsim.assemble.equations import poses
+from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.mechanism import Mechanism
-from trsim.assemble.projection import close_positions, project_positions, project_velocities
+from trsim.assemble.projection import (
+    CLOSED,
+    NEWTON,
+    close_positions,
+    project_positions,
+    project_velocities,
+)
 from trsim.elements.scene import Model, Scene, carried, scene
 from trsim.errors import FileError
+from trsim.solve.march.act import total_energy
 from trsim.solve.march.checkpoint import ANEW, UNFIT
 from trsim.solve.march.openings import FEEBLE
 from trsim.solve.march.phases import settle
@@ -19,7 +26,6 @@ from trsim.solve.start.consistent import Start
 
 Array = NDArray[np.float64]
 
-NEWTON, CLOSED = 8, 1e-14  # steps; of the mechanism's size
 NO_TIME, MANY = 1e-7, 30  # of the run; rows chosen anew so soon after others, so many times
 AT_END = 2e-15  # of the time of a step's end: an output row there
 
@@ -56,10 +62,7 @@ def same(work: Scene, model: Model) -> bool:
 def feeble(work: Scene, y: Array) -> bool:
     """Whether rows nearly depend on each other, by the pivots of S; see openings.py."""
     project_positions(work, 0.0, y.copy())
-    first = work.column_start[:-1]
-    of_rows = work.row[first] < work.m
-    shares = work.value[first][of_rows] / work.first[of_rows]
-    return bool(work.status[0] == SINGULAR or np.min(shares, initial=1.0) < FEEBLE)
+    return bool(smallest_pivot.python(work) < FEEBLE)
 
 
 def anew(
@@ -77,9 +80,9 @@ def anew(
         return work
     r.left_out[:] = left_out
     work = carried(work, stages.choice(r.stage, left_out).model)
-    before = total_energy(work, r)
+    before = total_energy(work, float(r.t), r.y)
     project(work, float(r.t), r.y)
-    r.work_projection += total_energy(work, r) - before
+    r.work_projection += total_energy(work, float(r.t), r.y) - before
     settle(work, r, b, setting)
     last = int(r.rows) - 1
     if not acted and last >= 0 and b.rows[last, 0] >= r.t * (1.0 - AT_END):
@@ -100,9 +103,3 @@ def project(work: Scene, t: float, y: Array) -> None:
     close_positions(work, t, y, CLOSED * work.size, NEWTON)
     poses(work, y)
     project_velocities(work, y)
-
-
-def total_energy(work: Scene, r: Record) -> float:
-    """Kinetic and stored, J."""
-    poses(work, r.y)
-    return float(kinetic(work, r.y) + stored_energy(work, float(r.t)))

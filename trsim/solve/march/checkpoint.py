@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene
 from trsim.errors import FileError
-from trsim.solve.march.record import Record, copy, restore
+from trsim.solve.march.record import Record
 from trsim.solve.start.consistent import Start
 
 UNFIT, ANEW = "the checkpoint does not fit this run", "Without --resume the run starts anew."
@@ -28,7 +28,7 @@ State = dict[str, NDArray[Any]]
 def state(r: Record, work: Scene, begun: Start, cpu: float) -> State:
     """A copy: it stays as it is while the run goes on."""
     return {
-        **{f"record.{name}": array for name, array in copy(r).items()},
+        **{f"record.{name}": array.copy() for name, array in r.arrays().items()},
         **{f"start.{f.name}": np.array(getattr(begun, f.name)) for f in fields(begun)},
         "scene.status": work.status.copy(),
         "cpu": np.array(cpu),
@@ -62,6 +62,7 @@ def put_back(checkpoint: State, r: Record, work: Scene) -> float:
         other = checkpoint.get(name)
         if other is None or (other.shape, other.dtype) != (array.shape, array.dtype):
             raise FileError(f"{UNFIT}: {name}", ANEW)
-    restore(r, {name: checkpoint[f"record.{name}"] for name in r.arrays()})
+    for name, array in r.arrays().items():
+        array[:] = checkpoint[f"record.{name}"]
     work.status[:] = checkpoint["scene.status"]
     return float(checkpoint["cpu"])

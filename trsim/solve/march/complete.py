@@ -7,7 +7,7 @@ from math import sqrt
 
 from trsim.assemble.equations import evaluate, kinetic
 from trsim.assemble.outputs import measure
-from trsim.elements.contract import FLIGHT, GRAVITY, PHASE, SCENE, compiled
+from trsim.elements.contract import FLIGHT, GRAVITY, SCENE, Memory, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.packed import I1
@@ -40,7 +40,7 @@ from trsim.solve.march.calls import (
 )
 from trsim.solve.march.dense_output import build, measure_inside, move_end
 from trsim.solve.march.earlier import keep_step
-from trsim.solve.march.events import SAME
+from trsim.solve.march.events import NONE, ROUNDING, SAME
 from trsim.solve.march.features import call_meet, next_instant
 from trsim.solve.march.land import land, limits_to_measure
 from trsim.solve.march.norm import grow
@@ -70,9 +70,7 @@ LEAK = 0.1  # times the tolerance, of the kinetic energy
 THROWN = 1e-3  # of the kinetic energy
 FROM_REST = 0.01  # of the kinetic energy at the end of a step
 EXACT = 5  # Newton steps to the end of a step that an event cuts
-NOTHING = 2.0  # no event in the step
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
-ROUNDING = 1e-15  # of the mechanism's size: a gap is not known better
 NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
 SETTLED = 100.0  # times these: what rounding of a step and of the time may leave of a gap
 SLIDE = 0.03  # times the root of the tolerance, of a step: what its end may move along its tangent
@@ -111,7 +109,7 @@ def complete(s, r, b, setting, method):
         return undone(r, worst, worst_rate, WOUND)
     event = corner = False
     if method[SEARCH_AT] > 0 or method[CORNERS_AT] > 0:
-        theta = other = NOTHING
+        theta = other = NONE
         if method[CORNERS_AT] > 0:
             theta = call_search(method[CORNERS_AT], s, r, b, setting, method)
             if theta == UNCERTAIN:
@@ -169,8 +167,7 @@ def complete(s, r, b, setting, method):
     accept(s, r, b, last)
     take_sides(s, r)
     if method[IMPLICIT_AT] > 0:
-        for k in range(r.past.shape[0]):
-            copy_to(r.past[k], b.P[k])
+        copy_table(r.past, b.P)
         r.past_h, r.history = b.h, BEHIND
         r.jacobian = r.next_jacobian
     if setting.locate == 0:
@@ -201,9 +198,8 @@ def strayed(s, r, setting, h):
     if setting.fixed_step > 0.0 or h <= BRIEF * setting.t_end:
         return False
     far = FAR * setting.step_error
-    return r.off > far * s.size or r.off_rate > far * max(
-        r.speed, r.speed_cap, s.size / setting.t_end
-    )
+    fastest = max(r.speed, r.speed_cap, s.size / setting.t_end)
+    return r.off > far * s.size or r.off_rate > far * fastest
 
 
 @internal
@@ -242,16 +238,13 @@ def sooner(b, corner, event):
     """Whether an event, and whether a corner of a function, ends the step; of the later none."""
     if corner > event + SAME:
         for n in range(b.met.shape[0]):
-            b.met[n, 0] = NOTHING
+            b.met[n, 0] = NONE
     elif event > corner + SAME:
         for c in range(b.root.size):
-            b.root[c] = NOTHING
+            b.root[c] = NONE
         for c in range(b.corner_root.size):
-            b.corner_root[c] = NOTHING
-    return (
-        event <= 1.0 and event <= corner + SAME,
-        corner <= 1.0 and corner <= event + SAME,
-    )
+            b.corner_root[c] = NONE
+    return event <= min(corner + SAME, 1.0), corner <= min(event + SAME, 1.0)
 
 
 @internal
@@ -347,7 +340,7 @@ def accept(s, r, b, last):
     r.steps += 1
     for c in range(s.contact.size):
         e = s.contact[c]
-        if r.mem[e, PHASE] != FLIGHT and r.gap[c, 0] > 0.0:
+        if Memory(r, e).phase != FLIGHT and r.gap[c, 0] > 0.0:
             grow(s, r, c)
             if s.wanted[e] >= 0 and b.steps.shape[1] > 2:
                 line = b.steps[r.step_rows]

@@ -6,7 +6,7 @@ where the branch is left at the end of a step or at any stage of it.
 """
 
 from trsim.assemble.equations import call_one, poses
-from trsim.elements.contract import BRANCH, CONTACT, PHASE, WHOLE
+from trsim.elements.contract import CONTACT, WHOLE, Memory
 from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.illinois import between, narrowed
@@ -21,16 +21,22 @@ def any_left(s, r, b):
     """Whether some element left its branch during the step, as far as its evaluations tell."""
     for c in range(s.contact.size):
         e = s.contact[c]
-        if s.mem[e, PHASE] == CONTACT and (b.corner1[c] > 0.0 or s.left[e] > 0.0):
+        if Memory(s, e).phase == CONTACT and (b.corner1[c] > 0.0 or s.left[e] > 0.0):
             return True
     return False
 
 
 @internal
-def beyond_inside(s, r, b, c, theta):
-    """How far contact c has left its branch at theta of the step."""
+def show(s, r, b, theta):
+    """The poses at theta of the step, whose state is left in b.y2."""
     call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
     poses(s, b.y2)
+
+
+@internal
+def beyond_inside(s, r, b, c, theta):
+    """How far contact c has left its branch at theta of the step."""
+    show(s, r, b, theta)
     call_one(s, s.corners, b.t + theta * b.h, s.contact[c])
     return s.corner[s.contact[c], 0]
 
@@ -39,7 +45,7 @@ def beyond_inside(s, r, b, c, theta):
 def corner_root(s, r, b, c):
     """Where contact c first leaves its branch, as theta in [0, 1]; NONE if it does not."""
     e = s.contact[c]
-    if s.mem[e, PHASE] != CONTACT or not (b.corner1[c] > 0.0 or s.left[e] > 0.0):
+    if Memory(s, e).phase != CONTACT or not (b.corner1[c] > 0.0 or s.left[e] > 0.0):
         return NONE
     low, f_low = 0.0, r.corner[c]
     inside = f_low < 0.0
@@ -72,7 +78,8 @@ def bracketed(s, r, b, c, low, high):
 def look(s, c):
     """Put contact c, newly closed, on the branch of its law that it is on."""
     e = s.contact[c]
-    s.mem[e, BRANCH] = WHOLE
+    own = Memory(s, e)
+    own.branch = WHOLE
     s.corner[e, 1] = WHOLE  # stays where the element has no corners
     call_one(s, s.corners, 0.0, e)
-    s.mem[e, BRANCH] = s.corner[e, 1]
+    own.branch = s.corner[e, 1]

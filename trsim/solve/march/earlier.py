@@ -6,7 +6,7 @@ is asked for, or kept if it was.  Whichever step it is, what channels inside it 
     y0, dense output, start, work of projections up to its start, and in it
 """
 
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.vectors import copy_table, copy_to, internal
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, STAGES_AT, call_dense
 from trsim.solve.march.samples import older
 
@@ -62,7 +62,6 @@ def build_earlier(s, r, b, method):
     """The dense output of the step that was kept, in the place of its stages."""
     e, t, h = r.earlier, r.earlier_t, r.earlier_h
     call_dense(method[DENSE_AT], s, r.stages, t, e[0], h, e[1], b.P_earlier)
-    for k in range(b.P_earlier.shape[0]):
-        copy_to(r.stages[k], b.P_earlier[k])
+    copy_table(r.stages, b.P_earlier)
     r.earlier_built = 1
     r.dense_built += 1

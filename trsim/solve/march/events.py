@@ -14,17 +14,15 @@ beginning of the step on, until it would hide no more than what the tolerance al
 
 from math import inf
 
-from trsim.assemble.equations import call_one, poses
+from trsim.assemble.equations import call_one
 from trsim.assemble.switches import LIMITS
 from trsim.assemble.travel import ANGLE
-from trsim.elements.contract import CONTACT, FLIGHT, PHASE, UNLOCATED
+from trsim.elements.contract import FLIGHT, UNLOCATED, Memory
 from trsim.kernels.vectors import internal
-from trsim.solve.march.calls import call_interpolate
-from trsim.solve.march.corners import any_left, corner_root
+from trsim.solve.march.corners import NONE, any_left, corner_root, show
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.spread import spread, spread_at_stages
 
-NONE = 2.0  # a root beyond the step
 SAME = 1e-12  # roots closer than this part of a step are one event
 HIDDEN = 1e-3  # of the error allowed: how deep a crossing may be that is not looked for
 ROUNDING = 1e-15  # of the mechanism's size: what no place is known better than
@@ -84,8 +82,7 @@ def falls(r0, r1, M, length):
 def inside(s, r, b, c, theta):
     """Penetration and rate of contact c at theta of the step; counted on, what is watched
     (watch.py)."""
-    call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
-    poses(s, b.y2)
+    show(s, r, b, theta)
     t = b.t + theta * b.h
     if c >= s.contact.size:
         return watched(s, t, c - s.contact.size)
@@ -124,11 +121,16 @@ def bracketed_root(s, r, b, c, low, high):
 
 
 @internal
+def hidden_depth(s, r, setting, kind):
+    """How far beyond its end something may go, in m or rad by its kind, that is not looked for."""
+    depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
+    return depth / s.reach if kind == ANGLE else depth
+
+
+@internal
 def hides(s, r, setting, c, M, length):
     """Whether a part of a step is so short that what it may hide does not count."""
-    depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
-    if s.travel[c, 0] == ANGLE:
-        depth /= s.reach
+    depth = hidden_depth(s, r, setting, s.travel[c, 0])
     return M >= 0.0 and 0.125 * M * length**2 < depth
 
 
@@ -222,7 +224,7 @@ def leaves(s, r, b, setting, c, way, start, end):
 @internal
 def change(s, r, b, setting, c, end):
     """Where contact c first changes its phase up to `end`, as theta; NONE if it does not."""
-    sign = -1.0 if r.mem[s.contact[c], PHASE] == FLIGHT else 1.0
+    sign = -1.0 if Memory(r, s.contact[c]).phase == FLIGHT else 1.0
     low, f0, r0 = 0.0, sign * r.gap[c, 0], sign * r.gap[c, 1]
     if f0 <= 0.0:
         # it begins on the event just handled, and first moves away
@@ -241,7 +243,7 @@ def change(s, r, b, setting, c, end):
 @internal
 def may_change(s, r, b, c, stages):
     """Whether contact c may change its phase in the step, as far as is known without looking."""
-    phase = r.mem[s.contact[c], PHASE]
+    phase = Memory(r, s.contact[c]).phase
     if phase == UNLOCATED:
         return False
     sign = -1.0 if phase == FLIGHT else 1.0
@@ -255,15 +257,15 @@ def may_change(s, r, b, c, stages):
 
 @internal
 def first_change(s, r, b, setting):
-    """Fill b.root and b.corner_root for all contacts and return the earliest; needs b.P, b.net."""
+    """Fill b.root and b.corner_root of contacts that change and return the earliest; needs b.P,
+    b.net."""
     first = NONE
     for c in range(s.contact.size):
-        b.root[c], b.corner_root[c] = NONE, NONE
-        if r.mem[s.contact[c], PHASE] != UNLOCATED:
+        if Memory(r, s.contact[c]).phase != UNLOCATED:
             b.corner_root[c] = corner_root(s, r, b, c)
             first = min(first, b.corner_root[c])
     for c in range(s.contact.size):
-        if r.mem[s.contact[c], PHASE] != UNLOCATED:
+        if Memory(r, s.contact[c]).phase != UNLOCATED:
             b.root[c] = change(s, r, b, setting, c, min(first + SAME, 1.0))
             first = min(first, b.root[c])
     return first
@@ -293,9 +295,3 @@ def hertz_step(stiffness, exponent, mass, speed, tolerance):
     else:
         part = FIRST * tolerance ** (1.0 / (exponent + 1.0))
     return min(part, MOST_OF) * 2.94 * depth / speed
-
-
-@internal
-def flip(phase):
-    """The other phase."""
-    return CONTACT if phase == FLIGHT else FLIGHT

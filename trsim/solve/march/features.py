@@ -5,12 +5,10 @@ step sees smooth functions.  Corners that the time alone meets are known before 
 longer than the time to the next.
 """
 
-from math import nan
-
 from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
 from trsim.assemble.features import BEHIND, DRIVE, FIRST, PISTON, RATE_JUMP, call_hold, passed
 from trsim.assemble.projection import project_positions, project_velocities
-from trsim.elements.contract import SCENE, SINCE, compiled
+from trsim.elements.contract import SCENE, compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
@@ -20,9 +18,7 @@ from trsim.laws.functions import BY_TIME
 from trsim.solve.march.land import land
 from trsim.solve.march.record import (
     BUFFERS,
-    EVENT_ANGLE,
     EVENT_IMPULSE,
-    EVENT_KIND,
     EVENT_ROW,
     EVENT_SPEED,
     EVENT_TIME,
@@ -32,6 +28,7 @@ from trsim.solve.march.record import (
     NO_HISTORY,
     NO_JACOBIAN,
     RECORD,
+    note_event,
 )
 from trsim.solve.march.samples import behind
 from trsim.solve.march.works import LONG
@@ -48,7 +45,7 @@ def next_instant(s, t, end):
         k = passed(s, n, t)
         at = s.feature[n, FIRST] + k
         if k > 0 and at < s.feature[n, BEHIND]:
-            since = s.mem[s.feature[n, DRIVE], SINCE] if s.feature[n, DRIVE] >= 0 else 0.0
+            since = AnyDrive(s, s.feature[n, DRIVE]).since if s.feature[n, DRIVE] >= 0 else 0.0
             first = min(first, since + s.instant[at])
     return first
 
@@ -138,17 +135,13 @@ def jolt(s, r, b, t, t1):
         for k in range(passed(s, n, t), passed(s, n, t1)):
             rate += s.jump[s.feature[n, FIRST] + k, RATE_JUMP]
         if rate != 0.0 and r.event_rows < b.events.shape[0]:
-            line = b.events[r.event_rows]
-            r.event_rows += 1
-            line[EVENT_TIME], line[EVENT_KIND], line[EVENT_ROW] = t1, JOLT, e
-            line[EVENT_SPEED], line[EVENT_ANGLE] = rate, nan
-            line[EVENT_IMPULSE] = -s.x[AnyDrive(s, e).row]
+            note_event(r, b, t1, JOLT, e, rate)
+            b.events[r.event_rows - 1, EVENT_IMPULSE] = -s.x[AnyDrive(s, e).row]
 
 
 @internal
 def tell(r, b, first, done):
     """The work of the jumps of one instant into their lines, the first ones kept for the end."""
-    r.last_event = b.events[first, EVENT_TIME] if first < r.event_rows else r.t
     for k in range(first, r.event_rows):
         line = b.events[k]
         line[EVENT_WORK] = done
@@ -173,8 +166,3 @@ def keep(s, r):
     """What functions are held on, into the record."""
     for k in range(s.held.size):
         r.held[k] = s.tab[s.held[k]]
-
-
-def put_back(s, r):
-    """Hold the functions of a scene as its record says."""
-    s.tab[s.held] = r.held

@@ -2,7 +2,7 @@
 
 from math import nan
 
-from trsim.assemble.equations import constraints, corners, evaluate, gaps, kinetic, poses
+from trsim.assemble.equations import constraints, corners, evaluate, kinetic, poses
 from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import (
@@ -20,7 +20,8 @@ from trsim.elements.scene import NONE, PROJECTION
 from trsim.kernels.vectors import copy_to, internal
 from trsim.solve.march.own_rows import ends_in, keep_roots, keep_rows, look_at
 from trsim.solve.march.settle import AT_END, at_rest
-from trsim.solve.march.watch import watch
+from trsim.solve.march.watch import see
+from trsim.solve.methods.displacements import quaternion, turned_by
 
 PHI_SMALL = 1e-10  # of the mechanism's size: the next Newton step would be below rounding
 # the same: the step just made left its square, as rows tell that are not factorised again, and
@@ -45,8 +46,7 @@ def land(s, r, b, t, y, yd, rest=0):
     done = 0.0
     normalise(s, y)
     if s.stabilisation == PROJECTION and s.m > 0:
-        for k in range(s.n_q):
-            b.y2[k] = y[k]
+        copy_to(b.y2, y)
         first, at_hand = 0.0, False
         for k in range(NEWTON):
             worst = project_positions(s, t, y)
@@ -90,16 +90,11 @@ def land(s, r, b, t, y, yd, rest=0):
             r.worst_phi = max(r.worst_phi, abs(s.phi[k]))
             off = abs(velocity_residual(s, k))
             r.worst_phi_dot = max(r.worst_phi_dot, off)
+    see(s, t, b.gap1, b.branch1, b.turning1)
     if s.contact.size > 0:
-        gaps(s, t)
         corners(s, t)
         for c in range(s.contact.size):
             b.corner1[c] = s.corner[s.contact[c], 0]
-            b.gap1[c, 0] = s.gap[s.contact[c], 0]
-            b.gap1[c, 1] = s.gap[s.contact[c], 1]
-    watch(s, t, b.gap1)
-    for k in range(s.n_s):
-        b.branch1[k], b.turning1[k] = s.S[k, 0], s.S[k, 1]
     return done
 
 
@@ -238,14 +233,9 @@ def position_work(s, before, after):
             work -= F[f, 5] * (after[q + 2] - before[q + 2])
             continue
         q = 7 * (f - 1)
-        e0, e1, e2, e3 = after[q + 3], after[q + 4], after[q + 5], after[q + 6]
-        d0, d1 = e0 - before[q + 3], e1 - before[q + 4]
-        d2, d3 = e2 - before[q + 5], e3 - before[q + 6]
-        # small rotation in body axes: 2 conj(p) o dp
-        o0 = 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
-        o1 = 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
-        o2 = 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
+        e, b = quaternion(after, q + 3), quaternion(before, q + 3)
+        o = turned_by(e, (e[0] - b[0], e[1] - b[1], e[2] - b[2], e[3] - b[3]))
         for c in range(3):
-            turn = X[f, 3 + 3 * c] * o0 + X[f, 4 + 3 * c] * o1 + X[f, 5 + 3 * c] * o2
+            turn = X[f, 3 + 3 * c] * o[0] + X[f, 4 + 3 * c] * o[1] + X[f, 5 + 3 * c] * o[2]
             work -= F[f, c] * (after[q + c] - before[q + c]) + F[f, 3 + c] * turn
     return work

@@ -8,13 +8,14 @@ from trsim.kernels import signatures as types
 from trsim.kernels.packed import A1
 from trsim.kernels.vectors import internal
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.own_rows import cosine, keep_roots, keep_rows, look_at, own
+from trsim.solve.march.openings import CLOSED, NEWTON
+from trsim.solve.march.own_rows import cosine, keep, own
 from trsim.solve.march.record import RECORD
 
 MEET = 3e-6  # sigma: rounding leaves some 1e-8 of one that is zero
 APART = 1e-2  # pivots that do not take part
 NEARER = 12  # places looked at, at most
-NEWTON, CLOSED, REACHED = 12, 1e-14, 1e-12  # steps; of the mechanism's size
+REACHED = 1e-12  # of the mechanism's size
 NEAR_ENOUGH = 1e-3  # of the square of sigma: it is not felt
 # of the square of a way: the sum of those of both its ends from a known place next to it, which is
 # 1.2 ways from its middle
@@ -54,9 +55,7 @@ def closed(s, t, y, about):
     near = max(CLOSED, NEAR_ENOUGH * about * about)
     if not close_positions(s, t, y, near * s.size, NEWTON) < max(near, REACHED) * s.size:
         return False
-    look_at(s, t, y)
-    keep_rows(s, 1)
-    keep_roots(s, s.kept_roots[1])
+    keep(s, t, y, 1, s.kept_roots[1])
     return True
 
 

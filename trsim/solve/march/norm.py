@@ -13,7 +13,7 @@ sqrt(a length), or that length per run.  A fall would get there; a stiff spring 
 
 import numpy as np
 
-from trsim.elements.contract import IMPACT_SPEED, SCENE, ContactNumbers, compiled
+from trsim.elements.contract import SCENE, ContactNumbers, Memory, compiled
 from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
@@ -47,7 +47,8 @@ def felt(s, r):
     """
     speed = 1e300
     for c in range(s.contact.size):
-        own, depth, first = ContactNumbers(s, c), r.gap[c, 0], r.mem[s.contact[c], IMPACT_SPEED]
+        own, depth = ContactNumbers(s, c), r.gap[c, 0]
+        first = Memory(r, s.contact[c]).impact_speed
         chi = own.damping
         if depth > 0.0 and first > 0.0 and chi > 0.0:
             share = (depth / max(r.impact[c], depth)) ** own.exponent
@@ -87,6 +88,15 @@ def weighed(s, length, speed, tolerance, c):
     if kind == MAGNITUDE:
         return 1.0 / (tolerance * scale)
     return 0.0
+
+
+@internal
+def squares(x, weight, first, beyond):
+    """The sum of the squares of these entries, weighed."""
+    total = 0.0
+    for c in range(first, beyond):
+        total += (x[c] * weight[c]) ** 2
+    return total
 
 
 @internal

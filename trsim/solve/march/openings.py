@@ -98,13 +98,11 @@ def look_at_pivots(s, r):
 @internal
 def closed(s, t, y):
     """Bring y to the rows of the solve, as close as rounding lets it; what they stay open by."""
-    went, evaluations = s.status[0], s.status[1]
-    factorisations, contradictory = s.status[2], s.status[3]
+    counted = (s.status[0], s.status[1], s.status[2], s.status[3])
     close_positions(s, t, y, CLOSED * s.size, NEWTON)
     poses(s, y)
     constraints(s, t)
-    s.status[0], s.status[1] = went, evaluations
-    s.status[2], s.status[3] = factorisations, contradictory
+    s.status[0], s.status[1], s.status[2], s.status[3] = counted
     worst = 0.0
     for row in range(s.m):
         worst = max(worst, opening(s, row))
@@ -121,11 +119,6 @@ def opening(s, row):
 def rate(s, row):
     """|Phi'| of a row, relative, 1/s."""
     return abs(velocity_residual(s, row)) / s.row_unit[row]
-
-
-def may_open(mechanism: Mechanism) -> bool:
-    """Whether a stage of the run can have redundant rows."""
-    return bool(len(mechanism.model.redundant) or mechanism.stages.switches.names)
 
 
 def held_to(tolerance: float) -> float:

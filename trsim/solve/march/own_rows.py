@@ -39,6 +39,14 @@ def keep_roots(s, roots):
 
 
 @internal
+def keep(s, t, y, place, roots):
+    """The rows at a place with their factors, in one of four places, and sigma of them."""
+    look_at(s, t, y)
+    keep_rows(s, place)
+    keep_roots(s, roots)
+
+
+@internal
 def begun_in(r):
     """Which of the four places has the rows where the step begins; `ends_in`: where it ends."""
     return 3 if r.kept == 2 else 2
@@ -103,36 +111,12 @@ def own(s, end, k, place):
         for p in range(start + 1, beyond):
             total -= L[p] * w[row[p]]
         w[row[start]], has_part[row[start]] = total, 1.0
-    if s.d == 3:
-        planar_part(s, B, w, d)
-    else:
-        spatial_part(s, B, w, d)
-
-
-@internal
-def planar_part(s, B, w, d):
-    """d <- w^T B of x', y' and omega_z of bodies, and of hubs that give way."""
+    clear(d)
     for f in range(1, s.n_r):
-        d0 = d1 = d2 = 0.0
         if s.hub[f] < 0 or moves(s, w, f):
             for p in range(s.frame_start[f], s.frame_start[f + 1]):
-                w_p, o = w[s.slot_row[p]], 3 * p
-                d0, d1, d2 = d0 + B[o] * w_p, d1 + B[o + 1] * w_p, d2 + B[o + 2] * w_p
-        d[3 * f], d[3 * f + 1], d[3 * f + 2] = d0, d1, d2
-
-
-@internal
-def spatial_part(s, B, w, d):
-    """d <- w^T B of the velocity and the body-axes angular velocity."""
-    for f in range(1, s.n_r):
-        d0 = d1 = d2 = d3 = d4 = d5 = 0.0
-        if s.hub[f] < 0 or moves(s, w, f):
-            for p in range(s.frame_start[f], s.frame_start[f + 1]):
-                w_p, o = w[s.slot_row[p]], 6 * p
-                d0, d1, d2 = d0 + B[o] * w_p, d1 + B[o + 1] * w_p, d2 + B[o + 2] * w_p
-                d3, d4, d5 = d3 + B[o + 3] * w_p, d4 + B[o + 4] * w_p, d5 + B[o + 5] * w_p
-        o = 6 * f
-        d[o], d[o + 1], d[o + 2], d[o + 3], d[o + 4], d[o + 5] = d0, d1, d2, d3, d4, d5
+                for c in range(s.d):
+                    d[s.d * f + c] += B[s.d * p + c] * w[s.slot_row[p]]
 
 
 @internal

@@ -17,11 +17,13 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.packed import i8
-from trsim.kernels.vectors import copy_to, internal
-from trsim.solve.march.meetings import CLOSED, NEWTON, inside, known, meet
+from trsim.kernels.vectors import copy_table, copy_to, internal
+from trsim.solve.march.meetings import inside, known, meet
+from trsim.solve.march.openings import CLOSED, NEWTON
 from trsim.solve.march.own_rows import (
     begun_in,
     ends_in,
+    keep,
     keep_roots,
     keep_rows,
     look_at,
@@ -51,15 +53,13 @@ def note_passes(s, r, b, last):
     if not h > 0.0:
         return
     if r.kept == 0:
-        look_at(s, b.t, r.y)
-        keep_roots(s, s.root[1])
-        keep_rows(s, begun_in(r))
+        keep(s, b.t, r.y, begun_in(r), s.root[1])
         r.last_way, r.kept = 0.0, 1
     way = h * max(fastest_in_loops(s, r.y), fastest_in_loops(s, b.y1))
     if may_turn(s, s.root, way, r.last_way):
         look_at_parts(s, r, b, last, way)
-    for k in range(s.root.shape[1]):
-        s.root[0, k], s.root[1, k] = s.root[1, k], s.root[2, k]
+    copy_to(s.root[0], s.root[1])
+    copy_to(s.root[1], s.root[2])
     r.last_way, r.kept = way, 3 - r.kept
 
 
@@ -71,8 +71,7 @@ def look_at_parts(s, r, b, last, way):
     """
     y0, y1, t, h = b.part[0], b.part[1], b.t, b.t1 - b.t
     n, roots, before = min(int(way / LONGEST) + 1, MANY), s.part_root, r.last_way
-    for k in range(s.first.size):
-        roots[0, k], roots[1, k], roots[2, k] = s.root[0, k], s.root[1, k], s.root[2, k]
+    copy_table(roots, s.root)
     one, other = begun_in(r), ends_in(r)
     for k in range(1, n + 1):
         if k < n:
@@ -153,12 +152,8 @@ def note_turned(s, r, b, last, part, ways):
     """
     y0, y1, h = b.part[0], b.part[1], b.t1 - b.t
     start, end = b.t + part[0] * h, b.t + part[1] * h
-    look_at(s, start, y0)
-    keep_rows(s, 0)
-    keep_roots(s, s.kept_roots[0])
-    look_at(s, end, y1)
-    keep_rows(s, 1)
-    keep_roots(s, s.kept_roots[1])
+    keep(s, start, y0, 0, s.kept_roots[0])
+    keep(s, end, y1, 1, s.kept_roots[1])
     k = turned(s, s.part_root, ways, 0, 1)
     if k < 0:
         return

@@ -2,33 +2,18 @@
 
 import numpy as np
 
-from trsim.assemble.equations import corners, evaluate, gaps, poses
+from trsim.assemble.equations import corners, evaluate, poses
 from trsim.assemble.features import call_hold
-from trsim.elements.contract import (
-    BRANCH,
-    CONTACT,
-    IMPACT_SPEED,
-    PHASE,
-    SCENE,
-    ContactNumbers,
-    Pair,
-    compiled,
-)
+from trsim.elements.contract import CONTACT, FLIGHT, SCENE, ContactNumbers, Memory, Pair, compiled
 from trsim.kernels.signatures import void
 from trsim.kernels.vectors import internal
 from trsim.laws.functions import BY_SENSORS, BY_TIME
 from trsim.solve.march.corners import look
-from trsim.solve.march.events import NONE, SAME, flip, hertz_step
+from trsim.solve.march.events import NONE, SAME, hertz_step
 from trsim.solve.march.features import keep
 from trsim.solve.march.record import (
     BUFFERS,
     EVENT_ANGLE,
-    EVENT_IMPULSE,
-    EVENT_KIND,
-    EVENT_ROW,
-    EVENT_SPEED,
-    EVENT_TIME,
-    EVENT_WORK,
     NO_HISTORY,
     NO_JACOBIAN,
     NO_RATES,
@@ -36,9 +21,10 @@ from trsim.solve.march.record import (
     RECORD,
     SEPARATION,
     SETTINGS,
+    note_event,
 )
 from trsim.solve.march.samples import behind
-from trsim.solve.march.watch import fire, watch
+from trsim.solve.march.watch import fire, see
 
 TINY = 1e-300
 AS_LONG = 4.0  # times the last free motion: the first step of the next one at most
@@ -60,9 +46,8 @@ def change_phases(s, r, b, setting, t1):
     corners(s, t1)
     for c in range(s.contact.size):
         if b.corner_root[c] <= first + SAME:
-            e = s.contact[c]
-            s.mem[e, BRANCH] = s.corner[e, 1]
-            pair = Pair(s, e)
+            pair = Pair(s, s.contact[c])
+            pair.branch = s.corner[s.contact[c], 1]
             r.stale[pair.i] = r.stale[pair.j] = 1
             r.corners_met += 1
     touched = fire(s, r, b, first) > 0
@@ -72,30 +57,25 @@ def change_phases(s, r, b, setting, t1):
             continue
         touched = True
         e = s.contact[c]
-        r.mem[e, PHASE] = flip(r.mem[e, PHASE])
+        memory = Memory(r, e)
+        onset = memory.phase == FLIGHT
+        memory.phase = CONTACT if onset else FLIGHT
         r.events += 1
-        line = b.events[r.event_rows]
-        r.event_rows += 1
-        onset = r.mem[e, PHASE] == CONTACT
-        line[EVENT_TIME], line[EVENT_ROW] = t1, e
-        line[EVENT_WORK] = line[EVENT_IMPULSE] = 0.0
-        line[EVENT_KIND] = ONSET if onset else SEPARATION
-        line[EVENT_SPEED] = r.gap[c, 1]
-        line[EVENT_ANGLE] = np.nan  # a stop has no angle
+        note_event(r, b, t1, ONSET if onset else SEPARATION, e, r.gap[c, 1])
         o = s.wanted[e] + s.contact_angle[c]
         if s.contact_angle[c] >= 0 and s.wanted[e] >= 0:
-            line[EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
+            b.events[r.event_rows - 1, EVENT_ANGLE] = np.arctan2(b.out[o + 1], b.out[o])
         if onset:
             own = ContactNumbers(s, c)
             speed = max(r.gap[c, 1], own.slowest_impact)
-            r.mem[e, IMPACT_SPEED] = speed
+            memory.impact_speed = speed
             look(s, c)
             if s.contact_state[c] >= 0:
                 r.y[s.n_q + s.n_v + s.contact_state[c]] = 0.0
             speed = max(speed, 1e-12)
             h = min(h, hertz_step(own.stiffness, own.exponent, own.mass, speed, setting.step_error))
         else:
-            r.mem[e, IMPACT_SPEED] = 0.0
+            memory.impact_speed = 0.0
     are_closed = closed(s, r)
     if were_closed == 0 and are_closed > 0:
         r.free_h = min(r.h, AS_LONG * (t1 - r.free_since))
@@ -103,7 +83,6 @@ def change_phases(s, r, b, setting, t1):
     if r.freed > 0:
         r.free_since = t1
     if touched:
-        r.last_event = t1
         r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
     elif r.jacobian != NO_JACOBIAN:
         r.jacobian = NO_RATES  # the force itself has no jump: a kink in its slope
@@ -125,7 +104,7 @@ def closed(s, r):
     """How many contacts are closed."""
     many = 0
     for c in range(s.contact.size):
-        many += int(r.mem[s.contact[c], PHASE] == CONTACT)
+        many += int(Memory(r, s.contact[c]).phase == CONTACT)
     return many
 
 
@@ -133,11 +112,11 @@ def closed(s, r):
 def latch(s, r):
     """Methods that locate nothing: remember the approach speed of a running contact."""
     for c in range(s.contact.size):
-        e = s.contact[c]
+        memory = Memory(r, s.contact[c])
         if r.gap[c, 0] <= 0.0:
-            r.mem[e, IMPACT_SPEED] = 0.0
-        elif r.mem[e, IMPACT_SPEED] == 0.0:
-            r.mem[e, IMPACT_SPEED] = max(r.gap[c, 1], ContactNumbers(s, c).slowest_impact)
+            memory.impact_speed = 0.0
+        elif memory.impact_speed == 0.0:
+            memory.impact_speed = max(r.gap[c, 1], ContactNumbers(s, c).slowest_impact)
 
 
 @internal
@@ -151,13 +130,7 @@ def evaluate_all(s, r, setting, t):
         for k in range(s.sensed.shape[0]):
             r.sight[k] = s.S[s.sensed[k, 0], 0]
         evaluate(s, t, r.y, r.yd)
-    gaps(s, t)
-    for c in range(s.contact.size):
-        r.gap[c, 0] = s.gap[s.contact[c], 0]
-        r.gap[c, 1] = s.gap[s.contact[c], 1]
-    watch(s, t, r.gap)
-    for k in range(s.n_s):
-        r.branch[k], r.turning[k] = s.S[k, 0], s.S[k, 1]
+    see(s, t, r.gap, r.branch, r.turning)
     if setting.locate > 0:
         for c in range(s.contact.size):
             look(s, c)

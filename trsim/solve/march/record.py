@@ -1,9 +1,15 @@
 """What changes during a run, in one record: a checkpoint is a copy of it."""
 
+from collections.abc import Mapping
+from math import nan
+from typing import Any
+
 import numpy as np
 
-from trsim.elements.scene import Model
+from trsim.elements.scene import N_STORED, Model
 from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8, i8
+from trsim.kernels.vectors import internal
+from trsim.solve.march.works import N_WORKED
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3
 NO_HISTORY, BEHIND, AHEAD = 0, 1, 2
@@ -19,9 +25,7 @@ CRAWLING, CRAWLED_MOST = 1e-11, 50_000  # of the run; trial steps in a row as sh
 FASTEST = 3e8  # m/s or rad/s: what gets there has run away, and would be followed for hours
 ADRIFT = 13  # without projection, where branches of the motion meet
 OPEN = 10  # a row that was dropped as redundant is not
-WINDS = (
-    12  # a fixed step turns a joint by more than is sure to be counted, see solve/march/turns.py
-)
+WINDS = 12  # a fixed step turns a joint by more than is sure to be counted, see turns.py
 LEAPT = 11  # the place of a rigid drive jumps, see TORN
 ACT = 9  # a user event happened: the caller does what it says
 
@@ -36,6 +40,40 @@ FOUND = 200  # places between two samples where extremes are looked for
     EVENT_TIME, EVENT_KIND, EVENT_ROW, EVENT_SPEED, EVENT_ANGLE, EVENT_WORK, EVENT_IMPULSE, N_EVENT
 ) = range(8)  # fmt: skip
 ONSET, SEPARATION, TO_IMPLICIT, TO_EXPLICIT, USER, JOLT = 1.0, 2.0, 3.0, 4.0, 5.0, 6.0
+
+
+POINTS = 6  # samples of every channel that are kept: see peaks.py
+PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
+
+
+SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
+# side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
+# end of the step; number of the next instant
+ON, LAST, RATE, KNOWN, END_RATE, NEXT, FAR, SWINGS = range(8)
+# SWINGS and what follows: how many swings between two crossings went as far as 10^(k - 1) LEAST
+LEAST, DECADES = 1e-24, 40
+N_SECTION = SWINGS + DECADES
+# columns of the buffer of points
+POINT_TIME, POINT_SECTION, POINT_X, POINT_Y, N_POINT = range(5)
+
+
+class Shape(tuple[int | str, ...]):
+    """Of an array of a record: numbers, or names of sizes; see `zeros`."""
+
+
+def of(*shape: int | str) -> Any:
+    """A field that begins as an array of zeros of this shape."""
+    return Shape(shape)
+
+
+@internal
+def note_event(r, b, t, kind, row, speed):
+    """The next line of events, with no angle, neither work nor impulse."""
+    line = b.events[r.event_rows]
+    r.event_rows += 1
+    line[EVENT_TIME], line[EVENT_KIND], line[EVENT_ROW] = t, kind, row
+    line[EVENT_SPEED], line[EVENT_ANGLE] = speed, nan
+    line[EVENT_WORK] = line[EVENT_IMPULSE] = 0.0
 
 
 class Settings(Packed):
@@ -57,46 +95,44 @@ class Record(Packed):
     """The state of a run."""
 
     y: A1  # (n_y)
-    yd: A1  # (n_y) derivative at y, the first stage of the next step
-    noise: A1  # (n_y) what rounding makes of y in steps, per second              rounding.py
+    yd: A1 = of("n_y")  # derivative at y, the first stage of the next step
+    noise: A1 = of("n_y")  # what rounding makes of y in steps, per second  rounding.py
     mem: A2  # (N, n_mem) the scene's own
     branch: A1  # (n_s) turn every angle is on; the scene's own
-    turning: A1  # (n_s) rates of S at y
-    gap: A2  # (n_contacts + n_w, 2) penetration and rate at y; what is watched less its value
-    corner: A1  # (n_contacts) how far each has left the branch of its law at y
-    peak: A2  # (N_PEAK, n_c) extremes of channels and magnitudes
+    turning: A1 = of("branch")  # rates of S at y
+    gap: A2 = of("gaps", 2)  # penetration and rate at y; what is watched less its value
+    corner: A1 = of("contact")  # how far each has left the branch of its law at y
+    peak: A2 = of(N_PEAK, "channels")  # extremes of channels and magnitudes
     firm: A2  # (2, n_c) the least pivot of rows where each was taken, 1 in open chains   samples.py
-    book: A2  # (1 + N_STORED, 2) least and largest of kinetic and stored energies      works.py
-    sample: A2  # (POINTS, n_k) last values of those that are sought inside steps
-    sampled: A1  # (POINTS) when those were taken
-    slope: A2  # (POINTS, n_k) their divided differences, newest first
-    earlier: A2  # (4, n_y) of the step before: both its ends, and y' there        earlier.py
-    stages: A2  # (rows, n_y) its stages, or its dense output
-    largest: A1  # (n_k) size of the channels of one kind, see `kin` of the scene
+    book: A2 = of(1 + N_STORED, 2)  # least and largest of kinetic and stored energies  works.py
+    sample: A2 = of(POINTS, "kin")  # last values of those that are sought inside steps
+    sampled: A1 = of(POINTS)  # when those were taken
+    slope: A2 = of(POINTS, "kin")  # their divided differences, newest first
+    earlier: A2 = of("ends", "n_y")  # of the step before: both its ends, y' there  earlier.py
+    stages: A2 = of("rows", "n_y")  # its stages, or its dense output
+    largest: A1 = of("kin")  # size of the channels of one kind, see `kin` of the scene
     impact: A1  # (n_contacts) largest penetration so far
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
-    by_place: A2  # (n_w, n_v) w' against displacements
-    by_rate: A2  # (n_w, n_w) w' against w
-    stale: I1  # (n) frames whose columns of `by_rate` a corner made old
-    lu: A2  # (n_w, n_w) factors of the real system
-    lu_pair: C2  # (n_w, n_w) and of the complex one
-    pivot: I2  # (2, n_w)
-    past: A2  # (dense rows, n_y) dense output of a step, see `history`
-    watch: A2  # (n_w, N_WATCH) of every user event                               watch.py
-    held: A1  # (corners) what functions are held on                            features.py
-    sight: A1  # (n_sensed) what the sensors that meet corners show at y
-    chatter: A2  # (n_features, 3) last time a corner was met, how often in a row, how far it went
-    stage: I1  # (n_switches) what user events have switched   assemble/stages.py
-    left_out: (
-        I1  # 1: a row of all there may be is not solved; empty where none can depend on others
-    )
-    section: A2  # (n_sections, N_SECTION) of every Poincare section             sections.py
-    jolt: A2  # (JOLTS_KEPT, 5) the first jumps: time, row, of the rate, impulse, work
-    passed: A2  # (PASSES_KEPT, 2 + 2 n_y + n_s) ways noted: times, states, branches of angles
-    meeting: A2  # (MEETINGS_KEPT, n_y) where branches meet                      crossed.py
-    crossed: A1  # (n_y) where the run first changed its branch
-    swing: A2  # (2, n_w) how it vibrates, and how it decays              stiffness.py
-    worked: A2  # (2, N_WORKED) works of a fixed step and of the one before         works.py
+    by_place: A2 = of("n_w", "n_dx")  # w' against displacements
+    by_rate: A2 = of("n_w", "n_w")  # w' against w
+    stale: I1 = of("n")  # frames whose columns of `by_rate` a corner made old
+    lu: A2 = of("n_w", "n_w")  # factors of the real system
+    lu_pair: C2 = of("n_w", "n_w")  # and of the complex one
+    pivot: I2 = of(2, "n_w")
+    past: A2 = of("past_rows", "n_y")  # dense output of a step, see `history`
+    watch: A2 = of("watch", N_WATCH)  # of every user event  watch.py
+    held: A1 = of("held")  # what functions are held on  features.py
+    sight: A1 = of("sensed")  # what the sensors that meet corners show at y
+    chatter: A2 = of("feature", 3)  # last time a corner was met, how often in a row, how far
+    stage: I1 = of("switches")  # what user events have switched  assemble/stages.py
+    left_out: I1  # 1: a row of all there may be is not solved; empty where none can be redundant
+    section: A2 = of("section", N_SECTION)  # of every Poincare section  sections.py
+    jolt: A2 = of(JOLTS_KEPT, 5)  # the first jumps: time, row, of the rate, impulse, work
+    passed: A2 = of("passes", "way")  # ways noted: times, states, branches of angles
+    meeting: A2 = of("meetings", "n_y")  # where branches meet  crossed.py
+    crossed: A1 = of("n_y")  # where the run first changed its branch
+    swing: A2 = of(2, "n_x")  # how it vibrates, and how it decays  stiffness.py
+    worked: A2 = of(2, N_WORKED)  # works of a fixed step and of the one before  works.py
     clock: A1  # the numbers that change
     t: F8  # s
     h: F8  # s, the step to try next
@@ -110,7 +146,6 @@ class Record(Packed):
     worst_phi_dot: F8
     largest_energy: F8  # J, largest entry of the energy book so far: the scale of its residual
     largest_residual: F8  # J
-    last_event: F8  # s
     past_h: F8  # s, length of the step whose polynomial is in `past`
     past_error: F8  # error of the last step, for the controller; 0 after an event
     old_h: F8  # s, its length
@@ -209,64 +244,49 @@ class Record(Packed):
     chosen: I8  # how often rows were chosen anew with next to no time between
 
 
-POINTS = 6  # samples of every channel that are kept: see peaks.py
-PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
-
-
-SIDE, TIMES, JUST_NOW, N_WATCH = range(4)
-# side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
-# end of the step; number of the next instant
-ON, LAST, RATE, KNOWN, END_RATE, NEXT, FAR, SWINGS = range(8)
-# SWINGS and what follows: how many swings between two crossings went as far as 10^(k - 1) LEAST
-LEAST, DECADES = 1e-24, 40
-N_SECTION = SWINGS + DECADES
-# columns of the buffer of points
-POINT_TIME, POINT_SECTION, POINT_X, POINT_Y, N_POINT = range(5)
-
-
 class Buffers(Packed):
     """Room for results between two visits of the caller, and scratch of the march."""
 
-    rows: A2  # (n, 1 + n_out) time, channels
-    steps: A2  # (n, 2 + n_contact_columns) time, row e, contact channels
-    events: A2  # (n, N_EVENT)
-    points: A2  # (n, N_POINT) of Poincare sections; empty without any
-    K: A2  # stages of the integrator
-    P: A2  # dense output
-    P_earlier: A2  # that of the step before, while it is made
-    y1: A1
-    y2: A1
-    weight: A1
-    pair: C1  # (n_y) right-hand side of the complex system of an implicit method
-    rough: A2  # (3, n_y) a state and the end of a step from it, while it is made again
+    rows: A2 = of("rows", "row")  # time, channels
+    steps: A2 = of("steps", "step")  # time, row e, contact channels
+    events: A2 = of("events", N_EVENT)
+    points: A2 = of("points", N_POINT)  # of Poincare sections; empty without any
+    K: A2 = of("stages", "n_y")  # stages of the integrator
+    P: A2 = of("dense_rows", "n_y")  # dense output
+    P_earlier: A2 = of("dense_rows", "n_y")  # that of the step before, while it is made
+    y1: A1 = of("n_y")
+    y2: A1 = of("n_y")
+    weight: A1 = of("n_y")
+    pair: C1 = of("n_y")  # right-hand side of the complex system of an implicit method
+    rough: A2 = of(3, "n_y")  # a state and the end of a step from it, while it is made again
     out: A1  # (n_out) channels at the end of the step
-    gap1: A2  # (n_contacts + n_w, 2)
-    corner1: A1  # (n_contacts)
-    full: A1  # (n_c) all channels and magnitudes
+    gap1: A2 = of("gaps", 2)
+    corner1: A1 = of("contact")
+    full: A1 = of("channels")  # all channels and magnitudes
     firm: A1  # (2) the least pivot of rows where channels were measured last, and at the step's end
     row_firm: A1  # (n) the same of every output row
-    inside: A2  # (FOUND, n_k) channels where an extreme was looked for           peaks.py
-    found: A1  # (FOUND) when, see `n_found`
-    node: A2  # (5, POINTS) of polynomials: times, values, slopes, 1 / (t0 - tk), factors
-    along: A1  # (1 + PARTS) a polynomial at so many places                       polynomials.py
-    lattice: A2  # (POINTS, 1 + PARTS) products of their distances from the nodes
-    inverse: A2  # (POINTS, POINTS) of the distances of nodes
-    bound: A2  # (2, n_k) of channels between two samples: see `bounds` of samples.py
-    tried: A2  # (5 + 2 CHANGES_KEPT, n_y) states tried               settle.py
-    part: A2  # (2, n_y) both ends of a part of a step                            passes.py
-    mean: A2  # (2, n_out) channels where rows of the solve depend on each other
-    unmoved: A2  # (3, n_y) its end and y' there before that, and scratch
-    root: A1  # (n_contacts + n_w) where in the step its phase changes, 2 for nowhere
-    corner_root: A1  # (n_contacts) and where it meets a corner
-    branch1: A1
-    turning1: A1
-    net: A2  # (9, n_q) control points of q over a step, where events are searched for   spread.py
-    curve: T14  # (9, 14) those of two frames on a part of it
-    seen: A2  # (n_s, 4) ranges of sensors and of their rates, where they meet corners
-    shown: A2  # (n_sensed, 2) what they show at both ends of a part of a step
-    box: A2  # (slots, 4) ranges of the parts of a function
-    before: A1  # (corners) what functions were held on in the last step
-    met: A2  # (n_features, 3) the corner met first in a step: theta, its place in tab, what follows
+    inside: A2 = of(FOUND, "kin")  # channels where an extreme was looked for  peaks.py
+    found: A1 = of(FOUND)  # when, see `n_found`
+    node: A2 = of(5, POINTS)  # of polynomials: times, values, slopes, 1 / (t0 - tk), factors
+    along: A1 = of(1 + PARTS)  # a polynomial at so many places  polynomials.py
+    lattice: A2 = of(POINTS, 1 + PARTS)  # products of their distances from the nodes
+    inverse: A2 = of(POINTS, POINTS)  # of the distances of nodes
+    bound: A2 = of(2, "kin")  # of channels between two samples: see `bounds` of samples.py
+    tried: A2 = of(5 + 2 * CHANGES_KEPT, "n_y")  # states tried  settle.py
+    part: A2 = of(2, "n_y")  # both ends of a part of a step  passes.py
+    mean: A2 = of(2, "n_out")  # channels where rows of the solve depend on each other
+    unmoved: A2 = of(3, "n_y")  # its end and y' there before that, and scratch
+    root: A1 = of("gaps")  # where in the step its phase changes, 2 for nowhere
+    corner_root: A1 = of("contact")  # and where it meets a corner
+    branch1: A1 = of("angles")
+    turning1: A1 = of("angles")
+    net: A2 = of(9, "watched")  # control points of q over a step that is searched  spread.py
+    curve: T14 = of(9, 14)  # those of two frames on a part of it
+    seen: A2 = of("seen", 4)  # ranges of sensors and of their rates, where they meet corners
+    shown: A2 = of("sensed", 2)  # what they show at both ends of a part of a step
+    box: A2 = of("slots", 4)  # ranges of the parts of a function
+    before: A1 = of("held")  # what functions were held on in the last step
+    met: A2 = of("feature", 3)  # the first corner of a step: theta, place in tab, what follows
     clock: A1  # the numbers that change
     t: F8  # s, where the step at hand begins
     h: F8  # s, its length; what its dense output is made with
@@ -297,42 +317,45 @@ def fresh_buffers(
     step_rows: output rows a fixed step may span; points: of sections, the most in one step.
     """
     contacts, watched = len(model.contact), len(model.watch)
-    return Buffers(
-        rows=np.zeros((max(1024, 2 * step_rows + 16), 1 + model.n_out)),
-        steps=np.zeros((max(1024, 8 * contacts), n_steps)),
-        events=np.zeros((max(256, 8 * (contacts + watched)), N_EVENT)),
-        points=np.zeros((max(1024, 2 * points + 16) if points else 0, N_POINT)),
-        K=np.zeros((stages, n_y)),
-        **{name: np.zeros((dense_rows, n_y)) for name in ("P", "P_earlier")},
-        **{name: np.zeros(n_y) for name in ("y1", "y2", "weight")},
-        pair=np.zeros(n_y, complex),
-        **{name: np.zeros((3, n_y)) for name in ("rough", "unmoved")},
-        out=np.zeros(max(model.n_out, 1)),
-        gap1=np.zeros((contacts + watched, 2)),
-        full=np.zeros(model.n_out + len(model.vector)),
-        firm=np.ones(2),
-        row_firm=np.ones(max(1024, 2 * step_rows + 16)),
-        inside=np.zeros((FOUND, len(model.kin))),
-        found=np.zeros(FOUND),
-        node=np.zeros((5, POINTS)),
-        along=np.zeros(1 + PARTS),
-        lattice=np.zeros((POINTS, 1 + PARTS)),
-        inverse=np.zeros((POINTS, POINTS)),
-        bound=np.zeros((2, len(model.kin))),
-        tried=np.zeros((5 + 2 * CHANGES_KEPT, n_y)),
-        part=np.zeros((2, n_y)),
-        mean=np.zeros((2, model.n_out)),
-        root=np.zeros(contacts + watched),
-        **{name: np.zeros(contacts) for name in ("corner1", "corner_root")},
-        **{name: np.zeros(max(model.n_s, 1)) for name in ("branch1", "turning1")},
-        net=np.zeros((9, model.n_q if contacts + watched + len(model.sensed) else 0)),
-        seen=np.zeros((max(model.n_s, 1) if len(model.sensed) else 0, 4)),
-        shown=np.zeros((len(model.sensed), 2)),
-        box=np.zeros((model.slots, 4)),
-        before=np.zeros(len(model.held)),
-        met=np.zeros((len(model.feature), 3)),
-        curve=np.zeros((9, 14)),
-    )
+    rows = max(1024, 2 * step_rows + 16)
+    sizes = {
+        "n_y": n_y,
+        "rows": rows,
+        "row": 1 + model.n_out,
+        "steps": max(1024, 8 * contacts),
+        "step": n_steps,
+        "events": max(256, 8 * (contacts + watched)),
+        "points": max(1024, 2 * points + 16) if points else 0,
+        "stages": stages,
+        "dense_rows": dense_rows,
+        "gaps": contacts + watched,
+        "channels": model.n_out + len(model.vector),
+        "angles": max(model.n_s, 1),
+        "watched": model.n_q if contacts + watched + len(model.sensed) else 0,
+        "seen": max(model.n_s, 1) if len(model.sensed) else 0,
+    }
+    out = np.zeros(max(model.n_out, 1))
+    return Buffers(**zeros(Buffers, model, sizes), out=out, firm=np.ones(2), row_firm=np.ones(rows))
+
+
+def zeros(record: type[Packed], model: Model, sizes: Mapping[str, int]) -> dict[str, Any]:
+    """Arrays for the fields that a record itself gives a shape.
+
+    A name in it is one of `sizes`, or a number of the model, or a table of it, then its length.
+    """
+
+    def size(name: int | str) -> int:
+        if isinstance(name, int):
+            return name
+        found = sizes[name] if name in sizes else getattr(model, name)
+        return found if isinstance(found, int) else len(found)
+
+    kinds = dict(record.kind.fields)
+    return {
+        name: np.zeros([size(k) for k in shape], kinds[name].dtype)
+        for name, shape in vars(record).items()
+        if isinstance(shape, Shape)
+    }
 
 
 def crowded(r: Record, b: Buffers) -> bool:
@@ -341,14 +364,3 @@ def crowded(r: Record, b: Buffers) -> bool:
         (r.rows, b.rows), (r.step_rows, b.steps), (r.event_rows, b.events), (r.point_rows, b.points)
     )  # fmt: skip
     return any(2 * number > len(buffer) for number, buffer in filled)
-
-
-def copy(record: Record) -> dict[str, np.ndarray]:
-    """A checkpoint."""
-    return {name: array.copy() for name, array in record.arrays().items()}
-
-
-def restore(record: Record, checkpoint: dict[str, np.ndarray]) -> None:
-    """Go back to a checkpoint."""
-    for name, array in checkpoint.items():
-        getattr(record, name)[:] = array

@@ -47,12 +47,9 @@ def to_search(s, r, b, setting, stages):
 @internal
 def earliest(s, r, b, setting):
     """Fill b.root for contacts and user events; the first, corners of laws included."""
-    first = NONE
-    if setting.locate > 0:
-        first = first_change(s, r, b, setting)
-    else:
-        for c in range(s.contact.size):
-            b.root[c], b.corner_root[c] = NONE, NONE
+    for c in range(s.contact.size):
+        b.root[c], b.corner_root[c] = NONE, NONE
+    first = first_change(s, r, b, setting) if setting.locate > 0 else NONE
     for k in range(s.watch.shape[0]):
         root = crossing(s, r, b, setting, k, min(first + SAME, 1.0))
         b.root[s.contact.size + k] = root

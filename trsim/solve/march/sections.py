@@ -41,7 +41,7 @@ from trsim.assemble.sections import (
     X,
     Y,
 )
-from trsim.elements.contract import FLIGHT, PHASE, compiled
+from trsim.elements.contract import FLIGHT, Memory, compiled
 from trsim.kernels.vectors import internal
 from trsim.solve.march.calls import LAST_AT, SECTIONS
 from trsim.solve.march.dense_output import fill, measure_inside
@@ -85,8 +85,7 @@ def sections(s, r, b, method, event):
     were.
     """
     last, built, t1 = method[LAST_AT], b.built, b.t1
-    went, evaluations = s.status[0], s.status[1]
-    factorisations, contradictory = s.status[2], s.status[3]
+    counted = (s.status[0], s.status[1], s.status[2], s.status[3])
     ends_known(s, r, b, last, event)
     still = parts_of(s, r, b, last)
     swinging = waves_of(s, r, b)
@@ -107,8 +106,7 @@ def sections(s, r, b, method, event):
             else:
                 crossings(s, r, b, k, parts)
         keep_end(s, r, b, k, event)
-    s.status[0], s.status[1] = went, evaluations
-    s.status[2], s.status[3] = factorisations, contradictory
+    s.status[0], s.status[1], s.status[2], s.status[3] = counted
 
 
 @internal
@@ -135,7 +133,7 @@ def touches(s, r, b, e):
         first = min(first, b.corner_root[c])
         if s.contact[c] == e:
             root = b.root[c]
-    return r.mem[e, PHASE] == FLIGHT and root <= first + SAME
+    return Memory(r, e).phase == FLIGHT and root <= first + SAME
 
 
 @internal

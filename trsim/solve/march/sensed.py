@@ -52,28 +52,18 @@ from trsim.laws.functions import (
     piece_at,
     sensed,
 )
-from trsim.solve.march.calls import (
-    IMPLICIT_AT,
-    LAST_AT,
-    SEARCH,
-    STAGES_AT,
-    STEP_AT,
-    call_interpolate,
-)
+from trsim.solve.march.calls import IMPLICIT_AT, LAST_AT, SEARCH, STAGES_AT, STEP_AT
+from trsim.solve.march.corners import NONE, show
 from trsim.solve.march.dense_output import build
+from trsim.solve.march.events import FINEST, LOOKS, SAME, hidden_depth
 from trsim.solve.march.features import keep, other_side
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 
-NONE, UNCERTAIN = 2.0, 3.0  # no corner in the step; a step too long to be certain
-SAME = 1e-12  # of a step: corners nearer to each other are met at once
-FINEST = 1e-8  # of a step: no part is shorter
-LOOKS = 4000  # parts of one step that are looked at
-HIDDEN = 1e-3  # of the error allowed: how far beyond a corner is not looked for
+UNCERTAIN = 3.0  # a step too long to be certain; NONE: no corner in it
 SEEN = 0.8  # of a step: a short event that fills less of it may lie between its stages
 BRIEF = 1e-9  # of a run: what is shorter is not looked for
-ROUNDING = 1e-15  # of the mechanism's size
 THETA, PLACE, NEXT = range(3)  # of b.met
 LAST, TIMES, FAR = range(3)  # of r.chatter
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
@@ -145,13 +135,6 @@ def verdict(s, b, t0, t1):
 
 
 @internal
-def show(s, r, b, theta):
-    """The sensors at theta of the step."""
-    call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
-    poses(s, b.y2)
-
-
-@internal
 def first_corner(s, r, b, setting):
     """The first corner that is met, by halving; b.shown holds the sensors at both ends."""
     low, high, t, h = 0.0, 1.0, b.t, b.h
@@ -165,11 +148,8 @@ def first_corner(s, r, b, setting):
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
             L, M = spread(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
             see(s, b, k, L, M, length)
-            depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
-            if kind == ANGLE:
-                depth /= s.reach
             seen = b.seen[s.sensed[k, ENTRY]]
-            hidden = hidden and seen[1] - seen[0] < depth
+            hidden = hidden and seen[1] - seen[0] < hidden_depth(s, r, setting, kind)
         found = verdict(s, b, t + low * h, t + high * h)
         if found == UNSURE and not (short or hidden):
             high = 0.5 * (low + high)
@@ -205,7 +185,7 @@ def roots(s, r, b, low, high):
             if not sensed(s.tab, o, place) or s.tab[place] == FREE:
                 continue
             show(s, r, b, high)
-            u = u_at(s, n, place, b.t + high * b.h)
+            u, _, _ = corner_at(s, n, place, b.t + high * b.h)
             least, most = ends_of(s.tab, o, place)
             if least <= u <= most:
                 continue
@@ -230,10 +210,10 @@ def leaves_brief(s, b):
 
 
 @internal
-def u_at(s, n, place, t):
-    """u of a corner at the poses of the scene."""
+def corner_at(s, n, place, t):
+    """Of a corner, at the poses of the scene: u, its rate and its size."""
     located(s.tab, s.feature[n, OFFSET], t, s.S)
-    return corner(s.tab, s.feature[n, OFFSET], place, s.S)[0]
+    return corner(s.tab, s.feature[n, OFFSET], place, s.S)
 
 
 @internal
@@ -242,9 +222,9 @@ def root(s, r, b, n, place, above, part):
     (low, high), t, h = part, b.t, b.h
     least, most = ends_of(s.tab, s.feature[n, OFFSET], place)
     end = most if above else least
-    f_high = u_at(s, n, place, t + high * h) - end
+    f_high = corner_at(s, n, place, t + high * h)[0] - end
     show(s, r, b, low)
-    f_low = u_at(s, n, place, t + low * h) - end
+    f_low = corner_at(s, n, place, t + low * h)[0] - end
     if (f_low > 0.0) == above and f_low != 0.0:
         return low  # outside as it begins: to rounding on the corner, and on its way out
     bracket = (low, f_low, high, f_high, 0.0)
@@ -253,7 +233,7 @@ def root(s, r, b, n, place, above, part):
             break
         middle = between(bracket, k)
         show(s, r, b, middle)
-        f = u_at(s, n, place, t + middle * h) - end
+        f = corner_at(s, n, place, t + middle * h)[0] - end
         if f == 0.0:
             return middle
         bracket = narrowed(bracket, middle, f, above)
@@ -269,10 +249,9 @@ def beyond(s, b, t):
             first = n
     if first < 0:
         return 0.0
-    o, place = s.feature[first, OFFSET], int(b.met[first, PLACE])
-    located(s.tab, o, t, s.S)
-    u, rate, _ = corner(s.tab, o, place, s.S)
-    least, most = ends_of(s.tab, o, place)
+    place = int(b.met[first, PLACE])
+    u, rate, _ = corner_at(s, first, place, t)
+    least, most = ends_of(s.tab, s.feature[first, OFFSET], place)
     end = most if abs(u - most) < abs(u - least) else least
     return (u - end) / rate if rate != 0.0 else 0.0
 
@@ -362,8 +341,7 @@ def swap(s, b):
 def chatters(s, r, b, setting, n, t1):
     """Free a corner that is met again and again within the error allowed: a rest on a corner."""
     place, chatter = int(b.met[n, PLACE]), r.chatter[n]
-    located(s.tab, s.feature[n, OFFSET], t1, s.S)
-    _, rate, _ = corner(s.tab, s.feature[n, OFFSET], place, s.S)
+    _, rate, _ = corner_at(s, n, place, t1)
     fastest = 1e-300  # sensor
     for k in range(s.sensed.shape[0]):
         own = abs(s.S[s.sensed[k, ENTRY], 1])
@@ -386,8 +364,7 @@ def released(s, r, n, t1):
         o, place = s.feature[n, OFFSET], s.held[k]
         if s.tab[place] != FREE or not sensed(s.tab, o, place):
             continue
-        located(s.tab, o, t1, s.S)
-        u, _, size = corner(s.tab, o, place, s.S)
+        u, _, size = corner_at(s, n, place, t1)
         now = piece_at(s.tab, o, place, u)
         s.tab[place] = now
         least, most = ends_of(s.tab, o, place)

@@ -9,6 +9,7 @@ turns the motion round or stops it there, and not where g touches the value and 
 In the tables of gaps and of roots the watched sensors follow the contacts.
 """
 
+from trsim.assemble.equations import gaps
 from trsim.assemble.travel import CLOCK
 from trsim.kernels.vectors import internal
 from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched
@@ -22,25 +23,27 @@ PASSED = 1000  # crossings in the other direction that one step may have
 
 
 @internal
-def watch(s, t, gap):
-    """Put g and its rate into the last rows of a table of gaps, at the poses of the scene."""
+def see(s, t, gap, branch, turning):
+    """Gaps of contacts, what is watched, and angles, each with its rate, at the poses of the scene:
+    into a table of gaps, and into two of angles."""
+    if s.contact.size > 0:
+        gaps(s, t)
+    for c in range(s.contact.size):
+        gap[c, 0], gap[c, 1] = s.gap[s.contact[c], 0], s.gap[s.contact[c], 1]
     for k in range(s.watch.shape[0]):
         gap[s.contact.size + k, 0], gap[s.contact.size + k, 1] = watched(s, t, k)
-
-
-@internal
-def side_of(s, k, g, before):
-    """The side of g; the one it had before while it lies within the band."""
-    if abs(g) <= s.watch_at[k, BAND]:
-        return before
-    return ABOVE if g > 0.0 else BELOW
+    for k in range(s.n_s):
+        branch[k], turning[k] = s.S[k, 0], s.S[k, 1]
 
 
 @internal
 def take_sides(s, r):
-    """The state of what is watched, after an accepted step."""
+    """The state of what is watched, after an accepted step: the side it is on, or the one it had
+    before while it lies within the band."""
     for k in range(s.watch.shape[0]):
-        r.watch[k, SIDE] = side_of(s, k, r.gap[s.contact.size + k, 0], r.watch[k, SIDE])
+        g = r.gap[s.contact.size + k, 0]
+        if not abs(g) <= s.watch_at[k, BAND]:
+            r.watch[k, SIDE] = ABOVE if g > 0.0 else BELOW
 
 
 @internal

@@ -16,16 +16,11 @@ from math import sqrt
 from trsim.kernels.vectors import clear, internal
 from trsim.solve.march.record import (
     EVENT_ANGLE,
-    EVENT_IMPULSE,
-    EVENT_KIND,
-    EVENT_ROW,
-    EVENT_SPEED,
-    EVENT_TIME,
-    EVENT_WORK,
     NO_HISTORY,
     NO_JACOBIAN,
     TO_EXPLICIT,
     TO_IMPLICIT,
+    note_event,
 )
 from trsim.solve.march.stiffness import stiff_load
 from trsim.solve.methods.displacements import active
@@ -46,8 +41,8 @@ ITERATIONS = 12  # of the vector iteration
 def choose(s, r, b, h, event):
     """Change r.method where the steps so far say so; leaves a line among the events."""
     if r.method == EXPLICIT:
-        if event:
-            forget(r)
+        if event:  # behind it the derivative changes by other rates
+            r.explicit_rate = 0.0
             return
         rate = explicit_rate(s, r, b, h)
         load, light = h * max(rate, STABLE / HELD * stiff_load(r, 1.0)), calmed(s, r, h, rate)
@@ -76,15 +71,9 @@ def choose(s, r, b, h, event):
 def calm(s, r, b, h, event):
     """Keep the steps of DOP853 stable where it runs alone."""
     if event:
-        forget(r)
+        r.explicit_rate = 0.0
     else:
         calmed(s, r, h, explicit_rate(s, r, b, h))
-
-
-@internal
-def forget(r):
-    """Behind an event the derivative changes by other rates."""
-    r.explicit_rate = 0.0
 
 
 @internal
@@ -112,14 +101,11 @@ def change(s, r, b, method, load):
     r.stiff, r.not_stiff = 0, 0
     r.history, r.jacobian = NO_HISTORY, NO_JACOBIAN
     r.past_error, r.factored_h, r.next_look = 0.0, 0.0, r.steps
-    forget(r)
+    r.explicit_rate = 0.0
     r.method_switches += 1
-    line = b.events[r.event_rows]
-    r.event_rows += 1
-    line[EVENT_TIME], line[EVENT_ROW] = r.t, s.con.shape[0]
-    line[EVENT_KIND] = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
-    line[EVENT_SPEED] = load / r.h if r.h > 0.0 else 0.0
-    line[EVENT_ANGLE], line[EVENT_WORK], line[EVENT_IMPULSE] = load, 0.0, 0.0
+    kind = TO_IMPLICIT if method == IMPLICIT else TO_EXPLICIT
+    note_event(r, b, r.t, kind, s.con.shape[0], load / r.h if r.h > 0.0 else 0.0)
+    b.events[r.event_rows - 1, EVENT_ANGLE] = load
 
 
 @internal

@@ -4,49 +4,9 @@ Meant for some tens of unknowns.
 Substitution goes column by column: no number waits for the one before it, as in a sum along a row.
 """
 
+import numpy as np
+
 from trsim.kernels.vectors import internal
-
-
-@internal
-def factorise_real(A, pivot, n):
-    """A (n, n) <- L and U; pivot (n) <- rows swapped.  False where A is singular."""
-    for k in range(n):
-        top, p = abs(A[k, k]), k
-        for i in range(k + 1, n):
-            if abs(A[i, k]) > top:
-                top, p = abs(A[i, k]), i
-        if not top > 0.0:  # NaN as well
-            return False
-        pivot[k] = p
-        if p != k:
-            for j in range(n):
-                A[k, j], A[p, j] = A[p, j], A[k, j]
-        inverse = 1.0 / A[k, k]
-        for i in range(k + 1, n):
-            if A[i, k] != 0.0:
-                l = A[i, k] * inverse
-                A[i, k] = l
-                for j in range(k + 1, n):
-                    A[i, j] -= l * A[k, j]
-    return True
-
-
-@internal
-def solve_real(A, pivot, x, n):
-    """x <- A^-1 x with the factors of `factorise_real`."""
-    for k in range(n):
-        p = pivot[k]
-        if p != k:
-            x[k], x[p] = x[p], x[k]
-    for j in range(n - 1):
-        known = x[j]
-        for i in range(j + 1, n):
-            x[i] -= A[i, j] * known
-    for j in range(n - 1, -1, -1):
-        known = x[j] / A[j, j]
-        x[j] = known
-        for i in range(j):
-            x[i] -= A[i, j] * known
 
 
 @internal
@@ -64,42 +24,59 @@ def quotient(x, z):
 
 
 @internal
-def factorise_complex(A, pivot, n):
-    """`factorise_real` of a complex matrix."""
-    for k in range(n):
-        top, p = squared(A[k, k]), k
-        for i in range(k + 1, n):
-            if squared(A[i, k]) > top:
-                top, p = squared(A[i, k]), i
-        if not top > 0.0:
-            return False
-        pivot[k] = p
-        if p != k:
-            for j in range(n):
-                A[k, j], A[p, j] = A[p, j], A[k, j]
-        inverse = quotient(complex(1.0, 0.0), A[k, k])
-        for i in range(k + 1, n):
-            if A[i, k] != 0.0:
-                l = A[i, k] * inverse
-                A[i, k] = l
-                for j in range(k + 1, n):
-                    A[i, j] -= l * A[k, j]
-    return True
+def divide(x, y, mu, first, beyond):
+    """x + i y <- (x + i y) / mu, of these entries."""
+    for k in range(first, beyond):
+        z = quotient(complex(x[k], y[k]), mu)
+        x[k], y[k] = z.real, z.imag
 
 
-@internal
-def solve_complex(A, pivot, x, n):
-    """x <- A^-1 x with the factors of `factorise_complex`."""
-    for k in range(n):
-        p = pivot[k]
-        if p != k:
-            x[k], x[p] = x[p], x[k]
-    for j in range(n - 1):
-        known = x[j]
-        for i in range(j + 1, n):
-            x[i] -= A[i, j] * known
-    for j in range(n - 1, -1, -1):
-        known = quotient(x[j], A[j, j])
-        x[j] = known
-        for i in range(j):
-            x[i] -= A[i, j] * known
+def _systems(size, over):
+    """`factorise` and `solve` of numbers with a size, the largest of which are pivots, and with a
+    division of their own."""
+
+    @internal
+    def factorise(A, pivot, n):
+        """A (n, n) <- L and U; pivot (n) <- rows swapped.  False where A is singular."""
+        for k in range(n):
+            top, p = size(A[k, k]), k
+            for i in range(k + 1, n):
+                if size(A[i, k]) > top:
+                    top, p = size(A[i, k]), i
+            if not top > 0.0:  # NaN as well
+                return False
+            pivot[k] = p
+            if p != k:
+                for j in range(n):
+                    A[k, j], A[p, j] = A[p, j], A[k, j]
+            inverse = over(1.0, A[k, k])
+            for i in range(k + 1, n):
+                if A[i, k] != 0.0:
+                    l = A[i, k] * inverse
+                    A[i, k] = l
+                    for j in range(k + 1, n):
+                        A[i, j] -= l * A[k, j]
+        return True
+
+    @internal
+    def solve(A, pivot, x, n):
+        """x <- A^-1 x with the factors of `factorise`."""
+        for k in range(n):
+            p = pivot[k]
+            if p != k:
+                x[k], x[p] = x[p], x[k]
+        for j in range(n - 1):
+            known = x[j]
+            for i in range(j + 1, n):
+                x[i] -= A[i, j] * known
+        for j in range(n - 1, -1, -1):
+            known = over(x[j], A[j, j])
+            x[j] = known
+            for i in range(j):
+                x[i] -= A[i, j] * known
+
+    return factorise, solve
+
+
+factorise_real, solve_real = _systems(abs, np.divide)
+factorise_complex, solve_complex = _systems(squared, quotient)

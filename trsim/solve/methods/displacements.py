@@ -44,6 +44,39 @@ def frame_of(s, k):
 
 
 @internal
+def part_of(s, k):
+    """Which of the velocities of its frame the k-th is."""
+    return k % s.d if k < s.v_node else (k - s.v_node) % s.d_node
+
+
+@internal
+def quaternion(y, p):
+    """The four numbers of y from p on."""
+    return y[p], y[p + 1], y[p + 2], y[p + 3]
+
+
+@internal
+def turning(e, o):
+    """Twice the rate of the quaternion e with the angular velocity o, in body axes."""
+    return (
+        -e[1] * o[0] - e[2] * o[1] - e[3] * o[2],
+        e[0] * o[0] + e[2] * o[2] - e[3] * o[1],
+        e[0] * o[1] + e[3] * o[0] - e[1] * o[2],
+        e[0] * o[2] + e[1] * o[1] - e[2] * o[0],
+    )
+
+
+@internal
+def turned_by(e, d):
+    """2 conj(e) o d: the small rotation, body axes, that a change d of the quaternion e means."""
+    return (
+        2.0 * (e[0] * d[1] - e[1] * d[0] - e[2] * d[3] + e[3] * d[2]),
+        2.0 * (e[0] * d[2] - e[2] * d[0] - e[3] * d[1] + e[1] * d[3]),
+        2.0 * (e[0] * d[3] - e[3] * d[0] - e[1] * d[2] + e[2] * d[1]),
+    )
+
+
+@internal
 def displace(s, y, k, part):
     """Move y by `part` along the k-th displacement.  Returns nothing; y changes in place."""
     if s.d == 3 or k >= s.v_node:
@@ -54,23 +87,11 @@ def displace(s, y, k, part):
     if a < 3:
         y[q + a] += part
         return
-    e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
     half = 0.5 * part
-    if a == 3:
-        y[q + 3] -= e1 * half
-        y[q + 4] += e0 * half
-        y[q + 5] += e3 * half
-        y[q + 6] -= e2 * half
-    elif a == 4:
-        y[q + 3] -= e2 * half
-        y[q + 4] -= e3 * half
-        y[q + 5] += e0 * half
-        y[q + 6] += e1 * half
-    else:
-        y[q + 3] -= e3 * half
-        y[q + 4] += e2 * half
-        y[q + 5] -= e1 * half
-        y[q + 6] += e0 * half
+    about = (half if a == 3 else 0.0, half if a == 4 else 0.0, half if a == 5 else 0.0)
+    change = turning(quaternion(y, q + 3), about)
+    for c in range(4):
+        y[q + 3 + c] += change[c]
 
 
 @internal
@@ -90,14 +111,7 @@ def twisted(s, r, k, source):
     q = 7 * f
     if a < 3:
         return source[q + a]
-    y = r.y
-    e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
-    d0, d1, d2, d3 = source[q + 3], source[q + 4], source[q + 5], source[q + 6]
-    if a == 3:
-        return 2.0 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2)
-    if a == 4:
-        return 2.0 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3)
-    return 2.0 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1)
+    return turned_by(quaternion(r.y, q + 3), quaternion(source, q + 3))[a - 3]
 
 
 @internal
@@ -111,16 +125,8 @@ def moved_by(s, y, q, w):
     v = 6 * f
     if a < 3:
         return w[v + a]
-    p = 7 * f
-    e0, e1, e2, e3 = y[p + 3], y[p + 4], y[p + 5], y[p + 6]
-    o0, o1, o2 = w[v + 3], w[v + 4], w[v + 5]
-    if a == 3:
-        return 0.5 * (-e1 * o0 - e2 * o1 - e3 * o2)
-    if a == 4:
-        return 0.5 * (e0 * o0 + e2 * o2 - e3 * o1)
-    if a == 5:
-        return 0.5 * (e0 * o1 + e3 * o0 - e1 * o2)
-    return 0.5 * (e0 * o2 + e1 * o1 - e2 * o0)
+    rate = turning(quaternion(y, 7 * f + 3), (w[v + 3], w[v + 4], w[v + 5]))
+    return 0.5 * rate[a - 3]
 
 
 @internal

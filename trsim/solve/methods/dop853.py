@@ -28,6 +28,7 @@ from trsim.solve.march.accelerations import (
 )
 from trsim.solve.march.calls import CONTROL, DENSE, INTERPOLATE, STEP
 from trsim.solve.march.land import evaluate_stage
+from trsim.solve.march.norm import squares
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import dop853_tableau as tableau
 
@@ -138,17 +139,14 @@ def of_accelerations(s, r, b, setting, h):
     most = r.top_acceleration
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
-    error5 = error3 = seen5 = seen3 = least = moved = turned = squares = 0.0
+    error5 = error3 = seen5 = seen3 = least = moved = turned = of_squares = 0.0
     stiff, rounding = stiffness(r, h), unknown(r, furthest(s, r.y, s.size)) ** 2
     for _ in range(1, s.n_r):
-        x5 = x3 = v5 = v3 = placed = 0.0
-        for c in range(q, q + of_q):
-            x5 += (K[FIFTH, c] * weight[c]) ** 2
-            x3 += (K[THIRD, c] * weight[c]) ** 2
-            placed += (K[PLACES, c] * weight[c]) ** 2
-        for c in range(v, v + of_v):
-            v5 += (K[FIFTH, c] * weight[c]) ** 2
-            v3 += (K[THIRD, c] * weight[c]) ** 2
+        x5 = squares(K[FIFTH], weight, q, q + of_q)
+        x3 = squares(K[THIRD], weight, q, q + of_q)
+        placed = squares(K[PLACES], weight, q, q + of_q)
+        v5 = squares(K[FIFTH], weight, v, v + of_v)
+        v3 = squares(K[THIRD], weight, v, v + of_v)
         q, v = q + of_q, v + of_v
         if v5 > 0.0:
             ww = max(frequency(speed * v5, h * h * length * placed, h), stiff)
@@ -157,15 +155,16 @@ def of_accelerations(s, r, b, setting, h):
             by = ww * length * x5 + speed * v5
             moved, turned = moved + by, turned + ww * by
             by5, by3 = far * far * ww * by, far * far * ww * (ww * length * x3 + speed * v3)
-            error5, error3, squares = error5 + by5, error3 + by3, squares + by5 * by5
+            error5, error3 = error5 + by5, error3 + by3
+            of_squares += by5 * by5
             if seen:
                 seen5, seen3 = seen5 + by5, seen3 + by3
                 if v5 * x3 > APART**2 * v3 * x5:
                     turns = min(h * h * speed * v5 / (length * x5), SLOWER**2 * stiff * h * h)
                     least += by5 * min((turns / HOLDS**2) ** 3, 1.0)
-    if squares == 0.0:  # or next to nothing: its square is no number
+    if of_squares == 0.0:  # or next to nothing: its square is no number
         return 0.0
-    bodies = EACH * error5 * error5 / squares
+    bodies = EACH * error5 * error5 / of_squares
     off = h * error5 / sqrt((error5 + 0.01 * error3) * bodies)
     # stages of a step too long may be anywhere: no more than the speeds so far may turn to
     mean = turned / moved
@@ -227,19 +226,16 @@ def inside(scene, r, b, setting, t, h):
     of_places = (min(r.vibration, ww) * LEFT * length) ** 2
     of_rates = (min(r.decay, sqrt(ww)) * LEFT * speed) ** 2
     q, v, of_q, of_v = 0, scene.n_q, 3 if scene.d == 3 else 7, scene.d
-    moved = off = squares = 0.0
+    moved = off = of_squares = 0.0
     for _ in range(1, scene.n_r):
-        places = rates = 0.0
-        for c in range(q, q + of_q):
-            places += (b.P[6, c] * b.weight[c]) ** 2
-        for c in range(v, v + of_v):
-            rates += (b.P[6, c] * b.weight[c]) ** 2
+        places = squares(b.P[6], b.weight, q, q + of_q)
+        rates = squares(b.P[6], b.weight, v, v + of_v)
         q, v, moved = q + of_q, v + of_v, moved + places
         by = of_places * places + of_rates * rates
-        off, squares = off + by, squares + by * by
+        off, of_squares = off + by, of_squares + by * by
     if LEFT * sqrt(moved) * length < ROUNDED * furthest(scene, r.y, scene.size) or off == 0.0:
         return 0.0
-    off = together(off, squares, EACH)
+    off = together(off, of_squares, EACH)
     most = r.top_acceleration
     doubted(scene, r, setting, h, off, most, sqrt(ww))
     return in_units(scene, r, setting, h, off, most, ww, share(scene, setting, h, STEADY))

@@ -19,12 +19,12 @@ from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.vectors import all_finite, copy_to, internal
 from trsim.solve.march.accelerations import FURTHEST, ONE, doubted, held, in_units, largest, share
-from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, STEP
+from trsim.solve.march.calls import DENSE, NO_STEP, STEP
 from trsim.solve.march.record import FRESH, NO_JACOBIAN, OLD
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods import hermite
 from trsim.solve.methods.dense_lu import factorise_real, solve_real
-from trsim.solve.methods.displacements import active, turn, w_index
+from trsim.solve.methods.displacements import active, place_of, turn, w_index
 from trsim.solve.methods.jacobian import jacobian, missing
 from trsim.solve.methods.newton import FAILS, GOES_ON, judged, resolution
 
@@ -34,6 +34,7 @@ LAST = 2
 DENSE_ROWS = hermite.ROWS + 2
 DENSE_DEGREE = 3
 IMPLICIT = True
+interpolate = hermite.value
 
 RADIUS = 0.8
 A_M = (2.0 * RADIUS - 1.0) / (RADIUS + 1.0)
@@ -106,17 +107,12 @@ def arrive(s, r, b, h):
         c = s.n_q + k
         bend = (0.5 - BETA) * past[FILTERED, c] + BETA * K[B1, c]
         K[MOVE, k] = h * (y[c] + h * bend)
-    if s.d == 3:
-        for k in range(s.n_q):
-            y1[k] = y[k] + K[MOVE, k]
-        return
-    for k in range(s.v_node, s.n_v):
-        y1[s.q_node + k - s.v_node] = y[s.q_node + k - s.v_node] + K[MOVE, k]
-    for f in range(s.n_r - 1):
-        q, v = 7 * f, 6 * f
-        for a in range(3):
-            y1[q + a] = y[q + a] + K[MOVE, v + a]
-        turn(y, y1, q + 3, K[MOVE, v + 3], K[MOVE, v + 4], K[MOVE, v + 5])
+    for k in range(s.n_v):
+        q = place_of(s, k)
+        if s.d == 3 or k >= s.v_node or k % 6 < 3:
+            y1[q] = y[q] + K[MOVE, k]
+        elif k % 6 == 3:
+            turn(y, y1, q, K[MOVE, k], K[MOVE, k + 1], K[MOVE, k + 2])
 
 
 @internal
@@ -133,12 +129,8 @@ def newton(s, r, b, t, h):
             return -1
         for i in range(n_w):
             c = w_index(s, i)
-            K[SCRATCH, i] = (
-                (1.0 - A_F) * K[NEW, c]
-                + A_F * r.yd[c]
-                - (1.0 - A_M) * K[B1, c]
-                - A_M * r.past[FILTERED, c]
-            )
+            wanted = (1.0 - A_F) * K[NEW, c] + A_F * r.yd[c]
+            K[SCRATCH, i] = wanted - (1.0 - A_M) * K[B1, c] - A_M * r.past[FILTERED, c]
         solve_real(r.lu, r.pivot[0], K[SCRATCH], n_w)
         moved = 0.0
         for i in range(n_w):
@@ -237,8 +229,3 @@ def dense(scene, K, t, y, h, y1, P):
     hermite.build(K[0], K[LAST], h, y, y1, P)
     for c in range(y.size):  # not for the dense output: for the next step
         P[FILTERED, c], P[BEFORE, c] = K[B1, c], K[0, c]
-
-
-@compiled(INTERPOLATE)
-def interpolate(P, y, theta, out):
-    hermite.value(P, y, theta, out)

@@ -11,8 +11,8 @@ from trsim.assemble.beams import divide_by_mass, slope_force, times_mass
 from trsim.assemble.equations import constraints, forces, free_accelerations, poses
 from trsim.assemble.schur import rows
 from trsim.elements.contract import DRIVES, N_BOOK
-from trsim.kernels.vectors import internal
-from trsim.solve.methods.displacements import first_of, moved_by, width_of
+from trsim.kernels.vectors import clear, internal
+from trsim.solve.methods.displacements import first_of, frame_of, moved_by, part_of, width_of
 
 
 @internal
@@ -54,20 +54,26 @@ def moving(s, y, x, out):
 
 
 @internal
+def block_times(s, m, I, x, v, out):
+    """out <- the block of M of a rigid body, or of M^-1, times x; the parts of both begin at v.
+
+    m, I: mass and moments of inertia, or the inverses of these.
+    """
+    if s.d == 3:
+        out[v], out[v + 1], out[v + 2] = m * x[v], m * x[v + 1], I[8] * x[v + 2]
+        return
+    for i in range(3):
+        out[v + i] = m * x[v + i]
+        out[v + 3 + i] = I[3 * i] * x[v + 3] + I[3 * i + 1] * x[v + 4] + I[3 * i + 2] * x[v + 5]
+
+
+@internal
 def mass_times(s, x, out):
     """out (n_v) <- M x."""
     if s.n_r < s.n:
         times_mass(s, s.v_node, x, s.v_node, out)
     for f in range(1, s.n_r):
-        v, m, I = s.d * (f - 1), s.mass[f], s.inertia[f]
-        if s.d == 3:
-            out[v], out[v + 1], out[v + 2] = m * x[v], m * x[v + 1], I[8] * x[v + 2]
-        else:
-            for i in range(3):
-                out[v + i] = m * x[v + i]
-                out[v + 3 + i] = (
-                    I[3 * i] * x[v + 3] + I[3 * i + 1] * x[v + 4] + I[3 * i + 2] * x[v + 5]
-                )
+        block_times(s, s.mass[f], s.inertia[f], x, s.d * (f - 1), out)
 
 
 @internal
@@ -75,23 +81,12 @@ def unweighed(s, x, out):
     """out (n_v) <- M^-1 x."""
     if s.n_r < s.n:
         for k in range(s.v_node, s.n_v):
-            f, c = s.n_r + (k - s.v_node) // s.d_node, (k - s.v_node) % s.d_node
-            s.moved[f, c] = x[k]
+            s.moved[frame_of(s, k), part_of(s, k)] = x[k]
         divide_by_mass(s, s.moved)
         for k in range(s.v_node, s.n_v):
-            f, c = s.n_r + (k - s.v_node) // s.d_node, (k - s.v_node) % s.d_node
-            out[k] = s.moved[f, c]
+            out[k] = s.moved[frame_of(s, k), part_of(s, k)]
     for f in range(1, s.n_r):
-        v, I = s.d * (f - 1), s.inertia_inverse[f]
-        if s.d == 3:
-            out[v], out[v + 1] = x[v] * s.mass_inverse[f], x[v + 1] * s.mass_inverse[f]
-            out[v + 2] = x[v + 2] * I[8]
-        else:
-            for i in range(3):
-                out[v + i] = x[v + i] * s.mass_inverse[f]
-                out[v + 3 + i] = (
-                    I[3 * i] * x[v + 3] + I[3 * i + 1] * x[v + 4] + I[3 * i + 2] * x[v + 5]
-                )
+        block_times(s, s.mass_inverse[f], s.inertia_inverse[f], x, s.d * (f - 1), out)
 
 
 @internal
@@ -128,11 +123,10 @@ def across(s, at, weighed, mu, x):
     if s.n_r == s.n:
         return
     for f in range(s.n_r, s.n):
-        for c in range(s.d_node):
-            s.moved[f, c] = 0.0
+        clear(s.moved[f])
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for c in range(s.d_node):
                 s.moved[f, c] += at[p, c] * mu[s.slot_row[p]]
     divide_by_mass(s, s.moved)
     for k in range(s.v_node, s.n_v):
-        x[k] -= s.moved[s.n_r + (k - s.v_node) // s.d_node, (k - s.v_node) % s.d_node]
+        x[k] -= s.moved[frame_of(s, k), part_of(s, k)]

@@ -17,6 +17,7 @@ from trsim.solve.methods.displacements import (
     active,
     displace,
     first_of,
+    part_of,
     place_of,
     w_index,
     width_of,
@@ -85,12 +86,6 @@ def elastic(s, r, b, t):
                 if e >= 0:
                     r.at_place[e] -= s.tangent[12 * n + i, j]
                     r.at_rate[e] -= s.viscous[12 * n + i, j]
-
-
-@internal
-def part_of(s, k):
-    """Which of the velocities of its frame the k-th is."""
-    return k % s.d if k < s.v_node else (k - s.v_node) % s.d_node
 
 
 @internal

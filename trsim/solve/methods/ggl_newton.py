@@ -23,9 +23,9 @@ from trsim.assemble.linear import factorise, substitute
 from trsim.assemble.schur import hub_mass, hub_rows
 from trsim.elements.contract import N_BOOK
 from trsim.kernels.vectors import clear, copy_to, internal
-from trsim.solve.methods.dense_lu import quotient
+from trsim.solve.methods.dense_lu import divide, quotient
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index, width_of
-from trsim.solve.methods.ggl_equations import across, add_product, mass_times
+from trsim.solve.methods.ggl_equations import across, add_product, block_times, mass_times
 from trsim.solve.methods.ggl_jacobian import fastest
 from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA
 from trsim.solve.methods.sparse_lu import factorise_sparse, factorise_sparse_complex, solve_sparse
@@ -37,7 +37,7 @@ def sparse_factors(s, r, b, setting, h):
     if b.made_of != r.jacobians:
         schur(s, r, b)
         b.made_of, b.made_for = r.jacobians, 0.0
-        b.resisted, b.turns = int(some(r.at_rate)), int(some_of(r.at_turn))
+        b.resisted, b.turns = int(some(r.at_rate)), int(some(r.at_turn))
         if setting.chooses > 0:
             r.jacobian_rate = fastest(s, r, b)
     if b.made_for == h:
@@ -57,19 +57,10 @@ def eigenvalue(part, h):
 
 
 @internal
-def some(x):
+def some(table):
     """Whether an entry is not zero."""
-    for k in range(x.size):  # noqa: SIM110 - a generator does not compile
-        if x[k] != 0.0:
-            return True
-    return False
-
-
-@internal
-def some_of(table):
-    """Whether an entry of a table is not zero."""
-    for k in range(table.shape[0]):  # noqa: SIM110 - a generator does not compile
-        if some(table[k]):
+    for x in table.flat:  # noqa: SIM110 - a generator does not compile
+        if x != 0.0:
             return True
     return False
 
@@ -81,15 +72,9 @@ def schur(s, r, b):
     clear(s.through)
     pair = 0
     for f in range(1, s.n_r):
-        I = s.inertia_inverse[f]
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
-            B, W = r.at_rows[p], b.across[p]
-            if s.d == 3:
-                W[0], W[1], W[2] = B[0] * s.mass_inverse[f], B[1] * s.mass_inverse[f], B[2] * I[8]
-            else:
-                for i in range(3):
-                    W[i] = B[i] * s.mass_inverse[f]
-                    W[3 + i] = I[3 * i] * B[3] + I[3 * i + 1] * B[4] + I[3 * i + 2] * B[5]
+            W = b.across[p]
+            block_times(s, s.mass_inverse[f], s.inertia_inverse[f], r.at_rows[p], 0, W)
             if s.hub[f] < 0:
                 for o in range(s.frame_start[f], p + 1):
                     for k in range(s.d):
@@ -246,10 +231,7 @@ def advanced(s, r, b, f, g, mu):
     for k in range(s.n_v, active(s)):
         i = w_index(s, k)
         f[i], g[i] = b.side[0, b.rank[k]], b.side[1, b.rank[k]]
-    for k in range(N_BOOK):
-        i = s.n_q + s.n_v + k
-        z = quotient(complex(f[i], g[i]), mu)
-        f[i], g[i] = z.real, z.imag
+    divide(f, g, mu, s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK)
     # a quaternion has a fourth number: what no displacement means, r_q without r_x
     for k in range(s.n_v):
         z = quotient(complex(twisted(s, r, k, f), twisted(s, r, k, g)), mu)

@@ -6,13 +6,13 @@ equations.py, whose constraints hold by their accelerations.
 
 from trsim.assemble.equations import evaluate
 from trsim.assemble.schur import velocity_residual
-from trsim.kernels.vectors import all_finite, clear, internal
-from trsim.solve.methods.dense_lu import quotient, squared
+from trsim.kernels.vectors import all_finite, clear, copy_to, internal
+from trsim.solve.methods.dense_lu import divide, squared
 from trsim.solve.methods.displacements import twisted, w_index
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times, moving, pull
 from trsim.solve.methods.ggl_newton import eigenvalue
-from trsim.solve.methods.radau import F, W, Z
-from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, T_INVERSE, C, T
+from trsim.solve.methods.radau import F, W, at_stage, transformed
+from trsim.solve.methods.radau_tableau import ALPHA, BETA, GAMMA, C, T
 
 # rows of K after those of radau.py, three each: lam of the stages, mu, right-hand sides and
 # increments of Phi and Phi'; three rows that stay zero
@@ -23,12 +23,10 @@ STAGES = 28
 @internal
 def residuals(s, r, b, t, h):
     """F, RP, RR <- what the stages leave of the equations, in the basis T.  False: not finite."""
-    K, n = b.K, r.y.size
-    end = s.n_q + s.n_v
+    K, end = b.K, s.n_q + s.n_v
     for i in range(3):
         f = K[F + i]
-        for k in range(n):
-            b.y1[k] = r.y[k] + K[Z + i, k]
+        at_stage(r, b, i)
         pull(s, t + C[i] * h, b.y1, K[LAM + i], b.pull)
         x = b.slope[0]
         for k in range(s.n_v):
@@ -43,8 +41,8 @@ def residuals(s, r, b, t, h):
         if not all_finite(f):
             return False
     left_over(s, r, b, h, True)
-    transformed(K[RP], K[RP + 1], K[RP + 2], s.m)
-    transformed(K[RR], K[RR + 1], K[RR + 2], s.m)
+    transformed(K, RP, s.m)
+    transformed(K, RR, s.m)
     return True
 
 
@@ -53,7 +51,7 @@ def left_over(s, r, b, h, forces):
     """F <- T^-1 F less the rates of the stages; rows of v are forces, or accelerations."""
     K, n = b.K, r.y.size
     g, a, c = GAMMA / h, ALPHA / h, BETA / h
-    transformed(K[F], K[F + 1], K[F + 2], n)
+    transformed(K, F, n)
     for i in range(3):
         for k in range(n):
             w0, w1, w2 = K[W, k], K[W + 1, k], K[W + 2, k]
@@ -74,13 +72,11 @@ def residuals_index1(s, r, b, t, h):
 
     False: not finite.
     """
-    K, n = b.K, r.y.size
+    K = b.K
     for i in range(3):
-        for k in range(n):
-            b.y1[k] = r.y[k] + K[Z + i, k]
+        at_stage(r, b, i)
         evaluate(s, t + C[i] * h, b.y1, K[F + i])
-        for k in range(s.m):
-            K[LAM + i, k] = s.lam[k]
+        copy_to(K[LAM + i], s.lam)
         if not all_finite(K[F + i]):
             return False
     left_over(s, r, b, h, False)
@@ -112,19 +108,16 @@ def unconstrained(s, r, b, sides, mu):
     for k in range(s.n_v):
         x[k], y[k] = twisted(s, r, k, f), twisted(s, r, k, g)
         dx[k], dy[k] = f[s.n_q + k], g[s.n_q + k]
-    for j in range(s.m):
-        u[j], w[j] = 0.0, 0.0
+    clear(u)
+    clear(w)
     add_product(s, r.at_rows, 1.0, dx, u)
     add_product(s, r.at_rows, 1.0, dy, w)
-    for j in range(s.m):
-        z = quotient(complex(u[j], w[j]), mu)
-        u[j], w[j] = z.real, z.imag
-        p[j], q[j] = z.real, z.imag
+    divide(u, w, mu, 0, s.m)
+    copy_to(p, u)
+    copy_to(q, w)
     add_product(s, r.at_rows, 1.0, x, p)
     add_product(s, r.at_rows, 1.0, y, q)
-    for j in range(s.m):
-        z = quotient(complex(p[j], q[j]), mu)
-        p[j], q[j] = z.real, z.imag
+    divide(p, q, mu, 0, s.m)
     for k in range(b.state_row.shape[0]):  # these rows hold the difference of place and state
         j, i = b.state_row[k, 0], w_index(s, b.state_row[k, 1])
         a, c, size = mu.real, mu.imag, squared(mu)
@@ -155,16 +148,6 @@ def as_forces(s, b, f):
 
 
 @internal
-def transformed(x, y, z, n):
-    """(x, y, z) <- T^-1 (x, y, z)."""
-    for k in range(n):
-        p, q, u = x[k], y[k], z[k]
-        x[k] = T_INVERSE[0, 0] * p + T_INVERSE[0, 1] * q + T_INVERSE[0, 2] * u
-        y[k] = T_INVERSE[1, 0] * p + T_INVERSE[1, 1] * q + T_INVERSE[1, 2] * u
-        z[k] = T_INVERSE[2, 0] * p + T_INVERSE[2, 1] * q + T_INVERSE[2, 2] * u
-
-
-@internal
 def nothing(s, K):
     """The imaginary parts of a real system."""
     for i in range(3):
@@ -172,15 +155,10 @@ def nothing(s, K):
 
 
 @internal
-def moved_on(s, K, n, multipliers):
-    """Add the increments in F, RP and RR to the stages."""
+def multipliers_moved_on(s, K):
+    """Add the increments in RP and RR to those of the stages."""
     for i in range(3):
-        for k in range(n):
-            K[W + i, k] += K[F + i, k]
-    for i in range(3):
-        for k in range(n):
-            K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
-        for k in range(s.m if multipliers else 0):
+        for k in range(s.m):
             for j in range(3):
                 K[LAM + i, k] += T[i, j] * K[RP + j, k]
                 K[MU + i, k] += T[i, j] * K[RR + j, k]

@@ -15,18 +15,19 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import Model
 from trsim.kernels.packed import A1, A2, C1, F8, I1, I2, I8
-from trsim.solve.march.record import Buffers, Record
+from trsim.solve.march.record import Buffers, Record, of, zeros
 
 
 class SparseRecord(Record):
     """What the Jacobian was when it was made; the dense tables of Record stay empty."""
 
-    at_place: A1  # (nnz) derivative of loads and rates against displacements, column by column
-    at_rate: A1  # (nnz) against w
-    at_rows: A2  # (slots of every row of the mechanism, 6) B
-    at_turn: A2  # (slots, 6) derivative of B v + Phi_t against displacements
-    at_state: A1  # (rows with a state) Phi against that state
-    moved_off: A1  # (1) error of the motion in the last step that kept to its bound
+    # derivatives of loads and rates, column by column: against displacements, and against w
+    at_place: A1 = of("entries")
+    at_rate: A1 = of("entries")
+    at_rows: A2 = of("lines", 6)  # B
+    at_turn: A2 = of("lines", 6)  # derivative of B v + Phi_t against displacements
+    at_state: A1 = of("instances")  # Phi against that state
+    moved_off: A1 = of(1)  # error of the motion in the last step that kept to its bound
 
 
 class SparseBuffers(Buffers):
@@ -54,22 +55,23 @@ class SparseBuffers(Buffers):
     lower_start: I1
     lower: I1
     # numbers
-    across: A2  # (slots, 6) M^-1 B^T
-    schur: A1  # factors of B M^-1 B^T
-    value: C1  # (entries)
-    real_l: A1
-    real_u: A1
-    real_d: A1
-    complex_l: C1
-    complex_u: C1
-    complex_d: C1
-    side: A2  # (2, N) right-hand sides and solutions, in the order of elimination; `pair` as well
-    pull: A1  # (n_w) loads less B^T lambda, and rates of states
-    pull0: A1  # (n_w)
-    rate0: A1  # (m) Phi' at the place of the Jacobian
-    slope: A2  # (2, n_v)
-    move: A2  # (2, n_v)
-    mu: A2  # (2, n_x) of rows, and of hubs
+    across: A2 = of("slot_row", 6)  # M^-1 B^T
+    schur: A1 = of("row")  # factors of B M^-1 B^T
+    value: C1 = of("entries")
+    real_l: A1 = of("lower")
+    real_u: A1 = of("lower")
+    real_d: A1 = of("unknowns")
+    complex_l: C1 = of("lower")
+    complex_u: C1 = of("lower")
+    complex_d: C1 = of("unknowns")
+    # right-hand sides and solutions, in the order of elimination; `pair` as well
+    side: A2 = of(2, "unknowns")
+    pull: A1 = of("n_w")  # loads less B^T lambda, and rates of states
+    pull0: A1 = of("n_w")
+    rate0: A1 = of("m")  # Phi' at the place of the Jacobian
+    slope: A2 = of(2, "n_v")
+    move: A2 = of(2, "n_v")
+    mu: A2 = of(2, "n_x")  # of rows, and of hubs
     made_for: F8  # s, the step size of the factors; 0: none
     made_of: I8  # number of the Jacobian they are made of
     resisted: I8  # 1: loads depend on rates
@@ -81,14 +83,10 @@ def record(dense: Record, mechanism: Mechanism, past_rows: int) -> SparseRecord:
     starts, _ = columns(nodes(mechanism), mechanism.model)
     lines = sum(len(instance.row.frames(k)) for instance in mechanism.instances
                 for k in range(len(instance.element.rows)))  # fmt: skip
+    sizes = {"entries": int(starts[-1]), "lines": lines, "instances": len(mechanism.instances)}
     return SparseRecord(
         **{**dense.arrays(), "past": np.zeros((past_rows, dense.y.size))},
-        at_place=np.zeros(starts[-1]),
-        at_rate=np.zeros(starts[-1]),
-        at_rows=np.zeros((lines, 6)),
-        at_turn=np.zeros((lines, 6)),
-        at_state=np.zeros(len(mechanism.instances)),
-        moved_off=np.zeros(1),
+        **zeros(SparseRecord, mechanism.model, sizes),
     )
 
 
@@ -293,21 +291,15 @@ def entries(model: Model, start: Any, row: Any, held: Any, rank: Any) -> dict[st
 
 def room(model: Model, n_w: int, n_entries: int, n_lower: int) -> dict[str, Any]:
     """Empty tables for numbers."""
-    n_v, m, N = model.n_v, model.m, n_w + model.m
-    return {
-        **{name: np.zeros(n_lower) for name in ("real_l", "real_u")},
-        **{name: np.zeros(n_lower, complex) for name in ("complex_l", "complex_u")},
-        **{name: np.zeros(N, complex) for name in ("complex_d", "pair")},
-        "side": np.zeros((2, N)),
-        **{name: np.zeros((2, n_v)) for name in ("slope", "move")},
-        **{name: np.zeros(n_w) for name in ("pull", "pull0")},
-        "real_d": np.zeros(N),
-        "value": np.zeros(n_entries, complex),
-        "rate0": np.zeros(m),
-        "across": np.zeros((len(model.slot_row), 6)),
-        "schur": np.zeros(len(model.row)),
-        "mu": np.zeros((2, len(model.column_start) - 1)),
+    sizes = {
+        "unknowns": n_w + model.m,
+        "n_w": n_w,
+        "n_x": len(model.column_start) - 1,
+        "entries": n_entries,
+        "lower": n_lower,
     }
+    pair = np.zeros(sizes["unknowns"], complex)
+    return {**zeros(SparseBuffers, model, sizes), "pair": pair}
 
 
 def constraint_groups(found: Nodes, model: Model, held: Any) -> list[tuple[list[int], list[int]]]:

@@ -1,6 +1,8 @@
 """Dense output of methods that have none of their own: the cubic through both ends, order 3."""
 
+from trsim.elements.contract import compiled
 from trsim.kernels.vectors import internal
+from trsim.solve.march.calls import INTERPOLATE
 
 ROWS = 3
 
@@ -15,7 +17,7 @@ def build(start, end, h, y, y1, P):
         P[2, c] = delta - h * end[c] - P[1, c]
 
 
-@internal
+@compiled(INTERPOLATE)
 def value(P, y, theta, out):
     """out <- solution at t + theta h."""
     rest = 1.0 - theta

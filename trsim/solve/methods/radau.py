@@ -34,11 +34,13 @@ from trsim.solve.march.accelerations import (
     together,
 )
 from trsim.solve.march.calls import DENSE, INTERPOLATE, NO_STEP, RATE, SOFTEN, STEP
+from trsim.solve.march.norm import squares
 from trsim.solve.march.record import AHEAD, BEHIND, FRESH, NO_HISTORY, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.march.rounding import MARGIN, jitter, noted, to_look
 from trsim.solve.march.settle import AT_END
 from trsim.solve.march.works import first_work, works
 from trsim.solve.methods.dense_lu import (
+    divide,
     factorise_complex,
     factorise_real,
     quotient,
@@ -105,9 +107,7 @@ def step(s, r, b, setting, t, h):
             return hidden(s, r, b, setting, t, h)
     else:
         return hidden(s, r, b, setting, t, h)
-    n = r.y.size
-    for c in range(n):
-        b.y1[c] = r.y[c] + b.K[Z + 2, c]
+    at_stage(r, b, 2)
     error = estimate(s, r, b, setting, t, h)
     # a shorter step from the same state, to an event or after a rejection, begins on this one
     collocation(b.K, r.y, b.y1, r.past)
@@ -168,12 +168,35 @@ def guess(s, r, b, h):
         for i in range(3):
             clear(K[Z + i])
     for i in range(3):
-        for c in range(n):
-            K[W + i, c] = (
-                T_INVERSE[i, 0] * K[Z, c]
-                + T_INVERSE[i, 1] * K[Z + 1, c]
-                + T_INVERSE[i, 2] * K[Z + 2, c]
-            )
+        copy_to(K[W + i], K[Z + i])
+    transformed(K, W, n)
+
+
+@internal
+def at_stage(r, b, i):
+    """b.y1 <- the state at the i-th stage."""
+    for k in range(r.y.size):
+        b.y1[k] = r.y[k] + b.K[Z + i, k]
+
+
+@internal
+def transformed(K, row, n):
+    """The three rows from that one on <- T^-1 times them."""
+    for k in range(n):
+        p, q, u = K[row, k], K[row + 1, k], K[row + 2, k]
+        for i in range(3):
+            K[row + i, k] = T_INVERSE[i, 0] * p + T_INVERSE[i, 1] * q + T_INVERSE[i, 2] * u
+
+
+@internal
+def moved_on(K, n):
+    """Add the increments in F to W; Z = T W."""
+    for i in range(3):
+        for k in range(n):
+            K[W + i, k] += K[F + i, k]
+    for i in range(3):
+        for k in range(n):
+            K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
 
 
 @internal
@@ -191,31 +214,22 @@ def newton(s, r, b, setting, t, h):
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
         for i in range(3):
-            for k in range(n):
-                b.y1[k] = r.y[k] + K[Z + i, k]
+            at_stage(r, b, i)
             evaluate(s, t + C[i] * h, b.y1, K[F + i])
             if not all_finite(K[F + i]):
                 return -1
+        transformed(K, F, n)
         for k in range(n):  # F <- right-hand sides
-            f0, f1, f2 = K[F, k], K[F + 1, k], K[F + 2, k]
             w1, w2 = K[W + 1, k], K[W + 2, k]
-            p = T_INVERSE[0, 0] * f0 + T_INVERSE[0, 1] * f1 + T_INVERSE[0, 2] * f2
-            u = T_INVERSE[1, 0] * f0 + T_INVERSE[1, 1] * f1 + T_INVERSE[1, 2] * f2
-            v = T_INVERSE[2, 0] * f0 + T_INVERSE[2, 1] * f1 + T_INVERSE[2, 2] * f2
-            K[F, k] = p - g * K[W, k]
-            K[F + 1, k] = u - (a * w1 - c * w2)
-            K[F + 2, k] = v - (c * w1 + a * w2)
+            K[F, k] -= g * K[W, k]
+            K[F + 1, k] -= a * w1 - c * w2
+            K[F + 2, k] -= c * w1 + a * w2
         corrected(s, r, K[F], K[DW], g)
         corrected_pair(s, r, K[F + 1], K[F + 2], b.pair, complex(a, c))
-        for i in range(3):
-            for k in range(n):
-                K[W + i, k] += K[F + i, k]
         moved = size_of_change(s, K, F, weight)
         if told:  # rates of what is stiff, which errors of places and speeds say little of
             changed = g * largest(s, K[F], largest(s, K[F + 1], largest(s, K[F + 2], 0.0)))
-        for i in range(3):
-            for k in range(n):
-                K[Z + i, k] = T[i, 0] * K[W, k] + T[i, 1] * K[W + 1, k] + T[i, 2] * K[W + 2, k]
+        moved_on(K, n)
         if not isfinite(moved):
             return -1
         verdict, rate = judged(moved, before, iteration, MOST_ITERATIONS, kappa)
@@ -280,9 +294,7 @@ def corrected_pair(s, r, f, g, w, mu):
         f[q], g[q] = x.real, x.imag
     for i in range(n):
         f[w_index(s, i)], g[w_index(s, i)] = w[i].real, w[i].imag
-    for q in range(s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK):
-        x = quotient(complex(f[q], g[q]), mu)
-        f[q], g[q] = x.real, x.imag
+    divide(f, g, mu, s.n_q + s.n_v, s.n_q + s.n_v + N_BOOK)
 
 
 @internal
@@ -331,27 +343,25 @@ def of_accelerations(s, r, b, setting, h):
             most = max(most, s.scale[c] * abs(rate) / h)
     length, speed = (tolerance * r.length) ** 2, (tolerance * r.speed) ** 2
     q, v, of_q, of_v = 0, s.n_q, 3 if s.d == 3 else 7, s.d
-    off = squares = bent = 0.0
+    off = of_squares = bent = 0.0
     moved, begins = 1e-300, r.history != BEHIND and r.past_error == 0.0
     for _ in range(1, s.n_r):
-        x = w = placed = turned = bare = 0.0
-        for c in range(q, q + of_q):
-            x += (K[F, c] * weight[c]) ** 2
-            placed += (K[F + 1, c] * weight[c]) ** 2
-        for c in range(v, v + of_v):
-            w += (K[F, c] * weight[c]) ** 2
-            turned += (K[F + 2, c] * weight[c]) ** 2
-            if begins:
-                rate = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
-                bare += ((r.yd[c] + rate) * weight[c]) ** 2
+        x = squares(K[F], weight, q, q + of_q)
+        placed = squares(K[F + 1], weight, q, q + of_q)
+        w = squares(K[F], weight, v, v + of_v)
+        turned = squares(K[F + 2], weight, v, v + of_v)
+        bare = 0.0
+        for c in range(v, v + of_v if begins else v):
+            rate = (E[0] * K[Z, c] + E[1] * K[Z + 1, c] + E[2] * K[Z + 2, c]) / h
+            bare += ((r.yd[c] + rate) * weight[c]) ** 2
         q, v = q + of_q, v + of_v
         if turned > 0.0:
             ww = frequency(speed * turned / h**2, length * placed, h)
             by = ww * length * x + speed * w
             moved, bent = moved + by, bent + ww * by
             by = ww * by + speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
-            off, squares = off + by, squares + by * by
-    off, mean = together(off, squares, FEW), bent / moved
+            off, of_squares = off + by, of_squares + by * by
+    off, mean = together(off, of_squares, FEW), bent / moved
     doubted(s, r, setting, h, LIKELY * off, most, sqrt(mean))
     return in_units(s, r, setting, h, off, most, mean, share(s, setting, h, ONE))
 

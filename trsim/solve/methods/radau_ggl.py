@@ -38,8 +38,9 @@ from trsim.solve.methods.ggl_newton import eigenvalue, solved, sparse_factors
 from trsim.solve.methods.ggl_stages import (
     LAM,
     MU,
+    NIL,
     constrained,
-    moved_on,
+    multipliers_moved_on,
     nothing,
     residuals,
     residuals_index1,
@@ -56,8 +57,10 @@ from trsim.solve.methods.radau import (
     F,
     W,
     Z,
+    at_stage,
     collocation,
     guess,
+    moved_on,
     norm,
     of_accelerations,
     of_works,
@@ -117,8 +120,7 @@ def step(s, r, b, setting, t, h):
         return HALVE
     if stabilised and driven(s):
         work_of_drives(s, r, b, t, h)
-    for c in range(r.y.size):
-        b.y1[c] = r.y[c] + b.K[Z + 2, c]
+    at_stage(r, b, 2)
     error = estimate(s, r, b, setting, t, h)
     quick = QUICK if b.turns > 0 else QUICK_FIXED
     r.next_jacobian = OLD if r.newton_rate < quick else NO_JACOBIAN
@@ -142,8 +144,7 @@ def work_of_drives(s, r, b, t, h):
     """
     K, entry = b.K, s.n_q + s.n_v + DRIVES
     for i in range(3):
-        for c in range(r.y.size):
-            b.y1[c] = r.y[c] + K[Z + i, c]
+        at_stage(r, b, i)
         evaluate(s, t + C[i] * h, b.y1, K[F + i])
     for i in range(3):
         total = 0.0
@@ -160,8 +161,7 @@ def guess_multipliers(s, r, b, t, h):
         ratio = h / r.past_h
         for i in range(3):
             theta = 1.0 + C[i] * ratio
-            for k in range(s.m):
-                K[LAM + i, k] = 0.0
+            clear(K[LAM + i])
             for j in range(3):
                 p, q = C[(j + 1) % 3], C[(j + 2) % 3]
                 part = (theta - p) * (theta - q) / ((C[j] - p) * (C[j] - q))
@@ -170,11 +170,9 @@ def guess_multipliers(s, r, b, t, h):
     else:
         evaluate(s, t, r.y, K[F])
         for i in range(3):
-            for k in range(s.m):
-                K[LAM + i, k] = s.lam[k]
+            copy_to(K[LAM + i], s.lam)
     for i in range(3):
-        for k in range(s.m):
-            K[MU + i, k] = 0.0
+        clear(K[MU + i])
 
 
 @internal
@@ -183,7 +181,7 @@ def newton(s, r, b, setting, t, h, stabilised):
 
     stabilised: on the equations of ggl_equations.py; on those of equations.py otherwise.
     """
-    K, n, weight = b.K, r.y.size, b.weight
+    K, weight = b.K, b.weight
     floor = resolution(r, weight, h)
     strict = stabilised and b.turns > 0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
@@ -196,17 +194,16 @@ def newton(s, r, b, setting, t, h, stabilised):
     before, rate, held = 0.0, 1.0, 1.0 if stabilised else 0.0
     for iteration in range(MOST_ITERATIONS):
         r.iterations += 1
-        if stabilised:
-            sound = residuals(s, r, b, t, h)
-        else:
-            sound = residuals_index1(s, r, b, t, h)
+        sound = residuals(s, r, b, t, h) if stabilised else residuals_index1(s, r, b, t, h)
         if not sound:
             return -1
         nothing(s, K)
         for part in range(2):
             solved(s, r, b, sides(K, part), eigenvalue(part, h), held)
         moved = size_of_change(s, K, F, weight)
-        moved_on(s, K, n, stabilised)
+        moved_on(K, r.y.size)
+        if stabilised:
+            multipliers_moved_on(s, K)
         if not isfinite(moved):
             return -1
         if moved == 0.0:
@@ -284,9 +281,7 @@ def of_multipliers(s, r, b, setting, h):
     nothing(s, K)
     unconstrained(s, r, b, sides(K, 0), g)
     solved(s, r, b, sides(K, 0), g, 0.0)
-    off = 0.0
-    for c in range(s.n_q, s.n_q + s.v_node):
-        off = max(off, s.scale[c] * abs(g.real * K[F, c]))
+    off = apart(s, K[NIL], g.real, K[F])
     most = r.top_acceleration
     rounding = ROUNDED * furthest(s, r.y, s.size) * g.real**2
     if off <= rounding:  # of places, which mu takes for what joints are open by

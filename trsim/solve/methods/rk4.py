@@ -15,7 +15,7 @@ finds them overlapping.  Between the ends of a step the solution is the cubic He
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import compiled
-from trsim.solve.march.calls import DENSE, INTERPOLATE, STEP
+from trsim.solve.march.calls import DENSE, STEP
 from trsim.solve.march.turns import fastest
 from trsim.solve.march.works import note_error
 from trsim.solve.methods import hermite
@@ -28,6 +28,7 @@ DENSE_ROWS = hermite.ROWS
 DENSE_DEGREE = 3
 ESTIMATE = 4  # of no use: the step is fixed
 IMPLICIT = False
+interpolate = hermite.value
 
 
 @compiled(STEP)
@@ -48,8 +49,3 @@ def step(scene, r, b, setting, t, h):
 @compiled(DENSE)
 def dense(scene, K, t, y, h, y1, P):
     hermite.build(K[0], K[LAST], h, y, y1, P)
-
-
-@compiled(INTERPOLATE)
-def interpolate(P, y, theta, out):
-    hermite.value(P, y, theta, out)

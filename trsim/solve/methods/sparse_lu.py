@@ -8,6 +8,8 @@ the solution is a step of.
 `work` is scratch of one row.
 """
 
+import numpy as np
+
 from trsim.kernels.vectors import internal
 from trsim.solve.methods.dense_lu import quotient
 
@@ -16,40 +18,54 @@ SHIFT = 1e-9  # of the same
 
 
 @internal
-def factorise_sparse(p, value, lower, upper, inverse, work):
-    """L, U and the inverse diagonal of the rows in p.entry_start; the number of small pivots.
+def size_of(z):
+    """|Re z| + |Im z|."""
+    return abs(z.real) + abs(z.imag)
 
-    -1 where a value is not finite.  Of complex values the real part is taken.
-    """
-    small = 0
-    start, column, lower_start, below = p.start, p.column, p.lower_start, p.lower
-    for i in range(start.size - 1):
-        for q in range(lower_start[i], lower_start[i + 1]):
-            work[below[q]] = 0.0
-        for q in range(start[i], start[i + 1]):
-            work[column[q]] = 0.0
-        work[i] = 0.0
-        for q in range(p.entry_start[i], p.entry_start[i + 1]):
-            work[p.entry_column[q]] = value[q].real
-        made_of = abs(work[i])
-        for q in range(lower_start[i], lower_start[i + 1]):
-            k = below[q]
-            l = work[k] * inverse[k]
-            lower[q] = l
-            if l != 0.0:
-                made_of += abs(l * work[k])
-                for u in range(start[k], start[k + 1]):
-                    work[column[u]] -= l * upper[u]
-        for q in range(start[i], start[i + 1]):
-            upper[q] = work[column[q]]
-        pivot = work[i]
-        if not abs(pivot) > TINY * made_of:
-            if not made_of > 0.0:
-                return -1
-            small += 1
-            pivot = -SHIFT * made_of
-        inverse[i] = 1.0 / pivot
-    return small
+
+def _elimination(taken, over):
+    """`factorise` of what is taken of complex values, with the division of such numbers."""
+
+    @internal
+    def factorise(p, value, lower, upper, inverse, work):
+        """L, U and the inverse diagonal of the rows in p.entry_start; the number of small pivots.
+
+        -1 where a value is not finite.
+        """
+        small = 0
+        start, column, lower_start, below = p.start, p.column, p.lower_start, p.lower
+        for i in range(start.size - 1):
+            for q in range(lower_start[i], lower_start[i + 1]):
+                work[below[q]] = 0.0
+            for q in range(start[i], start[i + 1]):
+                work[column[q]] = 0.0
+            work[i] = 0.0
+            for q in range(p.entry_start[i], p.entry_start[i + 1]):
+                work[p.entry_column[q]] = taken(value[q])
+            made_of = size_of(work[i])
+            for q in range(lower_start[i], lower_start[i + 1]):
+                k = below[q]
+                l = work[k] * inverse[k]
+                lower[q] = l
+                if l != 0.0:
+                    made_of += size_of(l) * size_of(work[k])
+                    for u in range(start[k], start[k + 1]):
+                        work[column[u]] -= l * upper[u]
+            for q in range(start[i], start[i + 1]):
+                upper[q] = work[column[q]]
+            if not size_of(work[i]) > TINY * made_of:
+                if not made_of > 0.0:
+                    return -1
+                small += 1
+                work[i] = -SHIFT * made_of
+            inverse[i] = over(1.0, work[i])
+        return small
+
+    return factorise
+
+
+factorise_sparse = _elimination(np.real, np.divide)
+factorise_sparse_complex = _elimination(complex, quotient)
 
 
 @internal
@@ -67,43 +83,3 @@ def solve_sparse(p, lower, upper, inverse, x):
         for q in range(start[i], start[i + 1]):
             total -= upper[q] * x[column[q]]
         x[i] = total * inverse[i]
-
-
-@internal
-def size_of(z):
-    """|Re z| + |Im z|."""
-    return abs(z.real) + abs(z.imag)
-
-
-@internal
-def factorise_sparse_complex(p, value, lower, upper, inverse, work):
-    """`factorise_sparse` of a complex matrix."""
-    small = 0
-    start, column, lower_start, below = p.start, p.column, p.lower_start, p.lower
-    for i in range(start.size - 1):
-        for q in range(lower_start[i], lower_start[i + 1]):
-            work[below[q]] = 0.0
-        for q in range(start[i], start[i + 1]):
-            work[column[q]] = 0.0
-        work[i] = 0.0
-        for q in range(p.entry_start[i], p.entry_start[i + 1]):
-            work[p.entry_column[q]] = value[q]
-        made_of = size_of(work[i])
-        for q in range(lower_start[i], lower_start[i + 1]):
-            k = below[q]
-            l = work[k] * inverse[k]
-            lower[q] = l
-            if l != 0.0:
-                made_of += size_of(l) * size_of(work[k])
-                for u in range(start[k], start[k + 1]):
-                    work[column[u]] -= l * upper[u]
-        for q in range(start[i], start[i + 1]):
-            upper[q] = work[column[q]]
-        pivot = work[i]
-        if not size_of(pivot) > TINY * made_of:
-            if not made_of > 0.0:
-                return -1
-            small += 1
-            pivot = complex(-SHIFT * made_of, 0.0)
-        inverse[i] = quotient(complex(1.0, 0.0), pivot)
-    return small

@@ -11,7 +11,7 @@ from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.elements.contract import N_BOOK
 from trsim.elements.prescribed import AnyDrive, rates_at
-from trsim.elements.scene import scene, workspace
+from trsim.elements.scene import Model, Scene, scene, workspace
 
 Array = NDArray[np.float64]
 
@@ -22,6 +22,19 @@ def with_scene(mechanism: Mechanism) -> Any:
     for x in mechanism.coordinates.values():
         work.branch[x.entry] = x.drawn
     return replace(mechanism, model=work)
+
+
+def posed(model: Model, y: Array) -> Scene:
+    """The workspace of a model, at the poses of y."""
+    w = workspace(model)
+    poses(w, y)
+    return w
+
+
+def as_of(mechanism: Mechanism, y: Array) -> Array:
+    """Positions and velocities of y as those of a mechanism with the same bodies; its z zero."""
+    moving = mechanism.model.n_q + mechanism.model.n_v
+    return np.append(y[:moving], np.zeros(mechanism.model.n_z))
 
 
 def remember(model: Any, y: Array) -> None:
@@ -53,9 +66,9 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
         if entry in model.wound:
             model.branch[entry] = place
         elif entry in sign_of:
-            work = workspace(model)
-            poses(work, y)
-            turns = round((place - float(work.S[entry, 0])) / (2.0 * pi)) * sign_of[entry]
+            turns = (
+                round((place - float(posed(model, y).S[entry, 0])) / (2.0 * pi)) * sign_of[entry]
+            )
             frames, way = behind(mechanism, own.i, own.j)
             for f in frames if turns else ():
                 y[3 * (f - 1) + 2] += way * turns * 2.0 * pi
@@ -87,8 +100,7 @@ def strained(mechanism: Mechanism, held: Mechanism, y: Array) -> dict[int, float
     that was one spring, of which its piston takes the part behind the second body.
     """
     model = held.model
-    w = workspace(model)
-    poses(w, y)
+    w = posed(model, y)
     resting = {i.name: i.row for i in held.instances if i.section == "drives"}
     found = {}
     for instance in mechanism.instances:
@@ -112,8 +124,7 @@ def follow(mechanism: Mechanism, y: Array) -> Array:
     """y with the states that start at a joint coordinate set to its value, or ahead of it."""
     model = mechanism.model
     y = y.copy()
-    w = workspace(model)
-    poses(w, y)
+    w = posed(model, y)
     for k, s in enumerate(mechanism.follows):
         if s >= 0:
             y[model.n_q + model.n_v + N_BOOK + k] = w.S[s, 0] + mechanism.ahead.get(N_BOOK + k, 0.0)

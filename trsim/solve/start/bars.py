@@ -34,16 +34,19 @@ def places(mechanism: Mechanism, beam: Beam, y: Array) -> tuple[Array, Array]:
     return r, g
 
 
+def moving(mechanism: Mechanism) -> dict[str, int]:
+    """The frames by name, but for the ground."""
+    return {name: f for name, f in mechanism.frames.items() if f > 0}
+
+
 def as_rigid(flexible: Mechanism, stiff: Mechanism, y: Array) -> Array:
     """Positions and velocities of the mechanism with stiff bars; its z zero."""
     out = stiff.y0.copy()
     a, b = flexible.model, stiff.model
     width, q = (3, 3) if b.d == 3 else (6, 7)
     twists = world_rates(a, y).reshape(-1, 6)
-    for name, f in stiff.frames.items():
+    for name, f in moving(stiff).items():
         here, rate = slice(q * (f - 1), q * f), b.n_q + width * (f - 1)
-        if f == 0:
-            continue
         if name in flexible.beams:
             beam = flexible.beams[name]
             r, _ = places(flexible, beam, y)
@@ -69,10 +72,8 @@ def as_flexible(flexible: Mechanism, stiff: Mechanism, y: Array) -> Array:
     """Positions of the mechanism with flexible bars, straight; velocities and z as drawn."""
     out = flexible.y0.copy()
     q = 3 if stiff.model.d == 3 else 7
-    for name, f in stiff.frames.items():
+    for name, f in moving(stiff).items():
         here = y[q * (f - 1) : q * f]
-        if f == 0:
-            continue
         if name in flexible.beams:
             beam = flexible.beams[name]
             width = flexible.model.d_node // 2
@@ -94,9 +95,7 @@ def moving_as_rigid(flexible: Mechanism, stiff: Mechanism, y: Array, v: Array) -
     v: world-axes twists (6 (n - 1)) of the mechanism with stiff bars.
     """
     out = np.zeros((flexible.model.n - 1, 6))
-    for name, f in stiff.frames.items():
-        if f == 0:
-            continue
+    for name, f in moving(stiff).items():
         twist = v[6 * (f - 1) : 6 * f]
         if name in flexible.beams:
             beam = flexible.beams[name]

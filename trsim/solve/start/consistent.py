@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.assemble import assemble
-from trsim.assemble.equations import derivative, gaps, poses
+from trsim.assemble.equations import derivative, gaps
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian, largest_reaction
 from trsim.assemble.switches import LIMITS, hold
@@ -34,7 +34,15 @@ from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.blame import refuse_no_number
 from trsim.solve.march.openings import check_closed
-from trsim.solve.start.angles import follow, on_turns_of_drives, remember, strained, with_scene
+from trsim.solve.start.angles import (
+    as_of,
+    follow,
+    on_turns_of_drives,
+    posed,
+    remember,
+    strained,
+    with_scene,
+)
 from trsim.solve.start.bars import as_flexible, as_rigid
 from trsim.solve.start.softening import softened
 from trsim.solve.start.statics import equilibrium
@@ -116,8 +124,7 @@ def check_names(scenario: Any, initial: Any) -> None:
 
 def check_values(mechanism: Mechanism, initial: Any, y: Array) -> None:
     """No drive moved a joint away from where `initial` put it."""
-    w = workspace(mechanism.model)
-    poses(w, y)
+    w = posed(mechanism.model, y)
     for name, value in initial.values.items():
         if name not in mechanism.coordinates:
             continue
@@ -158,8 +165,7 @@ def check_limits(mechanism: Mechanism, y: Array) -> None:
     limits = [e for e in mechanism.stages.switches.events if e.kind == "limit"]
     if not limits:
         return
-    w = workspace(mechanism.model)
-    poses(w, y)
+    w = posed(mechanism.model, y)
     gaps(w, 0.0)
     for event in limits:
         if w.gap[LIMITS - event.entry, 0] >= 0.0:
@@ -209,7 +215,9 @@ def positions(
         remember(held.model, y)
     angles = {name: float(held.model.S[x.entry, 0]) for name, x in held.coordinates.items()}
     ahead = strained(mechanism, held, y) if settle else {}
-    return back(mechanism, held, y), residual, angles, ahead
+    out = mechanism.y0.copy()
+    out[: mechanism.model.n_q] = y[: mechanism.model.n_q]
+    return follow(mechanism, out), residual, angles, ahead
 
 
 def bent(stiff: Any, held: Any, y: Array, settle: bool) -> tuple[Array, float]:
@@ -297,25 +305,14 @@ def carried(mechanism: Mechanism, other: Mechanism) -> Array:
     """y of one assembly as y of another with the same bodies, or with stiff bars."""
     if mechanism.beams and not other.beams:
         return as_rigid(mechanism, other, mechanism.y0)
-    n = mechanism.model.n_q + mechanism.model.n_v
-    y = np.zeros(n + other.model.n_z)
-    y[:n] = mechanism.y0[:n]
-    return on_turns_of_drives(other, y)
-
-
-def back(mechanism: Mechanism, other: Mechanism, y: Array) -> Array:
-    n = mechanism.model.n_q
-    out = mechanism.y0.copy()
-    out[:n] = y[:n]
-    return follow(mechanism, out)
+    return on_turns_of_drives(other, as_of(other, mechanism.y0))
 
 
 def phases(model: Model, y: Array, located: bool) -> Array:
     """Contact phases of the start; a closed contact takes the slowest impact as its speed."""
     mem = np.zeros((len(model.con), model.n_mem))
     mem[:, BRANCH] = WHOLE  # until the march has looked
-    w = workspace(model)
-    poses(w, y)
+    w = posed(model, y)
     gaps(w, 0.0)
     for c, e in enumerate(model.contact):
         closed = w.gap[e, 0] > 0.0

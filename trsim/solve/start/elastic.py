@@ -25,19 +25,22 @@ def softened_bars(mechanism: Mechanism, work: Scene, s: float) -> Scene:
 
 def bars_alone(mechanism: Mechanism, work: Scene) -> Scene:
     """The scene with no forces but those of bars, undamped, and their weight."""
-    own = work.stiffness[:, 1:].tolist()
-    rows = [row for row in work.force.tolist() if row[1:] in own]
     par = work.par.copy()
     for e in bars(mechanism):
         par[e, list(mechanism.instances[e].element.viscous)] = 0.0
-    return carried(work, work.replaced(force=np.array(rows, np.int64).reshape(-1, 3), par=par))
+    return carried(work, work.replaced(force=forces_of(work, bars=True), par=par))
 
 
 def without_bars(work: Scene) -> Scene:
     """The scene with no forces of bars, nor their weight, which is the same everywhere."""
+    return carried(work, work.replaced(force=forces_of(work, bars=False)))
+
+
+def forces_of(work: Scene, bars: bool) -> NDArray[np.int64]:
+    """The table of forces of bars, or of all else."""
     own = work.stiffness[:, 1:].tolist()
-    rows = [row for row in work.force.tolist() if row[1:] not in own]
-    return carried(work, work.replaced(force=np.array(rows, np.int64).reshape(-1, 3)))
+    rows = [row for row in work.force.tolist() if (row[1:] in own) == bars]
+    return np.array(rows, np.int64).reshape(-1, 3)
 
 
 def bars(mechanism: Mechanism) -> list[int]:

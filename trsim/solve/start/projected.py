@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import poses
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import jacobian, world_rates
 from trsim.elements.scene import Model, workspace
-from trsim.solve.start.angles import follow
+from trsim.solve.start.angles import follow, posed
+from trsim.solve.start.bars import moving
 from trsim.solve.start.consistent import Start
 
 Array = NDArray[np.float64]
@@ -56,15 +56,12 @@ def projected(mechanism: Mechanism, begun: Start) -> Projected:
     model = workspace(mechanism.model)
     mechanism = replace(mechanism, model=model)  # one workspace for all that follows
     as_drawn = follow(mechanism, mechanism.y0)
-    n, end = model.n_q, model.n_q + model.n_v
-    given = begun.y.copy()
-    given[n:end] = mechanism.y0[n:end]
     before, after = (np.abs(jacobian(model, 0.0, y)[0]) for y in (as_drawn, begun.y))
-    slip, left = rates(model, given), rates(model, begun.y)
+    slip, left = rates(model, as_given(mechanism, begun)), rates(model, begun.y)
     X, X0 = placed(model, begun.y), placed(model, as_drawn)
     ways = np.linalg.norm(X[:, :3] - X0[:, :3], axis=1)
     turns = [angle(a[3:].reshape(3, 3), b[3:].reshape(3, 3)) for a, b in zip(X, X0, strict=True)]
-    names = [name for name, f in mechanism.frames.items() if f > 0]
+    names = list(moving(mechanism))
     slips, spins = changes(mechanism, begun)
     return Projected(
         *(largest(before), largest(after), worst(before, mechanism.rows)),
@@ -76,12 +73,16 @@ def projected(mechanism: Mechanism, begun: Start) -> Projected:
     )
 
 
+def as_given(mechanism: Mechanism, begun: Start) -> Array:
+    """y of the start with the velocities that were given."""
+    given, y = slice(mechanism.model.n_q, mechanism.model.n_q + mechanism.model.n_v), begun.y.copy()
+    y[given] = mechanism.y0[given]
+    return y
+
+
 def given_velocities(mechanism: Mechanism, begun: Start) -> Array:
     """World-axes rates of the bodies at their places of the start, as given, (n - 1, 6)."""
-    model = mechanism.model
-    y = begun.y.copy()
-    y[model.n_q : model.n_q + model.n_v] = mechanism.y0[model.n_q : model.n_q + model.n_v]
-    return world_rates(model, y).reshape(-1, 6)
+    return world_rates(mechanism.model, as_given(mechanism, begun)).reshape(-1, 6)
 
 
 def changes(mechanism: Mechanism, begun: Start) -> tuple[Array, Array]:
@@ -104,9 +105,7 @@ def rates(model: Model, y: Array) -> Array:
 
 def placed(model: Model, y: Array) -> Array:
     """Positions and rotation matrices of the moving frames, (n - 1, 12)."""
-    w = workspace(model)
-    poses(w, y)
-    return w.X[1:].copy()
+    return posed(model, y).X[1:].copy()
 
 
 def angle(R: Array, R0: Array) -> float:

@@ -174,7 +174,9 @@ def tangent(parts: Parts, y: Array, lam: Array) -> Array:
     K, size = elastic_stiffness(parts.work, y), probe(parts.work)
     others = parts.others
     poses(others, y)
-    for k, step in zip(parts.acted, steps_along(others, parts.acted, size), strict=True):
+    changes = size * np.eye(6 * (others.n - 1))[parts.acted]
+    steps = [in_solve_axes(others, change) for change in changes]
+    for k, step in zip(parts.acted, steps, strict=True):
         ends = []
         for sign in (1.0, -1.0):
             near = y.copy()
@@ -182,11 +184,6 @@ def tangent(parts: Parts, y: Array, lam: Array) -> Array:
             ends.append(unbalanced(others, near, lam))
         K[:, k] -= (ends[0] - ends[1]) / (2.0 * size)
     return K
-
-
-def steps_along(work: Scene, rates: NDArray[np.int64], size: float) -> list[Array]:
-    """Displacements along world-axes rates in the axes of the solve, at the poses there are."""
-    return [in_solve_axes(work, change) for change in size * np.eye(6 * (work.n - 1))[rates]]
 
 
 def unbalanced(work: Scene, y: Array, lam: Array) -> Array:

@@ -62,15 +62,11 @@ def free_motions(J: Array, free: NDArray[np.bool_], mass: Array) -> Array:
     if len(J) == 0:
         basis = np.eye(int(free.sum()))
     else:
-        basis = null_space(J[:, free] / root)
+        _, basis = spaces(J[:, free] / root, DEPENDENT)
+        basis = basis.T
     Z = np.zeros((free.size, basis.shape[1]))
     Z[free] = basis / root[:, None]
     return Z
-
-
-def null_space(J: Array) -> Array:
-    """Columns: an orthonormal basis of what J maps to zero."""
-    return spaces(J, DEPENDENT)[1].T
 
 
 def stiffness(model: Model, y: Array, Z: Array, lam: Array, step: float) -> Array:

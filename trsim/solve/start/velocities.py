@@ -29,7 +29,7 @@ from trsim.elements.coordinates import of_joint
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
-from trsim.solve.start.angles import follow
+from trsim.solve.start.angles import as_of, follow, posed
 from trsim.solve.start.bars import as_rigid, moving_as_rigid
 
 Array = NDArray[np.float64]
@@ -49,9 +49,7 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     """
     if not mechanism.beams:
         ideal = at_the_start(scenario, mechanism, named)
-        y_ideal = np.zeros(ideal.model.n_q + ideal.model.n_v + ideal.model.n_z)
-        n = ideal.model.n_q + ideal.model.n_v
-        y_ideal[:n] = y[:n]
+        y_ideal = as_of(ideal, y)
         return with_velocities(
             mechanism.model, y, nearest(ideal, y_ideal, named, not given(scenario))
         )
@@ -158,8 +156,7 @@ def compliant_drives(mechanism: Mechanism, y: Array) -> list[tuple[Array, float]
 
 def of_springs(mechanism: Mechanism, y: Array) -> list[Array]:
     """Gradients of the rates of what springs hold: along and about their stiff directions."""
-    w = workspace(mechanism.model)
-    poses(w, y)
+    w = posed(mechanism.model, y)
     found = []
     for instance in mechanism.instances:
         if instance.element.springs is None:
@@ -192,8 +189,7 @@ def twist_row(
 def closed_stops(mechanism: Mechanism, y: Array) -> list[Array]:
     """Gradients of the gap rates of contacts that are closed at y."""
     model = mechanism.model
-    w = workspace(model)
-    poses(w, y)
+    w = posed(model, y)
     gaps(w, 0.0)
     closed = [e for e in model.contact.tolist() if w.gap[e, 0] > 0.0]
     return [gap_gradient(w, y, mechanism.instances[e], e) for e in closed]
@@ -212,8 +208,7 @@ def gap_gradient(w: Scene, y: Array, instance: Instance, e: int) -> Array:
 
 def with_velocities(model: Model, y: Array, v: Array) -> Array:
     """y with the given world-axes rates (6 (n-1)) of the moving frames."""
-    w = workspace(model)
-    poses(w, y)
+    w = posed(model, y)
     y = y.copy()
     y[model.n_q : model.n_q + model.n_v] = in_solve_axes(w, v)
     return y
