@@ -7,21 +7,11 @@ import h5py
 import numpy as np
 
 from trsim.store import torn
+from trsim.store.grow import components
 from trsim.store.read import Run, opened
 from trsim.store.target import TABLE, file_errors, fresh
 
-LETTERS = ("x", "y", "z")
 ROWS = 4096  # rows handled together
-
-
-def components(channel: str, size: int) -> list[str]:
-    """The scalar columns of a channel: itself, .x .y .z, or .xx .xy ... of a rotation."""
-    if size == 1:
-        return [channel]
-    if size == 3:
-        return [f"{channel}.{letter}" for letter in LETTERS]
-    pairs = [a + b for a in LETTERS for b in LETTERS]
-    return [f"{channel}.{pairs[k] if size == 9 else k}" for k in range(size)]
 
 
 def export(run: Run, names: list[str], target: Path) -> int:

@@ -81,6 +81,13 @@ class Growing:
         return {name: values.view(values.dtype.str) for name, values in rows.items()}
 
 
+def components(channel: str, size: int) -> list[str]:
+    """The names of the columns of a channel: its own, .x .y .z, or .xx .xy ... of a rotation."""
+    if size == 1:
+        return [channel]
+    return [f"{channel}.{label}" for label in LABELS.get(AXES.get(size, ""), range(size))]
+
+
 def scales(file: h5py.File, sizes: set[int]) -> None:
     """The scales of components, for the sizes of channels that are there."""
     for size in sorted(sizes & set(AXES)):

@@ -116,12 +116,9 @@ class Running:
             if not os.access(final.parent, os.W_OK) or final.is_dir():
                 raise OSError("not a file in a folder that can be written to")
             replaceable(self.part, PART)
-            for path, kind in (
-                (self.part, PART),
-                (self.fresh, PART),
-                (self.checkpoint, CHECKPOINT),
-            ):
-                own.exists(path, kind)
+            own.exists(self.part, PART)
+            own.exists(self.fresh, PART)
+            own.exists(self.checkpoint, CHECKPOINT)
 
     @contextlib.contextmanager
     def file_errors(self) -> Iterator[None]:
@@ -211,7 +208,7 @@ class Running:
             for e, instance in enumerate(self.mechanism.instances)
             if instance.row.contact is not None
         }
-        self.force = {e: tables.force_column(self.mechanism.instances[e]) for e in self.contacts}
+        self.force = {e: tables.force_column(table) for e, table in self.contacts.items()}
         self.events = tables.events(file, self.mechanism, time_field)
         self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
         self.tables = [self.rows, self.events, *self.contacts.values()]
