@@ -190,6 +190,14 @@ def known(word: object, words: Iterable[str], close: str | None = None) -> str:
     return f"{guess}Known: {listed(words)}{'.' if len(words) <= LISTED else ''}"
 
 
+def check_keys(given: Iterable[Any], words: Iterable[str], *path: str) -> None:
+    """Raise ScenarioError for the first key of a mapping, which is at `path`, that nobody knows."""
+    words = list(words)
+    for key in given:
+        if key not in words:
+            raise ScenarioError(f"unknown key {described(key)}", known(key, words), (*path, key))
+
+
 def closest(word: object, words: Iterable[str]) -> str | None:
     """The word that was probably meant: nearest by edits, then by likeness."""
     wrong, words = str(word)[:60], list(words)[:500]

@@ -69,9 +69,8 @@ def resting(pair: Pair, both: tuple[Totals, Totals]) -> set[str]:
 
 def level(window: int, name: str, quantity: Any, numbers: list[float], unit: str) -> Level:
     """numbers: of run and twin, half their intervals, half that of the difference."""
-    mine, twin, half, twin_half, off_half = map(float, numbers)
-    told = verdict(mine, twin, half, twin_half, off_half)
-    return Level(window, name, quantity, mine, twin, half, twin_half, off_half, told, unit)
+    told = [float(number) for number in numbers]
+    return Level._make([window, name, quantity, *told, verdict(*told), unit])
 
 
 def verdict(mine: float, other: float, half: float, other_half: float, off_half: float) -> Any:

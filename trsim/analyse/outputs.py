@@ -190,6 +190,8 @@ def _unit_of(run: Run, path: str) -> str:
     return own if key == "peak_force" else f"{own}/s"
 
 
+SHARES = ("flight", "contact", "following", "impacts", "onsets")
+WHOLE = ("summary", "solver")
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
     "peak": _extreme("largest"),
     "least": _extreme("smallest"),
@@ -201,15 +203,9 @@ KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
     "final": _of_rows(lambda x: x[-1]),
     "dispersion": _dispersion,
     "points": _count,
-    "flight": _of_shares("flight", "-"),
-    "contact": _of_shares("contact", "-"),
-    "following": _of_shares("following", "-"),
-    "impacts": _of_shares("impacts", "-"),
-    "onsets": _of_shares("onsets", "-"),
+    **{word: _of_shares(word, "-") for word in SHARES},
     "between": _of_shares("mean_between", "s"),
-    "summary": _kept("summary"),
-    "solver": _kept("solver"),
+    **{group: _kept(group) for group in WHOLE},
 }
-WHOLE = ("summary", "solver")
 # of what the solver located: the output rows have no say
-LOCATED = ("dispersion", "points", "flight", "contact", "following", "impacts", "onsets", "between")
+LOCATED = ("dispersion", "points", *SHARES, "between")

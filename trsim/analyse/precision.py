@@ -12,7 +12,7 @@ One run's error is ragged by factors of several, so each is the median over slig
 first steps; so is the CPU time, that of the integration alone, without rows.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from statistics import median
 
@@ -20,6 +20,7 @@ import numpy as np
 
 from trsim.analyse.apart import APART, still, windows
 from trsim.analyse.trajectory import (
+    Look,
     Problem,
     Setting,
     Trajectory,
@@ -113,9 +114,7 @@ def reference_setting(methods: Sequence[str], tolerances: Sequence[float]) -> Se
     return Setting(method, max(min(tolerances, default=1e-8) / TIGHTER, TIGHTEST))
 
 
-def reference(
-    of: Problem, setting: Setting, look: Callable[[], None] = unwatched
-) -> Reference:  # fmt: skip
+def reference(of: Problem, setting: Setting, look: Look = unwatched) -> Reference:
     """The reference and how far it can be trusted.
 
     Raises SolverError where it does not reach its end, UsageError where nothing moves.
@@ -185,9 +184,8 @@ def first_steps(of: Problem, to: Reference, setting: Setting) -> list[float | No
 
 
 def point(
-    of: Problem, to: Reference, setting: Setting, repeats: int = 3,
-    look: Callable[[], None] = unwatched,
-) -> Point:  # fmt: skip
+    of: Problem, to: Reference, setting: Setting, repeats: int = 3, look: Look = unwatched
+) -> Point:
     """Error and CPU time of one setting; one that fails says why."""
     starts = first_steps(of, to, setting)
     try:
@@ -210,15 +208,6 @@ def point(
         error <= to.uncertainty,
         peak <= to.peak_uncertainty,
     )
-
-
-def points(
-    of: Problem, to: Reference, settings: Sequence[Setting], repeats: int = 3,
-    look: Callable[[], None] = unwatched,
-) -> Iterator[Point]:  # fmt: skip
-    """A point for each setting, as they are measured."""
-    for setting in settings:
-        yield point(of, to, setting, repeats, look)
 
 
 def slope(x: Sequence[float], error: Sequence[float]) -> float:

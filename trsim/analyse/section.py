@@ -181,10 +181,7 @@ def along(
 
     A root is looked for between rows k and k + 1, or `near` a place, both in units of their span.
     """
-    shift = np.clip(k, -min(places), len(time) - 1 - max(places)) - k  # near the ends of the run
-    rows = (k + shift)[:, None] + np.array(places)
-    span = time[k + 1] - time[k]
-    lever = (time[rows] - time[k][:, None]) / span[:, None]
+    rows, span, lever = levers(time, k, places)
     when, *shown = channels
     at = between(lever, when[rows]) if near is None else moved(lever, when[rows], near)
     weight = weights(lever, at)
@@ -192,12 +189,16 @@ def along(
     return np.array(found), at
 
 
+def levers(time: Array, k: Numbers, places: tuple[int, ...]) -> tuple[Numbers, Array, Array]:
+    """Rows k + places, the span (s) from row k to the next, and where the rows are, in spans."""
+    first = np.clip(k, -min(places), len(time) - 1 - max(places))  # near the ends of the run
+    rows, span = first[:, None] + np.array(places), time[k + 1] - time[k]
+    return rows, span, (time[rows] - time[k][:, None]) / span[:, None]
+
+
 def trembling(time: Array, channels: tuple[Array, ...], k: Numbers, root: Array) -> Array:
     """What the scatter of the rows makes of time, x and y (3, n), at roots of the cubics."""
-    shift = np.clip(k, -min(CUBIC), len(time) - 1 - max(CUBIC)) - k
-    rows = (k + shift)[:, None] + np.array(CUBIC)
-    span = time[k + 1] - time[k]
-    lever = (time[rows] - time[k][:, None]) / span[:, None]
+    rows, span, lever = levers(time, k, CUBIC)
     slope = (weights(lever, root + AHEAD) - weights(lever, root - AHEAD)) / (2.0 * AHEAD)
     slopes = [np.abs(np.sum(slope * c[rows], axis=1)) for c in channels]
     mine = np.clip(k[:, None] + np.array(NEARBY), max(AROUND), len(time) - 1 - max(AROUND))

@@ -130,15 +130,12 @@ def indices(keys: Sequence[str], values: Blocks, word: str = "", unit: str = "-"
     (first_low, total_low), (first_high, total_high) = np.quantile(
         again, [0.5 - LEVEL / 2, 0.5 + LEVEL / 2], axis=0
     )
-    each: Any = (first, first_low, first_high, total, total_low, total_high)
-    table: Any = [
-        (key, *map(float, row), noisy(key))
-        for key, row in zip(keys, np.transpose(each), strict=True)
-    ]
+    each = [first, first_low, first_high, total, total_low, total_high]
+    table = np.transpose(each).tolist()
     steps = [1 << k for k in range(FIRST.bit_length() - 1, n.bit_length())]
     return Indices(
         word, unit, n, left_out, float(np.mean(every)), deviation,
-        tuple(Index(*row) for row in table),
+        tuple(Index._make((key, *row, noisy(key))) for key, row in zip(keys, table, strict=True)),
         tuple((m, *_indices(taken(values, slice(m)))) for m in steps),
         float(np.quantile(again[:, 0].sum(axis=1), 0.5 - LEVEL / 2)),
     )  # fmt: skip

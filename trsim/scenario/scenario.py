@@ -71,9 +71,8 @@ def word(section: str, data: dict) -> str:
     if named is None:
         near = [key for key in data if edits(key, "type") == 1]
         if near:
-            raise ScenarioError(
-                f"unknown key {described(near[0])}", "Did you mean 'type'?", (near[0],)
-            )
+            what = f"unknown key {described(near[0])}"
+            raise ScenarioError(what, "Did you mean 'type'?", (near[0],))
         raise ScenarioError("field required: type", known("", words))
     if not isinstance(named, str) or named not in words:
         what = f"unknown type {described(named)}"

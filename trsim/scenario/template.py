@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, WrapValidator, model_validator
 
-from trsim.errors import ScenarioError, described, known
+from trsim.errors import ScenarioError, check_keys
 from trsim.fields import Spec, direction, point, vector
 from trsim.frame import Frame, across
 
@@ -22,10 +22,7 @@ NOTHING: Any = Field(default_factory=dict)
 
 def _later(value: Any, _: Any) -> Any:
     """The mapping as written, its keys checked: its numbers are read in instances (unfold.py)."""
-    for key in value if isinstance(value, dict) else ():
-        if key not in Placement.model_fields:
-            what = f"unknown key {described(key)}"
-            raise ScenarioError(what, known(key, Placement.model_fields), (key,))
+    check_keys(value if isinstance(value, dict) else (), Placement.model_fields)
     return value
 
 
