@@ -15,9 +15,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.expressions import COMPARISONS, OPERATORS, Node
 
-Array = NDArray[np.float64]
 ROUNDING = 4.0 * np.finfo(float).eps  # of one operation, sin and exp included
 TINY = 1e-300
 

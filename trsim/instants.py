@@ -16,13 +16,12 @@ without crossing it is an instant too: a step more, and nothing missed.
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.enclosures import Interval, enclosure, values
 from trsim.errors import ScenarioError
 from trsim.expressions import COMPARISONS, EDGES, LOW, Node, names, parts
 
-Array = NDArray[np.float64]
 MOST = 500_000  # instants of one function in one run
 RESOLUTION = 1e-12  # of the run: instants nearer to each other are one
 # of the run: nearer to each other, places that rounding cannot tell apart are one

@@ -17,15 +17,13 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import STILL
 from trsim.analyse.cases import answers, numeric, varied
 from trsim.analyse.window import parted, window
+from trsim.arrays import Array
 from trsim.errors import UsageError, known
 from trsim.store.read import Run
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 0.01
 NARROW = 1e-4  # points closer than TOLERANCE of this, of the range of the channel, are one point

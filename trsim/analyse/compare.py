@@ -16,17 +16,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, windows
 from trsim.analyse.growth import motions
 from trsim.analyse.window import scalar_channel
+from trsim.arrays import Array
 from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
 from trsim.scenario.table import Line, Table, lines, number
 from trsim.store.read import Run
 from trsim.units import fits, quantity, titled, unit
-
-Array = NDArray[np.float64]
 
 ALIKE = 1e-5  # relative
 FREE = (

@@ -19,18 +19,16 @@ on in the same manner an estimate of its largest Lyapunov exponent [Benettin1976
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import still
 from trsim.analyse.lyapunov import Exponent, undetermined
 from trsim.analyse.pair import Pair
 from trsim.analyse.scaling import line, weights
 from trsim.analyse.window import Window
+from trsim.arrays import Array
 from trsim.errors import UsageError
 from trsim.store import torn
 from trsim.store.read import Run, opened
-
-Array = NDArray[np.float64]
 
 PARTED = 0.05  # of the ranges: what is further apart grows no more
 RISE = 3.0  # e-folds of the fitted line: less is no growth

@@ -9,16 +9,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, still
 from trsim.analyse.interval import MOST, Batches, half_widths
 from trsim.analyse.onsets import changes, closed
 from trsim.analyse.pair import Pair, Totals
+from trsim.arrays import Array
 from trsim.store.certificate import Level, Parted
-
-Array = NDArray[np.float64]
-
 
 ERRORS = ("energy.residual", "energy.work.projection")  # of the solver: no motion has them
 

@@ -24,13 +24,11 @@ and says why.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.embedding import apart, delay, dimension, embedded, neighbours, period
 from trsim.analyse.interval import half_width
 from trsim.analyse.scaling import Line, line, straightest, weights
-
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 MOST = 100_000  # values that are used
 REFERENCES = 4000  # points whose neighbours are followed

@@ -6,10 +6,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.store.certificate import Onset, Onsets
 from trsim.store.read import table
-
-Array = NDArray[np.float64]
 
 FIRST = 5  # onsets that are told one by one
 

@@ -27,11 +27,11 @@ from numpy.typing import NDArray
 from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
 from trsim.analyse.window import Window, parted, scalar_channel, window
+from trsim.arrays import Array
 from trsim.errors import UsageError, described, known
 from trsim.store.points import split
 from trsim.store.read import Run
 
-Array = NDArray[np.float64]
 Number = tuple[float, str]
 
 FORM = "A number of a run is KIND:OF, for example peak:B.contact_force or mean:stroke@0.3..0.9."

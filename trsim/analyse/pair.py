@@ -6,13 +6,11 @@ from typing import NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.store import torn
 from trsim.store.certificate import ROWS, channels, common_rows
 from trsim.store.grow import components
-
-Array = NDArray[np.float64]
 
 MOTION = ("position", "velocity", "angular_velocity", "rate", "eccentricity_x", "eccentricity_y",
           "eccentricity_x_rate", "eccentricity_y_rate")  # fmt: skip

@@ -7,9 +7,8 @@ what is left of a least-squares line is no more than STRAIGHT of its rise (rms).
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 STRAIGHT = 0.03
 FEWEST = 5  # values in a region

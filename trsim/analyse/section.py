@@ -26,12 +26,9 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array, Indices
 from trsim.errors import UsageError
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 DIRECTIONS = ("up", "down", "both")
 FEWEST = 8  # rows
@@ -159,7 +156,7 @@ def crossings(
     if abs(when[0]) <= AT_START * abs(when[1]):
         when = np.append(0.0, when[1:])
     up, down = (when[:-1] < 0.0) & (when[1:] >= 0.0), (when[:-1] > 0.0) & (when[1:] <= 0.0)
-    k: Numbers = np.flatnonzero({"up": up, "down": down}.get(crosses, up | down))
+    k: Indices = np.flatnonzero({"up": up, "down": down}.get(crosses, up | down))
     best, root = along(time, (when, x, y), k, CUBIC)
     error = np.zeros_like(best)
     for places in OTHERS:
@@ -174,7 +171,7 @@ def crossings(
 
 
 def along(
-    time: Array, channels: tuple[Array, ...], k: Numbers, places: tuple[int, ...],
+    time: Array, channels: tuple[Array, ...], k: Indices, places: tuple[int, ...],
     near: Array | None = None,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Time, x and y (3, n) of each crossing by the polynomials through rows k + places; the roots.
@@ -189,14 +186,14 @@ def along(
     return np.array(found), at
 
 
-def levers(time: Array, k: Numbers, places: tuple[int, ...]) -> tuple[Numbers, Array, Array]:
+def levers(time: Array, k: Indices, places: tuple[int, ...]) -> tuple[Indices, Array, Array]:
     """Rows k + places, the span (s) from row k to the next, and where the rows are, in spans."""
     first = np.clip(k, -min(places), len(time) - 1 - max(places))  # near the ends of the run
     rows, span = first[:, None] + np.array(places), time[k + 1] - time[k]
     return rows, span, (time[rows] - time[k][:, None]) / span[:, None]
 
 
-def trembling(time: Array, channels: tuple[Array, ...], k: Numbers, root: Array) -> Array:
+def trembling(time: Array, channels: tuple[Array, ...], k: Indices, root: Array) -> Array:
     """What the scatter of the rows makes of time, x and y (3, n), at roots of the cubics."""
     rows, span, lever = levers(time, k, CUBIC)
     slope = (weights(lever, root + AHEAD) - weights(lever, root - AHEAD)) / (2.0 * AHEAD)

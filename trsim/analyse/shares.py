@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from trsim.analyse.onsets import changes, closings
 from trsim.analyse.window import Window
+from trsim.arrays import Array
 from trsim.store.read import Run, opened
-
-Array = NDArray[np.float64]
 
 RIPPLE = 0.01  # of the deepest penetration of a contact: less is no maximum of its own
 

@@ -17,12 +17,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.interval import LEVEL
+from trsim.arrays import Array
 from trsim.errors import UsageError
-
-Array = NDArray[np.float64]
 
 RESAMPLES = 500
 CASE = "case"  # the key of named cases

@@ -33,15 +33,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.interval import LEVEL
 from trsim.analyse.window import Window, scalar_channel
+from trsim.arrays import Array
 from trsim.errors import UsageError
 from trsim.store.points import split
 from trsim.store.read import Run
-
-Array = NDArray[np.float64]
 
 WINDOW = "hann"
 WIDTH = 1.5  # bins: equivalent noise bandwidth of that window

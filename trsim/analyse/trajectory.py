@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.errors import ScenarioError, SolverError, UsageError, known
 from trsim.solve.blocks import Blocks
-
-Array = NDArray[np.float64]
 
 Look = Callable[[], None]  # at what is done so far, between two blocks
 

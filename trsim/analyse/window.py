@@ -13,11 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.errors import ScenarioError, UsageError, described
 from trsim.store.read import Run
 from trsim.units import quantity, unit
-
-Array = NDArray[np.float64]
 
 FORM = "A window is @BEGIN..END in seconds, or @CHANNEL=BEGIN..END."
 

@@ -5,9 +5,8 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 from h5py import h5a, h5d, h5p, h5s, h5t
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory

@@ -13,8 +13,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.store import rows
-from trsim.store.grow import Array, components
+from trsim.store.grow import components
 
 ROWS = 1 << 16
 

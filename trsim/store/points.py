@@ -14,14 +14,12 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.store import torn
 from trsim.store.grow import Field, Growing
-
-Array = NDArray[np.float64]
 
 LOCATED = "located on the dense output of the step"
 EXPECTED = 256  # points

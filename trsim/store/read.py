@@ -12,10 +12,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.errors import FileError, UsageError, known, unreadable
 from trsim.store import certificate, rows, torn
 from trsim.store.content import content_hash
-from trsim.store.grow import LONGEST, Array
+from trsim.store.grow import LONGEST
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import Impacts, Points, plain, split, stored

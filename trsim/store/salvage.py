@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.store import torn
-from trsim.store.grow import AXES, Array, scales
+from trsim.store.grow import AXES, scales
 from trsim.store.peaks import Peak, both_ways
 from trsim.store.peaks import store as store_peaks
 from trsim.store.read import reached
