@@ -199,22 +199,17 @@ def raised(a: Enclosure, b: Enclosure) -> Enclosure:
     )
 
 
-def compared(sign: str) -> Callable[[Enclosure, Enclosure], Enclosure]:
+def compared(sign: str, a: Enclosure, b: Enclosure) -> Enclosure:
     """1 or 0; both, and a rate without bounds, where it may jump inside."""
-
-    def of(a: Enclosure, b: Enclosure) -> Enclosure:
-        u = minus(a.value, b.value)
-        exact = (a.value.low == a.value.high) & (b.value.low == b.value.high)
-        equal = exact & (a.value.low == b.value.low)
-        above, below = u.low > 0.0, u.high < 0.0
-        truths = [OPERATORS[sign](*pair) for pair in ((1, 0), (0, 1), (0, 0))]
-        known = above | below | equal
-        value = np.where(above, truths[0], np.where(below, truths[1], truths[2])).astype(float)
-        low, high = np.where(known, value, 0.0), np.where(known, value, 1.0)
-        zero = exactly(0.0, low)
-        return Enclosure(Interval(low, high), where(known, zero, everything(low)))
-
-    return of
+    u = minus(a.value, b.value)
+    exact = (a.value.low == a.value.high) & (b.value.low == b.value.high)
+    equal = exact & (a.value.low == b.value.low)
+    above, below = u.low > 0.0, u.high < 0.0
+    truths = [OPERATORS[sign](*pair) for pair in ((1, 0), (0, 1), (0, 0))]
+    known = above | below | equal
+    value = np.where(above, truths[0], np.where(below, truths[1], truths[2])).astype(float)
+    low, high = np.where(known, value, 0.0), np.where(known, value, 1.0)
+    return Enclosure(Interval(low, high), where(known, exactly(0.0, low), everything(low)))
 
 
 def extreme(word: str, a: Enclosure, b: Enclosure) -> Enclosure:
@@ -309,7 +304,7 @@ BINARY: dict[str, Callable[[Enclosure, Enclosure], Enclosure]] = {
     "*": multiplied,
     "/": divided,
     "**": raised,
-    **{sign: compared(sign) for sign in COMPARISONS},
+    **{sign: partial(compared, sign) for sign in COMPARISONS},
 }
 FUNCTIONS: dict[str, Callable[..., Enclosure]] = {
     "abs": absolute,
@@ -353,8 +348,8 @@ def values(node: Node, t: Array) -> Array:
     if word in ("step", "step5", "smoothstep"):
         x, x0, h0, x1, h1 = a if len(a) == 5 else (a[0], 0.0, 0.0, 1.0, 1.0)
         s = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
-        cubic = s * s * (3.0 - 2.0 * s)
-        return np.asarray(
-            h0 + (h1 - h0) * (s**3 * (10.0 - 15.0 * s + 6.0 * s * s) if word == "step5" else cubic)
-        )
+        rise = s * s * (3.0 - 2.0 * s)
+        if word == "step5":
+            rise = s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+        return np.asarray(h0 + (h1 - h0) * rise)
     return np.asarray(POINTS[word](*a))

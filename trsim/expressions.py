@@ -102,8 +102,7 @@ _REFUSED: dict[type, str] = {
 
 ALLOWED = (
     "Allowed: + - * / **, comparisons, numbers, pi, t, parameters, sensors, "
-    + ", ".join(FUNCTIONS)
-    + "."
+    f"{', '.join(FUNCTIONS)}."
 )
 
 

@@ -20,6 +20,7 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     PrivateAttr,
     ValidationError,
     model_validator,
@@ -296,6 +297,7 @@ def _true_or_false(value: Any) -> Any:
     return value
 
 
+EMPTY: Any = Field(default_factory=dict)  # a mapping that may be left out
 Flag = Annotated[bool, BeforeValidator(_true_or_false)]
 
 

@@ -19,6 +19,7 @@ all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of 
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -65,24 +66,19 @@ def _rows(run: Run, channel: str, within: Window) -> tuple[Array, Array]:
     return time[inside], x[inside]
 
 
-def _of_rows(function: Callable[[Array], Any]) -> Any:
-    def number(run: Run, channel: str, within: Window, _: bool) -> Number:
-        return function(_rows(run, channel, within)[1]), run.unit(channel)
+def _of_rows(
+    function: Callable[[Array], Any], run: Run, channel: str, within: Window, _: bool
+) -> Number:
+    return function(_rows(run, channel, within)[1]), run.unit(channel)
 
-    return number
 
-
-def _extreme(word: str) -> Any:
-    best = {"largest": max, "smallest": min}[word]
-
-    def number(run: Run, channel: str, within: Window, part: bool) -> Number:
-        values = [best(_rows(run, channel, within)[1].tolist())]
-        kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
-        values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
-        values += _in_touch(run, channel, within)
-        return best(values), run.unit(channel)
-
-    return number
+def _extreme(word: str, run: Run, channel: str, within: Window, part: bool) -> Number:
+    best: Any = {"largest": max, "smallest": min}[word]
+    values = [best(_rows(run, channel, within)[1].tolist())]
+    kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
+    values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
+    values += _in_touch(run, channel, within)
+    return best(values), run.unit(channel)
 
 
 def _in_touch(run: Run, channel: str, within: Window) -> list[float]:
@@ -148,11 +144,8 @@ def _count(run: Run, name: str, within: Window, _: bool) -> Number:
     return float(np.count_nonzero(_points(run, name, within)[1])), "-"
 
 
-def _of_shares(field: str, unit: str) -> Any:
-    def number(run: Run, joint: str, within: Window, _: bool) -> Number:
-        return float(getattr(shares(run, joint, within), field)), unit
-
-    return number
+def _of_shares(field: str, unit: str, run: Run, joint: str, within: Window, _: bool) -> Number:
+    return float(getattr(shares(run, joint, within), field)), unit
 
 
 # --- of the file -----------------------------------------------------------------------------
@@ -165,19 +158,16 @@ OF_CONTACTS = {
 }
 
 
-def _kept(group: str) -> Any:
-    def number(run: Run, path: str, _: Window, __: bool) -> Number:
-        inner: Any = run.summary if group == "summary" else run.group(group)
-        for key in path.split("."):
-            if not isinstance(inner, dict) or key not in inner:
-                words = inner if isinstance(inner, dict) else ()
-                raise UsageError(f"{run.path}: no '{path}' in its {group}", known(key, words))
-            inner = inner[key]
-        if not isinstance(inner, int | float):
-            raise UsageError(f"{run.path}: '{path}' in its {group} is no number", FORM)
-        return float(inner), _unit_of(run, path)
-
-    return number
+def _kept(group: str, run: Run, path: str, _: Window, __: bool) -> Number:
+    inner: Any = run.summary if group == "summary" else run.group(group)
+    for key in path.split("."):
+        if not isinstance(inner, dict) or key not in inner:
+            words = inner if isinstance(inner, dict) else ()
+            raise UsageError(f"{run.path}: no '{path}' in its {group}", known(key, words))
+        inner = inner[key]
+    if not isinstance(inner, int | float):
+        raise UsageError(f"{run.path}: '{path}' in its {group} is no number", FORM)
+    return float(inner), _unit_of(run, path)
 
 
 def _unit_of(run: Run, path: str) -> str:
@@ -193,19 +183,19 @@ def _unit_of(run: Run, path: str) -> str:
 SHARES = ("flight", "contact", "following", "impacts", "onsets")
 WHOLE = ("summary", "solver")
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
-    "peak": _extreme("largest"),
-    "least": _extreme("smallest"),
+    "peak": partial(_extreme, "largest"),
+    "least": partial(_extreme, "smallest"),
     "range": _range,
-    "mean": _of_rows(np.mean),
-    "rms": _of_rows(lambda x: np.sqrt(np.mean(x**2))),
-    "std": _of_rows(np.std),
+    "mean": partial(_of_rows, np.mean),
+    "rms": partial(_of_rows, lambda x: np.sqrt(np.mean(x**2))),
+    "std": partial(_of_rows, np.std),
     "fluctuation": _fluctuation,
-    "final": _of_rows(lambda x: x[-1]),
+    "final": partial(_of_rows, lambda x: x[-1]),
     "dispersion": _dispersion,
     "points": _count,
-    **{word: _of_shares(word, "-") for word in SHARES},
-    "between": _of_shares("mean_between", "s"),
-    **{group: _kept(group) for group in WHOLE},
+    **{word: partial(_of_shares, word, "-") for word in SHARES},
+    "between": partial(_of_shares, "mean_between", "s"),
+    **{group: partial(_kept, group) for group in WHOLE},
 }
 # of what the solver located: the output rows have no say
 LOCATED = ("dispersion", "points", *SHARES, "between")

@@ -18,7 +18,7 @@ from statistics import median
 
 import numpy as np
 
-from trsim.analyse.apart import APART, still, windows
+from trsim.analyse.apart import APART, resting, windows
 from trsim.analyse.trajectory import (
     Look,
     Problem,
@@ -124,8 +124,7 @@ def reference(of: Problem, setting: Setting, look: Look = unwatched) -> Referenc
     except SolverError as error:
         what = f"the reference, {setting.method} at {setting.tolerance:g}, failed: {error.what}"
         raise SolverError(what, "Choose another one: --reference METHOD:TOLERANCE.") from None
-    ranges = {name: float(np.max(np.ptp(x, axis=0))) for name, x in run.values.items()}
-    rests = motionless(of, run, ranges)
+    ranges, rests = resting(run.values, {q.name: q.unit for q in of.quantities})
     ranges = {name: value for name, value in ranges.items() if name not in rests}
     if not ranges:
         raise UsageError("none of the quantities moves", "Name others with --quantity CHANNEL.")
@@ -143,15 +142,9 @@ def reference(of: Problem, setting: Setting, look: Look = unwatched) -> Referenc
         peak_uncertainty = peak_error(second, run)
     except SolverError as error:
         reason = error.what
-    return Reference(setting, other, run, ranges, rests, rows, apart, uncertainty,
+    unmoved = tuple(q.name for q in of.quantities if q.name in rests)
+    return Reference(setting, other, run, ranges, unmoved, rows, apart, uncertainty,
                      peak_uncertainty, reason)  # fmt: skip
-
-
-def motionless(of: Problem, run: Trajectory, ranges: dict[str, float]) -> tuple[str, ...]:
-    """Quantities that change by no more than rounding."""
-    largest = {name: float(np.max(np.abs(x))) for name, x in run.values.items()}
-    rests = still(ranges, largest, {q.name: q.unit for q in of.quantities})
-    return tuple(q.name for q in of.quantities if q.name in rests)
 
 
 def errors(run: Trajectory, to: Reference) -> dict[str, float]:

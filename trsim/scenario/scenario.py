@@ -9,11 +9,11 @@ from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Interval
-from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
+from pydantic import AfterValidator, BeforeValidator, PrivateAttr, model_validator
 
 from trsim import elements
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
-from trsim.fields import Flag, Spec, Unit, vector
+from trsim.fields import EMPTY, Flag, Spec, Unit, vector
 from trsim.scenario import shown
 from trsim.scenario.contact_law import ContactLaw
 from trsim.scenario.event import Event
@@ -33,7 +33,6 @@ Seconds = Annotated[float, Gt(0), Unit("s")]
 # 1e-12 m/s^2
 SHORTEST = 1e-20
 Rate = Annotated[float, Ge(0), Unit("1/s")]
-EMPTY: Any = Field(default_factory=dict)
 
 
 # --- elements --------------------------------------------------------------------------------

@@ -9,15 +9,14 @@ instances:
 from math import sqrt
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, WrapValidator, model_validator
+from pydantic import WrapValidator, model_validator
 
 from trsim.errors import ScenarioError, check_keys
-from trsim.fields import Spec, direction, point, vector
+from trsim.fields import EMPTY, Spec, direction, point, vector
 from trsim.frame import Frame, across
 
 SECTIONS = ("bodies", "joints", "drives", "sensors", "forces", "events")  # of a template
 PARALLEL = 1e-6  # sine of an angle
-NOTHING: Any = Field(default_factory=dict)
 
 
 def _later(value: Any, _: Any) -> Any:
@@ -82,14 +81,14 @@ class Template(Spec):
     """
 
     type: ClassVar[str] = "template"
-    parameters: dict[str, Any] = NOTHING
+    parameters: dict[str, Any] = EMPTY
     frame: Annotated[Placement | None, WrapValidator(_later)] = None
-    bodies: dict[str, Any] = NOTHING
-    joints: dict[str, Any] = NOTHING
-    drives: dict[str, Any] = NOTHING
-    sensors: dict[str, Any] = NOTHING
-    forces: dict[str, Any] = NOTHING
-    events: dict[str, Any] = NOTHING
+    bodies: dict[str, Any] = EMPTY
+    joints: dict[str, Any] = EMPTY
+    drives: dict[str, Any] = EMPTY
+    sensors: dict[str, Any] = EMPTY
+    forces: dict[str, Any] = EMPTY
+    events: dict[str, Any] = EMPTY
 
     @model_validator(mode="before")
     @classmethod
@@ -118,10 +117,10 @@ class Instance(Spec):
     type: ClassVar[str] = "instance"
     template: str
     frame: Annotated[Placement | None, WrapValidator(_later)] = None
-    parameters: dict[str, Any] = NOTHING
-    bodies: dict[str, Any] = NOTHING
-    joints: dict[str, Any] = NOTHING
-    drives: dict[str, Any] = NOTHING
-    sensors: dict[str, Any] = NOTHING
-    forces: dict[str, Any] = NOTHING
-    events: dict[str, Any] = NOTHING
+    parameters: dict[str, Any] = EMPTY
+    bodies: dict[str, Any] = EMPTY
+    joints: dict[str, Any] = EMPTY
+    drives: dict[str, Any] = EMPTY
+    sensors: dict[str, Any] = EMPTY
+    forces: dict[str, Any] = EMPTY
+    events: dict[str, Any] = EMPTY

@@ -15,13 +15,13 @@ import h5py
 import numpy as np
 
 from trsim.statuses import Status
+from trsim.store.grow import TEXT
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION
 from trsim.version import __version__
 
 CPU = "integration_cpu"  # differs from run to run: kept apart from the statistics
 GROUPS = ("steps", "events", "peaks", "summary", "solver", "scenario", "mechanism", "provenance")
-TEXT = h5py.string_dtype()
 
 
 class Clock(NamedTuple):

@@ -278,11 +278,10 @@ class Running:
             with h5py.File(self.part, "r+", libver=LIBVER) as file:
                 self.file = file
                 complete = status != INTERRUPTED  # otherwise there are only two seconds
-                if complete:
-                    points.complete(file, self.planned)
                 extremes = None if outcome is None else outcome.peaks
                 found = peaks.table(self.mechanism, extremes, self.magnitudes)
                 if complete:
+                    points.complete(file, self.planned)
                     found = peaks.with_strokes(found, file)
                 peaks.store(file, found)
                 summary = describe.summary(self, file, status, reason, outcome, found)

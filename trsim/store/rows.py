@@ -5,7 +5,8 @@ from typing import Any
 import h5py
 import numpy as np
 
-TEXT = h5py.string_dtype()
+from trsim.store.grow import TEXT
+
 KINDS: dict[type, str] = {float: "f8", int: "i8", bool: "?"}  # all else is text
 
 
