@@ -72,8 +72,7 @@ def exponent(t: Array, x: Array) -> Exponent:
     every = float(t[-1] - t[0]) / max(len(t) - 1, 1)
     size = float(np.std(x))
     if len(x) < 100 or size <= 1e-12 * max(float(np.max(np.abs(x))), 1e-300):
-        why = "it does not move" if len(x) >= 100 else f"{len(x)} rows are too few"
-        return undetermined(why)
+        return undetermined("it does not move" if len(x) >= 100 else f"{len(x)} rows are too few")
     x = (x - x.mean()) / size
     rows = period(x)
     known: Any = {"period": rows * every}

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
-from trsim.analyse.window import Window, parted, scalar_channel, window
+from trsim.analyse.window import Window, parted, rows_in, scalar_channel, window
 from trsim.arrays import Array
 from trsim.errors import UsageError, described, known
 from trsim.store.points import split
@@ -59,22 +59,15 @@ def scalar(run: Run, word: str) -> Number:
 # --- of channels -----------------------------------------------------------------------------
 
 
-def _rows(run: Run, channel: str, within: Window) -> tuple[Array, Array]:
-    """Times and values of the rows in a window."""
-    time, x = run.time, scalar_channel(run, channel)
-    inside = within.of(time)
-    return time[inside], x[inside]
-
-
 def _of_rows(
     function: Callable[[Array], Any], run: Run, channel: str, within: Window, _: bool
 ) -> Number:
-    return function(_rows(run, channel, within)[1]), run.unit(channel)
+    return function(rows_in(run, channel, within)[1]), run.unit(channel)
 
 
 def _extreme(word: str, run: Run, channel: str, within: Window, part: bool) -> Number:
     best: Any = {"largest": max, "smallest": min}[word]
-    values = [best(_rows(run, channel, within)[1].tolist())]
+    values = [best(rows_in(run, channel, within)[1].tolist())]
     kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
     values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
     values += _in_touch(run, channel, within)

@@ -24,10 +24,6 @@ class Line(NamedTuple):
     offset: float
     left: float  # rms of what it leaves
 
-    @property
-    def values(self) -> int:
-        return self.end - self.begin
-
 
 def line(t: Array, y: Array, begin: int, end: int) -> Line:
     """The line through y[begin:end] over t (n)."""

@@ -72,8 +72,7 @@ def section(run: Any, when: str, x: str, y: str, crosses: str = "up") -> Interpo
     Raises UsageError for channels the run does not have, or too few rows.
     """
     if crosses not in DIRECTIONS:
-        what = f"crosses must be one of {', '.join(DIRECTIONS)}, got '{crosses}'"
-        raise UsageError(what)
+        raise UsageError(f"crosses must be one of {', '.join(DIRECTIONS)}, got '{crosses}'")
     if when == "time":
         what = "time does not cross zero again and again"
         raise UsageError(what, "Name a channel that does; declare `every` for equal intervals.")

@@ -128,8 +128,7 @@ def indices(keys: Sequence[str], values: Blocks, word: str = "", unit: str = "-"
     (first_low, total_low), (first_high, total_high) = np.quantile(
         again, [0.5 - LEVEL / 2, 0.5 + LEVEL / 2], axis=0
     )
-    each = [first, first_low, first_high, total, total_low, total_high]
-    table = np.transpose(each).tolist()
+    table = np.transpose([first, first_low, first_high, total, total_low, total_high]).tolist()
     steps = [1 << k for k in range(FIRST.bit_length() - 1, n.bit_length())]
     return Indices(
         word, unit, n, left_out, float(np.mean(every)), deviation,

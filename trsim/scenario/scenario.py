@@ -74,8 +74,7 @@ def word(section: str, data: dict) -> str:
             raise ScenarioError(what, "Did you mean 'type'?", (near[0],))
         raise ScenarioError("field required: type", known("", words))
     if not isinstance(named, str) or named not in words:
-        what = f"unknown type {described(named)}"
-        raise ScenarioError(what, known(named, words), ("type",))
+        raise ScenarioError(f"unknown type {described(named)}", known(named, words), ("type",))
     key, other = elements.BECOMES.get(named, ("", named))
     return other if key and any(edits(one, key) <= 1 for one in data) else named
 

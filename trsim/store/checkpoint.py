@@ -116,10 +116,9 @@ def sources(package: Path) -> str:
 def differences(kept: Checkpoint, scenario: Any) -> str:
     """What is not as it was when a checkpoint was written, in words; nothing if all is."""
     was, now = leaves(kept.keys), leaves(keys(scenario))
-    names = differing(was, now)
     told = [
         f"{n.removeprefix('scenario.')} is {_short(now.get(n))}, was {_short(was.get(n))}"
-        for n in names
+        for n in differing(was, now)
     ]
     return some(told, SHOWN, "; {} more", "; ")
 

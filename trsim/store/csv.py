@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from trsim.store import torn
@@ -34,10 +33,7 @@ def _tables(run: Run, places: list[tuple[str, int]]) -> Iterator[np.ndarray]:
     """Rows handled together; errors of reading are those of the result file."""
     with opened(run.path) as file:
         for begin in range(0, run.rows, ROWS):
-            yield _table(file, places, begin, min(begin + ROWS, run.rows))
-
-
-def _table(file: h5py.File, places: list[tuple[str, int]], begin: int, end: int) -> np.ndarray:
-    time = torn.rows(file["time"], begin, end)
-    stored = {c: torn.rows(file[c], begin, end).reshape(end - begin, -1) for c, _ in places}
-    return np.column_stack([time, *(stored[c][:, k] for c, k in places)])
+            end = min(begin + ROWS, run.rows)
+            stored = {c: torn.rows(file[c], begin, end).reshape(end - begin, -1) for c, _ in places}
+            time = torn.rows(file["time"], begin, end)
+            yield np.column_stack([time, *(stored[c][:, k] for c, k in places)])

@@ -55,7 +55,6 @@ def write(
     run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every, closing)
     run.command = command
     clock, outcome, broken = describe.Clock.now(), None, None
-    status: Status
     run.go_on(kept)
     try:
         outcome = run.take_all(blocks)

@@ -40,9 +40,7 @@ class Salvage:
     def copy(self) -> None:
         """Everything but portraits, impact maps and orbits, which follow from the rest."""
         source, file = self.source, self.file
-        for name, value in source.attrs.items():
-            if name != "content_sha256":
-                file.attrs[name] = value
+        file.attrs.update({k: v for k, v in source.attrs.items() if k != "content_sha256"})
         for name in KEPT:
             source.copy(name, file)
         scales(file, {size for size, name in AXES.items() if name in source})
@@ -146,9 +144,7 @@ def _empty(item: h5py.Dataset, group: h5py.Group, name: str) -> None:
         name, (0, *item.shape[1:]), maxshape=(None, *item.shape[1:]), chunks=item.chunks,
         dtype=item.dtype, fletcher32=True,
     )  # fmt: skip
-    for key, value in item.attrs.items():
-        if key not in SCALE:
-            made.attrs[key] = value
+    made.attrs.update({k: v for k, v in item.attrs.items() if k not in SCALE})
 
 
 def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dict[str, Any]:

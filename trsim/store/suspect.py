@@ -18,8 +18,7 @@ HINT = "It was changed, damaged, or not written by this trsim.  Run the scenario
 def blamed(path: Path) -> FileError | None:
     """What is wrong with a result file; None of one that is as it should be."""
     try:
-        run = read(path)
-        what = _faults(run)
+        what = _faults(read(path))
     except TrsimError as error:
         return FileError(error.what, error.hint or HINT, file=str(path))
     return FileError(f"{path} {what}", HINT, file=str(path)) if what else None
