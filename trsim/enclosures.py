@@ -9,14 +9,15 @@ holds both slopes, and across a jump it is without bounds.                      
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from functools import partial, reduce
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.expressions import Node
+from trsim.arrays import Array
+from trsim.expressions import COMPARISONS, OPERATORS, Node
 
-Array = NDArray[np.float64]
 ROUNDING = 4.0 * np.finfo(float).eps  # of one operation, sin and exp included
 TINY = 1e-300
 
@@ -83,15 +84,13 @@ def times(a: Interval, b: Interval) -> Interval:
     ends_ = [np.where(np.isnan(e), 0.0, e) for e in ends]  # 0 times infinity
     low, high = np.minimum.reduce(ends_), np.maximum.reduce(ends_)
     nothing = (low == 0.0) & (high == 0.0)
-    wide = widened(low, high)
-    return where(nothing, exactly(0.0, low), wide)
+    return where(nothing, exactly(0.0, low), widened(low, high))
 
 
 def over(a: Interval, b: Interval) -> Interval:
     """Without bounds where the divisor may be zero."""
     safe = (b.low > 0.0) | (b.high < 0.0)
-    one = np.ones_like(b.low)
-    inverse = widened(1.0 / np.where(safe, b.high, one), 1.0 / np.where(safe, b.low, one))
+    inverse = widened(1.0 / np.where(safe, b.high, 1.0), 1.0 / np.where(safe, b.low, 1.0))
     return where(safe, times(a, inverse), everything(a.low))
 
 
@@ -120,10 +119,6 @@ def cosine(a: Interval) -> Interval:
 
 def sine(a: Interval) -> Interval:
     return cosine(minus(a, exactly(0.5 * math.pi, a.low)))
-
-
-def squared(a: Interval) -> Interval:
-    return power(a, 2)
 
 
 def power(a: Interval, n: int) -> Interval:
@@ -163,10 +158,7 @@ def enclosure(node: Node, T: Interval) -> Enclosure:
 def of_call(word: str, a: list[Enclosure]) -> Enclosure:
     """The enclosure of a function of what is enclosed already."""
     if word in ("min", "max"):
-        found = a[0]
-        for other in a[1:]:
-            found = extreme(word, found, other)
-        return found
+        return reduce(partial(extreme, word), a)
     if word in ("step", "step5"):
         x, x0, h0, x1, h1 = a
         s = divided(subtracted(x, x0), subtracted(x1, x0))
@@ -199,7 +191,7 @@ def raised(a: Enclosure, b: Enclosure) -> Enclosure:
     if np.all(b.value.low == b.value.high) and np.all(n == np.round(n)) and abs(n[0]) < 1e6:
         k = int(n[0])
         slope = times(exactly(float(k), n[0] + a.value.low * 0.0), power(a.value, k - 1))
-        return Enclosure(power(a.value, k), chained(slope, a.rate))
+        return Enclosure(power(a.value, k), times(slope, a.rate))
     f = exponential(multiplied(b, logarithm(a)))
     return Enclosure(
         where(a.value.low > 0.0, f.value, everything(a.value.low)),
@@ -207,23 +199,17 @@ def raised(a: Enclosure, b: Enclosure) -> Enclosure:
     )
 
 
-def compared(sign: str) -> Callable[[Enclosure, Enclosure], Enclosure]:
+def compared(sign: str, a: Enclosure, b: Enclosure) -> Enclosure:
     """1 or 0; both, and a rate without bounds, where it may jump inside."""
-
-    def of(a: Enclosure, b: Enclosure) -> Enclosure:
-        u = minus(a.value, b.value)
-        exact = (a.value.low == a.value.high) & (b.value.low == b.value.high)
-        equal = exact & (a.value.low == b.value.low)
-        above, below = u.low > 0.0, u.high < 0.0
-        truths = {"<": (0, 1, 0), "<=": (0, 1, 1), ">": (1, 0, 0), ">=": (1, 0, 1),
-                  "==": (0, 0, 1), "!=": (1, 1, 0)}[sign]  # fmt: skip
-        known = above | below | equal
-        value = np.where(above, truths[0], np.where(below, truths[1], truths[2])).astype(float)
-        low, high = np.where(known, value, 0.0), np.where(known, value, 1.0)
-        zero = exactly(0.0, low)
-        return Enclosure(Interval(low, high), where(known, zero, everything(low)))
-
-    return of
+    u = minus(a.value, b.value)
+    exact = (a.value.low == a.value.high) & (b.value.low == b.value.high)
+    equal = exact & (a.value.low == b.value.low)
+    above, below = u.low > 0.0, u.high < 0.0
+    truths = [OPERATORS[sign](*pair) for pair in ((1, 0), (0, 1), (0, 0))]
+    known = above | below | equal
+    value = np.where(above, truths[0], np.where(below, truths[1], truths[2])).astype(float)
+    low, high = np.where(known, value, 0.0), np.where(known, value, 1.0)
+    return Enclosure(Interval(low, high), where(known, exactly(0.0, low), everything(low)))
 
 
 def extreme(word: str, a: Enclosure, b: Enclosure) -> Enclosure:
@@ -234,11 +220,6 @@ def extreme(word: str, a: Enclosure, b: Enclosure) -> Enclosure:
     first, second = (a_below, b_below) if word == "min" else (b_below, a_below)
     rate = where(first, a.rate, where(second, b.rate, hull(a.rate, b.rate)))
     return Enclosure(value, rate)
-
-
-def chained(slope: Interval, rate: Interval) -> Interval:
-    """f'(a) a': nothing where a does not move, though f' be infinite there."""
-    return times(slope, rate)
 
 
 def absolute(a: Enclosure) -> Enclosure:
@@ -258,12 +239,12 @@ def root(a: Enclosure) -> Enclosure:
 
 
 def sine_of(a: Enclosure) -> Enclosure:
-    return Enclosure(sine(a.value), chained(cosine(a.value), a.rate))
+    return Enclosure(sine(a.value), times(cosine(a.value), a.rate))
 
 
 def cosine_of(a: Enclosure) -> Enclosure:
     zero = exactly(0.0, a.value.low)
-    return Enclosure(cosine(a.value), chained(minus(zero, sine(a.value)), a.rate))
+    return Enclosure(cosine(a.value), times(minus(zero, sine(a.value)), a.rate))
 
 
 def tangent(a: Enclosure) -> Enclosure:
@@ -275,21 +256,19 @@ def arctangent(a: Enclosure, b: Enclosure) -> Enclosure:
     positive = b.value.low > 0.0
     quotient = over(a.value, b.value)
     near = rising(np.arctan, quotient)
-    anything = Interval(np.full_like(near.low, -math.pi), np.full_like(near.low, math.pi))
     low = np.where(a.value.low > 0.0, 0.0, -math.pi)
     high = np.where(a.value.high < 0.0, 0.0, math.pi)
-    away = Interval(np.where(anything.low < low, low, anything.low), high)
-    length = plus(squared(a.value), squared(b.value))
+    length = plus(power(a.value, 2), power(b.value, 2))
     turn = minus(times(b.value, a.rate), times(a.value, b.rate))
     cut = ~positive & holds(a.value, 0.0)
     rate = where(cut, everything(length.low), over(turn, length))
-    return Enclosure(where(positive, near, away), rate)
+    return Enclosure(where(positive, near, Interval(low, high)), rate)
 
 
 def exponential(a: Enclosure) -> Enclosure:
     value = rising(np.exp, a.value)
     value = Interval(np.maximum(value.low, 0.0), value.high)
-    return Enclosure(value, chained(value, a.rate))
+    return Enclosure(value, times(value, a.rate))
 
 
 def logarithm(a: Enclosure) -> Enclosure:
@@ -302,27 +281,21 @@ def clipped(a: Interval) -> Interval:
 
 
 def smooth(a: Enclosure) -> Enclosure:
-    s = clipped(a.value)
-    value = rising(lambda x: x * x * (3.0 - 2.0 * x), s)
-    outside = (a.value.high <= 0.0) | (a.value.low >= 1.0)
-    return Enclosure(clipped(value), eased(s, a.rate, outside, 1.5, 1))
+    return eased(a, lambda x: x * x * (3.0 - 2.0 * x), 1.5, 1)
 
 
 def smoothest(a: Enclosure) -> Enclosure:
+    return eased(a, lambda x: x**3 * (10.0 - 15.0 * x + 6.0 * x * x), 1.875, 2)
+
+
+def eased(a: Enclosure, step: Callable[[Array], Array], largest: float, n: int) -> Enclosure:
+    """A smooth step, of a clipped to 0..1, whose slope is largest (4 s (1 - s))^n."""
     s = clipped(a.value)
-    value = rising(lambda x: x**3 * (10.0 - 15.0 * x + 6.0 * x * x), s)
-    outside = (a.value.high <= 0.0) | (a.value.low >= 1.0)
-    return Enclosure(clipped(value), eased(s, a.rate, outside, 1.875, 2))
-
-
-def eased(
-    s: Interval, rate: Interval, outside: NDArray[np.bool_], largest: float, n: int
-) -> Interval:
-    """Rate of a smooth step, whose slope is largest (4 s (1 - s))^n."""
-    one = exactly(1.0, s.low)
-    bump = times(exactly(4.0, s.low), times(s, minus(one, s)))
+    bump = times(exactly(4.0, s.low), times(s, minus(exactly(1.0, s.low), s)))
     slope = times(exactly(largest, s.low), power(clipped(bump), n))
-    return where(outside, exactly(0.0, s.low), chained(slope, rate))
+    outside = (a.value.high <= 0.0) | (a.value.low >= 1.0)
+    rate = where(outside, exactly(0.0, s.low), times(slope, a.rate))
+    return Enclosure(clipped(rising(step, s)), rate)
 
 
 BINARY: dict[str, Callable[[Enclosure, Enclosure], Enclosure]] = {
@@ -331,7 +304,7 @@ BINARY: dict[str, Callable[[Enclosure, Enclosure], Enclosure]] = {
     "*": multiplied,
     "/": divided,
     "**": raised,
-    **{sign: compared(sign) for sign in ("<", "<=", ">", ">=", "==", "!=")},
+    **{sign: partial(compared, sign) for sign in COMPARISONS},
 }
 FUNCTIONS: dict[str, Callable[..., Enclosure]] = {
     "abs": absolute,
@@ -346,26 +319,12 @@ FUNCTIONS: dict[str, Callable[..., Enclosure]] = {
 }
 
 
-POINTS: dict[str, Callable[..., Array]] = {
-    "+": np.add,
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
+# numpy calls the other functions as we do
+POINTS: dict[str, Callable[..., Any]] = {
+    **{word: getattr(np, word) for word in ("abs", "sqrt", "sin", "cos", "tan", "exp", "log")},
+    **OPERATORS,
     "**": np.power,
-    "<": np.less,
-    "<=": np.less_equal,
-    ">": np.greater,
-    ">=": np.greater_equal,
-    "==": np.equal,
-    "!=": np.not_equal,
-    "abs": np.abs,
-    "sqrt": np.sqrt,
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
     "atan2": np.arctan2,
-    "exp": np.exp,
-    "log": np.log,
 }
 
 
@@ -381,7 +340,7 @@ def values(node: Node, t: Array) -> Array:
         case ("unary", _, operand):
             return -values(operand, t)
         case ("binary", sign, left, right):
-            return POINTS[sign](values(left, t), values(right, t)).astype(float)
+            return np.asarray(POINTS[sign](values(left, t), values(right, t)), float)
     _, word, arguments = node
     a = [values(argument, t) for argument in arguments]
     if word in ("min", "max"):
@@ -389,8 +348,8 @@ def values(node: Node, t: Array) -> Array:
     if word in ("step", "step5", "smoothstep"):
         x, x0, h0, x1, h1 = a if len(a) == 5 else (a[0], 0.0, 0.0, 1.0, 1.0)
         s = np.clip((x - x0) / (x1 - x0), 0.0, 1.0)
-        cubic = s * s * (3.0 - 2.0 * s)
-        return np.asarray(
-            h0 + (h1 - h0) * (s**3 * (10.0 - 15.0 * s + 6.0 * s * s) if word == "step5" else cubic)
-        )
-    return POINTS[word](*a)
+        rise = s * s * (3.0 - 2.0 * s)
+        if word == "step5":
+            rise = s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+        return np.asarray(h0 + (h1 - h0) * rise)
+    return np.asarray(POINTS[word](*a))

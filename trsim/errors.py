@@ -42,13 +42,15 @@ class TrsimError(Exception):
     """What is wrong, a hint what to do, and where; shown without a traceback."""
 
     exit_code: int = 1
-    file: str | None = None  # it is about, where there is no place
 
     def __init__(
-        self, what: str, hint: str = "", path: tuple = (), place: Place | None = None
-    ) -> None:
+        self, what: str, hint: str = "", path: tuple = (), place: Place | None = None,
+        file: str | None = None,
+    ) -> None:  # fmt: skip
+        """file: it is about, where there is no place."""
         super().__init__(what)
         self.what, self.hint, self.path, self.place = what, hint, tuple(path), place
+        self.file = file
 
     @property
     def problems(self) -> tuple["TrsimError", ...]:
@@ -56,7 +58,7 @@ class TrsimError(Exception):
 
     def at(self, *path: str | int) -> "TrsimError":
         """This error, with its path seen from further out."""
-        return type(self)(self.what, self.hint, path + self.path, self.place)
+        return type(self)(self.what, self.hint, path + self.path, self.place, self.file)
 
     def show(self) -> str:
         """file:line:column: dotted.path: what, the line with a caret, the hint."""
@@ -105,16 +107,6 @@ class FileError(TrsimError):
     """A file could not be read or written."""
 
     exit_code = 7
-
-    def __init__(
-        self, what: str, hint: str = "", path: tuple = (), place: Place | None = None,
-        file: str | None = None,
-    ) -> None:  # fmt: skip
-        super().__init__(what, hint, path, place)
-        self.file = file
-
-    def at(self, *path: str | int) -> "FileError":
-        return FileError(self.what, self.hint, path + self.path, self.place, self.file)
 
 
 class Problems(TrsimError):
@@ -188,6 +180,14 @@ def known(word: object, words: Iterable[str], close: str | None = None) -> str:
     close = close or closest(word, words)
     guess = f"Did you mean '{close}'?  " if close else ""
     return f"{guess}Known: {listed(words)}{'.' if len(words) <= LISTED else ''}"
+
+
+def check_keys(given: Iterable[Any], words: Iterable[str], *path: str) -> None:
+    """Raise ScenarioError for the first key of a mapping, which is at `path`, that nobody knows."""
+    words = list(words)
+    for key in given:
+        if key not in words:
+            raise ScenarioError(f"unknown key {described(key)}", known(key, words), (*path, key))
 
 
 def closest(word: object, words: Iterable[str]) -> str | None:

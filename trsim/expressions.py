@@ -71,33 +71,23 @@ FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
     "smoothstep": (_smoothstep, 1, 1),
 }
 
-OPERATORS: dict[str, Callable[[float, float], float]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "*": operator.mul,
-    "/": operator.truediv,
-    "**": math.pow,  # float ** float would turn a negative base into a complex number
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "==": operator.eq,
-    "!=": operator.ne,
+# sign -> what Python's grammar calls it, function
+_BINARY: dict[str, tuple[type, Callable[[float, float], float]]] = {
+    "+": (ast.Add, operator.add),
+    "-": (ast.Sub, operator.sub),
+    "*": (ast.Mult, operator.mul),
+    "/": (ast.Div, operator.truediv),
+    "**": (ast.Pow, math.pow),  # float ** float would turn a negative base into a complex number
+    "<": (ast.Lt, operator.lt),
+    "<=": (ast.LtE, operator.le),
+    ">": (ast.Gt, operator.gt),
+    ">=": (ast.GtE, operator.ge),
+    "==": (ast.Eq, operator.eq),
+    "!=": (ast.NotEq, operator.ne),
 }
-
-_SIGNS: dict[type, str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "**",
-    ast.Lt: "<",
-    ast.LtE: "<=",
-    ast.Gt: ">",
-    ast.GtE: ">=",
-    ast.Eq: "==",
-    ast.NotEq: "!=",
-}
+OPERATORS = {sign: function for sign, (_, function) in _BINARY.items()}
+_SIGNS = {kind: sign for sign, (kind, _) in _BINARY.items()}
+COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
 
 _REFUSED: dict[type, str] = {
     ast.And: "'and': multiply comparisons, or use min",
@@ -112,8 +102,7 @@ _REFUSED: dict[type, str] = {
 
 ALLOWED = (
     "Allowed: + - * / **, comparisons, numbers, pi, t, parameters, sensors, "
-    + ", ".join(FUNCTIONS)
-    + "."
+    f"{', '.join(FUNCTIONS)}."
 )
 
 
@@ -202,18 +191,31 @@ def _name(tree: ast.AST) -> str:
     return name
 
 
+def parts(node: Node) -> tuple[Node, ...]:
+    """The expressions that a function or an operator is applied to."""
+    match node:
+        case ("call", _, arguments):
+            return arguments
+        case ("unary", _, operand):
+            return (operand,)
+        case ("binary", _, left, right):
+            return left, right
+    return ()
+
+
+def rebuilt(node: Node, change: Callable[[Node], Node]) -> Node:
+    """The expression with each of its parts changed."""
+    match node:
+        case ("call", word, arguments):
+            return ("call", word, tuple(map(change, arguments)))
+        case ("unary" | "binary" as kind, sign, *operands):
+            return (kind, sign, *map(change, operands))
+    return node
+
+
 def names(node: Node) -> set[str]:
     """All names in an expression, `t` and `pi` among them."""
-    match node:
-        case ("name", name):
-            return {name}
-        case ("call", _, arguments):
-            return set().union(*map(names, arguments))
-        case ("unary", _, operand):
-            return names(operand)
-        case ("binary", _, left, right):
-            return names(left) | names(right)
-    return set()
+    return {node[1]} if node[0] == "name" else set().union(*map(names, parts(node)))
 
 
 def degree(node: Node) -> float:
@@ -247,17 +249,10 @@ def degree(node: Node) -> float:
 
 def renamed(node: Node, names: Mapping[str, str]) -> Node:
     """The expression with other names for those in `names`; of `B.angle` what counts is B."""
-    match node:
-        case ("name", name):
-            first, dot, rest = name.partition(".")
-            return ("name", names.get(first, first) + dot + rest)
-        case ("call", word, arguments):
-            return ("call", word, tuple(renamed(a, names) for a in arguments))
-        case ("unary", sign, operand):
-            return ("unary", sign, renamed(operand, names))
-        case ("binary", sign, left, right):
-            return ("binary", sign, renamed(left, names), renamed(right, names))
-    return node
+    if node[0] == "name":
+        first, dot, rest = node[1].partition(".")
+        return ("name", names.get(first, first) + dot + rest)
+    return rebuilt(node, lambda part: renamed(part, names))
 
 
 def substitute(node: Node, values: Mapping[str, float]) -> Node:
@@ -265,19 +260,12 @@ def substitute(node: Node, values: Mapping[str, float]) -> Node:
     match node:
         case ("name", name) if name in values or name == "pi":
             return ("number", float(values.get(name, math.pi)))
-        case ("call", word, arguments):
-            new: Node = ("call", word, tuple(substitute(a, values) for a in arguments))
-            constant = all(a[0] == "number" for a in new[2])
-            if word in ("step", "step5") and new[2][1] == new[2][3]:
-                raise ScenarioError(f"{word} from x0 to x1 = x0", "A jump needs x1 other than x0.")
-        case ("unary", sign, operand):
-            new = ("unary", sign, substitute(operand, values))
-            constant = new[2][0] == "number"
-        case ("binary", sign, left, right):
-            new = ("binary", sign, substitute(left, values), substitute(right, values))
-            constant = new[2][0] == new[3][0] == "number"
-        case _:
+        case ("name" | "number", _):
             return node
+    new = rebuilt(node, lambda part: substitute(part, values))
+    if new[1] in ("step", "step5") and new[2][1] == new[2][3]:
+        raise ScenarioError(f"{new[1]} from x0 to x1 = x0", "A jump needs x1 other than x0.")
+    constant = all(part[0] == "number" for part in parts(new))
     return ("number", evaluate(new, {})) if constant else new
 
 

@@ -20,6 +20,7 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Field,
     PrivateAttr,
     ValidationError,
     model_validator,
@@ -27,7 +28,7 @@ from pydantic import (
 from pydantic_core import core_schema
 
 from trsim import expressions
-from trsim.errors import ScenarioError, described, known
+from trsim.errors import ScenarioError, check_keys, described, known
 from trsim.frame import Frame
 from trsim.numbers import number
 from trsim.references import renamed
@@ -105,9 +106,8 @@ class _VectorUnit(Unit):
             raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
         for k, item in enumerate(value):  # a frame moves numbers, whatever pydantic says later
             if not isinstance(item, str | int | float):
-                raise ScenarioError(
-                    f"must be a number, got {described(item)}", units_hint(self.units), (k,)
-                )
+                what = f"must be a number, got {described(item)}"
+                raise ScenarioError(what, units_hint(self.units), (k,))
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
         whole = tuple([*numbers, 0.0][:3])
         return self.into_world(frame, whole) if (frame := context.get("frame")) else whole
@@ -218,10 +218,7 @@ class _FunctionUnit(Unit):
 
         The units may also stand in a first row of titles, as in a file: ["s [mm]", "force [N]"].
         """
-        for key in given:
-            if key not in TABLE_KEYS:
-                hint = known(key, TABLE_KEYS)
-                raise ScenarioError(f"unknown key {described(key)}", hint, (key,))
+        check_keys(given, TABLE_KEYS)
         if "table" not in given:
             raise ScenarioError("field required: table", "A table is {table: [[x, y], ...]}.")
         of, ends = given.get("of", "t"), given.get("ends", "hold")
@@ -300,6 +297,7 @@ def _true_or_false(value: Any) -> Any:
     return value
 
 
+EMPTY: Any = Field(default_factory=dict)  # a mapping that may be left out
 Flag = Annotated[bool, BeforeValidator(_true_or_false)]
 
 

@@ -16,19 +16,16 @@ without crossing it is an instant too: a step more, and nothing missed.
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.enclosures import Interval, enclosure, values
 from trsim.errors import ScenarioError
-from trsim.expressions import EDGES, LOW, Node, names
+from trsim.expressions import COMPARISONS, EDGES, LOW, Node, names, parts
 
-Array = NDArray[np.float64]
-COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
 MOST = 500_000  # instants of one function in one run
 RESOLUTION = 1e-12  # of the run: instants nearer to each other are one
-NEIGHBOURS = (
-    1e-7  # of the run: nearer to each other, places that rounding cannot tell apart are one
-)
+# of the run: nearer to each other, places that rounding cannot tell apart are one
+NEIGHBOURS = 1e-7
 AT_ONCE = 1 << 15  # intervals enclosed in one go
 TRIED = 8_000_000  # intervals: more of them are not looked at
 
@@ -49,17 +46,12 @@ def instants(node: Node, end: float) -> list[float]:
 
 def corners(node: Node) -> Iterator[tuple[Node, tuple[float, ...]]]:
     """u of every corner, the inner ones first, with the values at which they are met."""
+    for part in parts(node):
+        yield from corners(part)
     match node:
-        case ("unary", _, operand):
-            yield from corners(operand)
-        case ("binary", sign, left, right):
-            yield from corners(left)
-            yield from corners(right)
-            if sign in COMPARISONS:
-                yield ("binary", "-", left, right), (0.0,)
+        case ("binary", sign, left, right) if sign in COMPARISONS:
+            yield ("binary", "-", left, right), (0.0,)
         case ("call", word, arguments):
-            for argument in arguments:
-                yield from corners(argument)
             yield from of_call(word, arguments)
 
 
@@ -86,33 +78,21 @@ def peaked(node: Node) -> bool:
 
     Those by exp alone are met by its edges.
     """
+    short = False
     match node:
-        case ("unary", _, operand):
-            return peaked(operand)
-        case ("binary", "/", left, right):
-            return varies(right) or peaked(left) or peaked(right)
+        case ("binary", "/", _, right):
+            short = varies(right)
         case ("binary", "**", left, right):
             low = right[0] == "number" and right[1] in range(LOW + 1)
-            return varies(right) or (varies(left) and not low) or peaked(left) or peaked(right)
-        case ("binary", _, left, right):
-            return peaked(left) or peaked(right)
-        case ("call", _, arguments):
-            return any(map(peaked, arguments))
-    return False
+            short = varies(right) or (varies(left) and not low)
+    return short or any(map(peaked, parts(node)))
 
 
 def varies(node: Node) -> bool:
     """Whether something beside the exponents of exp varies."""
-    match node:
-        case ("name", name):
-            return name != "pi"
-        case ("unary", _, operand):
-            return varies(operand)
-        case ("binary", _, left, right):
-            return varies(left) or varies(right)
-        case ("call", word, arguments):
-            return word != "exp" and any(map(varies, arguments))
-    return False
+    if node[0] == "name":
+        return bool(node[1] != "pi")
+    return node[:2] != ("call", "exp") and any(map(varies, parts(node)))
 
 
 def distinct(times: list[float], end: float) -> list[float]:

@@ -16,21 +16,23 @@ Dimension = tuple[float, ...]  # exponents of m, kg, s, rad
 
 BASE = {"m": (1, 0, 0, 0), "kg": (0, 1, 0, 0), "s": (0, 0, 1, 0), "rad": (0, 0, 0, 1)}
 
+PREFIXES = {"µ": "1e-6", "u": "1e-6", "m": "1e-3", "c": "1e-2", "k": "1e3", "M": "1e6", "G": "1e9"}
+
+
+def prefixed(prefixes: str, word: str) -> dict[str, tuple[str | float, str]]:
+    """A unit with each of some prefixes, as in DERIVED."""
+    return {prefix + word: (PREFIXES[prefix], word) for prefix in prefixes}
+
+
 # word -> factor (exact where it is), unit.  The angle is a dimension: 1/s is no rad/s.
 DERIVED: dict[str, tuple[str | float, str]] = {
-    "km": ("1e3", "m"),
-    "cm": ("1e-2", "m"),
-    "mm": ("1e-3", "m"),
-    "um": ("1e-6", "m"),
-    "µm": ("1e-6", "m"),
+    **prefixed("kcmuµ", "m"),
     "in": ("0.0254", "m"),
     "ft": ("0.3048", "m"),
     "g": ("1e-3", "kg"),
     "t": ("1e3", "kg"),
     "lb": ("0.45359237", "kg"),
-    "ms": ("1e-3", "s"),
-    "us": ("1e-6", "s"),
-    "µs": ("1e-6", "s"),
+    **prefixed("muµ", "s"),
     "min": ("60", "s"),
     "h": ("3600", "s"),
     "mrad": ("1e-3", "rad"),
@@ -44,14 +46,10 @@ DERIVED: dict[str, tuple[str | float, str]] = {
     "kt": (1852 / 3600, "m/s"),
     "g0": ("9.80665", "m/s^2"),
     "N": ("1", "kg*m/s^2"),
-    "mN": ("1e-3", "N"),
-    "kN": ("1e3", "N"),
-    "MN": ("1e6", "N"),
+    **prefixed("mkM", "N"),
     "lbf": ("4.4482216152605", "N"),
     "Pa": ("1", "N/m^2"),
-    "kPa": ("1e3", "Pa"),
-    "MPa": ("1e6", "Pa"),
-    "GPa": ("1e9", "Pa"),
+    **prefixed("kMG", "Pa"),
     "bar": ("1e5", "Pa"),
     "psi": (4.4482216152605 / 0.0254**2, "Pa"),
     "J": ("1", "N*m"),

@@ -8,7 +8,7 @@ import pytest
 
 from tests import mechanisms, small
 from trsim.analyse import precision
-from trsim.analyse.precision import Point, Setting, errors, point, points, reference, slope, slopes
+from trsim.analyse.precision import Point, Setting, errors, point, reference, slope, slopes
 from trsim.analyse.trajectory import problem, trajectory
 from trsim.errors import SolverError, UsageError
 from trsim.scenario.load import loads
@@ -77,7 +77,7 @@ def test_an_error_below_the_uncertainty_is_marked(pendulum):
 def test_slopes(pendulum, tight):
     """An error proportional to the tolerance; to the fourth power of the step of rk4."""
     settings = precision.plan(["radau", "rk4"], TOLERANCES, [4e-3, 2e-3, 1e-3])
-    fitted = slopes(list(points(pendulum, tight, settings, repeats=1)), tight)
+    fitted = slopes([point(pendulum, tight, one, repeats=1) for one in settings], tight)
     assert 0.8 < fitted["radau"] < 1.3
     assert fitted["rk4"] == pytest.approx(4.0, abs=0.3)
 
@@ -100,7 +100,7 @@ def test_a_method_that_fails_is_a_row():
     of = problem(loads(small.SLIDER_CRANK))
     to = reference(of, Setting("dop853", 1e-7))
     settings = precision.plan(["rk4", "dop853"], [1e-4], [5e-5])
-    failed, good = points(of, to, settings, repeats=1)
+    failed, good = (point(of, to, setting, repeats=1) for setting in settings)
     assert "the fixed step is too large" in failed.reason
     assert np.isnan(failed.error)
     assert not good.reason

@@ -21,7 +21,7 @@ def study():
     of = problem(scenario)
     to = precision.reference(of, Setting("radau", 1e-7))
     settings = precision.plan(["dop853", "radau", "rk4"], [1e-3, 1e-5], [5e-5])
-    found = tuple(precision.points(of, to, settings, repeats=1))
+    found = tuple(precision.point(of, to, setting, repeats=1) for setting in settings)
     return Study(scenario.title, to, found, precision.slopes(found, to))
 
 

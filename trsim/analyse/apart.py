@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
+
 APART = 0.01  # of a range
 PAUSE = 0.01  # of the rows: runs that are together for less have not come together again
 STILL = 1e-9  # of the largest value of the same unit: less is rounding, not motion
@@ -33,6 +35,15 @@ def still(
     for name, size in largest.items():
         of[units[name]] = max(of.get(units[name], 0.0), size)
     return {name for name, size in ranges.items() if size <= STILL * of[units[name]]}
+
+
+def resting(
+    values: Mapping[str, Array], units: Mapping[str, str]
+) -> tuple[dict[str, float], set[str]]:
+    """Range of each channel (n, m), and those that change by no more than rounding."""
+    ranges = {name: float(np.max(np.ptp(x, axis=0))) for name, x in values.items()}
+    largest = {name: float(np.max(np.abs(x))) for name, x in values.items()}
+    return ranges, still(ranges, largest, units)
 
 
 def windows(apart: NDArray[np.bool_]) -> list[Window]:

@@ -17,15 +17,13 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import STILL
 from trsim.analyse.cases import answers, numeric, varied
 from trsim.analyse.window import parted, window
+from trsim.arrays import Array
 from trsim.errors import UsageError, known
 from trsim.store.read import Run
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 0.01
 NARROW = 1e-4  # points closer than TOLERANCE of this, of the range of the channel, are one point
@@ -71,22 +69,19 @@ def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
     if axis not in ("x", "y"):
         raise UsageError(f"a section has no axis '{axis}'", known(axis, ("x", "y")))
     every = answers(study, {word: lambda run: _points(run, name, text)})[word]
-    found = []
-    for case in study.cases:
-        if case.name in every.found and key in case.values:
-            points, inside = every.found[case.name]
-            others = tuple((k, case.values[k]) for k in study.keys if k != key and k in case.values)
-            found.append(
-                Section(case.name, case.values[key], others, points.x[inside], points.y[inside], 0)
-            )
-    if not found:
+    mine = [case for case in study.cases if case.name in every.found and key in case.values]
+    if not mine:
         what = f"no case that varies {key} has section '{name}'"
         raise UsageError(what, "Say another key with --over.")
-    about = next(iter(every.found.values()))[0]
-    cases = [
-        one._replace(period=period(one.x, one.y, *size))
-        for one, size in zip(found, sizes(study, found, about.definition), strict=True)
-    ]
+    about = next(iter(every.found.values()))
+    whole = {a: spread([getattr(every.found[c.name], a) for c in mine]) for a in ("x", "y")}
+    cases = []
+    for case in mine:
+        run, points = case.run(), every.found[case.name]
+        sizes = [max(size, narrow(run, str(about.definition[a]))) for a, size in whole.items()]
+        others = tuple((k, case.values[k]) for k in study.keys if k != key and k in case.values)
+        repeats = period(points.x, points.y, *sizes)
+        cases.append(Section(case.name, case.values[key], others, points.x, points.y, repeats))
     unit = about.x_unit if axis == "x" else about.y_unit
     places = {case.name: case.values[key] for case in study.cases if key in case.values}
     return Diagram(name, axis, str(about.definition[axis]), unit, key, study.units,
@@ -94,13 +89,14 @@ def diagram(study: Any, word: str, over: str | None = None) -> Diagram:
 
 
 def _points(run: Run, name: str, text: str) -> Any:
-    """A section, and which of its points lie in a window."""
+    """The points of a section that lie in a window."""
     sections = run.poincare
     if name not in sections:
         hint = known(name, sections) if sections else "Declare one under `poincare`."
         raise UsageError(f"{run.path}: no section '{name}'", hint)
     points = sections[name]
-    return points, window(run, text, rows=False).of(points.time)
+    inside = window(run, text, rows=False).of(points.time)
+    return points._replace(time=points.time[inside], x=points.x[inside], y=points.y[inside])
 
 
 def swept(study: Any, over: str | None) -> str:
@@ -125,19 +121,6 @@ def spread(parts: list[Array]) -> float:
     """The range of all values; 0 without any."""
     every = np.concatenate(parts)
     return float(np.ptp(every)) if every.size else 0.0
-
-
-def sizes(
-    study: Any, found: list[Section], definition: Mapping[str, Any]
-) -> list[tuple[float, float]]:
-    """The sizes that x and y of the points of each case are held against, see above."""
-    whole = {axis: spread([getattr(one, axis) for one in found]) for axis in ("x", "y")}
-    cases, each = {case.name: case for case in study.cases}, []
-    for one in found:
-        run = cases[one.case].run()
-        x, y = (max(whole[axis], narrow(run, str(definition[axis]))) for axis in ("x", "y"))
-        each.append((x, y))
-    return each
 
 
 def narrow(run: Run, channel: str) -> float:

@@ -64,12 +64,10 @@ def _answered(case: Any, questions: Mapping[str, Callable[[Run], Any]]) -> Itera
         yield from ((key, error) for key in questions)
         return
     for key, question in questions.items():
-        answer: Any
         try:
-            answer = question(run)
+            yield key, question(run)
         except (UsageError, FileError) as error:
-            answer = error
-        yield key, answer
+            yield key, error
 
 
 def numbers(study: Any, words: Iterable[str]) -> dict[str, Numbers]:

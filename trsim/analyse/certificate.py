@@ -16,10 +16,9 @@ from trsim.analyse.apart import APART, Window, still, windows
 from trsim.analyse.levels import ERRORS, Inside, levels, shares
 from trsim.analyse.onsets import first_onsets, numbers
 from trsim.analyse.pair import Column, Pair, Totals
+from trsim.arrays import Array
 from trsim.store.certificate import Certificate, Curve, Parted, Quantity
 from trsim.store.read import reached
-
-Array = NDArray[np.float64]
 
 BOOK = "energy.work."  # channels that add up what happened: what parted once stays so
 EXTREMES = ("largest", "smallest")

@@ -16,30 +16,22 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, windows
 from trsim.analyse.growth import motions
 from trsim.analyse.window import scalar_channel
+from trsim.arrays import Array
 from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
 from trsim.scenario.table import Line, Table, lines, number
 from trsim.store.read import Run
 from trsim.units import fits, quantity, titled, unit
 
-Array = NDArray[np.float64]
-
 ALIKE = 1e-5  # relative
-FREE = (
-    "title",
-    "limits",
-    "solver",
-    "output",
-    "report",
-    "phase_portraits",
-    "poincare",
-    "sweep",
-    "cases",
-)
+# sections that have no influence on the motion
+FREE = {
+    *("title", "limits", "solver", "output", "report"),
+    *("phase_portraits", "poincare", "sweep", "cases"),
+}
 
 
 class Curve(NamedTuple):
@@ -148,7 +140,7 @@ def parting(run: Run, other: Run, against: str = "") -> float:
 def alike(one: Any, two: Any, path: tuple[str, ...] = ()) -> bool:
     """Whether two scenarios describe one motion: numbers are the same to ALIKE."""
     if isinstance(one, dict) and isinstance(two, dict):
-        keys = {*one, *two} - (set(FREE) if not path else set())
+        keys = {*one, *two} - (FREE if not path else set())
         return all(alike(one.get(k), two.get(k), (*path, k)) for k in keys)
     if isinstance(one, list) and isinstance(two, list):
         return len(one) == len(two) and all(map(alike, one, two, [(*path, "")] * len(one)))

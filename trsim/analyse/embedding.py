@@ -7,10 +7,8 @@ mean period apart in time [Theiler1986].
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from trsim.arrays import Array, Indices
 
 LARGEST = 8  # dimension
 FALSE = 0.02  # share of false neighbours that is none

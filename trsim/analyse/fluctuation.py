@@ -8,9 +8,9 @@ that is faster than it: what is left of them is rounding.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trsim.arrays import Array
+
 WIDTH = 0.010  # s
 ROUNDING = 1e-9  # of the distance of two rows
 

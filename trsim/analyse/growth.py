@@ -19,18 +19,16 @@ on in the same manner an estimate of its largest Lyapunov exponent [Benettin1976
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from trsim.analyse.apart import still
+from trsim.analyse.apart import resting
 from trsim.analyse.lyapunov import Exponent, undetermined
 from trsim.analyse.pair import Pair
 from trsim.analyse.scaling import line, weights
 from trsim.analyse.window import Window
+from trsim.arrays import Array
 from trsim.errors import UsageError
 from trsim.store import torn
 from trsim.store.read import Run, opened
-
-Array = NDArray[np.float64]
 
 PARTED = 0.05  # of the ranges: what is further apart grows no more
 RISE = 3.0  # e-folds of the fitted line: less is no growth
@@ -85,9 +83,7 @@ def motions(run: Run, other: Run, within: Window | None = None) -> tuple[Array, 
             raise UsageError(what, "Compare two runs of one scenario with the same output times.")
         both = (mine, theirs)
         values = {n: [torn.rows(f[n], 0, pair.rows)[inside] for f in both] for n in names}
-    ranges = {n: float(np.max(np.ptp(a, axis=0))) for n, (a, _) in values.items()}
-    largest = {n: float(np.max(np.abs(a))) for n, (a, _) in values.items()}
-    rests = still(ranges, largest, pair.units)
+    ranges, rests = resting({n: a for n, (a, _) in values.items()}, pair.units)
     off = [(a - b).reshape(len(a), -1) / ranges[n] for n, (a, b) in values.items()
            if n not in rests]  # fmt: skip
     return time[inside], np.hstack(off) if off else np.zeros((int(inside.sum()), 1))

@@ -11,9 +11,8 @@ stretch is too short, or drifts, and has no interval.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 LEVEL = 0.95  # of all intervals
 MOST, FEWEST = 64, 8  # batches

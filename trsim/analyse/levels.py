@@ -9,16 +9,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.apart import APART, still
 from trsim.analyse.interval import MOST, Batches, half_widths
 from trsim.analyse.onsets import changes, closed
 from trsim.analyse.pair import Pair, Totals
+from trsim.arrays import Array
 from trsim.store.certificate import Level, Parted
-
-Array = NDArray[np.float64]
-
 
 ERRORS = ("energy.residual", "energy.work.projection")  # of the solver: no motion has them
 
@@ -69,9 +66,8 @@ def resting(pair: Pair, both: tuple[Totals, Totals]) -> set[str]:
 
 def level(window: int, name: str, quantity: Any, numbers: list[float], unit: str) -> Level:
     """numbers: of run and twin, half their intervals, half that of the difference."""
-    mine, twin, half, twin_half, off_half = map(float, numbers)
-    told = verdict(mine, twin, half, twin_half, off_half)
-    return Level(window, name, quantity, mine, twin, half, twin_half, off_half, told, unit)
+    told = [float(number) for number in numbers]
+    return Level._make([window, name, quantity, *told, verdict(*told), unit])
 
 
 def verdict(mine: float, other: float, half: float, other_half: float, off_half: float) -> Any:

@@ -24,13 +24,11 @@ and says why.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.embedding import apart, delay, dimension, embedded, neighbours, period
 from trsim.analyse.interval import half_width
 from trsim.analyse.scaling import Line, line, straightest, weights
-
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 MOST = 100_000  # values that are used
 REFERENCES = 4000  # points whose neighbours are followed
@@ -74,8 +72,7 @@ def exponent(t: Array, x: Array) -> Exponent:
     every = float(t[-1] - t[0]) / max(len(t) - 1, 1)
     size = float(np.std(x))
     if len(x) < 100 or size <= 1e-12 * max(float(np.max(np.abs(x))), 1e-300):
-        why = "it does not move" if len(x) >= 100 else f"{len(x)} rows are too few"
-        return undetermined(why)
+        return undetermined("it does not move" if len(x) >= 100 else f"{len(x)} rows are too few")
     x = (x - x.mean()) / size
     rows = period(x)
     known: Any = {"period": rows * every}

@@ -6,10 +6,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.store.certificate import Onset, Onsets
 from trsim.store.read import table
-
-Array = NDArray[np.float64]
 
 FIRST = 5  # onsets that are told one by one
 
@@ -19,19 +18,24 @@ def changes(file: h5py.File, contact: str) -> tuple[Array, NDArray[np.bool_]]:
 
     Of a contact that is closed throughout, the beginning.
     """
-    events = table(file["events"])
-    kind, element = (events[key].astype(str) for key in ("kind", "element"))
-    mine = (element == contact) & np.isin(kind, ("onset", "separation"))
+    times, kind = happened(file, contact)
+    mine = np.isin(kind, ("onset", "separation"))
     if not mine.any() and len(file["steps"][contact]["time"]):
         return file["time"][:1], np.array([True])
-    return events["time"][mine], kind[mine] == "onset"
+    return times[mine], kind[mine] == "onset"
 
 
 def closings(file: h5py.File, contact: str) -> Array:
     """Times (s) of the onsets of a contact."""
+    times, kind = happened(file, contact)
+    return np.asarray(times[kind == "onset"])
+
+
+def happened(file: h5py.File, contact: str) -> tuple[Array, NDArray[np.str_]]:
+    """Times (s) and kinds of the events of a contact."""
     events = table(file["events"])
-    kind, element = (events[key].astype(str) for key in ("kind", "element"))
-    return np.asarray(events["time"][(element == contact) & (kind == "onset")])
+    mine = events["element"].astype(str) == contact
+    return events["time"][mine], events["kind"][mine].astype(str)
 
 
 def numbers(run: h5py.File, twin: h5py.File, before: float) -> list[Onsets]:

@@ -19,6 +19,7 @@ all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of 
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,12 +27,12 @@ from numpy.typing import NDArray
 
 from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
-from trsim.analyse.window import Window, parted, scalar_channel, window
+from trsim.analyse.window import Window, parted, rows_in, scalar_channel, window
+from trsim.arrays import Array
 from trsim.errors import UsageError, described, known
 from trsim.store.points import split
 from trsim.store.read import Run
 
-Array = NDArray[np.float64]
 Number = tuple[float, str]
 
 FORM = "A number of a run is KIND:OF, for example peak:B.contact_force or mean:stroke@0.3..0.9."
@@ -58,31 +59,19 @@ def scalar(run: Run, word: str) -> Number:
 # --- of channels -----------------------------------------------------------------------------
 
 
-def _rows(run: Run, channel: str, within: Window) -> tuple[Array, Array]:
-    """Times and values of the rows in a window."""
-    time, x = run.time, scalar_channel(run, channel)
-    inside = within.of(time)
-    return time[inside], x[inside]
+def _of_rows(
+    function: Callable[[Array], Any], run: Run, channel: str, within: Window, _: bool
+) -> Number:
+    return function(rows_in(run, channel, within)[1]), run.unit(channel)
 
 
-def _of_rows(function: Callable[[Array], Any]) -> Any:
-    def number(run: Run, channel: str, within: Window, _: bool) -> Number:
-        return function(_rows(run, channel, within)[1]), run.unit(channel)
-
-    return number
-
-
-def _extreme(word: str) -> Any:
-    best = {"largest": max, "smallest": min}[word]
-
-    def number(run: Run, channel: str, within: Window, part: bool) -> Number:
-        values = [best(_rows(run, channel, within)[1].tolist())]
-        kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
-        values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
-        values += _in_touch(run, channel, within)
-        return best(values), run.unit(channel)
-
-    return number
+def _extreme(word: str, run: Run, channel: str, within: Window, part: bool) -> Number:
+    best: Any = {"largest": max, "smallest": min}[word]
+    values = [best(rows_in(run, channel, within)[1].tolist())]
+    kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
+    values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
+    values += _in_touch(run, channel, within)
+    return best(values), run.unit(channel)
 
 
 def _in_touch(run: Run, channel: str, within: Window) -> list[float]:
@@ -148,11 +137,8 @@ def _count(run: Run, name: str, within: Window, _: bool) -> Number:
     return float(np.count_nonzero(_points(run, name, within)[1])), "-"
 
 
-def _of_shares(field: str, unit: str) -> Any:
-    def number(run: Run, joint: str, within: Window, _: bool) -> Number:
-        return float(getattr(shares(run, joint, within), field)), unit
-
-    return number
+def _of_shares(field: str, unit: str, run: Run, joint: str, within: Window, _: bool) -> Number:
+    return float(getattr(shares(run, joint, within), field)), unit
 
 
 # --- of the file -----------------------------------------------------------------------------
@@ -165,19 +151,16 @@ OF_CONTACTS = {
 }
 
 
-def _kept(group: str) -> Any:
-    def number(run: Run, path: str, _: Window, __: bool) -> Number:
-        inner: Any = run.summary if group == "summary" else run.group(group)
-        for key in path.split("."):
-            if not isinstance(inner, dict) or key not in inner:
-                words = inner if isinstance(inner, dict) else ()
-                raise UsageError(f"{run.path}: no '{path}' in its {group}", known(key, words))
-            inner = inner[key]
-        if not isinstance(inner, int | float):
-            raise UsageError(f"{run.path}: '{path}' in its {group} is no number", FORM)
-        return float(inner), _unit_of(run, path)
-
-    return number
+def _kept(group: str, run: Run, path: str, _: Window, __: bool) -> Number:
+    inner: Any = run.summary if group == "summary" else run.group(group)
+    for key in path.split("."):
+        if not isinstance(inner, dict) or key not in inner:
+            words = inner if isinstance(inner, dict) else ()
+            raise UsageError(f"{run.path}: no '{path}' in its {group}", known(key, words))
+        inner = inner[key]
+    if not isinstance(inner, int | float):
+        raise UsageError(f"{run.path}: '{path}' in its {group} is no number", FORM)
+    return float(inner), _unit_of(run, path)
 
 
 def _unit_of(run: Run, path: str) -> str:
@@ -190,26 +173,22 @@ def _unit_of(run: Run, path: str) -> str:
     return own if key == "peak_force" else f"{own}/s"
 
 
+SHARES = ("flight", "contact", "following", "impacts", "onsets")
+WHOLE = ("summary", "solver")
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
-    "peak": _extreme("largest"),
-    "least": _extreme("smallest"),
+    "peak": partial(_extreme, "largest"),
+    "least": partial(_extreme, "smallest"),
     "range": _range,
-    "mean": _of_rows(np.mean),
-    "rms": _of_rows(lambda x: np.sqrt(np.mean(x**2))),
-    "std": _of_rows(np.std),
+    "mean": partial(_of_rows, np.mean),
+    "rms": partial(_of_rows, lambda x: np.sqrt(np.mean(x**2))),
+    "std": partial(_of_rows, np.std),
     "fluctuation": _fluctuation,
-    "final": _of_rows(lambda x: x[-1]),
+    "final": partial(_of_rows, lambda x: x[-1]),
     "dispersion": _dispersion,
     "points": _count,
-    "flight": _of_shares("flight", "-"),
-    "contact": _of_shares("contact", "-"),
-    "following": _of_shares("following", "-"),
-    "impacts": _of_shares("impacts", "-"),
-    "onsets": _of_shares("onsets", "-"),
-    "between": _of_shares("mean_between", "s"),
-    "summary": _kept("summary"),
-    "solver": _kept("solver"),
+    **{word: partial(_of_shares, word, "-") for word in SHARES},
+    "between": partial(_of_shares, "mean_between", "s"),
+    **{group: partial(_kept, group) for group in WHOLE},
 }
-WHOLE = ("summary", "solver")
 # of what the solver located: the output rows have no say
-LOCATED = ("dispersion", "points", "flight", "contact", "following", "impacts", "onsets", "between")
+LOCATED = ("dispersion", "points", *SHARES, "between")

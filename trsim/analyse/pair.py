@@ -1,16 +1,16 @@
 """The rows that two runs of one scenario have in common, a stretch at a time."""
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
-from trsim.store.certificate import channels, common_rows, pieces
-from trsim.store.grow import AXES, LABELS
-
-Array = NDArray[np.float64]
+from trsim.arrays import Array
+from trsim.store import torn
+from trsim.store.certificate import ROWS, channels, common_rows
+from trsim.store.grow import components
 
 MOTION = ("position", "velocity", "angular_velocity", "rate", "eccentricity_x", "eccentricity_y",
           "eccentricity_x_rate", "eccentricity_y_rate")  # fmt: skip
@@ -36,9 +36,9 @@ class Pair:
         self.units = {name: str(mine[name].attrs.get("units", "-")) for name in self.names}
         self.rows = common_rows(run, twin)
         self.columns = [
-            Column(name + part, k, self.units[name])
+            Column(component, k, self.units[name])
             for k, name in enumerate(self.names)
-            for part in components(mine[name])
+            for component in components(name, math.prod(mine[name].shape[1:]))
         ]
         self.channel = np.array([column.channel for column in self.columns], dtype=int)
         self.sensors = sensors(run)
@@ -48,7 +48,13 @@ class Pair:
     ) -> Iterator[tuple[int, Array, Array]]:
         """First row, and rows (n, m) of both files, of some channels or of all."""
         names = self.names if names is None else names
-        return pieces(self.run, self.twin, names, begin, end) if names else iter(())
+        for k in range(begin, end, ROWS) if names else ():
+            last = min(k + ROWS, end)
+            mine, other = (
+                np.column_stack([torn.rows(file[name], k, last) for name in names])
+                for file in (self.run, self.twin)
+            )
+            yield k, mine, other
 
     def moves(self, name: str) -> bool:
         """Whether a channel is of positions and velocities, which no contact makes jump."""
@@ -63,11 +69,6 @@ class Pair:
         found = np.zeros(len(self.names))
         np.maximum.at(found, self.channel, of_columns)
         return found
-
-
-def components(item: h5py.Dataset) -> list[str]:
-    """What is added to the name of a channel for each of its columns."""
-    return [f".{x}" for x in LABELS[AXES[item.shape[1]]]] if item.ndim == 2 else [""]
 
 
 def sensors(file: h5py.File) -> set[str]:

@@ -12,14 +12,15 @@ One run's error is ragged by factors of several, so each is the median over slig
 first steps; so is the CPU time, that of the integration alone, without rows.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from statistics import median
 
 import numpy as np
 
-from trsim.analyse.apart import APART, still, windows
+from trsim.analyse.apart import APART, resting, windows
 from trsim.analyse.trajectory import (
+    Look,
     Problem,
     Setting,
     Trajectory,
@@ -123,9 +124,7 @@ def reference_setting(methods: Sequence[str], tolerances: Sequence[float]) -> Se
     return Setting(method, max(min(tolerances, default=1e-8) / TIGHTER, TIGHTEST))
 
 
-def reference(
-    of: Problem, setting: Setting, look: Callable[[], None] = unwatched
-) -> Reference:  # fmt: skip
+def reference(of: Problem, setting: Setting, look: Look = unwatched) -> Reference:
     """The reference and how far it can be trusted.
 
     Raises SolverError where it does not reach its end, UsageError where nothing moves.
@@ -135,8 +134,7 @@ def reference(
     except SolverError as error:
         what = f"the reference, {setting.method} at {setting.tolerance:g}, failed: {error.what}"
         raise SolverError(what, "Choose another one: --reference METHOD:TOLERANCE.") from None
-    ranges = {name: float(np.max(np.ptp(x, axis=0))) for name, x in run.values.items()}
-    rests = motionless(of, run, ranges)
+    ranges, rests = resting(run.values, {q.name: q.unit for q in of.quantities})
     ranges = {name: value for name, value in ranges.items() if name not in rests}
     if not ranges:
         raise UsageError("none of the quantities moves", "Name others with --quantity CHANNEL.")
@@ -154,15 +152,9 @@ def reference(
         peak_uncertainty = peak_error(second, run)
     except SolverError as error:
         reason = error.what
+    unmoved = tuple(q.name for q in of.quantities if q.name in rests)
     return Reference(setting, run, rows, other, reason, uncertainty, peak_uncertainty, apart,
-                     ranges, rests)  # fmt: skip
-
-
-def motionless(of: Problem, run: Trajectory, ranges: dict[str, float]) -> tuple[str, ...]:
-    """Quantities that change by no more than rounding."""
-    largest = {name: float(np.max(np.abs(x))) for name, x in run.values.items()}
-    rests = still(ranges, largest, {q.name: q.unit for q in of.quantities})
-    return tuple(q.name for q in of.quantities if q.name in rests)
+                     ranges, unmoved)  # fmt: skip
 
 
 def errors(run: Trajectory, to: Reference) -> dict[str, float]:
@@ -195,9 +187,8 @@ def first_steps(of: Problem, to: Reference, setting: Setting) -> list[float | No
 
 
 def point(
-    of: Problem, to: Reference, setting: Setting, repeats: int = 3,
-    look: Callable[[], None] = unwatched,
-) -> Point:  # fmt: skip
+    of: Problem, to: Reference, setting: Setting, repeats: int = 3, look: Look = unwatched
+) -> Point:
     """Error and CPU time of one setting; one that fails says why."""
     starts = first_steps(of, to, setting)
     try:
@@ -220,15 +211,6 @@ def point(
         error <= to.uncertainty,
         peak <= to.peak_uncertainty,
     )
-
-
-def points(
-    of: Problem, to: Reference, settings: Sequence[Setting], repeats: int = 3,
-    look: Callable[[], None] = unwatched,
-) -> Iterator[Point]:  # fmt: skip
-    """A point for each setting, as they are measured."""
-    for setting in settings:
-        yield point(of, to, setting, repeats, look)
 
 
 def slope(x: Sequence[float], error: Sequence[float]) -> float:

@@ -7,9 +7,8 @@ what is left of a least-squares line is no more than STRAIGHT of its rise (rms).
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 STRAIGHT = 0.03
 FEWEST = 5  # values in a region
@@ -24,10 +23,6 @@ class Line(NamedTuple):
     slope: float
     offset: float
     left: float  # rms of what it leaves
-
-    @property
-    def values(self) -> int:
-        return self.end - self.begin
 
 
 def line(t: Array, y: Array, begin: int, end: int) -> Line:

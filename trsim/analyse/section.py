@@ -26,12 +26,9 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array, Indices
 from trsim.errors import UsageError
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 DIRECTIONS = ("up", "down", "both")
 FEWEST = 8  # rows
@@ -75,8 +72,7 @@ def section(run: Any, when: str, x: str, y: str, crosses: str = "up") -> Interpo
     Raises UsageError for channels the run does not have, or too few rows.
     """
     if crosses not in DIRECTIONS:
-        what = f"crosses must be one of {', '.join(DIRECTIONS)}, got '{crosses}'"
-        raise UsageError(what)
+        raise UsageError(f"crosses must be one of {', '.join(DIRECTIONS)}, got '{crosses}'")
     if when == "time":
         what = "time does not cross zero again and again"
         raise UsageError(what, "Name a channel that does; declare `every` for equal intervals.")
@@ -159,7 +155,7 @@ def crossings(
     if abs(when[0]) <= AT_START * abs(when[1]):
         when = np.append(0.0, when[1:])
     up, down = (when[:-1] < 0.0) & (when[1:] >= 0.0), (when[:-1] > 0.0) & (when[1:] <= 0.0)
-    k: Numbers = np.flatnonzero({"up": up, "down": down}.get(crosses, up | down))
+    k: Indices = np.flatnonzero({"up": up, "down": down}.get(crosses, up | down))
     best, root = along(time, (when, x, y), k, CUBIC)
     error = np.zeros_like(best)
     for places in OTHERS:
@@ -174,17 +170,14 @@ def crossings(
 
 
 def along(
-    time: Array, channels: tuple[Array, ...], k: Numbers, places: tuple[int, ...],
+    time: Array, channels: tuple[Array, ...], k: Indices, places: tuple[int, ...],
     near: Array | None = None,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Time, x and y (3, n) of each crossing by the polynomials through rows k + places; the roots.
 
     A root is looked for between rows k and k + 1, or `near` a place, both in units of their span.
     """
-    shift = np.clip(k, -min(places), len(time) - 1 - max(places)) - k  # near the ends of the run
-    rows = (k + shift)[:, None] + np.array(places)
-    span = time[k + 1] - time[k]
-    lever = (time[rows] - time[k][:, None]) / span[:, None]
+    rows, span, lever = levers(time, k, places)
     when, *shown = channels
     at = between(lever, when[rows]) if near is None else moved(lever, when[rows], near)
     weight = weights(lever, at)
@@ -192,12 +185,16 @@ def along(
     return np.array(found), at
 
 
-def trembling(time: Array, channels: tuple[Array, ...], k: Numbers, root: Array) -> Array:
+def levers(time: Array, k: Indices, places: tuple[int, ...]) -> tuple[Indices, Array, Array]:
+    """Rows k + places, the span (s) from row k to the next, and where the rows are, in spans."""
+    first = np.clip(k, -min(places), len(time) - 1 - max(places))  # near the ends of the run
+    rows, span = first[:, None] + np.array(places), time[k + 1] - time[k]
+    return rows, span, (time[rows] - time[k][:, None]) / span[:, None]
+
+
+def trembling(time: Array, channels: tuple[Array, ...], k: Indices, root: Array) -> Array:
     """What the scatter of the rows makes of time, x and y (3, n), at roots of the cubics."""
-    shift = np.clip(k, -min(CUBIC), len(time) - 1 - max(CUBIC)) - k
-    rows = (k + shift)[:, None] + np.array(CUBIC)
-    span = time[k + 1] - time[k]
-    lever = (time[rows] - time[k][:, None]) / span[:, None]
+    rows, span, lever = levers(time, k, CUBIC)
     slope = (weights(lever, root + AHEAD) - weights(lever, root - AHEAD)) / (2.0 * AHEAD)
     slopes = [np.abs(np.sum(slope * c[rows], axis=1)) for c in channels]
     mine = np.clip(k[:, None] + np.array(NEARBY), max(AROUND), len(time) - 1 - max(AROUND))

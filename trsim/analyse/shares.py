@@ -16,10 +16,8 @@ from numpy.typing import NDArray
 
 from trsim.analyse.onsets import changes, closings
 from trsim.analyse.window import Window
-from trsim.errors import UsageError, known
+from trsim.arrays import Array
 from trsim.store.read import Run, opened
-
-Array = NDArray[np.float64]
 
 RIPPLE = 0.01  # of the deepest penetration of a contact: less is no maximum of its own
 
@@ -45,13 +43,11 @@ def shares(run: Run, joint: str, within: Window) -> Shares:
 
     Raises UsageError where the run has no such contact.
     """
-    if joint not in run.contacts:
-        raise UsageError(f"{run.path}: no contact '{joint}'", known(joint, run.contacts))
+    steps = run.steps(joint)
     with opened(run.path) as file:
         times, closes = changes(file, joint)
         struck = closings(file, joint)
     begins, ends = intervals(times, closes, within)
-    steps = run.steps(joint)
     once = single(steps["time"], steps["penetration"], begins, ends)
     length = within.end - within.begin
     clipped = np.minimum(ends, within.end) - np.maximum(begins, within.begin)

@@ -17,12 +17,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.interval import LEVEL
+from trsim.arrays import Array
 from trsim.errors import UsageError
-
-Array = NDArray[np.float64]
 
 RESAMPLES = 500
 CASE = "case"  # the key of named cases
@@ -130,15 +128,11 @@ def indices(keys: Sequence[str], values: Blocks, word: str = "", unit: str = "-"
     (first_low, total_low), (first_high, total_high) = np.quantile(
         again, [0.5 - LEVEL / 2, 0.5 + LEVEL / 2], axis=0
     )
-    each: Any = (first, first_low, first_high, total, total_low, total_high)
-    table: Any = [
-        (key, *map(float, row), noisy(key))
-        for key, row in zip(keys, np.transpose(each), strict=True)
-    ]
+    table = np.transpose([first, first_low, first_high, total, total_low, total_high]).tolist()
     steps = [1 << k for k in range(FIRST.bit_length() - 1, n.bit_length())]
     return Indices(
         word, unit, n, left_out, float(np.mean(every)), deviation,
-        tuple(Index(*row) for row in table),
+        tuple(Index._make((key, *row, noisy(key))) for key, row in zip(keys, table, strict=True)),
         tuple((m, *_indices(taken(values, slice(m)))) for m in steps),
         float(np.quantile(again[:, 0].sum(axis=1), 0.5 - LEVEL / 2)),
     )  # fmt: skip

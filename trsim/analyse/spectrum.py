@@ -33,15 +33,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from trsim.analyse.interval import LEVEL
-from trsim.analyse.window import Window, scalar_channel
+from trsim.analyse.window import Window, rows_in
+from trsim.arrays import Array
 from trsim.errors import UsageError
 from trsim.store.points import split
 from trsim.store.read import Run
-
-Array = NDArray[np.float64]
 
 WINDOW = "hann"
 WIDTH = 1.5  # bins: equivalent noise bandwidth of that window
@@ -152,9 +150,7 @@ def of_channel(run: Run, channel: str, within: Window, segments: int = SEGMENTS)
     """The spectral density of a channel of a run in a window; raises UsageError."""
     if channel == "time":
         raise UsageError("time has no spectrum", "Name a channel that varies with it.")
-    time, x = run.time, scalar_channel(run, channel)
-    inside = within.of(time)
-    time, x = time[inside], x[inside]
+    time, x = rows_in(run, channel, within)
     if len(time) > 2 and time[-1] - time[-2] < (1.0 - UNEVEN) * (time[1] - time[0]):
         time, x = time[:-1], x[:-1]  # the last row of a run may stand at an event
     try:
@@ -169,7 +165,7 @@ def of_channel(run: Run, channel: str, within: Window, segments: int = SEGMENTS)
         )
         found = found._replace(warnings=(*found.warnings, text))
     if faster := rate(run, channel):
-        moves = spectrum(time, scalar_channel(run, faster)[inside][: len(x)], segments)
+        moves = spectrum(time, rows_in(run, faster, within)[1][: len(x)], segments)
         told = tuple(strangers(found, moves, faster))
         found = found._replace(warnings=(*found.warnings, *told))
     return found

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.errors import ScenarioError, SolverError, UsageError, known
 from trsim.solve.blocks import Blocks
 
-Array = NDArray[np.float64]
+Look = Callable[[], None]  # at what is done so far, between two blocks
 
 CONTACT = ("contact_force", "normal_force")  # of these a contact's first one is compared
 
@@ -37,22 +37,12 @@ class Setting(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """A channel that is compared; its columns of the rows."""
-
-    name: str
-    unit: str
-    start: int
-    size: int
-
-
-@dataclass(frozen=True)
 class Problem:
     """A scenario, assembled with its rows and without them."""
 
     full: tuple[Any, Any]  # scenario, mechanism
     lean: tuple[Any, Any]
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[Any, ...]  # columns that are compared, see assemble/layout.py
     contacts: dict[str, int]  # name -> column of its force
 
 
@@ -90,7 +80,7 @@ def problem(scenario: Any, patterns: Sequence[str] = ()) -> Problem:
     return Problem(
         (full, mechanism),
         (lean, assemble(lean)),
-        tuple(Quantity(c.name, c.unit, c.start, c.size) for c in chosen(mechanism, patterns)),
+        tuple(chosen(mechanism, patterns)),
         {name: found[0].start for name, found in forces.items() if found},
     )
 
@@ -129,9 +119,7 @@ def varied(scenario: Any, setting: Setting, first: float | None = None) -> Any:
     return changed(scenario, "solver", **values)
 
 
-def marched(
-    scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched
-) -> tuple[Array, Any]:
+def marched(scenario: Any, mechanism: Any, look: Look = unwatched) -> tuple[Array, Any]:
     """All rows (n, 1 + n_out) of a run, and its outcome; `look` is called now and then."""
     from trsim.solve.simulate import simulate
 
@@ -142,7 +130,7 @@ def marched(
     return np.vstack(rows), run.outcome
 
 
-def ended(scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched) -> tuple[Array, Any]:
+def ended(scenario: Any, mechanism: Any, look: Look = unwatched) -> tuple[Array, Any]:
     """Rows and outcome of a run that reached its end; raises SolverError where it did not."""
     try:
         rows, outcome = marched(scenario, mechanism, look)
@@ -154,9 +142,8 @@ def ended(scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched) -
 
 
 def trajectory(
-    of: Problem, setting: Setting, first: float | None = None,
-    look: Callable[[], None] = unwatched,
-) -> Trajectory:  # fmt: skip
+    of: Problem, setting: Setting, first: float | None = None, look: Look = unwatched
+) -> Trajectory:
     """A run with its rows; raises SolverError where it does not reach its end."""
     scenario, mechanism = of.full
     rows, outcome = ended(varied(scenario, setting, first), mechanism, look)
@@ -166,9 +153,8 @@ def trajectory(
 
 
 def work(
-    of: Problem, setting: Setting, first: float | None = None,
-    look: Callable[[], None] = unwatched,
-) -> dict[str, float]:  # fmt: skip
+    of: Problem, setting: Setting, first: float | None = None, look: Look = unwatched
+) -> dict[str, float]:
     """What the solver did in a run without rows: `integration_cpu` (s), steps, evaluations."""
     scenario, mechanism = of.lean
     found: dict[str, float] = ended(varied(scenario, setting, first), mechanism, look)[1].statistics

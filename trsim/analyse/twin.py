@@ -4,11 +4,10 @@ A method that shares neither stages nor order nor implicitness with the run's ma
 what the two share is the mechanism, its forces and the search for events.
 """
 
-from collections.abc import Callable
 from typing import Any
 
 from trsim.analyse.precision import TIGHTEST
-from trsim.analyse.trajectory import Setting, changed, marched, unwatched
+from trsim.analyse.trajectory import Look, Setting, changed, marched, unwatched
 from trsim.scenario.methods import METHODS
 
 SHARE = 1.0 / 20.0  # of a run: how long a trial is
@@ -16,9 +15,7 @@ DECADES = (2, 1)  # how much tighter, by powers of ten, in the order of trial
 ROUNDING = 3.0  # times the steps for a tenth of the tolerance; dop853 takes 1.4, radau 1.7 to 2
 
 
-def twin_setting(
-    scenario: Any, mechanism: Any, look: Callable[[], None] = unwatched
-) -> Setting:  # fmt: skip
+def twin_setting(scenario: Any, mechanism: Any, look: Look = unwatched) -> Setting:
     """The other method, at a tolerance as much tighter as rounding allows.
 
     Below some tolerance a method sees nothing but the rounding of its steps: they become many times
@@ -38,7 +35,7 @@ def twin_setting(
 
 
 def trial(
-    scenario: Any, mechanism: Any, method: str, tolerance: float, look: Callable[[], None]
+    scenario: Any, mechanism: Any, method: str, tolerance: float, look: Look
 ) -> tuple[int, bool]:
     """Steps of the beginning of a run, and whether rounding was more than some were allowed."""
     end = SHARE * scenario.solver.end

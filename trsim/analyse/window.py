@@ -13,11 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.errors import ScenarioError, UsageError, described
 from trsim.store.read import Run
 from trsim.units import quantity, unit
-
-Array = NDArray[np.float64]
 
 FORM = "A window is @BEGIN..END in seconds, or @CHANNEL=BEGIN..END."
 
@@ -57,8 +56,10 @@ def window(run: Run, text: str = "", rows: bool = True) -> Window:
         raise UsageError(f"no window: {described('@' + text)}", FORM)
     x = scalar_channel(run, channel) if equals else time
     si = run.unit(channel) if equals else "s"
-    low, high = (_value(limit, si, text) for limit in (begin, end))
-    found = _passed(run, channel, x, whole, low, high) if equals else _limited(whole, low, high)
+    low, high = _value(begin, -np.inf, si, text), _value(end, np.inf, si, text)
+    found = Window(max(low, whole.begin), min(high, whole.end))
+    if equals:
+        found = _passed(run, channel, x, whole, low, high)
     if rows and not found.of(time).any():
         told = f"it has rows from {whole.begin:g} to {time[-1]:g} s"
         raise UsageError(f"{run.path}: no row lies in {described('@' + text)}; {told}", FORM)
@@ -68,25 +69,18 @@ def window(run: Run, text: str = "", rows: bool = True) -> Window:
     return found
 
 
-def _limited(whole: Window, low: float | None, high: float | None) -> Window:
-    begin = whole.begin if low is None else max(low, whole.begin)
-    return Window(begin, whole.end if high is None else min(high, whole.end))
-
-
-def _value(text: str, si: str, whole: str) -> float | None:
-    """One end in SI units, None where it is left out."""
+def _value(text: str, absent: float, si: str, whole: str) -> float:
+    """One end in SI units; absent: where it is left out."""
     if not text.strip():
-        return None
+        return absent
     try:
         found = quantity(text)
     except ScenarioError as error:
         raise UsageError(f"window {described('@' + whole)}: {error.what}", error.hint) from None
     if found is None:
-        what = f"window {described('@' + whole)}: {described(text)} is no number"
-        raise UsageError(what, FORM)
+        raise UsageError(f"window {described('@' + whole)}: {described(text)} is no number", FORM)
     if found[1] and unit(found[1])[1] != unit(si)[1]:
-        what = f"window {described('@' + whole)}: {described(text)} is not in {si}"
-        raise UsageError(what, FORM)
+        raise UsageError(f"window {described('@' + whole)}: {described(text)} is not in {si}", FORM)
     return found[0]
 
 
@@ -101,12 +95,17 @@ def scalar_channel(run: Run, name: str) -> Array:
     return np.asarray(found)
 
 
-def _passed(
-    run: Run, channel: str, x: Array, whole: Window, low: float | None, high: float | None
-) -> Window:
+def rows_in(run: Run, channel: str, within: Window) -> tuple[Array, Array]:
+    """Times and values of the rows of a channel that lie in a window."""
+    time, x = run.time, scalar_channel(run, channel)
+    inside = within.of(time)
+    return time[inside], x[inside]
+
+
+def _passed(run: Run, channel: str, x: Array, whole: Window, low: float, high: float) -> Window:
     """The stretch in which a channel goes from one value to another."""
     time = run.time
-    inside = (x >= (-np.inf if low is None else low)) & (x <= (np.inf if high is None else high))
+    inside = (x >= low) & (x <= high)
     edges = np.flatnonzero(np.diff(inside, prepend=False, append=False))
     if edges.size > 2:
         what = f"{run.path}: '{channel}' is between these values {edges.size // 2} times"
@@ -119,10 +118,10 @@ def _passed(
     return Window(begin, end)
 
 
-def _crossing(time: Array, x: Array, k: int, low: float | None, high: float | None) -> float:
+def _crossing(time: Array, x: Array, k: int, low: float, high: float) -> float:
     """Where between rows k and k + 1 the channel passes the limit that lies there."""
     for limit in (low, high):
-        if limit is not None and min(x[k], x[k + 1]) <= limit <= max(x[k], x[k + 1]):
+        if min(x[k], x[k + 1]) <= limit <= max(x[k], x[k + 1]):
             share = (limit - x[k]) / (x[k + 1] - x[k])
             return float(time[k] + share * (time[k + 1] - time[k]))
     return float(time[k])

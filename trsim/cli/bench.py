@@ -114,7 +114,8 @@ def measured(
     Stop.patient = True
     try:
         reference = precision.reference(of, against, look)
-        for point in precision.points(of, reference, settings, repeats, look):
+        for setting in settings:
+            point = precision.point(of, reference, setting, repeats, look)
             found.append(point)
             answer.say(f"{len(found)} of {len(settings)}: {row(point)}")
     except KeyboardInterrupt:

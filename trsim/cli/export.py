@@ -23,7 +23,8 @@ def command(
     The first line names them with their units; components of vectors are NAME.x, NAME.y, NAME.z.
     Default output: RUN.csv beside it.
     """
-    from trsim.store.csv import components, export
+    from trsim.store.csv import export
+    from trsim.store.grow import components
     from trsim.store.read import read
 
     found = read(run)

@@ -3,15 +3,11 @@
 Slice assignments of numba carry shape checks and their error texts: a second of compiling each.
 """
 
-from collections.abc import Callable
 from math import isfinite
 
 from trsim.kernels.lazy import Lazy
 
-
-def internal(python: Callable) -> Lazy:
-    """Decorator of functions that only compiled code calls."""
-    return Lazy(python)
+internal = Lazy  # decorator of functions that only compiled code calls
 
 
 @internal

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.report.display import Shown
 from trsim.report.marks import spaced
 from trsim.report.style import DASHES, apart, colour, finished, panels, thinned, titled
-from trsim.store.grow import Array
 
 SHAPES = 9  # of one run
 SIDES = ((0, 1), (0, 2), (1, 2))  # the planes a shape may be seen in

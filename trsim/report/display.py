@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from trsim.arrays import Array
 from trsim.scenario.shown import UNITS
-from trsim.store.grow import Array
 from trsim.store.read import Run
 from trsim.units import unit
 

@@ -6,12 +6,12 @@ from typing import Any
 
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.report import bars, style
 from trsim.report.display import Shown, short
 from trsim.report.marks import happened, spaced
 from trsim.report.orbits import impact_map, orbit, section
 from trsim.report.style import colour, finished, look, panels, save, thinned, titled
-from trsim.store.grow import Array
 from trsim.store.peaks import Peak
 
 QUANTITY = {

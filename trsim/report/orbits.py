@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.report.display import Shown, short
 from trsim.report.marks import spaced
 from trsim.report.style import WIDTH, colour, finished, panels, titled
-from trsim.store.grow import Array
 from trsim.store.points import surface
 from trsim.store.read import Points
 

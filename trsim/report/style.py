@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.report.defaults import Figure, FigureCanvasAgg, matplotlib
 from trsim.report.display import Shown
-from trsim.store.grow import Array
 from trsim.store.target import FIGURE, file_errors, fresh
 
 CHARACTER = 0.085  # inch: a letter of a title

@@ -20,13 +20,13 @@ at a start on the value, and not for a touch that turns back.
       shut:        {when: stroke, crosses: down, do: {end: true}}
 """
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Gt, Le
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from trsim.errors import ScenarioError
-from trsim.fields import Flag, Function, Spec, Unit
+from trsim.fields import EMPTY, Flag, Function, Spec, Unit
 
 EXAMPLE = """
 bodies:
@@ -44,7 +44,6 @@ solver: {end: 1 s}
 
 Crosses = Literal["up", "down", "both"]
 DIRECTIONS = {"up": 1, "down": -1, "both": 0}
-NOTHING: Any = Field(default_factory=dict)
 
 
 class Motion(Spec):
@@ -78,7 +77,7 @@ class Actions(Spec):
 
     type: ClassVar[str] = "actions"
     record: Flag = False
-    set: dict[str, Motion] = NOTHING
+    set: dict[str, Motion] = EMPTY
     release: tuple[str, ...] = ()
     lock: tuple[str, ...] = ()
     unlock: tuple[str, ...] = ()

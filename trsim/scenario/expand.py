@@ -26,7 +26,7 @@ from trsim.errors import (
     unreadable,
 )
 from trsim.numbers import number
-from trsim.scenario.merge import graft, merge, override, part
+from trsim.scenario.merge import graft, mapping, merge, override, part
 from trsim.scenario.table import rows
 from trsim.scenario.text import LARGEST, Tree, decoded, read
 from trsim.units import quantity
@@ -130,8 +130,8 @@ class _Files:
 
     def cases(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> None:
         """Put what a case extends into the case, but for the cases and the sweep of that file."""
-        cases = tree.data.get("cases")
-        for name, case in cases.items() if isinstance(cases, dict) else ():
+        cases = mapping(tree.data, "cases")
+        for name, case in cases.items():
             if isinstance(case, dict) and "extends" in case:
                 self.most = MOST_OF_CASES
                 inner = part(tree, ("cases", name))

@@ -2,13 +2,13 @@
 
 import sys
 from collections.abc import Iterator
-from typing import Any, get_args
+from typing import Any
 
 from trsim import elements
 from trsim.errors import UsageError, known
 from trsim.fields import Spec
 from trsim.scenario.load import unit_of
-from trsim.scenario.meanings import description, meanings
+from trsim.scenario.meanings import description, inside, meanings
 from trsim.scenario.scenario import Scenario
 from trsim.scenario.schema import schema
 
@@ -121,12 +121,7 @@ def _keys(
 def _held(spec: type[Spec] | None, key: str) -> type[Spec] | None:
     """The spec of the mapping, or of the named mappings, that a key holds."""
     field = spec.model_fields.get(key) if spec else None
-    parts = [field.annotation] if field else []
-    for part in parts:
-        if isinstance(part, type) and issubclass(part, Spec):
-            return part
-        parts += get_args(part)
-    return None
+    return next(inside(field.annotation), None) if field else None
 
 
 # --- types in words --------------------------------------------------------------------------

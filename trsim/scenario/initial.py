@@ -33,8 +33,7 @@ def initial_of(data: Any, info: Any) -> Initial:
     if whole:
         names = list(info.data.get("joints", ()))
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        what = f"must be a list of joints, or `{ALL}`"
-        raise ScenarioError(what, path=("equilibrium",))
+        raise ScenarioError(f"must be a list of joints, or `{ALL}`", path=("equilibrium",))
     parameters, values = (info.context or {}).get("parameters"), {}
     of, joints = info.data.get("joints", {}), [*info.data.get("joints", ()), "equilibrium"]
     for k, name in enumerate(names):
@@ -42,8 +41,7 @@ def initial_of(data: Any, info: Any) -> Initial:
             hint = known(name, joints[:-1])
             if name in info.data.get("bodies", ()):
                 hint = f"`equilibrium: {ALL}` balances all forces on all bodies"
-            what = f"no joint named {described(name)}"
-            raise ScenarioError(what, hint, ("equilibrium", k))
+            raise ScenarioError(f"no joint named {described(name)}", hint, ("equilibrium", k))
     for key, value in data.items():
         if key == "equilibrium":
             continue

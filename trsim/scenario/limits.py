@@ -11,6 +11,7 @@ from annotated_types import Ge, Le
 
 from trsim.errors import ScenarioError, described
 from trsim.fields import Spec
+from trsim.scenario.merge import mapping
 from trsim.scenario.template import SECTIONS
 
 Count = Annotated[int, Ge(1), Le(1_000_000)]
@@ -45,8 +46,7 @@ def too_many(kind: str, count: int, limit: int, *path: str, how: str = "") -> Sc
 
 def allowed(data: dict[str, Any], kind: str) -> int:
     """The limit in a tree that is not validated yet; where that is wrong it is found there."""
-    given = data.get("limits")
-    found = given.get(kind) if isinstance(given, dict) else None
+    found = mapping(data, "limits").get(kind)
     default: int = Limits.model_fields[kind].default
     return found if isinstance(found, int) and not isinstance(found, bool) else default
 
@@ -58,8 +58,7 @@ def before_unfolding(data: dict[str, Any], templates: dict, instances: dict) -> 
         word = given.get("template") if isinstance(given, dict) else None
         of = templates.get(word) if isinstance(word, str) else None
         for section in SECTIONS:
-            inner = of.get(section) if isinstance(of, dict) else None
-            n = len(inner) if isinstance(inner, dict) else 0
+            n = len(mapping(of, section))
             for kind in ("bodies", "entries") if section == "bodies" else ("entries",):
                 made[kind][str(word)] = made[kind].get(str(word), 0) + n
     for kind, counts in made.items():

@@ -113,18 +113,9 @@ def _sizes(scenario: Any) -> Iterator[str]:
 # --- contact laws ----------------------------------------------------------------------------
 
 
-def _contacts(scenario: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Name, spec and law of each joint with clearance; those ill-named are reported elsewhere."""
-    for name, joint in scenario.joints.items():
-        law = scenario.contact_laws.get(getattr(joint, "contact", None))
-        fits = law is not None and law.bearing_radius is not None
-        if fits and 0.0 < getattr(joint, "clearance", 0.0) < law.bearing_radius:
-            yield name, joint, law
-
-
 def _conformity(scenario: Any) -> Iterator[str]:
     """Curvature of the stiffness, and the clearance, against the radius."""
-    for name, joint, law in _contacts(scenario):
+    for name, joint, law in plausible.contacts(scenario):
         c, R = joint.clearance, law.bearing_radius
         where = f"joints.{name}"
         if law.stiffness == "paper":
@@ -243,7 +234,7 @@ def _fixed_step(scenario: Any) -> Iterator[str]:
         return
     for name, stop, mass in _all_stops(scenario):
         yield from _unresolved(f"forces.{name}", h, pi * sqrt(mass / stop.stiffness))
-    for name, joint, law in _contacts(scenario):
+    for name, joint, law in plausible.contacts(scenario):
         mass, v = _reduced(scenario, joint.bodies), law.slowest_impact
         if not 0.0 < mass < inf:
             continue

@@ -26,20 +26,14 @@ MOST = 200  # problems read from one mapping
 
 def load(path: str | PathLike, sets: Iterable[str] = ()) -> Scenario:
     """The scenario in a file, with each `section.name.key=value` of `sets` put in."""
-    tree, text = expand.expand(path, sets)
-    return _validated(tree, text)
+    return of_tree(*expand.expand(path, sets))
 
 
 def loads(
     text: str, sets: Iterable[str] = (), name: str = "<text>", folder: Path | None = None
 ) -> Scenario:
     """The scenario in a text; `folder` is where files it names are looked for."""
-    return _validated(expand.expand_text(text, sets, name, folder), text)
-
-
-def of_tree(tree: Tree, text: str) -> Scenario:
-    """The scenario of a tree that is complete."""
-    return _validated(tree, text)
+    return of_tree(expand.expand_text(text, sets, name, folder), text)
 
 
 def valid(data: dict, memory: Memory) -> bool:
@@ -67,7 +61,8 @@ def locate(error: TrsimError, scenario: Scenario) -> TrsimError:
     return error
 
 
-def _validated(tree: Tree, text: str) -> Scenario:
+def of_tree(tree: Tree, text: str) -> Scenario:
+    """The scenario of a tree that is complete; text: as given."""
     values, faults = expand.parameters(tree)
     whole, more = unfold(tree, values)
     problems: list[TrsimError] = [
@@ -107,17 +102,12 @@ def _order(problem: TrsimError, files: list[str]) -> tuple:
 # --- pydantic's errors in our words ----------------------------------------------------------
 
 SHAPES = {
-    "float_type": "a number",
-    "float_parsing": "a number",
-    "int_type": "a whole number",
-    "int_parsing": "a whole number",
-    "int_from_float": "a whole number",
+    **dict.fromkeys(("float_type", "float_parsing"), "a number"),
+    **dict.fromkeys(("int_type", "int_parsing", "int_from_float"), "a whole number"),
     "string_type": "text",
     "bool_type": "true or false",
-    "tuple_type": "a list",
-    "list_type": "a list",
-    "dict_type": "a mapping",
-    "model_type": "a mapping",
+    **dict.fromkeys(("tuple_type", "list_type"), "a list"),
+    **dict.fromkeys(("dict_type", "model_type"), "a mapping"),
 }
 BOUNDS = {
     "greater_than": (">", "gt"),
@@ -248,9 +238,8 @@ def _told(one: dict, hint: str) -> tuple[str, str]:
 def _missing(one: dict, spec: type[Spec] | None) -> ScenarioError:
     key = one["loc"][-1]
     unit = unit_of(spec, key)
-    return ScenarioError(
-        f"field required: {key}{f' ({unit.text})' if unit else ''}", "", one["here"]
-    )
+    told = f" ({unit.text})" if unit else ""
+    return ScenarioError(f"field required: {key}{told}", "", one["here"])
 
 
 def _unit_hint(spec: type[Spec] | None, below: tuple) -> str:

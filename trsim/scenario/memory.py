@@ -4,7 +4,7 @@ import json
 import re
 from typing import Any
 
-from trsim.scenario.merge import merged
+from trsim.scenario.merge import mapping, merged
 from trsim.scenario.unfolded import Scope
 
 
@@ -15,10 +15,8 @@ class Memory:
         self.made: dict[tuple, Any] = {}
         self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
         self.joined: dict[tuple[int, int], tuple[Any, Any, Any]] = {}
-        templates = data.get("templates")
-        of = [data, *(templates.values() if isinstance(templates, dict) else ())]
-        given = [one.get("parameters") for one in of if isinstance(one, dict)]
-        names = {name for one in given if isinstance(one, dict) for name in one}
+        of = [data, *mapping(data, "templates").values()]
+        names = {name for one in of for name in mapping(one, "parameters")}
         self.word = re.compile("|".join(rf"\b{name}\b" for name in names) or r"(?!)")
 
     def key(

@@ -15,6 +15,12 @@ NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws", "eve
 KNOWN = ("parameters", *NAMED, "templates", "instances")  # --set changes what is there
 
 
+def mapping(data: Any, key: Any) -> dict[str, Any]:
+    """What stands under a key, if it is a mapping; an empty one otherwise."""
+    found = data.get(key) if isinstance(data, dict) else None
+    return found if isinstance(found, dict) else {}
+
+
 def merge(base: Tree, over: Tree) -> None:
     """Change `base` into `base` overridden by `over`."""
     _merge(base, base.data, over.data, ())
@@ -115,8 +121,7 @@ def setting(text: str) -> tuple[list[str], Any, Place, Place]:
 
 def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> None:
     """Change one value of a tree, which remembers where it came from."""
-    section = tree.data.get(keys[0])
-    named = section if isinstance(section, dict) else {}
+    named = mapping(tree.data, keys[0])
     if len(keys) > 1 and keys[0] in KNOWN and keys[1] not in named:
         what = f"nothing named {described(keys[1])} in {keys[0]}"
         hint = _of_an_instance(tree, keys) or known(keys[1], named)
@@ -138,8 +143,7 @@ def put(tree: Tree, keys: list[str], new: Any, at: Place, key_place: Place) -> N
 
 def _of_an_instance(tree: Tree, keys: list[str]) -> str:
     """Where an entry of an instance is changed; nothing if the name is none."""
-    instances = tree.data.get("instances")
-    for instance in instances if isinstance(instances, dict) else ():
+    for instance in mapping(tree.data, "instances"):
         if keys[1].startswith(f"{instance}_"):
             own = keys[1].removeprefix(f"{instance}_")
             rest = ".".join((keys[0], own, *keys[2:]))

@@ -7,7 +7,7 @@ from typing import Any
 
 from trsim.errors import ScenarioError, described, known
 from trsim.expressions import FUNCTIONS
-from trsim.scenario.merge import NAMED
+from trsim.scenario.merge import NAMED, mapping
 from trsim.scenario.vary import sweep
 
 # what stands beside the channels in a result file; `component` begins the names of their scales
@@ -26,8 +26,7 @@ def name_faults(data: dict) -> Iterator[ScenarioError]:
     """All names share one name space; each must be a word an expression can contain."""
     taken: dict[str, str] = {}
     for section in ("parameters", *NAMED):
-        entries = data.get(section)
-        for name in entries if isinstance(entries, dict) else ():
+        for name in mapping(data, section):
             path = (section, name)
             if not re.fullmatch(NAME, name):
                 hint = "A name is letters, digits and _, a letter first."
@@ -41,8 +40,7 @@ def name_faults(data: dict) -> Iterator[ScenarioError]:
                 yield ScenarioError(what, "All names share one name space.", path)
             taken.setdefault(name, section)
     for section in ("phase_portraits", "poincare"):
-        entries = data.get(section)
-        for name in entries if isinstance(entries, dict) else ():
+        for name in mapping(data, section):
             if not re.fullmatch(OF_POINTS, name) or len(name) > LONGEST:
                 hint = f"A name is letters, digits, _, + and -, at most {LONGEST}."
                 what = f"not a name: {described(name)}"

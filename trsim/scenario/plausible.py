@@ -32,12 +32,9 @@ def moduli(scenario: Any) -> Iterator[str]:
                     f"contact_laws.{name}.{key}: {E:.3g} Pa; solids have 1 MPa (rubber) to 1 TPa "
                     f"(diamond), steel 2.1e+11 Pa: {prefix(E)}"
                 )
-    for name, joint in scenario.joints.items():
-        law = scenario.contact_laws.get(getattr(joint, "contact", None))
-        c = getattr(joint, "clearance", 0.0)
-        if law is None or not isinstance(law.stiffness, float) or law.bearing_radius is None:
-            continue
-        if not 0.0 < c < law.bearing_radius:
+    for name, joint, law in contacts(scenario):
+        c = joint.clearance
+        if not isinstance(law.stiffness, float):
             continue
         E = modulus(law.stiffness * c ** (law.exponent - 1.5), law.bearing_radius, c)
         if not SOFTEST <= E <= HARDEST:
@@ -47,6 +44,15 @@ def moduli(scenario: Any) -> Iterator[str]:
                 f"{1e3 * law.bearing_radius:.3g} mm, clearance {1e3 * c:.3g} mm); solids have "
                 "1 MPa to 1 TPa: write `stiffness: internal` and the `youngs_modulus`"
             )
+
+
+def contacts(scenario: Any) -> Iterator[tuple[str, Any, Any]]:
+    """Name, spec and law of each joint with clearance; those ill-named are reported elsewhere."""
+    for name, joint in scenario.joints.items():
+        law = scenario.contact_laws.get(getattr(joint, "contact", None))
+        fits = law is not None and law.bearing_radius is not None
+        if fits and 0.0 < getattr(joint, "clearance", 0.0) < law.bearing_radius:
+            yield name, joint, law
 
 
 def modulus(K: float, R: float, c: float) -> float:

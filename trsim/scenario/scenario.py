@@ -9,11 +9,11 @@ from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from annotated_types import Ge, Gt, Interval
-from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
+from pydantic import AfterValidator, BeforeValidator, PrivateAttr, model_validator
 
 from trsim import elements
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
-from trsim.fields import Flag, Spec, Unit, vector
+from trsim.fields import EMPTY, Flag, Spec, Unit, vector
 from trsim.scenario import shown
 from trsim.scenario.contact_law import ContactLaw
 from trsim.scenario.event import Event
@@ -33,7 +33,6 @@ Seconds = Annotated[float, Gt(0), Unit("s")]
 # 1e-12 m/s^2
 SHORTEST = 1e-20
 Rate = Annotated[float, Ge(0), Unit("1/s")]
-EMPTY: Any = Field(default_factory=dict)
 
 
 # --- elements --------------------------------------------------------------------------------
@@ -71,13 +70,11 @@ def word(section: str, data: dict) -> str:
     if named is None:
         near = [key for key in data if edits(key, "type") == 1]
         if near:
-            raise ScenarioError(
-                f"unknown key {described(near[0])}", "Did you mean 'type'?", (near[0],)
-            )
+            what = f"unknown key {described(near[0])}"
+            raise ScenarioError(what, "Did you mean 'type'?", (near[0],))
         raise ScenarioError("field required: type", known("", words))
     if not isinstance(named, str) or named not in words:
-        what = f"unknown type {described(named)}"
-        raise ScenarioError(what, known(named, words), ("type",))
+        raise ScenarioError(f"unknown type {described(named)}", known(named, words), ("type",))
     key, other = elements.BECOMES.get(named, ("", named))
     return other if key and any(edits(one, key) <= 1 for one in data) else named
 

@@ -38,20 +38,16 @@ def schema() -> dict[str, Any]:
     """The schema of a scenario file, all elements included."""
     of_word: dict[str, Any] = {word: elements.load(word).spec for word in elements.ELEMENTS}
     every = dict.fromkeys(spec for top in (Scenario, *of_word.values()) for spec in specs(top))
-    keys, given = models_json_schema([(spec, "validation") for spec in every])
-    definitions = given["$defs"]
+    made, given = models_json_schema([(spec, "validation") for spec in every])
+    definitions, keys = given["$defs"], {spec: key for (spec, _), key in made.items()}
     for spec in every:
-        _describe(_definition(definitions, keys[spec, "validation"]), spec)
-    root = _definition(definitions, keys[Scenario, "validation"])
+        _describe(_definition(definitions, keys[spec]), spec)
+    root = _definition(definitions, keys[Scenario])
     for word, section in elements.ELEMENTS.items():
         if section:
-            _typed(_definition(definitions, keys[of_word[word], "validation"]), word, section)
+            _typed(_definition(definitions, keys[of_word[word]]), word, section)
     for section in set(elements.ELEMENTS.values()) - {""}:
-        entries = [
-            keys[of_word[word], "validation"]
-            for word, of in elements.ELEMENTS.items()
-            if of == section
-        ]
+        entries = [keys[of_word[word]] for word, of in elements.ELEMENTS.items() if of == section]
         root["properties"][section]["additionalProperties"] = (
             {"anyOf": entries} if len(entries) > 1 else entries[0]
         )
@@ -61,7 +57,7 @@ def schema() -> dict[str, Any]:
     root["properties"]["extends"] = EXTENDS
     root["properties"]["parameters"]["additionalProperties"] = NUMBER
     parts = {f"part_{name}": _part(value) for name, value in definitions.items()}
-    whole = keys[Scenario, "validation"]["$ref"]
+    whole = keys[Scenario]["$ref"]
     return {
         "$schema": DIALECT,
         "title": "trsim scenario",

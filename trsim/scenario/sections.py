@@ -51,9 +51,8 @@ class PoincareSection(Spec):
         given = [key for key in SURFACES if getattr(self, key) is not None]
         if len(given) != 1:
             what = "no surface" if not given else f"both `{given[0]}` and `{given[1]}`"
-            raise ScenarioError(
-                what, "Give one of `when: CHANNEL`, `every: PERIOD`, `at_onset: JOINT`."
-            )
+            hint = "Give one of `when: CHANNEL`, `every: PERIOD`, `at_onset: JOINT`."
+            raise ScenarioError(what, hint)
         if self.when is None and "crosses" in self.model_fields_set:
             hint = f"`{given[0]}` has no direction: leave it out."
             raise ScenarioError("crosses belongs to `when`", hint, ("crosses",))

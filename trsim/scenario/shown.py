@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from trsim.errors import ScenarioError, described, known
+from trsim.errors import ScenarioError, check_keys, described
 from trsim.units import unit
 
 UNITS = {"angle": "rad", "length": "m", "force": "N", "torque": "N*m"}  # what a choice replaces
@@ -10,9 +10,7 @@ UNITS = {"angle": "rad", "length": "m", "force": "N", "torque": "N*m"}  # what a
 
 def report(given: dict[str, Any]) -> dict[str, Any]:
     """The section as given; raises ScenarioError where its units are not those of their kind."""
-    for key in given:
-        if key != "units":
-            raise ScenarioError(f"unknown key {described(key)}", known(key, ["units"]), (key,))
+    check_keys(given, ["units"])
     chosen = given.get("units")
     if chosen is None:
         return given
@@ -20,9 +18,7 @@ def report(given: dict[str, Any]) -> dict[str, Any]:
         what = f"must be a mapping, got {described(chosen)}"
         raise ScenarioError(what, "For example `{angle: deg, length: mm}`.", ("units",))
     for key, text in chosen.items():
-        if key not in UNITS:
-            hint = known(key, UNITS)
-            raise ScenarioError(f"unknown key {described(key)}", hint, ("units", key))
+        check_keys([key], UNITS, "units")
         if not isinstance(text, str):
             what = f"must be a unit, got {described(text)}"
             raise ScenarioError(what, f"For example {UNITS[key]}.", ("units", key))

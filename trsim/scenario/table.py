@@ -87,29 +87,26 @@ def rows(content: bytes, file: str) -> tuple[list[Any], list[str]]:
         numbers = [number(cell) for cell in line.cells]
         if len(numbers) != 2 or None in numbers:
             if not found and table.titles and not _A_ROW.match(line.text):
-                raise _two_heads(table, line)
+                hint = "A unit stands in brackets behind its title: `t [ms], force [kN]`."
+                raise _wrong(table, line, " is a second line of titles", hint)
             raise _no_row(file, line.number, line.text, line.cells)
         found.append(numbers)
     if table.titles is None:
         return found, ["column 1", "column 2"]
     if len(table.titles.cells) != 2:
-        raise _no_titles(table, table.titles)
+        hint = "For example `t [ms], force [kN]`; a line of other words begins with #."
+        what = f": {len(table.titles.cells)} titles, but 2 columns"
+        raise _wrong(table, table.titles, what, hint)
     names, units = zip(table.title(0), table.title(1), strict=True)
     bare = [f"column {k + 1} ({names[k]})" for k in (0, 1) if not units[k]]
     head = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)]
     return ([head, *found] if any(units) else found), bare
 
 
-def _no_titles(table: Table, line: Line) -> ScenarioError:
-    what = f"row {line.number} of {table.file}: {len(line.cells)} titles, but 2 columns"
-    hint = "For example `t [ms], force [kN]`; a line of other words begins with #."
-    return ScenarioError(what, hint, place=table.place(line, 0))
-
-
-def _two_heads(table: Table, line: Line) -> ScenarioError:
-    what = f"row {line.number} of {table.file} is a second line of titles"
-    hint = "A unit stands in brackets behind its title: `t [ms], force [kN]`."
-    return ScenarioError(what, hint, place=table.place(line, 0))
+def _wrong(table: Table, line: Line, what: str, hint: str) -> ScenarioError:
+    """What is wrong with a line of titles."""
+    found = f"row {line.number} of {table.file}{what}"
+    return ScenarioError(found, hint, place=table.place(line, 0))
 
 
 def _no_row(file: str, at: int, line: str, cells: list[str]) -> ScenarioError:

@@ -9,23 +9,19 @@ instances:
 from math import sqrt
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, WrapValidator, model_validator
+from pydantic import WrapValidator, model_validator
 
-from trsim.errors import ScenarioError, described, known
-from trsim.fields import Spec, direction, point, vector
+from trsim.errors import ScenarioError, check_keys
+from trsim.fields import EMPTY, Spec, direction, point, vector
 from trsim.frame import Frame, across
 
 SECTIONS = ("bodies", "joints", "drives", "sensors", "forces", "events")  # of a template
 PARALLEL = 1e-6  # sine of an angle
-NOTHING: Any = Field(default_factory=dict)
 
 
 def _later(value: Any, _: Any) -> Any:
     """The mapping as written, its keys checked: its numbers are read in instances (unfold.py)."""
-    for key in value if isinstance(value, dict) else ():
-        if key not in Placement.model_fields:
-            what = f"unknown key {described(key)}"
-            raise ScenarioError(what, known(key, Placement.model_fields), (key,))
+    check_keys(value if isinstance(value, dict) else (), Placement.model_fields)
     return value
 
 
@@ -85,14 +81,14 @@ class Template(Spec):
     """
 
     type: ClassVar[str] = "template"
-    parameters: dict[str, Any] = NOTHING
+    parameters: dict[str, Any] = EMPTY
     frame: Annotated[Placement | None, WrapValidator(_later)] = None
-    bodies: dict[str, Any] = NOTHING
-    joints: dict[str, Any] = NOTHING
-    drives: dict[str, Any] = NOTHING
-    sensors: dict[str, Any] = NOTHING
-    forces: dict[str, Any] = NOTHING
-    events: dict[str, Any] = NOTHING
+    bodies: dict[str, Any] = EMPTY
+    joints: dict[str, Any] = EMPTY
+    drives: dict[str, Any] = EMPTY
+    sensors: dict[str, Any] = EMPTY
+    forces: dict[str, Any] = EMPTY
+    events: dict[str, Any] = EMPTY
 
     @model_validator(mode="before")
     @classmethod
@@ -121,10 +117,10 @@ class Instance(Spec):
     type: ClassVar[str] = "instance"
     template: str
     frame: Annotated[Placement | None, WrapValidator(_later)] = None
-    parameters: dict[str, Any] = NOTHING
-    bodies: dict[str, Any] = NOTHING
-    joints: dict[str, Any] = NOTHING
-    drives: dict[str, Any] = NOTHING
-    sensors: dict[str, Any] = NOTHING
-    forces: dict[str, Any] = NOTHING
-    events: dict[str, Any] = NOTHING
+    parameters: dict[str, Any] = EMPTY
+    bodies: dict[str, Any] = EMPTY
+    joints: dict[str, Any] = EMPTY
+    drives: dict[str, Any] = EMPTY
+    sensors: dict[str, Any] = EMPTY
+    forces: dict[str, Any] = EMPTY
+    events: dict[str, Any] = EMPTY

@@ -192,11 +192,10 @@ def _node(event: Any, events: Iterator[Any], tree: Tree, path: Path, place: Any)
     where = place(mark.line, mark.column)
     if len(path) > DEEPEST:
         raise ScenarioError(f"nested more than {DEEPEST} deep", place=where)
+    tree.marks[path] = where
     if kind is yaml.ScalarEvent:
-        tree.marks[path] = where
         return _scalar(event, path, where)
     if kind is yaml.SequenceStartEvent:
-        tree.marks[path] = where
         items: list[Any] = []
         while type(event := next(events)) is not yaml.SequenceEndEvent:
             items.append(_node(event, events, tree, (*path, len(items)), place))

@@ -14,7 +14,7 @@ from trsim.errors import ScenarioError, described, known
 from trsim.frame import Frame
 from trsim.scenario.expand import numbers
 from trsim.scenario.limits import before_unfolding
-from trsim.scenario.merge import merged
+from trsim.scenario.merge import mapping, merged
 from trsim.scenario.names import NAME, name_faults
 from trsim.scenario.template import SECTIONS, Placement
 from trsim.scenario.text import Path, Tree
@@ -33,7 +33,7 @@ def unfold(
     found when the sections `templates` and `instances` are validated.
     """
     whole, faults = Unfolded(tree), list[Fault]()
-    templates, instances = _mapping(tree.data, "templates"), _mapping(tree.data, "instances")
+    templates, instances = mapping(tree.data, "templates"), mapping(tree.data, "instances")
     for name, template in templates.items():
         if isinstance(template, dict):
             here = ("templates", name)
@@ -58,11 +58,6 @@ def unfold(
     return whole, faults
 
 
-def _mapping(data: Any, key: str) -> dict[str, Any]:
-    found = data.get(key)
-    return found if isinstance(found, dict) else {}
-
-
 def _template(name: str, given: Any, templates: dict[str, Any]) -> dict[str, Any] | None:
     """The template of an instance; None where a shape is wrong."""
     if not re.fullmatch(NAME, name):
@@ -85,8 +80,8 @@ def _put(
     local, faults = _numbers(name, given, of, values)
     yield from faults
     if isinstance(given.get("parameters", {}), dict):
-        view["parameters"] = {**_mapping(of, "parameters"), **_mapping(given, "parameters")}
-    own = {entry: f"{name}_{entry}" for section in SECTIONS for entry in _mapping(of, section)}
+        view["parameters"] = {**mapping(of, "parameters"), **mapping(given, "parameters")}
+    own = {entry: f"{name}_{entry}" for section in SECTIONS for entry in mapping(of, section)}
     here = {key: value for key, value in values.items() if key not in own} | local
     frame, faults = _frame(name, given, of, view, here, merge)
     yield from faults
@@ -95,7 +90,7 @@ def _put(
     for section in SECTIONS:
         if not isinstance(given.get(section, {}), dict):
             continue
-        known_here, over = _mapping(of, section), _mapping(given, section)
+        known_here, over = mapping(of, section), mapping(given, section)
         yield from _strangers(name, given["template"], section, over, known_here)
         view[section] = {
             entry: merge(data, over[entry]) if entry in over else data
@@ -137,7 +132,7 @@ def _numbers(
     name: str, given: dict, of: dict, values: dict[str, float]
 ) -> tuple[dict[str, float], list[Fault]]:
     """The numbers of an instance's parameters: its own, and of the others those of the template."""
-    defaults, mine = _mapping(of, "parameters"), _mapping(given, "parameters")
+    defaults, mine = mapping(of, "parameters"), mapping(given, "parameters")
     here, there = ("instances", name, "parameters"), ("templates", given["template"], "parameters")
     faults: list[Fault] = []
     for key in mine:

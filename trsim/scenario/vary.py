@@ -64,9 +64,8 @@ def sweep(data: Any) -> Sweep:
         raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
     method = data.get("method", "grid")
     if method not in METHODS:
-        raise ScenarioError(
-            f"unknown method {described(method)}", known(method, METHODS), ("method",)
-        )
+        what = f"unknown method {described(method)}"
+        raise ScenarioError(what, known(method, METHODS), ("method",))
     for key in data:
         if key not in SETTINGS and "." not in key and closest(key, SETTINGS):
             raise ScenarioError(f"unknown key {described(key)}", known(key, SETTINGS), (key,))

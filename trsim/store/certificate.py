@@ -4,18 +4,16 @@ It is no part of the content hash, so a run is the same with and without it; it 
 own, in the same manner.
 """
 
-from collections.abc import Iterator
 from typing import Any, Literal, NamedTuple
 
 import h5py
 import numpy as np
 
-from trsim.store import torn
+from trsim.store import rows, torn
 from trsim.store.content import content_hash
-from trsim.store.grow import Array
+from trsim.store.points import plain
 
 GROUP = "certificate"
-TEXT = h5py.string_dtype()
 ROWS = 1 << 12  # rows looked at together
 
 
@@ -149,7 +147,6 @@ TABLES: dict[str, Any] = {
     "windows": Parted, "curves": Curve, "quantities": Quantity, "levels": Level,
     "contacts": Onsets, "onsets": Onset,
 }  # fmt: skip
-KINDS: dict[type, str] = {float: "f8", int: "i8", bool: "?"}  # all else is text
 
 
 def store(file: h5py.File, certificate: Certificate) -> None:
@@ -157,10 +154,7 @@ def store(file: h5py.File, certificate: Certificate) -> None:
     group = file.create_group(GROUP)
     group.attrs.update(certificate.about)
     for name, row in TABLES.items():
-        table, rows = group.create_group(name), getattr(certificate, name)
-        for key, kind in row.__annotations__.items():
-            values = np.array([getattr(one, key) for one in rows], dtype=KINDS.get(kind, TEXT))
-            table.create_dataset(key, data=values)
+        rows.store(group.create_group(name), row, getattr(certificate, name))
     group.attrs["content_sha256"] = content_hash(group)
 
 
@@ -169,20 +163,14 @@ def of(file: h5py.File) -> Certificate | None:
     if GROUP not in file:
         return None
     group = file[GROUP]
-    about = {n: v.item() if isinstance(v, np.generic) else v for n, v in group.attrs.items()}
+    about = plain(group.attrs)
     del about["content_sha256"]
-    return Certificate(about, *(_rows(group[name], row) for name, row in TABLES.items()))
+    return Certificate(about, *(rows.stored(group[name], row) for name, row in TABLES.items()))
 
 
 def whole(file: h5py.File) -> bool:
     """Whether the certificate, if there is one, still is what its hash says."""
     return GROUP not in file or content_hash(file[GROUP]) == file[GROUP].attrs["content_sha256"]
-
-
-def _rows(table: h5py.Group, row: Any) -> list[Any]:
-    columns = [table[key] for key in row.__annotations__]
-    read = [c.asstr()[:] if c.dtype == object else c[:].tolist() for c in columns]
-    return [row(*values) for values in zip(*read, strict=True)]
 
 
 # --- two files -------------------------------------------------------------------------------
@@ -203,14 +191,3 @@ def common_rows(one: h5py.File, two: h5py.File) -> int:
         if other.any():
             return k + int(np.argmax(other))
     return n
-
-
-def pieces(
-    one: h5py.File, two: h5py.File, names: list[str], begin: int, end: int
-) -> Iterator[tuple[int, Array, Array]]:
-    """First row, and the columns (n, m) of both runs, of stretches of the rows begin..end."""
-    for k in range(begin, end, ROWS):
-        last = min(k + ROWS, end)
-        read = [[torn.rows(file[name], k, last) for name in names] for file in (one, two)]
-        both = [np.column_stack(columns) for columns in read]
-        yield k, both[0], both[1]

@@ -18,7 +18,7 @@ import platform
 import shlex
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -116,30 +116,26 @@ def sources(package: Path) -> str:
 def differences(kept: Checkpoint, scenario: Any) -> str:
     """What is not as it was when a checkpoint was written, in words; nothing if all is."""
     was, now = leaves(kept.keys), leaves(keys(scenario))
-    names = differing(was, now)
     told = [
         f"{n.removeprefix('scenario.')} is {_short(now.get(n))}, was {_short(was.get(n))}"
-        for n in names
+        for n in differing(was, now)
     ]
     return some(told, SHOWN, "; {} more", "; ")
 
 
-def leaves(tree: Any) -> dict[str, str]:
+def leaves(tree: Any, path: str = "") -> dict[str, str]:
     """Dotted path -> JSON of everything in a tree of mappings that is not a mapping itself."""
-    return dict(_leaves(tree))
+    if not isinstance(tree, dict):
+        return {path: json.dumps(tree)}
+    found: dict[str, str] = {}
+    for name, inner in tree.items():
+        found |= leaves(inner, f"{path}.{name}" if path else name)
+    return found
 
 
 def differing(was: dict[str, str], now: dict[str, str]) -> list[str]:
     """The paths of two trees that do not have the same in both."""
     return [name for name in sorted(was | now) if was.get(name) != now.get(name)]
-
-
-def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, str]]:
-    if not isinstance(tree, dict):
-        yield path, json.dumps(tree)
-        return
-    for name, inner in tree.items():
-        yield from _leaves(inner, f"{path}.{name}" if path else name)
 
 
 def _short(value: str | None) -> str:

@@ -3,25 +3,14 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from trsim.store import torn
+from trsim.store.grow import components
 from trsim.store.read import Run, opened
 from trsim.store.target import TABLE, file_errors, fresh
 
-LETTERS = ("x", "y", "z")
 ROWS = 4096  # rows handled together
-
-
-def components(channel: str, size: int) -> list[str]:
-    """The scalar columns of a channel: itself, .x .y .z, or .xx .xy ... of a rotation."""
-    if size == 1:
-        return [channel]
-    if size == 3:
-        return [f"{channel}.{letter}" for letter in LETTERS]
-    pairs = [a + b for a in LETTERS for b in LETTERS]
-    return [f"{channel}.{pairs[k] if size == 9 else k}" for k in range(size)]
 
 
 def export(run: Run, names: list[str], target: Path) -> int:
@@ -44,10 +33,7 @@ def _tables(run: Run, places: list[tuple[str, int]]) -> Iterator[np.ndarray]:
     """Rows handled together; errors of reading are those of the result file."""
     with opened(run.path) as file:
         for begin in range(0, run.rows, ROWS):
-            yield _table(file, places, begin, min(begin + ROWS, run.rows))
-
-
-def _table(file: h5py.File, places: list[tuple[str, int]], begin: int, end: int) -> np.ndarray:
-    time = torn.rows(file["time"], begin, end)
-    stored = {c: torn.rows(file[c], begin, end).reshape(end - begin, -1) for c, _ in places}
-    return np.column_stack([time, *(stored[c][:, k] for c, k in places)])
+            end = min(begin + ROWS, run.rows)
+            stored = {c: torn.rows(file[c], begin, end).reshape(end - begin, -1) for c, _ in places}
+            time = torn.rows(file["time"], begin, end)
+            yield np.column_stack([time, *(stored[c][:, k] for c, k in places)])

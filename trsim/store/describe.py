@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 
 from trsim.statuses import Status
+from trsim.store.grow import TEXT
 from trsim.store.peaks import Peak
 from trsim.store.read import FORMAT, VERSION
 from trsim.version import __version__
@@ -22,7 +23,6 @@ from trsim.version import __version__
 PACKAGES = ("numpy", "numba", "llvmlite", "scipy", "h5py", "pydantic")  # have a part in results
 CPU = "integration_cpu"  # differs from run to run: kept apart from the statistics
 GROUPS = ("steps", "events", "peaks", "summary", "solver", "scenario", "mechanism", "provenance")
-TEXT = h5py.string_dtype()
 
 
 class Clock(NamedTuple):
@@ -68,7 +68,7 @@ def begin(file: h5py.File, scenario: Any, mechanism: Any) -> None:
     file.attrs["format_version"] = VERSION
     file.flush()  # who is killed from now on leaves a file that is known as ours, see target.py
     file.attrs["format"] = FORMAT
-    file.attrs["title"] = getattr(scenario, "title", "") or ""
+    file.attrs["title"] = scenario.title
     file.attrs["status"], file.attrs["reason"] = "running", ""
     for name in GROUPS:
         file.create_group(name)
@@ -78,13 +78,11 @@ def begin(file: h5py.File, scenario: Any, mechanism: Any) -> None:
 
 def _scenario(group: h5py.Group, scenario: Any) -> None:
     """The text as given, its resolved form as JSON (which is YAML), and what it was read from."""
-    source = getattr(scenario, "source", None)
-    text = source.text if source else ""
-    files = {PurePath(name).name: digest for name, digest in source.files.items()} if source else {}
-    group["text"] = text
-    resolved = getattr(scenario, "resolved", {})
-    group["resolved"] = json.dumps(resolved, indent=1, ensure_ascii=False)
-    group["sha256"] = hashlib.sha256(text.encode()).hexdigest()
+    source = scenario.source
+    files = {PurePath(name).name: digest for name, digest in source.files.items()}
+    group["text"] = source.text
+    group["resolved"] = json.dumps(scenario.resolved, indent=1, ensure_ascii=False)
+    group["sha256"] = hashlib.sha256(source.text.encode()).hexdigest()
     group["files"] = np.array(list(files), dtype=TEXT)
     group["files_sha256"] = np.array(list(files.values()), dtype=TEXT)
 

@@ -5,9 +5,8 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 from h5py import h5a, h5d, h5p, h5s, h5t
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from trsim.arrays import Array
 
 LONGEST = 4096  # rows that wait in memory, and rows of a chunk
 ROOM = 4 << 20  # bytes of rows that wait in memory
@@ -79,6 +78,13 @@ class Growing:
         rows = {d.name: d[self.full(self.n) : self.n] for d in self.datasets}
         # HDF5 says of texts how they are coded, and numpy would say that it does not keep that
         return {name: values.view(values.dtype.str) for name, values in rows.items()}
+
+
+def components(channel: str, size: int) -> list[str]:
+    """The names of the columns of a channel: its own, .x .y .z, or .xx .xy ... of a rotation."""
+    if size == 1:
+        return [channel]
+    return [f"{channel}.{label}" for label in LABELS.get(AXES.get(size, ""), range(size))]
 
 
 def scales(file: h5py.File, sizes: set[int]) -> None:

@@ -55,7 +55,6 @@ def write(
     run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every, closing)
     run.command = command
     clock, outcome, broken = describe.Clock.now(), None, None
-    status: Status
     run.go_on(kept)
     try:
         outcome = run.take_all(blocks)
@@ -116,12 +115,9 @@ class Running:
             if not os.access(final.parent, os.W_OK) or final.is_dir():
                 raise OSError("not a file in a folder that can be written to")
             replaceable(self.part, PART)
-            for path, kind in (
-                (self.part, PART),
-                (self.fresh, PART),
-                (self.checkpoint, CHECKPOINT),
-            ):
-                own.exists(path, kind)
+            own.exists(self.part, PART)
+            own.exists(self.fresh, PART)
+            own.exists(self.checkpoint, CHECKPOINT)
 
     @contextlib.contextmanager
     def file_errors(self) -> Iterator[None]:
@@ -211,7 +207,7 @@ class Running:
             for e, instance in enumerate(self.mechanism.instances)
             if instance.row.contact is not None
         }
-        self.force = {e: tables.force_column(self.mechanism.instances[e]) for e in self.contacts}
+        self.force = {e: tables.force_column(table) for e, table in self.contacts.items()}
         self.events = tables.events(file, self.mechanism, time_field)
         self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
         self.tables = [self.rows, self.events, *self.contacts.values()]
@@ -281,11 +277,10 @@ class Running:
             with h5py.File(self.part, "r+", libver=LIBVER) as file:
                 self.file = file
                 complete = status != INTERRUPTED  # otherwise there are only two seconds
-                if complete:
-                    points.complete(file, self.planned)
                 extremes = None if outcome is None else outcome.peaks
                 found = peaks.table(self.mechanism, extremes, self.magnitudes)
                 if complete:
+                    points.complete(file, self.planned)
                     found = peaks.with_strokes(found, file)
                 peaks.store(file, found)
                 summary = describe.summary(self, file, status, reason, outcome, found)

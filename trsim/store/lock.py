@@ -14,8 +14,8 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from trsim import system
 from trsim.errors import FileError
-from trsim.store.own import ASIDE, check_open
-from trsim.store.target import HEADER, LOCK, file_errors, make
+from trsim.store.own import check_open, in_the_way
+from trsim.store.target import LOCK, file_errors, make
 
 ENDING = ".lock"
 ATTEMPTS, PAUSE = 3, 0.03  # s
@@ -70,11 +70,10 @@ def _held(path: Path, final: Path) -> int:
     """A locked handle of the file that has the name: its last owner may just have removed it."""
     while True:
         if path.is_symlink() or path.is_dir():
-            why = "it is a link" if path.is_symlink() else "it is a folder"
-            raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path))
+            raise in_the_way(path, "it is a link" if path.is_symlink() else "it is a folder")
         handle = os.open(path, os.O_RDWR | os.O_CREAT | system.O_NOFOLLOW, 0o666)
         try:
-            _check_ours(handle, path)
+            check_open(handle, path, LOCK)
             _lock(handle, final)
             if os.path.samestat(os.fstat(handle), os.stat(path)):
                 return handle
@@ -84,14 +83,6 @@ def _held(path: Path, final: Path) -> int:
             os.close(handle)
             raise
         os.close(handle)
-
-
-def _check_ours(handle: int, path: Path) -> None:
-    """Raise FileError where something else has the name of a lock; what is removed is a lock."""
-    if os.fstat(handle).st_nlink:  # its last owner may just have removed it
-        check_open(handle, path)
-    if not LOCK.fits(system.beginning(handle, HEADER)):
-        raise FileError(f"{path} exists and is not a {LOCK.name}", ASIDE, file=str(path))
 
 
 def _lock(handle: int, final: Path, shared: bool = False) -> None:

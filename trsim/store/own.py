@@ -23,27 +23,27 @@ def exists(path: Path, kind: Kind) -> bool:
     except FileNotFoundError:
         return False
     except OSError as error:
-        why = "it is a link" if path.is_symlink() else error.strerror
-        raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path)) from None
+        raise in_the_way(path, "it is a link" if path.is_symlink() else error.strerror) from None
     try:
-        check_open(handle, path)
-        start = system.beginning(handle, BEGINNING)
+        check_open(handle, path, kind)
     finally:
         os.close(handle)
-    if not kind.fits(start):
-        raise FileError(f"{path} exists and is not a {kind.name}", ASIDE, file=str(path))
     return True
 
 
-def check_open(handle: int, path: Path) -> None:
-    """Raise FileError unless an open file is an ordinary one, known by no second name."""
+def check_open(handle: int, path: Path, kind: Kind) -> None:
+    """Raise FileError unless an open file is one of ours."""
     found = os.fstat(handle)
     if not stat.S_ISREG(found.st_mode):
-        why = f"it is {what_it_is(found.st_mode)}"
-        raise FileError(f"{path} is in the way: {why}", ASIDE, file=str(path))
+        raise in_the_way(path, f"it is {what_it_is(found.st_mode)}")
     if found.st_nlink > 1:
-        what = f"{path} is in the way: it is another name of a file elsewhere"
-        raise FileError(what, ASIDE, file=str(path))
+        raise in_the_way(path, "it is another name of a file elsewhere")
+    if not kind.fits(system.beginning(handle, BEGINNING)):
+        raise FileError(f"{path} exists and is not a {kind.name}", ASIDE, file=str(path))
+
+
+def in_the_way(path: Path, why: str | None) -> FileError:
+    return FileError(f"{path} is in the way: {why}", ASIDE, file=str(path))
 
 
 def remove(path: Path, kind: Kind) -> None:

@@ -6,15 +6,17 @@ recovered without them they are those of the output rows.
 """
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.store.grow import Array
+from trsim.arrays import Array
+from trsim.store import rows
+from trsim.store.grow import components
 
-LETTERS = "xyz"
 ROWS = 1 << 16
 
 
@@ -70,12 +72,17 @@ def table(
             peaks.append(Peak(column.name, "magnitude", value, time, np.nan, column.unit))
         if extremes is None or column.size not in (1, 3):
             continue
-        for k in range(column.size):
-            name = column.name + (f".{LETTERS[k]}" if column.size == 3 else "")
-            high, high_time, low, low_time = extremes[column.start + k].tolist()
-            peaks.append(Peak(name, "largest", high, high_time, np.nan, column.unit))
-            peaks.append(Peak(name, "smallest", low, low_time, np.nan, column.unit))
+        of_column = extremes[column.start : column.start + column.size]
+        peaks += both_ways(column.name, column.unit, of_column)
     return peaks
+
+
+def both_ways(channel: str, unit: str, extremes: Array) -> Iterator[Peak]:
+    """Largest and smallest of each component; extremes: high, its time, low, its time (n, 4)."""
+    names = components(channel, len(extremes))
+    for name, (high, high_time, low, low_time) in zip(names, extremes.tolist(), strict=True):
+        yield Peak(name, "largest", high, high_time, np.nan, unit)
+        yield Peak(name, "smallest", low, low_time, np.nan, unit)
 
 
 def with_strokes(peaks: list[Peak], file: h5py.File) -> list[Peak]:
@@ -95,15 +102,10 @@ def with_strokes(peaks: list[Peak], file: h5py.File) -> list[Peak]:
 def store(file: h5py.File, peaks: list[Peak]) -> None:
     """The group /peaks: one dataset per column of the table."""
     group = file["peaks"]
-    text = h5py.string_dtype()
-    for name in Peak._fields:
-        values = [getattr(peak, name) for peak in peaks]
-        dtype: Any = text if name in ("channel", "extreme", "unit") else "f8"
-        group.create_dataset(name, data=np.array(values, dtype=dtype))
-        if name == "channel":
-            group[name].make_scale(name)
-        else:
-            group[name].dims[0].attach_scale(group["channel"])
+    rows.store(group, Peak, peaks)
+    group["channel"].make_scale("channel")
+    for name in Peak._fields[1:]:
+        group[name].dims[0].attach_scale(group["channel"])
     group["time"].attrs["units"] = "s"
     if "stroke" in file:
         group["stroke"].attrs["units"] = file["stroke"].attrs["units"]

@@ -8,22 +8,20 @@ orbit/NAME     rows, steps           time, x, y of its journal, at the output ro
                                      steps in touch: links to where they are stored
 """
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.store import torn
 from trsim.store.grow import Field, Growing
 
-Array = NDArray[np.float64]
-
 LOCATED = "located on the dense output of the step"
-ROWS = 1 << 16  # rows looked at together
 EXPECTED = 256  # points
 TIME, SECTION, X, Y = range(4)  # columns of a block of points, see solve/march/record.py
 JOURNAL = ("eccentricity_x", "eccentricity_y")
@@ -92,7 +90,7 @@ def plan(scenario: Any, mechanism: Any) -> Plan:
     portraits = [
         Portrait(name, _found(spec.x, sizes, ("phase_portraits", name, "x")),
                  _found(spec.y, sizes, ("phase_portraits", name, "y")))
-        for name, spec in (getattr(scenario, "phase_portraits", None) or {}).items()
+        for name, spec in scenario.phase_portraits.items()
         if not without_play(scenario, (spec.x, spec.y))
     ]  # fmt: skip
     needed = frozenset(split(channel, sizes)[0] for p in portraits for channel in p[1:])
@@ -182,9 +180,8 @@ def complete(file: h5py.File, planned: Plan) -> None:
         group = file["phase"][portrait.name]
         if "x" not in group:
             group["time"] = file["time"]
-            for axis, channel in (("x", portrait.x), ("y", portrait.y)):
-                points = [part[axis] for part in _parts(file, {axis: channel})]
-                _store(file, group, axis, channel, points)
+            _store(file, group, "x", portrait.x)
+            _store(file, group, "y", portrait.y)
     for group in file["poincare"].values():
         x, y = group["x"], group["y"]
         spread = dispersion(x[:], y[:], x.attrs["units"] == y.attrs["units"])
@@ -221,30 +218,14 @@ def _journal(file: h5py.File, name: str) -> None:
             inner[axis] = dataset
 
 
-def _parts(file: h5py.File, channels: dict[str, str]) -> Iterator[dict[str, Array]]:
-    """Stretches of the rows of some channels."""
-    sizes = {name: item.shape[1] if item.ndim == 2 else 1 for name, item in _datasets(file)}
-    n = len(file["time"])
-    for k in range(0, max(n, 1), ROWS):
-        begin, end, part = k, min(k + ROWS, n), {}
-        for axis, channel in channels.items():
-            name, component = split(channel, sizes)
-            rows = file[name][begin:end]
-            part[axis] = rows if component is None else rows[:, component]
-        yield part
-
-
-def _datasets(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
-    return ((name, item) for name, item in file.items() if isinstance(item, h5py.Dataset))
-
-
-def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str, parts: list[Array]) -> None:
-    data = np.concatenate(parts) if parts else np.zeros(0)
+def _store(file: h5py.File, group: h5py.Group, axis: str, channel: str) -> None:
+    """The rows of a channel, or of a component, as a dataset of its own."""
+    sizes = {n: math.prod(d.shape[1:]) for n, d in file.items() if isinstance(d, h5py.Dataset)}
+    name, component = split(channel, sizes)
+    source, n = file[name], len(file["time"])
+    data = source[:n] if component is None else source[:n, component]
     dataset = group.create_dataset(axis, data=data, chunks=(4096,), maxshape=(None,),
                                    fletcher32=True)  # fmt: skip
-    if axis == "time":
-        dataset.make_scale("time")
-    source = file[channel if channel in file else channel[:-2]]
     dataset.attrs["units"] = source.attrs["units"]
     dataset.attrs["long_name"] = channel
 

@@ -12,10 +12,11 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.arrays import Array
 from trsim.errors import FileError, UsageError, known, unreadable
-from trsim.store import certificate, torn
+from trsim.store import certificate, rows, torn
 from trsim.store.content import content_hash
-from trsim.store.grow import LONGEST, Array
+from trsim.store.grow import LONGEST
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
 from trsim.store.points import Impacts, Points, plain, split, stored
@@ -134,11 +135,8 @@ class Run:
     @property
     def peaks(self) -> tuple[Peak, ...]:
         with opened(self.path) as file:
-            if "channel" not in file["peaks"]:
-                return ()
-            columns = {name: file["peaks"][name] for name in Peak._fields}
-            read = [c.asstr()[:] if c.dtype == object else c[:].tolist() for c in columns.values()]
-        return tuple(Peak(*row) for row in zip(*read, strict=True))
+            there = "channel" in file["peaks"]
+            return tuple(rows.stored(file["peaks"], Peak)) if there else ()
 
     @property
     def phase(self) -> dict[str, Points]:
@@ -206,9 +204,7 @@ def read(path: str | os.PathLike) -> Run:
     path = Path(path)
     with opened(path) as file:
         _check(file, path)
-        channels = {n: d for n, d in file.items() if isinstance(d, h5py.Dataset) and d.shape}
-        channels = {n: d for n, d in channels.items() if not n.startswith("component.")}
-        time = channels.pop("time")
+        channels = certificate.channels(file)
         return Run(
             path=path,
             attributes=plain(file.attrs),
@@ -216,7 +212,7 @@ def read(path: str | os.PathLike) -> Run:
             sizes={name: d.shape[1] if d.ndim == 2 else 1 for name, d in channels.items()},
             parts=_parts(file["mechanism"]),
             contacts=tuple(file["steps"]),
-            rows=_written([time, *channels.values()]),
+            rows=_written([file["time"], *channels.values()]),
         )
 
 

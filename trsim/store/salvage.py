@@ -1,19 +1,20 @@
 """The tables of a broken file, cut to what is whole, written into another file."""
 
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.store import torn
-from trsim.store.grow import AXES, Array
-from trsim.store.peaks import Peak
+from trsim.store.grow import AXES, scales
+from trsim.store.peaks import Peak, both_ways
 from trsim.store.peaks import store as store_peaks
 from trsim.store.read import reached
 from trsim.store.tables import MAY_BE_NAN
 
 ROWS = 1 << 14  # rows handled together
-LETTERS = "xyz"
 SECTIONS = {"joints", "drives", "forces", "sensors"}
 KEPT = ("scenario", "mechanism", "solver", "provenance")  # groups of small things, copied whole
 SCALE = {"CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST"}
@@ -39,26 +40,17 @@ class Salvage:
     def copy(self) -> None:
         """Everything but portraits, impact maps and orbits, which follow from the rest."""
         source, file = self.source, self.file
-        for name, value in source.attrs.items():
-            if name != "content_sha256":
-                file.attrs[name] = value
+        file.attrs.update({k: v for k, v in source.attrs.items() if k != "content_sha256"})
         for name in KEPT:
             source.copy(name, file)
-        scales = [name for name in source if name.startswith("component.")]
-        for name in scales:
-            file[name] = source[name][:]
-            file[name].attrs["long_name"] = "component"
-            file[name].make_scale(name)
+        scales(file, {size for size, name in AXES.items() if name in source})
         self._table(source, file)
-        names = ["events", *(["recorded"] if "recorded" in source else [])]
-        for group in (*names, *(f"steps/{name}" for name in source["steps"])):
-            self._table(source[group], file.create_group(group))
-            file[group].attrs.update(source[group].attrs)
-        for name in source["poincare"]:
-            section, made = source["poincare"][name], file.require_group(f"poincare/{name}")
-            told = section.attrs.items()
+        groups = ["events", *(["recorded"] if "recorded" in source else [])]
+        groups += [f"{part}/{name}" for part in ("steps", "poincare") for name in source[part]]
+        for group in groups:
+            made, told = file.create_group(group), source[group].attrs.items()
             made.attrs.update({k: v for k, v in told if not k.startswith("dispersion")})
-            self._table(section, made)
+            self._table(source[group], made)
         file.require_group("steps")
         file.create_group("summary")
         self._peaks()
@@ -113,16 +105,11 @@ class Salvage:
         sections = inside["section"].asstr()[:]
         told = {n for n, s in zip(inside["name"].asstr()[:], sections, strict=True)
                 if s in SECTIONS}  # fmt: skip
-        found = []
+        found: list[Peak] = []
         for name, e in self.extremes.items():
-            if "/" in name or name.split(".")[0] not in told or len(e.high) not in (1, 3):
-                continue
-            unit = str(self.file[name].attrs.get("units", "-"))
-            for k in range(len(e.high)):
-                full = name + (f".{LETTERS[k]}" if len(e.high) == 3 else "")
-                values = (("largest", e.high, e.high_time), ("smallest", e.low, e.low_time))
-                for extreme, value, when in values:
-                    found.append(Peak(full, extreme, float(value[k]), float(when[k]), np.nan, unit))
+            if "/" not in name and name.split(".")[0] in told and len(e.high) in (1, 3):
+                unit = str(self.file[name].attrs.get("units", "-"))
+                found += both_ways(name, unit, np.transpose(e))
         store_peaks(self.file, found)
         self.file["peaks"].attrs["extremes"] = "of the output rows"
 
@@ -142,11 +129,10 @@ class Salvage:
                 "peak_time": float(peak.high_time[0]) if peak else 0.0,
                 "steps": self.rows[f"/steps/{name}"],
             }
-        n = self.rows["/"]
         return {
             "title": str(self.file.attrs["title"]),
             "time": reached(self.file),
-            "rows": n,
+            "rows": self.rows["/"],
             "events": self.rows["/events"],
             "contacts": contacts,
         }
@@ -158,9 +144,7 @@ def _empty(item: h5py.Dataset, group: h5py.Group, name: str) -> None:
         name, (0, *item.shape[1:]), maxshape=(None, *item.shape[1:]), chunks=item.chunks,
         dtype=item.dtype, fletcher32=True,
     )  # fmt: skip
-    for key, value in item.attrs.items():
-        if key not in SCALE:
-            made.attrs[key] = value
+    made.attrs.update({k: v for k, v in item.attrs.items() if k not in SCALE})
 
 
 def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dict[str, Any]:
@@ -189,17 +173,13 @@ def _piece(source: h5py.Group, names: list[str], begin: int, last: float) -> dic
 
 def _readable(item: h5py.Dataset, begin: int, end: int) -> Any:
     """Rows up to the first chunk that cannot be read."""
-    try:
+    with suppress(OSError):
         return torn.rows(item, begin, max(begin, end))
-    except OSError:
-        pass
     good, step = begin, item.chunks[0]
-    for k in range(begin, end, step):
-        try:
+    with suppress(OSError):
+        for k in range(begin, end, step):
             torn.rows(item, k, min(k + step, end))
-        except OSError:
-            break
-        good = min(k + step, end)
+            good = min(k + step, end)
     return torn.rows(item, begin, good)
 
 

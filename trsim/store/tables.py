@@ -23,12 +23,9 @@ def steps(file: h5py.File, instance: Any, time_field: Field) -> Growing:
     return Growing(file["steps"].create_group(instance.name), fields, start, EXPECTED)
 
 
-def force_column(instance: Any) -> int:
+def force_column(table: Growing) -> int:
     """The column of a line of steps that holds the contact force."""
-    start = {}
-    column = 2
-    for c in instance.channels:
-        start[c.name], column = column, column + c.size
+    start = {field.name: field.start for field in table.fields}
     return start.get("contact_force", start.get("normal_force", 1))
 
 
@@ -68,9 +65,8 @@ def speed_unit(mechanism: Any) -> str:
     found = ["rad/s" if instance.row.turns else "m/s" for instance in touching]
     found += [event.rate for event in mechanism.stages.switches.events]
     if np.any(mechanism.model.jump):
-        found += [
-            "rad/s" if i.row.turns else "m/s" for i in mechanism.instances if i.section == "drives"
-        ]
+        drives = (i for i in mechanism.instances if i.section == "drives")
+        found += ["rad/s" if i.row.turns else "m/s" for i in drives]
     return " or ".join(dict.fromkeys(found)) or "m/s"
 
 

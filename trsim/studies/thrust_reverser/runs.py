@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.errors import UsageError
 from trsim.statuses import WELL
-from trsim.store.grow import Array
 from trsim.store.read import Run
 
 GRIDS = ("spatial_jam",)

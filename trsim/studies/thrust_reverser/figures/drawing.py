@@ -5,11 +5,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.arrays import Array
 from trsim.report.display import DEFAULT, Shown, display_units
 from trsim.report.figures import contact_history
 from trsim.report.orbits import circle, coloured, path, square
 from trsim.report.style import colour, panels, thinned
-from trsim.store.grow import Array
 from trsim.studies.thrust_reverser.cases import Cases
 from trsim.studies.thrust_reverser.runs import Runs
 
