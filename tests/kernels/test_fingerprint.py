@@ -437,6 +437,22 @@ def test_machine_code_that_the_key_does_not_cover_is_not_kept(tmp_path, monkeypa
     assert outside(1.0) == 3.0
 
 
+def through(g):
+    """A function of the same code for every g."""
+    inside = law(g)
+
+    def f(x):
+        return inside(x)
+
+    return f
+
+
+def test_closures_of_one_body_are_covered_with_what_each_reaches():
+    both = function("def f(x): return g(x) + h(x)", g=law(through(one)), h=law(through(two)))
+    codes = both.__code__, through(one).__code__, one.__code__, two.__code__
+    assert fingerprint.covered(both) == set(codes)
+
+
 def test_keys_are_those_of_every_process():
     """Nothing in them is an address or the order of a set."""
     code = f"import sys; sys.path.insert(0, {str(Path(__file__).parents[2])!r})\n" + (

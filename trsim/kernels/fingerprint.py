@@ -56,13 +56,13 @@ def of(python: Callable, signature: Signature) -> str:
 
 def covered(python: Callable) -> set[CodeType]:
     """The code of a function, and of all others that its key covers."""
-    found, waiting = set[CodeType](), [python]
+    found, waiting = set[Any](), [python]
     while waiting:
-        one: Any = waiting.pop()
-        if one.__code__ not in found:
-            found.add(one.__code__)
+        one = waiting.pop()
+        if one not in found:  # two closures of one body reach what each has
+            found.add(one)
             waiting += _function(one).reached
-    return found
+    return {one.__code__ for one in found}
 
 
 @cache
