@@ -10,7 +10,17 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Memory, Reach, Row, Turning, kernel
+from trsim.elements.contract import (
+    LOADS,
+    Channel,
+    Element,
+    Memory,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+    measured,
+)
 from trsim.elements.frames import arm, dot, push, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.kernels.columns import V3, i8
@@ -72,34 +82,28 @@ def pack(name, spec, at):
 
 
 @kernel
-def force(t, scene, a, b):
-    X, V, F, zd = scene.X, scene.V, scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        i, n = own.body, arm(X, own.frame, own.direction)
-        f = value(scene.tab, own.function, t, scene.S)
-        load = (f * n[0], f * n[1], f * n[2])
-        if own.turns == 1:
-            twist(F, i, load)
-            zd[LOADS] += dot(load, spin(V, i))
-        else:
-            p = arm(X, i, own.point)
-            push(F, i, p, load)
-            zd[LOADS] += dot(load, velocity(V, i, p))
+def force(t, scene, e):
+    own = Own(scene, e)
+    i, n = own.body, arm(scene.X, own.frame, own.direction)
+    f = value(scene.tab, own.function, t, scene.S)
+    load = (f * n[0], f * n[1], f * n[2])
+    if own.turns == 1:
+        twist(scene.F, i, load)
+        scene.zd[LOADS] += dot(load, spin(scene.V, i))
+    else:
+        p = arm(scene.X, i, own.point)
+        push(scene.F, i, p, load)
+        scene.zd[LOADS] += dot(load, velocity(scene.V, i, p))
 
 
-@kernel
-def measure(t, scene, a, b):
-    col, out = scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        own = Own(scene, e)
-        f = value(scene.tab, own.function, t, scene.S)
-        n = arm(scene.X, own.frame, own.direction)
-        out[col[e]] = f
-        for c in range(3):
-            out[col[e] + 1 + c] = f * n[c]
+@measured
+def measure(t, scene, e, o):
+    own = Own(scene, e)
+    f = value(scene.tab, own.function, t, scene.S)
+    n = arm(scene.X, own.frame, own.direction)
+    scene.out[o] = f
+    for c in range(3):
+        scene.out[o + 1 + c] = f * n[c]
 
 
 def reach(row):

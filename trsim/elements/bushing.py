@@ -28,6 +28,7 @@ from trsim.elements.contract import (
     Springs,
     Turning,
     kernel,
+    measured,
 )
 from trsim.elements.frames import (
     TwoPoints,
@@ -165,42 +166,35 @@ def loads(scene, e):
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     F, zd = scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        i, j = own.i, own.j
-        p_i, p_j, f, m, lost = loads(scene, e)
-        push(F, j, p_j, f)
-        push(F, i, p_i, (-f[0], -f[1], -f[2]))
-        twist(F, j, m)
-        twist(F, i, (-m[0], -m[1], -m[2]))
-        zd[DAMPERS] -= lost
+    own = Own(scene, e)
+    i, j = own.i, own.j
+    p_i, p_j, f, m, lost = loads(scene, e)
+    push(F, j, p_j, f)
+    push(F, i, p_i, (-f[0], -f[1], -f[2]))
+    twist(F, j, m)
+    twist(F, i, (-m[0], -m[1], -m[2]))
+    zd[DAMPERS] -= lost
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        A, _, _, d = slide(scene, e)
-        E[SPRINGS] += half_square(own.stiffness, d)
-        if own.turns == 1:
-            E[SPRINGS] += half_square(own.rotational_stiffness, turn(scene.X, A, own))
+def energy(t, scene, e):
+    own = Own(scene, e)
+    A, _, _, d = slide(scene, e)
+    scene.E[SPRINGS] += half_square(own.stiffness, d)
+    if own.turns == 1:
+        scene.E[SPRINGS] += half_square(own.rotational_stiffness, turn(scene.X, A, own))
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     out = scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        A, _, _, d = slide(scene, e)
-        _, _, f, m, _ = loads(scene, e)
-        theta = turn(scene.X, A, Own(scene, e))
-        for c in range(3):
-            out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
+    A, _, _, d = slide(scene, e)
+    _, _, f, m, _ = loads(scene, e)
+    theta = turn(scene.X, A, Own(scene, e))
+    for c in range(3):
+        out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
 
 
 def turns_against(row):

@@ -32,6 +32,7 @@ from trsim.elements.contract import (
     Reach,
     Row,
     kernel,
+    measured,
 )
 from trsim.elements.frames import (
     arm,
@@ -218,86 +219,76 @@ def contact_forces(scene, e):
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     F, zd, left = scene.F, scene.zd, scene.left
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
-        if own.friction_law == CORNERED and own.branch != WHOLE:
-            left[e] = max(left[e], beyond(own.branch, v_t, own.friction[1], own.friction[2]))
-        if depth <= 0.0:
-            continue
-        f = (
-            -F_n * n[0] + F_t * tangent[0],
-            -F_n * n[1] + F_t * tangent[1],
-            -F_n * n[2] + F_t * tangent[2],
-        )
-        push(F, own.j, c_j, f)
-        push(F, own.i, c_i, (-f[0], -f[1], -f[2]))
-        spring = elastic(depth, own.stiffness, own.exponent, own.clearance, own.form)
-        zd[IMPACTS] -= (F_n - spring) * rate
-        zd[FRICTION] += F_t * v_t
-        if own.state >= 0:
-            zd[own.state] = w_dot
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
+    if own.friction_law == CORNERED and own.branch != WHOLE:
+        left[e] = max(left[e], beyond(own.branch, v_t, own.friction[1], own.friction[2]))
+    if depth <= 0.0:
+        return
+    f = (
+        -F_n * n[0] + F_t * tangent[0],
+        -F_n * n[1] + F_t * tangent[1],
+        -F_n * n[2] + F_t * tangent[2],
+    )
+    push(F, own.j, c_j, f)
+    push(F, own.i, c_i, (-f[0], -f[1], -f[2]))
+    spring = elastic(depth, own.stiffness, own.exponent, own.clearance, own.form)
+    zd[IMPACTS] -= (F_n - spring) * rate
+    zd[FRICTION] += F_t * v_t
+    if own.state >= 0:
+        zd[own.state] = w_dot
 
 
 @kernel
-def gap(t, scene, a, b):
-    g = scene.gap
-    for e in range(a, b):
-        _, _, _, _, _, g[e, 0], g[e, 1] = play(scene, e)
+def gap(t, scene, e):
+    _, _, _, _, _, scene.gap[e, 0], scene.gap[e, 1] = play(scene, e)
 
 
 @kernel
-def corners(t, scene, a, b):
+def corners(t, scene, e):
     out = scene.corner
-    for e in range(a, b):
-        own = Own(scene, e)
-        out[e, 0] = -1.0
-        if own.friction_law != CORNERED or own.phase != CONTACT:
-            continue
-        v_t = sliding(scene, e)
-        v0, v1, branch = own.friction[1], own.friction[2], own.branch
-        if branch == WHOLE:
-            out[e, 1] = branch_of(v_t, v0, v1)
-        else:
-            out[e, 0], out[e, 1] = beyond(branch, v_t, v0, v1), neighbour(branch, v_t, v0, v1)
+    own = Own(scene, e)
+    out[e, 0] = -1.0
+    if own.friction_law != CORNERED or own.phase != CONTACT:
+        return
+    v_t = sliding(scene, e)
+    v0, v1, branch = own.friction[1], own.friction[2], own.branch
+    if branch == WHOLE:
+        out[e, 1] = branch_of(v_t, v0, v1)
+    else:
+        out[e, 0], out[e, 1] = beyond(branch, v_t, v0, v1), neighbour(branch, v_t, v0, v1)
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        _, _, _, _, _, depth, _ = play(scene, e)
-        E[CONTACTS] += stored(depth, own.stiffness, own.exponent, own.clearance, own.form)
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    _, _, _, _, _, depth, _ = play(scene, e)
+    scene.E[CONTACTS] += stored(depth, own.stiffness, own.exponent, own.clearance, own.form)
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     X, V, out = scene.X, scene.V, scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
-        i, p_i, j, p_j = two_points(scene, e)
-        d = separation(X, i, p_i, j, p_j)
-        v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
-        v_j = velocity(V, j, p_j)
-        v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-        u, w = arm(X, i, own.u_i), arm(X, i, own.w_i)
-        out[o], out[o + 1], out[o + 2] = F_n, F_t, sqrt(F_n * F_n + F_t * F_t)
-        out[o + 3], out[o + 4], out[o + 5] = depth, rate, v_t
-        out[o + 6], out[o + 7] = dot(u, d), dot(w, d)
-        out[o + 8], out[o + 9] = dot(u, v), dot(w, v)
-        for c in range(3):
-            out[o + 10 + c] = -F_n * n[c] + F_t * tangent[c]
+    own = Own(scene, e)
+    F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
+    i, p_i, j, p_j = two_points(scene, e)
+    d = separation(X, i, p_i, j, p_j)
+    v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
+    v_j = velocity(V, j, p_j)
+    v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    u, w = arm(X, i, own.u_i), arm(X, i, own.w_i)
+    out[o], out[o + 1], out[o + 2] = F_n, F_t, sqrt(F_n * F_n + F_t * F_t)
+    out[o + 3], out[o + 4], out[o + 5] = depth, rate, v_t
+    out[o + 6], out[o + 7] = dot(u, d), dot(w, d)
+    out[o + 8], out[o + 9] = dot(u, v), dot(w, v)
+    for c in range(3):
+        out[o + 10 + c] = -F_n * n[c] + F_t * tangent[c]
 
 
 def reach(row):

@@ -10,7 +10,17 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Memory, Reach, Row, Turning, kernel
+from trsim.elements.contract import (
+    LOADS,
+    Channel,
+    Element,
+    Memory,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+    measured,
+)
 from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
@@ -87,40 +97,35 @@ def load(t, scene, e):
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     V, G, F, Q = scene.V, scene.G, scene.F, scene.Q
-    for e in range(a, b):
-        own = Own(scene, e)
-        _, p = load(t, scene, e)
-        if own.nodes == 1:
-            i, l = own.first, own.length
-            for c in range(3):
-                F[i, c] += l * p[c]
-                scene.zd[LOADS] += l * p[c] * V[i, c]
-        s1, s2, s3, s4 = uniform_shares(own.length)
-        for i in range(own.first, own.first + own.nodes - 1):
-            for c in range(3):
-                F[i, c] += s1 * p[c]
-                Q[i, c] += s2 * p[c]
-                F[i + 1, c] += s3 * p[c]
-                Q[i + 1, c] += s4 * p[c]
-                scene.zd[LOADS] += p[c] * (
-                    s1 * V[i, c] + s2 * G[i, 3 + c] + s3 * V[i + 1, c] + s4 * G[i + 1, 3 + c]
-                )
-
-
-@kernel
-def measure(t, scene, a, b):
-    out, wanted = scene.out, scene.wanted
-    for e in range(a, b):
-        if wanted[e] < 0:
-            continue
-        own = Own(scene, e)
-        f, p = load(t, scene, e)
-        whole = own.length * max(own.nodes - 1, 1)
-        out[wanted[e]] = f
+    own = Own(scene, e)
+    _, p = load(t, scene, e)
+    if own.nodes == 1:
+        i, l = own.first, own.length
         for c in range(3):
-            out[wanted[e] + 1 + c] = whole * p[c]
+            F[i, c] += l * p[c]
+            scene.zd[LOADS] += l * p[c] * V[i, c]
+    s1, s2, s3, s4 = uniform_shares(own.length)
+    for i in range(own.first, own.first + own.nodes - 1):
+        for c in range(3):
+            F[i, c] += s1 * p[c]
+            Q[i, c] += s2 * p[c]
+            F[i + 1, c] += s3 * p[c]
+            Q[i + 1, c] += s4 * p[c]
+            scene.zd[LOADS] += p[c] * (
+                s1 * V[i, c] + s2 * G[i, 3 + c] + s3 * V[i + 1, c] + s4 * G[i + 1, 3 + c]
+            )
+
+
+@measured
+def measure(t, scene, e, o):
+    own = Own(scene, e)
+    f, p = load(t, scene, e)
+    whole = own.length * max(own.nodes - 1, 1)
+    scene.out[o] = f
+    for c in range(3):
+        scene.out[o + 1 + c] = whole * p[c]
 
 
 def reach(row):

@@ -21,6 +21,7 @@ from trsim.elements.contract import (
     Element,
     Row,
     kernel,
+    measured,
 )
 from trsim.elements.frames import (
     along_row,
@@ -126,47 +127,44 @@ def pack(name, spec, at):
 
 
 @kernel
-def constraint(t, scene, a, b):
-    X, V, phi, phi_t, gamma = scene.X, scene.V, scene.phi, scene.phi_t, scene.gamma
-    for e in range(a, b):
-        own = AnyDrive(scene, e)
-        i, j, k = own.i, own.j, own.row
-        if k < 0:
-            continue
-        f, f_dot, f_ddot = prescribed(t, scene, e)
-        axis = arm(X, i, own.axis)
-        o_i, o_j = spin(V, i), spin(V, j)
-        if own.rotates == 1:
-            turn_lines(scene, k, axis)
-            turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-            gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
-        else:
-            _, p_i, _, p_j = two_points(scene, e)
-            along_row(scene, i, p_i, axis, j, p_j, k)
-            gamma[k] += f_ddot
-        phi[k] = scene.S[own.coordinate, 0] - f
-        phi_t[k] = -f_dot
+def constraint(t, scene, e):
+    own = AnyDrive(scene, e)
+    i, j, k = own.i, own.j, own.row
+    if k < 0:
+        return
+    f, f_dot, f_ddot = prescribed(t, scene, e)
+    axis = arm(scene.X, i, own.axis)
+    o_i, o_j = spin(scene.V, i), spin(scene.V, j)
+    if own.rotates == 1:
+        turn_lines(scene, k, axis)
+        turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
+        scene.gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
+    else:
+        _, p_i, _, p_j = two_points(scene, e)
+        along_row(scene, i, p_i, axis, j, p_j, k)
+        scene.gamma[k] += f_ddot
+    scene.phi[k] = scene.S[own.coordinate, 0] - f
+    scene.phi_t[k] = -f_dot
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     S, zd = scene.S, scene.zd
-    for e in range(a, b):
-        own = AnyDrive(scene, e)
-        state, k = own.state, own.stiffness
-        if k == 0.0 and state < 0:
-            continue
-        f, f_dot, _ = prescribed(t, scene, e)
-        if state >= 0:
-            zd[state] = f_dot if holds(scene, e) else 0.0
-        if k > 0.0:
-            s = own.coordinate
-            slip = S[s, 1] - f_dot
-            damping = -own.damping * slip
-            pull = -k * (S[s, 0] - f) + damping
-            zd[DAMPERS] += damping * slip
-            zd[DRIVES] += pull * f_dot
-            act(scene, e, pull)
+    own = AnyDrive(scene, e)
+    state, k = own.state, own.stiffness
+    if k == 0.0 and state < 0:
+        return
+    f, f_dot, _ = prescribed(t, scene, e)
+    if state >= 0:
+        zd[state] = f_dot if holds(scene, e) else 0.0
+    if k > 0.0:
+        s = own.coordinate
+        slip = S[s, 1] - f_dot
+        damping = -own.damping * slip
+        pull = -k * (S[s, 0] - f) + damping
+        zd[DAMPERS] += damping * slip
+        zd[DRIVES] += pull * f_dot
+        act(scene, e, pull)
 
 
 @helper
@@ -187,35 +185,30 @@ def act(scene, e, pull):
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = AnyDrive(scene, e)
-        if own.stiffness > 0.0:
-            f, _, _ = prescribed(t, scene, e)
-            slip = scene.S[own.coordinate, 0] - f
-            E[SPRINGS] += 0.5 * own.stiffness * slip * slip
+def energy(t, scene, e):
+    own = AnyDrive(scene, e)
+    if own.stiffness > 0.0:
+        f, _, _ = prescribed(t, scene, e)
+        slip = scene.S[own.coordinate, 0] - f
+        scene.E[SPRINGS] += 0.5 * own.stiffness * slip * slip
 
 
-@kernel
-def measure(t, scene, a, b):
-    S, col, out = scene.S, scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        own = AnyDrive(scene, e)
-        f, f_dot, _ = prescribed(t, scene, e)
-        s = own.coordinate
-        if not holds(scene, e):
-            f, f_dot = S[s, 0], S[s, 1]
-        if own.row >= 0:
-            pull = -scene.lam[own.row]
-        else:
-            pull = -own.stiffness * (S[s, 0] - f) - own.damping * (S[s, 1] - f_dot)
-        out[col[e]] = own.sign * pull
-        out[col[e] + 1] = f
-        out[col[e] + 2] = f_dot
-        out[col[e] + 3] = pull * f_dot
+@measured
+def measure(t, scene, e, o):
+    S, out = scene.S, scene.out
+    own = AnyDrive(scene, e)
+    f, f_dot, _ = prescribed(t, scene, e)
+    s = own.coordinate
+    if not holds(scene, e):
+        f, f_dot = S[s, 0], S[s, 1]
+    if own.row >= 0:
+        pull = -scene.lam[own.row]
+    else:
+        pull = -own.stiffness * (S[s, 0] - f) - own.damping * (S[s, 1] - f_dot)
+    out[o] = own.sign * pull
+    out[o + 1] = f
+    out[o + 2] = f_dot
+    out[o + 3] = pull * f_dot
 
 
 ELEMENT = Element(

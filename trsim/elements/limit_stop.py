@@ -28,6 +28,7 @@ from trsim.elements.contract import (
     Row,
     Turning,
     kernel,
+    measured,
 )
 from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.frames import (
@@ -199,89 +200,79 @@ def touch(scene, e):
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     X, F, zd, left = scene.X, scene.F, scene.zd, scene.left
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        d, d_dot, n = touch(scene, e)
-        if d <= 0.0 and own.phase != CONTACT:
-            continue
-        i, j, branch = own.i, own.j, own.branch
-        k, c, ramp = own.stiffness, own.damping, own.ramp
-        if own.phase == CONTACT and c > 0.0 and branch != WHOLE:
-            left[e] = max(left[e], ramped_beyond(branch, d, d_dot, k, c, ramp))
-            f = ramped_on_branch(branch, d, d_dot, k, c, ramp)
-        else:
-            # a trial step past the separation goes on smoothly; it is cut at the root of d
-            f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
-        on_j, on_i = (f * n[0], f * n[1], f * n[2]), (-f * n[0], -f * n[1], -f * n[2])
-        if own.kind == ON_ANGLE:
-            twist(F, j, on_j)
-            twist(F, i, on_i)
-        else:
-            p_j = arm(X, j, own.p_j)
-            push(F, j, p_j, on_j)
-            r_i = (X[j, 0] + p_j[0] - X[i, 0], X[j, 1] + p_j[1] - X[i, 1],
-                   X[j, 2] + p_j[2] - X[i, 2])  # fmt: skip
-            push(F, i, r_i, on_i)
-        zd[IMPACTS] -= (f - k * d) * d_dot
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    d, d_dot, n = touch(scene, e)
+    if d <= 0.0 and own.phase != CONTACT:
+        return
+    i, j, branch = own.i, own.j, own.branch
+    k, c, ramp = own.stiffness, own.damping, own.ramp
+    if own.phase == CONTACT and c > 0.0 and branch != WHOLE:
+        left[e] = max(left[e], ramped_beyond(branch, d, d_dot, k, c, ramp))
+        f = ramped_on_branch(branch, d, d_dot, k, c, ramp)
+    else:
+        # a trial step past the separation goes on smoothly; it is cut at the root of d
+        f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
+    on_j, on_i = (f * n[0], f * n[1], f * n[2]), (-f * n[0], -f * n[1], -f * n[2])
+    if own.kind == ON_ANGLE:
+        twist(F, j, on_j)
+        twist(F, i, on_i)
+    else:
+        p_j = arm(X, j, own.p_j)
+        push(F, j, p_j, on_j)
+        r_i = (X[j, 0] + p_j[0] - X[i, 0], X[j, 1] + p_j[1] - X[i, 1],
+               X[j, 2] + p_j[2] - X[i, 2])  # fmt: skip
+        push(F, i, r_i, on_i)
+    zd[IMPACTS] -= (f - k * d) * d_dot
 
 
 @kernel
-def gap(t, scene, a, b):
-    g = scene.gap
-    for e in range(a, b):
-        g[e, 0], g[e, 1], _ = touch(scene, e)
+def gap(t, scene, e):
+    scene.gap[e, 0], scene.gap[e, 1], _ = touch(scene, e)
 
 
 @kernel
-def corners(t, scene, a, b):
+def corners(t, scene, e):
     out = scene.corner
-    for e in range(a, b):
-        own = Own(scene, e)
-        out[e, 0] = -1.0
-        k, c, ramp, branch = own.stiffness, own.damping, own.ramp, own.branch
-        if c == 0.0 or own.phase != CONTACT:
-            continue
-        d, d_dot, _ = touch(scene, e)
-        if branch == WHOLE:
-            out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
-        else:
-            out[e, 0] = ramped_beyond(branch, d, d_dot, k, c, ramp)
-            out[e, 1] = ramped_neighbour(branch, d, d_dot, k, c, ramp)
+    own = Own(scene, e)
+    out[e, 0] = -1.0
+    k, c, ramp, branch = own.stiffness, own.damping, own.ramp, own.branch
+    if c == 0.0 or own.phase != CONTACT:
+        return
+    d, d_dot, _ = touch(scene, e)
+    if branch == WHOLE:
+        out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
+    else:
+        out[e, 0] = ramped_beyond(branch, d, d_dot, k, c, ramp)
+        out[e, 1] = ramped_neighbour(branch, d, d_dot, k, c, ramp)
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        d, _, _ = touch(scene, e)
-        if d > 0.0:
-            E[CONTACTS] += 0.5 * own.stiffness * d * d
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    d, _, _ = touch(scene, e)
+    if d > 0.0:
+        scene.E[CONTACTS] += 0.5 * own.stiffness * d * d
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     out = scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        d, d_dot, n = touch(scene, e)
-        f = 0.0
-        if own.phase != FLIGHT and d > 0.0:
-            f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)
-        out[o] = f
-        out[o + 1] = d
-        out[o + 2] = f * n[0]
-        out[o + 3] = f * n[1]
-        out[o + 4] = f * n[2]
+    own = Own(scene, e)
+    d, d_dot, n = touch(scene, e)
+    f = 0.0
+    if own.phase != FLIGHT and d > 0.0:
+        f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)
+    out[o] = f
+    out[o + 1] = d
+    out[o + 2] = f * n[0]
+    out[o + 3] = f * n[1]
+    out[o + 4] = f * n[2]
 
 
 def reach(row):

@@ -15,7 +15,7 @@ from pydantic import BeforeValidator
 
 from trsim import elements
 from trsim.elements.cable import Cable
-from trsim.elements.contract import Channel, Element, Memory, Row, kernel
+from trsim.elements.contract import Channel, Element, Memory, Row, measured
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
 from trsim.kernels.columns import f8, i8
@@ -114,21 +114,18 @@ def pack(name, spec, at):
     return Row(*Own.packed(spec, body=at.body(name)))
 
 
-@kernel
-def measure(t, scene, a, b):
-    X, V, A, col, out = scene.X, scene.V, scene.A, scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        i, o = Own(scene, e).body, col[e]
-        for c in range(3):
-            out[o + c] = X[i, c]
-            out[o + 3 + c] = V[i, c]
-            out[o + 6 + c] = A[i, c]
-            out[o + 9 + c] = V[i, 3 + c]
-            out[o + 12 + c] = A[i, 3 + c]
-        for c in range(9):
-            out[o + 15 + c] = X[i, 3 + c]
+@measured
+def measure(t, scene, e, o):
+    X, V, A, out = scene.X, scene.V, scene.A, scene.out
+    i = Own(scene, e).body
+    for c in range(3):
+        out[o + c] = X[i, c]
+        out[o + 3 + c] = V[i, c]
+        out[o + 6 + c] = A[i, c]
+        out[o + 9 + c] = V[i, 3 + c]
+        out[o + 12 + c] = A[i, 3 + c]
+    for c in range(9):
+        out[o + 15 + c] = X[i, 3 + c]
 
 
 ELEMENT = Element(

@@ -84,14 +84,13 @@ def constraint_of(rows):
     one, two, three, four, five, six = (*fills, *(nothing,) * (6 - len(fills)))
 
     @kernel
-    def constraint(t, scene, a, b):
-        for e in range(a, b):
-            one(scene, e)
-            two(scene, e)
-            three(scene, e)
-            four(scene, e)
-            five(scene, e)
-            six(scene, e)
+    def constraint(t, scene, e):
+        one(scene, e)
+        two(scene, e)
+        three(scene, e)
+        four(scene, e)
+        five(scene, e)
+        six(scene, e)
 
     return constraint
 
@@ -162,13 +161,12 @@ def coordinate_of(coordinates, n_rows):
     c, o = column_of(0, n_rows), column_of(len(coordinates) - 1, n_rows)
 
     @kernel
-    def coordinate(t, scene, a, b):
+    def coordinate(t, scene, e):
         con = scene.con
-        for e in range(a, b):
-            if con[e, c] >= 0:
-                first(scene, e, con[e, c])
-            if o != c and con[e, o] >= 0:
-                last(scene, e, con[e, o])
+        if con[e, c] >= 0:
+            first(scene, e, con[e, c])
+        if o != c and con[e, o] >= 0:
+            last(scene, e, con[e, o])
 
     return coordinate
 
