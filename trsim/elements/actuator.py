@@ -31,7 +31,15 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import between_points, distance_row, helper, line, points, push
+from trsim.elements.frames import (
+    between_points,
+    distance_row,
+    helper,
+    line,
+    points,
+    push_apart,
+    scaled,
+)
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
@@ -186,8 +194,7 @@ def state_of(t, scene, e):
 
 @kernel
 def force(t, scene, e):
-    F, zd = scene.F, scene.zd
-    own = Own(scene, e)
+    zd, own = scene.zd, Own(scene, e)
     P, behind, _, u_dot, _, f_dot, f_ddot = state_of(t, scene, e)
     if own.state >= 0:
         zd[own.state] = f_dot
@@ -201,8 +208,7 @@ def force(t, scene, e):
         stretch = scene.S[own.coordinate, 1] - u_dot
         zd[DAMPERS] -= own.damping * stretch * stretch
         p_i, p_j, n, _, _ = line(scene, e)
-        push(F, own.j, p_j, (P * n[0], P * n[1], P * n[2]))
-        push(F, own.i, p_i, (-P * n[0], -P * n[1], -P * n[2]))
+        push_apart(scene.F, own.i, p_i, own.j, p_j, scaled(P, n))
         if own.place < 0:
             zd[DRIVES] += behind * f_dot
 

@@ -26,16 +26,17 @@ from trsim.elements.contract import (
 from trsim.elements.frames import (
     along_row,
     arm,
+    carried,
     cross,
     dot,
     helper,
     on_joint,
-    push,
-    separation,
+    push_apart,
+    relative_spin,
+    scaled,
     spin,
     turn_lines,
-    twist,
-    two_points,
+    twist_apart,
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.fields import Function, Spec, Unit
@@ -90,11 +91,7 @@ class Drive(Spec):
         return self.model_copy(update={"compliance": self.compliance.model_copy(update=without)})
 
 
-COMPLIANCE_UNITS = (
-    ("stiffness", "N*m/rad", "N/m"),
-    ("damping", "N*m*s/rad", "N*s/m"),
-    ("mass", "kg*m^2", "kg"),
-)
+WITH_UNITS = ("stiffness", "damping", "mass")  # of a compliance
 
 
 def pack(name, spec, at):
@@ -103,8 +100,7 @@ def pack(name, spec, at):
     word = "velocity" if by_velocity else "position"
     rates = ("rad/s", "m/s") if by_velocity else ("rad", "m")
     at.check_unit(x.kind, *rates, "drives", name, word)
-    for key, turning, sliding in COMPLIANCE_UNITS:
-        at.check_unit(x.kind, turning, sliding, "drives", name, "compliance", key)
+    at.check_units(x.kind, Compliance, WITH_UNITS, "drives", name, "compliance")
     motion = spec.velocity if by_velocity else spec.position
     wanted = rates[0 if x.kind == "angle" else 1]
     f = at.function(motion, word, time_only=True, wanted=wanted)
@@ -134,14 +130,11 @@ def constraint(t, scene, e):
         return
     f, f_dot, f_ddot = prescribed(t, scene, e)
     axis = arm(scene.X, i, own.axis)
-    o_i, o_j = spin(scene.V, i), spin(scene.V, j)
     if own.rotates == 1:
         turn_lines(scene, k, axis)
-        turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-        scene.gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
+        scene.gamma[k] = f_ddot - dot(cross(spin(scene.V, i), axis), relative_spin(scene.V, i, j))
     else:
-        _, p_i, _, p_j = two_points(scene, e)
-        along_row(scene, i, p_i, axis, j, p_j, k)
+        along_row(scene, e, axis, k)
         scene.gamma[k] += f_ddot
     scene.phi[k] = scene.S[own.coordinate, 0] - f
     scene.phi_t[k] = -f_dot
@@ -170,18 +163,13 @@ def force(t, scene, e):
 @helper
 def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
-    X, F, own = scene.X, scene.F, AnyDrive(scene, e)
-    i, p_i, j, p_j = two_points(scene, e)
-    axis = arm(X, i, own.axis)
-    f = (pull * axis[0], pull * axis[1], pull * axis[2])
-    g = (-f[0], -f[1], -f[2])
+    own = AnyDrive(scene, e)
+    f = scaled(pull, arm(scene.X, own.i, own.axis))
     if own.rotates == 1:
-        twist(F, j, f)
-        twist(F, i, g)
+        twist_apart(scene.F, own.i, own.j, f)
     else:
-        d = separation(X, i, p_i, j, p_j)
-        push(F, j, p_j, f)
-        push(F, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]), g)
+        r_i, p_j, _, _ = carried(scene, e)
+        push_apart(scene.F, own.i, r_i, own.j, p_j, f)
 
 
 @kernel
@@ -205,10 +193,7 @@ def measure(t, scene, e, o):
         pull = -scene.lam[own.row]
     else:
         pull = -own.stiffness * (S[s, 0] - f) - own.damping * (S[s, 1] - f_dot)
-    out[o] = own.sign * pull
-    out[o + 1] = f
-    out[o + 2] = f_dot
-    out[o + 3] = pull * f_dot
+    out[o], out[o + 1], out[o + 2], out[o + 3] = own.sign * pull, f, f_dot, pull * f_dot
 
 
 ELEMENT = Element(
@@ -226,12 +211,7 @@ ELEMENT = Element(
         Channel("power", "W", "given to the mechanism"),
     ),
     loads={"force": "force"},
-    kernels={
-        "constraint": constraint,
-        "force": force,
-        "energy": energy,
-        "measure": measure,
-    },
+    kernels={"constraint": constraint, "force": force, "energy": energy, "measure": measure},
     example="""
 bodies:
   disc: {mass: 2 kg, inertia: 0.01 kg*m^2}

@@ -32,9 +32,8 @@ from trsim.elements.frames import (
     nearest_branch,
     perpendicular_row,
     point_rows,
-    spin,
+    relative_spin,
     stroke,
-    two_points,
 )
 from trsim.kernels.columns import V3, f8
 
@@ -117,8 +116,7 @@ def fill_of(row, column):
     def slide(scene, e):
         k = scene.con[e, column]
         if k >= 0:
-            i, p_i, j, p_j = two_points(scene, e)
-            along_row(scene, i, p_i, arm(scene.X, i, axis(scene, e, c)), j, p_j, k)
+            along_row(scene, e, arm(scene.X, Pair(scene, e).i, axis(scene, e, c)), k)
 
     return turn if row.of_j else slide
 
@@ -134,14 +132,12 @@ def write_angle(scene, e, s):
     """The angle of instance e and its rate, as entry s of S."""
     X, V, S, own = scene.X, scene.V, scene.S, Axes(scene, e)
     i, j = own.i, own.j
-    o_i, o_j = spin(V, i), spin(V, j)
     # of rigid bodies in a plane what comes in is the angle itself
     if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
         u, w, u_j = arm(X, i, own.u_i), arm(X, i, own.w_i), arm(X, j, own.u_j)
         angle = atan2(dot(w, u_j), dot(u, u_j)) + own.drawn
         S[s, 0] = nearest_branch(angle, S[s, 0])
-    turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-    S[s, 1] = dot(arm(X, i, own.a_i), turn)
+    S[s, 1] = dot(arm(X, i, own.a_i), relative_spin(V, i, j))
 
 
 @helper

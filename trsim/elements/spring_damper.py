@@ -21,7 +21,7 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import TwoPoints, between_points, line, points, push
+from trsim.elements.frames import TwoPoints, between_points, line, points, push_apart, scaled
 from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import f8
 
@@ -69,8 +69,7 @@ def force(t, scene, e):
     p_i, p_j, n, length, rate = line(scene, e)
     damping = own.damping * rate
     T = own.preload + own.stiffness * (length - own.free_length) + damping
-    push(scene.F, own.i, p_i, (T * n[0], T * n[1], T * n[2]))
-    push(scene.F, own.j, p_j, (-T * n[0], -T * n[1], -T * n[2]))
+    push_apart(scene.F, own.i, p_i, own.j, p_j, scaled(-T, n))
     scene.zd[DAMPERS] -= damping * rate
 
 

@@ -18,7 +18,7 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import Along, arm, on_joint, twist
+from trsim.elements.frames import Along, arm, on_joint, scaled, twist_apart
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8
 
@@ -55,14 +55,12 @@ def pack(name, spec, at):
 
 @kernel
 def force(t, scene, e):
-    X, S, F, zd = scene.X, scene.S, scene.F, scene.zd
-    own = Own(scene, e)
-    s, axis = own.coordinate, arm(X, own.i, own.axis)
+    S, own = scene.S, Own(scene, e)
+    s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
     damping = -own.damping * S[s, 1]
     tau = own.preload - own.stiffness * (S[s, 0] - own.drawn) + damping
-    twist(F, own.j, (tau * axis[0], tau * axis[1], tau * axis[2]))
-    twist(F, own.i, (-tau * axis[0], -tau * axis[1], -tau * axis[2]))
-    zd[DAMPERS] += damping * S[s, 1]
+    twist_apart(scene.F, own.i, own.j, scaled(tau, axis))
+    scene.zd[DAMPERS] += damping * S[s, 1]
 
 
 @kernel
