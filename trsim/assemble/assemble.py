@@ -159,14 +159,12 @@ def stages(
 
 def notes(scenario: Any) -> tuple[str, ...]:
     """What the user should know before the run."""
-    said = []
-    for name, law in scenario.contact_laws.items():
-        if law.friction.law == "coulomb":
-            said.append(
-                f"contact law '{name}': Coulomb friction jumps where sliding stops; expect tiny "
-                "steps there, and prefer modified_coulomb or sticking"
-            )
-    return tuple(said)
+    return tuple(
+        f"contact law '{name}': Coulomb friction jumps where sliding stops; expect tiny "
+        "steps there, and prefer modified_coulomb or sticking"
+        for name, law in scenario.contact_laws.items()
+        if law.friction.law == "coulomb"
+    )
 
 
 def pack(  # type: ignore[no-untyped-def]
@@ -293,7 +291,7 @@ def build(
         **lines([*frames, *(r.frames for r in redundant)]),
         **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **watched_rows(instances, rows, redundant, size),
-        **band_tables(list(at.beams.values()), frames),
+        **band_tables(list(at.beams.values()), frames, n),
         derivative=derivative.address(),
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,

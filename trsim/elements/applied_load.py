@@ -21,7 +21,7 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import arm, dot, push, spin, twist, velocity
+from trsim.elements.frames import arm, dot, helper, push, scaled, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.kernels.columns import V3, i8
 from trsim.laws.functions import value
@@ -55,15 +55,20 @@ class AppliedLoad(Spec):
         return self
 
 
-class Own(Memory):
+class Directed(Memory):
+    """Of every load with a direction."""
+
+    frame: i8  # with which the direction turns
+    function: i8  # f in tab
+    direction: V3  # in the axes of the frame
+
+
+class Own(Directed):
     """Of one instance."""
 
     body: i8
-    frame: i8  # with which the direction turns
-    function: i8  # f in tab
     turns: i8  # 1: a torque
     point: V3  # m, in the axes of the body
-    direction: V3  # in those of the frame
 
 
 def pack(name, spec, at):
@@ -81,12 +86,19 @@ def pack(name, spec, at):
     return Row(*own, turns=is_torque, reads=load.sensors)
 
 
+@helper
+def magnitude_and_load(t, scene, e):
+    """f, and f along its direction, world axes."""
+    own = Directed(scene, e)
+    f = value(scene.tab, own.function, t, scene.S)
+    return f, scaled(f, arm(scene.X, own.frame, own.direction))
+
+
 @kernel
 def force(t, scene, e):
     own = Own(scene, e)
-    i, n = own.body, arm(scene.X, own.frame, own.direction)
-    f = value(scene.tab, own.function, t, scene.S)
-    load = (f * n[0], f * n[1], f * n[2])
+    i = own.body
+    _, load = magnitude_and_load(t, scene, e)
     if own.turns == 1:
         twist(scene.F, i, load)
         scene.zd[LOADS] += dot(load, spin(scene.V, i))
@@ -98,12 +110,8 @@ def force(t, scene, e):
 
 @measured
 def measure(t, scene, e, o):
-    own = Own(scene, e)
-    f = value(scene.tab, own.function, t, scene.S)
-    n = arm(scene.X, own.frame, own.direction)
-    scene.out[o] = f
-    for c in range(3):
-        scene.out[o + 1 + c] = f * n[c]
+    out = scene.out
+    out[o], (out[o + 1], out[o + 2], out[o + 3]) = magnitude_and_load(t, scene, e)
 
 
 def reach(row):

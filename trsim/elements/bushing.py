@@ -42,6 +42,7 @@ from trsim.elements.frames import (
     scaled,
     twist_apart,
 )
+from trsim.elements.joint import of_key
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
@@ -81,10 +82,7 @@ class Bushing(Spec):
     @property
     def axes(self):
         """The three unit vectors along which stiffnesses are meant, world axes as drawn."""
-        for key in ("x_axis", "y_axis"):
-            if not any(getattr(self, key)):
-                raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
-        x, y = direction(self.x_axis), direction(self.y_axis)
+        x, y = of_key(self, "x_axis"), of_key(self, "y_axis")
         z = across(x, y)
         if max(map(abs, z)) < 1e-6:
             what = "`y_axis` has the direction of `x_axis`"

@@ -199,9 +199,8 @@ class Row:
     states: tuple[int, ...] = ()  # entries of z it reads or changes
     limits: tuple[Limit, ...] = ()
     turns: bool = False  # it acts on an angle, or about an axis: so do units that depend on it
-    travel: str = (
-        ""  # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
-    )
+    # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
+    travel: str = ""
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
     unheld: str = ""  # the row of its element that holds nothing here
     reads: frozenset[str] = frozenset()  # sensors its functions depend on

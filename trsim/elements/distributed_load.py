@@ -10,23 +10,21 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
+from trsim.elements.applied_load import Directed, magnitude_and_load
 from trsim.elements.contract import (
     LOADS,
     Channel,
     Element,
-    Memory,
     Reach,
     Row,
     Turning,
     kernel,
     measured,
 )
-from trsim.elements.frames import arm, helper
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
-from trsim.kernels.columns import V3, f8, i8
+from trsim.kernels.columns import f8, i8
 from trsim.laws.cable_section import uniform_shares
-from trsim.laws.functions import value
 
 
 class DistributedLoad(Spec):
@@ -51,15 +49,12 @@ class DistributedLoad(Spec):
         return self
 
 
-class Own(Memory):
+class Own(Directed):
     """Of one instance."""
 
     first: i8  # node, or the body of a bar that is rigid for a start
     nodes: i8
-    frame: i8  # with which the direction turns
-    function: i8  # f in tab
     length: f8  # m, of an element
-    direction: V3  # in the axes of the frame
 
 
 def pack(name, spec, at):
@@ -87,20 +82,11 @@ def acts_on(row):
     return frozenset({own.frame, *range(own.first, own.first + own.nodes)} if own.frame else ())
 
 
-@helper
-def load(t, scene, e):
-    """Force per length, world axes."""
-    own = Own(scene, e)
-    f = value(scene.tab, own.function, t, scene.S)
-    n = arm(scene.X, own.frame, own.direction)
-    return f, (f * n[0], f * n[1], f * n[2])
-
-
 @kernel
 def force(t, scene, e):
     V, G, F, Q = scene.V, scene.G, scene.F, scene.Q
     own = Own(scene, e)
-    _, p = load(t, scene, e)
+    _, p = magnitude_and_load(t, scene, e)  # per length
     if own.nodes == 1:
         i, l = own.first, own.length
         for c in range(3):
@@ -121,7 +107,7 @@ def force(t, scene, e):
 @measured
 def measure(t, scene, e, o):
     own = Own(scene, e)
-    f, p = load(t, scene, e)
+    f, p = magnitude_and_load(t, scene, e)
     whole = own.length * max(own.nodes - 1, 1)
     scene.out[o] = f
     for c in range(3):

@@ -42,12 +42,9 @@ def pack(name, spec, at):
 
 @kernel
 def force(t, scene, e):
-    F = scene.F
     own = Own(scene, e)
-    i, weight = own.body, own.weight
-    F[i, 0] += weight[0]
-    F[i, 1] += weight[1]
-    F[i, 2] += weight[2]
+    for c in range(3):
+        scene.F[own.body, c] += own.weight[c]
 
 
 @kernel

@@ -22,6 +22,7 @@ from trsim.kernels.columns import f8, i8
 
 KG_M2 = Unit("kg*m^2")
 INERTIA = Annotated[float, Ge(0), KG_M2]
+PRODUCT = Annotated[float, KG_M2]
 ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
@@ -55,14 +56,7 @@ class RigidBody(Spec):
     inertia: (
         INERTIA
         | tuple[INERTIA, INERTIA, INERTIA]
-        | tuple[
-            INERTIA,
-            INERTIA,
-            INERTIA,
-            Annotated[float, KG_M2],
-            Annotated[float, KG_M2],
-            Annotated[float, KG_M2],
-        ]
+        | tuple[INERTIA, INERTIA, INERTIA, PRODUCT, PRODUCT, PRODUCT]
     )
     at: point("m") = (0.0, 0.0, 0.0)
     angle: Annotated[float, Unit("rad")] = 0.0

@@ -109,9 +109,8 @@ class Model(Packed):
     shared: I1  # columns of forces and moments, which rows may share between them
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
     watch: I2  # (n_w, 3) user events: entry of S or -1 for t, direction, how often   events.py
-    watch_at: (
-        A2  # (n_w, 2) the value that is crossed; how far it must be left before it counts again
-    )
+    # (n_w, 2) the value that is crossed; how far it must be left before it counts again
+    watch_at: A2
     feature: I2  # (n_features, 7) functions with corners                   assemble/features.py
     jump: A2  # (n_instants, 2) of the place and the rate of a motion there       jumps.py
     instant: A1  # when those are met that the time alone decides

@@ -127,15 +127,9 @@ def pack(name, spec, at):
     n = len(spec.actuators)
     losses = {"loss": 1.0 - spec.efficiency, "loss_back": 1.0 / back - 1.0}
     own = Own.packed(
-        spec,
-        i=0,
-        j=0,
-        count=n,
-        stations=stations,
-        **losses,
-        lost_at=spec.lost_at or 0.0,
+        spec, i=0, j=0, count=n, stations=stations, **losses, lost_at=spec.lost_at or 0.0,
         masses=masses,
-    )
+    )  # fmt: skip
     said = "synchronism was lost: the strokes of two neighbours differ too much"
     limits = (Limit("lost", spec.lost_at, "m", "jammed", said),) if spec.lost_at else ()
     states = tuple(s for s in stations if s >= 0)
