@@ -1,7 +1,7 @@
 """Joints as lists of rows: what each row holds, and the kernels made of them.
 
 A joint stands between the triads u, w, a of body i and of body j, which coincide as drawn, at two
-points that coincide too (JointPar of joint.py).  Its rows are, first one of
+points that coincide too (Axes).  Its rows are, first one of
 
     POINT          three rows: the points coincide
     along          Phi = u_i . d = 0            d from the point on i to the point on j
