@@ -58,6 +58,7 @@ class AppliedLoad(Spec):
 class Directed(Memory):
     """Of every load with a direction."""
 
+    body: i8  # or the first node of a bar
     frame: i8  # with which the direction turns
     function: i8  # f in tab
     direction: V3  # in the axes of the frame
@@ -66,7 +67,6 @@ class Directed(Memory):
 class Own(Directed):
     """Of one instance."""
 
-    body: i8
     turns: i8  # 1: a torque
     point: V3  # m, in the axes of the body
 

@@ -50,9 +50,8 @@ class DistributedLoad(Spec):
 
 
 class Own(Directed):
-    """Of one instance."""
+    """Of one instance; its body is that of a bar which is rigid for a start, or the first node."""
 
-    first: i8  # node, or the body of a bar that is rigid for a start
     nodes: i8
     length: f8  # m, of an element
 
@@ -71,15 +70,16 @@ def pack(name, spec, at):
     n = at.axes(frame, direction(spec.direction))
     f = at.function(spec.force_per_length, "force_per_length")
     # stiff for a start: all of it at the centre
-    where = {"first": i, "nodes": 1, "length": bar.length} if beam is None else {}
-    own = Own.packed(beam, **where, frame=frame, function=f, direction=n)
+    where = {"nodes": 1, "length": bar.length} if beam is None else {}
+    body = i if beam is None else beam.first
+    own = Own.packed(beam, **where, body=body, frame=frame, function=f, direction=n)
     return Row(*own, reads=spec.force_per_length.sensors)
 
 
 def acts_on(row):
     """A load in a fixed direction is the same wherever the bar is."""
     own = Own.of(row)
-    return frozenset({own.frame, *range(own.first, own.first + own.nodes)} if own.frame else ())
+    return frozenset({own.frame, *range(own.body, own.body + own.nodes)} if own.frame else ())
 
 
 @kernel
@@ -88,12 +88,12 @@ def force(t, scene, e):
     own = Own(scene, e)
     _, p = magnitude_and_load(t, scene, e)  # per length
     if own.nodes == 1:
-        i, l = own.first, own.length
+        i, l = own.body, own.length
         for c in range(3):
             F[i, c] += l * p[c]
             scene.zd[LOADS] += l * p[c] * V[i, c]
     s1, s2, s3, s4 = uniform_shares(own.length)
-    for i in range(own.first, own.first + own.nodes - 1):
+    for i in range(own.body, own.body + own.nodes - 1):
         for c in range(3):
             F[i, c] += s1 * p[c]
             Q[i, c] += s2 * p[c]
