@@ -137,19 +137,18 @@ def term(scene, e, k, q):
 
 
 @kernel
-def constraint(t, scene, a, b):
+def constraint(t, scene, e):
     J = scene.J
-    for e in range(a, b):
-        own = Own(scene, e)
-        k = own.turn
-        if k < 0:
-            continue
-        scene.phi[k], scene.phi_t[k], scene.gamma[k] = -own.constant, 0.0, 0.0
-        for line in range(scene.row_start[k], scene.row_start[k + 1]):
-            for c in range(6):
-                J[line, c] = 0.0
-        for q in range(own.number):
-            term(scene, e, k, q)
+    own = Own(scene, e)
+    k = own.turn
+    if k < 0:
+        return
+    scene.phi[k], scene.phi_t[k], scene.gamma[k] = -own.constant, 0.0, 0.0
+    for line in range(scene.row_start[k], scene.row_start[k + 1]):
+        for c in range(6):
+            J[line, c] = 0.0
+    for q in range(own.number):
+        term(scene, e, k, q)
 
 
 def reach(row):

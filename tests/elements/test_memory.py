@@ -33,12 +33,11 @@ def pack(name, spec, at):
 
 
 @kernel
-def measure(t, scene, a, b):
-    for e in range(a, b):
-        own = Own(scene, e)
-        own.time = t
-        if scene.wanted[e] >= 0:
-            scene.out[scene.wanted[e]] = own.time
+def measure(t, scene, e):
+    own = Own(scene, e)
+    own.time = t
+    if scene.wanted[e] >= 0:
+        scene.out[scene.wanted[e]] = own.time
 
 
 CLOCK = Element(

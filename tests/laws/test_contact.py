@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from trsim.laws.contact import (
     CYLINDER,
     HERTZ,
+    Pair,
     cylinder_stiffness,
     damping_factor,
     delivered_restitution,
@@ -37,8 +38,8 @@ LAWS = ("lankarani_nikravesh", "hunt_crossley", "flores", "identified")
 C = 3e-4  # m, radial clearance
 STEEL = (207e9, 0.29, 207e9, 0.29)
 # K, n, c, form of an impact of 0.2 kg
-HERTZ_PAIR = (1.05e10, 1.5, C, HERTZ)
-CYLINDER_PAIR = (cylinder_stiffness(15e-3, *STEEL), 1.5, C, CYLINDER)
+HERTZ_PAIR = Pair(1.05e10, 1.5, C, HERTZ)
+CYLINDER_PAIR = Pair(cylinder_stiffness(15e-3, *STEEL), 1.5, C, CYLINDER)
 
 
 def restitution_table():
@@ -52,10 +53,10 @@ def restitution_table():
 
 def impact(pair, chi, m=0.2, v=0.1):
     """Integrate one impact to separation: rebound / approach speed, duration, largest force."""
-    K, n, c, form = pair
+    pair = pair._replace(chi=chi)
 
     def rates(t, y):
-        return [y[1], -normal_force(y[0], y[1], v, K, n, c, form, chi) / m]
+        return [y[1], -normal_force(y[0], y[1], v, pair) / m]
 
     scale = hertz_peak(m, 1e10, 1.5, v)[0]
     solver = DOP853(rates, 0.0, [0.0, v], 1.0, rtol=1e-12, atol=[1e-13 * scale, 1e-13 * v])
@@ -63,7 +64,7 @@ def impact(pair, chi, m=0.2, v=0.1):
     while True:
         solver.step()
         assert solver.status == "running"
-        peak = max(peak, elastic(solver.y[0], K, n, c, form))
+        peak = max(peak, elastic(solver.y[0], pair))
         if solver.y[0] <= 0.0:
             break
     dense = solver.dense_output()
@@ -142,7 +143,7 @@ def test_hertz_impact_against_closed_form():
     assert largest == pytest.approx(HERTZ_BALL["F_max"], rel=1e-12)
     time = hertz_contact_time(m, K, 1.5, v)
     assert time == pytest.approx(HERTZ_BALL["contact_time"], rel=1e-12)
-    rebound, duration, peak = impact((K, 1.5, C, HERTZ), 0.0, m, v)
+    rebound, duration, peak = impact(Pair(K, 1.5, C, HERTZ), 0.0, m, v)
     assert (rebound, duration) == pytest.approx((1.0, time), rel=1e-9)
     assert 0.9 * largest < peak <= largest * (1 + 1e-9)
 
@@ -175,15 +176,15 @@ def test_sphere_on_plane_is_the_limit_of_a_large_socket():
 def test_cylinder_law_is_the_half_angle_formula():
     L, E_star, d = 15e-3, 207e9 / (2 * (1 - 0.29**2)), 2e-5
     F = 0.5 * 3.141592653589793 * L * E_star * d * (d / (2 * (C + d))) ** 0.5
-    assert elastic(d, *CYLINDER_PAIR) == pytest.approx(F, rel=1e-13)
+    assert elastic(d, CYLINDER_PAIR) == pytest.approx(F, rel=1e-13)
 
 
-@pytest.mark.parametrize("pair", [HERTZ_PAIR, (1e8, 1.37, C, HERTZ), CYLINDER_PAIR])
+@pytest.mark.parametrize("pair", [HERTZ_PAIR, Pair(1e8, 1.37, C, HERTZ), CYLINDER_PAIR])
 @pytest.mark.parametrize("d", [1e-9, 1e-6, 2.99e-5, 3.01e-5, 1e-4, 1e-2])
 def test_force_is_slope_of_energy(pair, d):
     h = 1e-4 * d
-    slope = (stored(d + h, *pair) - stored(d - h, *pair)) / (2 * h)
-    assert elastic(d, *pair) == pytest.approx(slope, rel=1e-7)
+    slope = (stored(d + h, pair) - stored(d - h, pair)) / (2 * h)
+    assert elastic(d, pair) == pytest.approx(slope, rel=1e-7)
 
 
 @pytest.mark.parametrize("z", [1e-8, 1e-3, 0.05, 0.0999, 0.1001, 0.3, 30.0])
@@ -191,18 +192,18 @@ def test_cylinder_energy_keeps_its_digits(z):
     K = CYLINDER_PAIR[0]
     # x = s^2 takes the root out of the integrand
     work = quad(lambda s: 2 * K * s**4 / (s * s + C) ** 0.5, 0.0, (z * C) ** 0.5, epsrel=1e-13)[0]
-    assert stored(z * C, *CYLINDER_PAIR) == pytest.approx(work, rel=2e-13)
+    assert stored(z * C, CYLINDER_PAIR) == pytest.approx(work, rel=2e-13)
 
 
 @given(st.floats(-1e-3, 1e-3), st.floats(-10, 10), st.floats(0.01, 10), st.floats(0, 20))
 def test_a_contact_never_pulls(d, d_dot, d_dot0, chi):
     for pair in (HERTZ_PAIR, CYLINDER_PAIR):
-        force = normal_force(d, d_dot, d_dot0, *pair, chi)
+        force = normal_force(d, d_dot, d_dot0, pair._replace(chi=chi))
         assert force >= 0.0
         if d <= 0.0:
-            assert (force, elastic(d, *pair), stored(d, *pair)) == (0, 0, 0)
+            assert (force, elastic(d, pair), stored(d, pair)) == (0, 0, 0)
         elif chi * d_dot > -d_dot0:
-            assert force == pytest.approx(elastic(d, *pair) * (1 + chi * d_dot / d_dot0))
+            assert force == pytest.approx(elastic(d, pair) * (1 + chi * d_dot / d_dot0))
 
 
 def test_ramped_damping():

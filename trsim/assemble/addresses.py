@@ -1,5 +1,6 @@
 """What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from math import atan2
 from typing import Any, NamedTuple
@@ -17,6 +18,7 @@ from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
 from trsim.frame import Frame
 from trsim.laws import functions
+from trsim.scenario.load import unit_of
 from trsim.scenario.slender import ends
 from trsim.units import fits
 
@@ -297,6 +299,13 @@ class Addresses:
             f"this number is in {wanted}",
             path[2:],
         )
+
+    def check_units(self, kind: str, spec: type, keys: Sequence[str], *path: str) -> None:
+        """The same of some keys of a spec, fields with a unit for strokes and one for angles."""
+        for key in keys:
+            of: Any = unit_of(spec, key)
+            stroke, angle = of.units
+            self.check_unit(kind, angle, stroke, *path, key)
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
         if time_only and name not in self.scenario.sensors:

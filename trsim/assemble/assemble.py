@@ -15,7 +15,7 @@ from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
 from trsim.assemble.instances import Column, Instance, RowName, Section
 from trsim.assemble.jumps import find_jumps, steep
-from trsim.assemble.layout import layout
+from trsim.assemble.layout import layout, no_outputs
 from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
@@ -31,7 +31,7 @@ from trsim.assemble.rows import (
     dropped,
     reactions,
 )
-from trsim.assemble.sections import N_SECTION, sections
+from trsim.assemble.sections import sections
 from trsim.assemble.stages import Choice, Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
 from trsim.assemble.tables import (
@@ -159,14 +159,12 @@ def stages(
 
 def notes(scenario: Any) -> tuple[str, ...]:
     """What the user should know before the run."""
-    said = []
-    for name, law in scenario.contact_laws.items():
-        if law.friction.law == "coulomb":
-            said.append(
-                f"contact law '{name}': Coulomb friction jumps where sliding stops; expect tiny "
-                "steps there, and prefer modified_coulomb or sticking"
-            )
-    return tuple(said)
+    return tuple(
+        f"contact law '{name}': Coulomb friction jumps where sliding stops; expect tiny "
+        "steps there, and prefer modified_coulomb or sticking"
+        for name, law in scenario.contact_laws.items()
+        if law.friction.law == "coulomb"
+    )
 
 
 def pack(  # type: ignore[no-untyped-def]
@@ -250,7 +248,7 @@ def build(
     hubs: those of its solve; without them its rows can be looked at, and its equations not solved.
     redundant: rows that are looked at only.
     """
-    n, N = len(at.frames), max(len(instances), 1)
+    n = len(at.frames)
     con, par = tables(instances, [*rows, *redundant])
     mass, inertia, mass_inverse, inertia_inverse = masses(at, d)
     solver = scenario.solver
@@ -293,7 +291,7 @@ def build(
         **lines([*frames, *(r.frames for r in redundant)]),
         **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **watched_rows(instances, rows, redundant, size),
-        **band_tables(list(at.beams.values()), frames),
+        **band_tables(list(at.beams.values()), frames, n),
         derivative=derivative.address(),
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
@@ -315,23 +313,12 @@ def build(
         contact_width=np.array(
             [sum(c.size for c in instances[e].channels) for e in contacts], np.int64
         ),
-        wanted=np.full(N, -1, np.int64),
-        joint_out=np.zeros((0, 4), np.int64),
-        column_energy=-1,
-        n_out=0,
-        vector=np.zeros(0, np.int64),
-        sought=np.zeros(0, np.int64),
-        kin=np.zeros(0, np.int64),
-        lever=np.zeros(0),
-        least=np.zeros(0),
-        shared=np.zeros(0, np.int64),
+        **no_outputs(max(len(instances), 1)),
         **watched(at.switches, size),
         **features(at, instances),
         steep=steep(at, instances),
         **travels(instances, contacts, at.switches),
-        section=np.zeros((0, N_SECTION), np.int64),
         wave=np.array(at.waves, np.int64),
-        section_at=np.zeros((0, 2)),
         size=size,
         reach=min(size, max(arms[1:], default=size)),
     )

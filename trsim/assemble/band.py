@@ -62,15 +62,10 @@ def inverse_of(factors: Array) -> Array:
     return X
 
 
-def band_tables(beams: list[Beam], row_frames: Rows) -> dict[str, Any]:
-    """`beam`, `band`, `consistent` and `across` of a model."""
-    if not beams:
-        none = np.zeros((0, WIDTH))
-        return {"beam": np.zeros((0, 4), np.int64), "band": none, "consistent": none.copy(),
-                "across": none.copy()}  # fmt: skip
-    n = beams[-1].first + beams[-1].nodes
-    of_frame = slots(row_frames, n)
-    rows, bands, across, at = [], [], [], 0
+def band_tables(beams: list[Beam], row_frames: Rows, n: int) -> dict[str, Any]:
+    """`beam`, `band`, `consistent` and `across` of a model with n frames."""
+    of_frame = slots(row_frames, n) if beams else []
+    rows, bands, across, at = [], [np.zeros((0, WIDTH))], [], 0
     for beam in beams:
         M = scalar_mass(beam)
         band = banded(M)
@@ -83,7 +78,7 @@ def band_tables(beams: list[Beam], row_frames: Rows) -> dict[str, Any]:
             for o in nodes[: last + 1]:
                 across.append(inverse[2 * p : 2 * p + 2, 2 * o : 2 * o + 2].ravel())
     return {
-        "beam": np.array(rows, np.int64),
+        "beam": np.array(rows, np.int64).reshape(-1, 4),
         "band": np.vstack([factorised(band) for band in bands]),
         "consistent": np.vstack(bands),
         "across": np.array(across, float).reshape(-1, WIDTH),

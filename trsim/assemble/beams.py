@@ -14,7 +14,11 @@ entries of M^-1 between their nodes (`across`).
 
 from math import sqrt
 
+from trsim.elements.contract import SCENE, compiled
+from trsim.kernels.signatures import A1, i8, void
 from trsim.kernels.vectors import internal as equation
+
+ON_BEAMS = void(SCENE, A1, A1, i8)  # of what is called by its address: on_beams.py
 
 
 @equation
@@ -23,9 +27,9 @@ def components(s):
     return s.d_node // 2
 
 
-@equation
-def node_poses(s, y):
-    """X, V and the slopes G of all nodes."""
+@compiled(ON_BEAMS)
+def node_poses(s, y, out, k):
+    """X, V and the slopes G of all nodes at y."""
     X, V, G, width = s.X, s.V, s.G, components(s)
     q, v = s.q_node, s.n_q + s.v_node
     for f in range(s.n_r, s.n):
@@ -87,8 +91,8 @@ def slope_force(s, f, c):
     return s.Q[f, c] + (F[f, 3 + a] * G[f, b] - F[f, 3 + b] * G[f, a]) / square
 
 
-@equation
-def node_accelerations(s):
+@compiled(ON_BEAMS)
+def node_accelerations(s, x, out, k):
     """free = M^-1 F of all nodes."""
     width = components(s)
     for f in range(s.n_r, s.n):
@@ -164,10 +168,10 @@ def node_products(s, B, pair):
                 pair += 1
 
 
-@equation
-def node_plain_rows(s, pair, turn):
-    """J J^T of the slots on nodes; slopes are weighed by `turn`."""
-    B, value, width = s.B, s.value, components(s)
+@compiled(ON_BEAMS)
+def node_plain_rows(s, x, out, pair):
+    """What the slots on nodes add to J J^T from `pair` on; slopes are weighed by the size."""
+    B, value, width, turn = s.B, s.value, components(s), 1.0 / (s.size * s.size)
     for b in range(s.beam.shape[0]):
         first, end = s.beam[b, 0], s.beam[b, 0] + s.beam[b, 1]
         for f in range(first, end):
@@ -180,8 +184,8 @@ def node_plain_rows(s, pair, turn):
                     pair += 1
 
 
-@equation
-def node_right_hand_side(s, x):
+@compiled(ON_BEAMS)
+def node_right_hand_side(s, x, out, k):
     """x += J M^-1 F + 2 sigma J_omega omega of the slots on nodes."""
     B, G, V, free = s.B, s.G, s.V, s.free
     for f in range(s.n_r, s.n):
@@ -209,8 +213,8 @@ def gathered(s, u, x):
                 u[f, c] += s.B[p, c] * x[s.slot_row[p]]
 
 
-@equation
-def pull_nodes(s, x):
+@compiled(ON_BEAMS)
+def pull_nodes(s, x, out, k):
     """free -= M^-1 J^T x of all nodes."""
     u = s.moved
     gathered(s, u, x)
@@ -220,8 +224,8 @@ def pull_nodes(s, x):
             s.free[f, c] -= u[f, c]
 
 
-@equation
-def node_rates(s, y, yd):
+@compiled(ON_BEAMS)
+def node_rates(s, y, yd, k):
     """q' and V' of all nodes into yd, and V' as twists into A."""
     A, G, V, width = s.A, s.G, s.V, components(s)
     q, v = s.q_node, s.n_q + s.v_node
@@ -263,9 +267,10 @@ def times_mass(s, v, x, o, out):
                 out[o + i + c], out[o + i + width + c] = place, slope
 
 
-@equation
-def node_kinetic(s, y):
-    """Kinetic energy of all beams, J: 1/2 v^T M v with M as it was before it was factorised."""
+@compiled(ON_BEAMS)
+def node_kinetic(s, y, out, _):
+    """s.moved[0, 0] = kinetic energy of all beams at y, J: 1/2 v^T M v with M as it was before it
+    was factorised."""
     T, width = 0.0, components(s)
     for b in range(s.beam.shape[0]):
         first, rows, at = s.beam[b, 0], 2 * s.beam[b, 1], s.beam[b, 2]
@@ -282,4 +287,4 @@ def node_kinetic(s, y):
                             * here
                             * y[v + s.d_node * (o // 2) + width * (o % 2) + c]
                         )
-    return T
+    s.moved[0, 0] = T

@@ -53,12 +53,12 @@ from trsim.assemble.linear import (
     TINY,
     diagonal,
     eliminate,
-    factorise,
+    refactorise,
     smallest_pivot,
     solve,
 )
 from trsim.assemble.projection import move_all, project_positions, project_velocities
-from trsim.assemble.schur import plain_rows, pull, rows
+from trsim.assemble.schur import plain_rows, pull
 from trsim.elements.contract import DRIVES, compiled
 from trsim.kernels.vectors import clear
 from trsim.scenario.methods import METHODS
@@ -138,7 +138,7 @@ def beside(s, t, y, yd):
         best, scale = look_beside(s, t, y, yd, fastest, own)
         poses(s, y)
         constraints(s, t)
-    factors_again(s)
+    refactorise(s)  # other factors have taken its place
     s.status[2] = counted
     if best <= SURE * scale:
         if went == SINGULAR or apart(s, yd) > max(PLAINLY * best, seen(s, scale)):
@@ -146,13 +146,6 @@ def beside(s, t, y, yd):
                 s.status[4] += 1
             take(s, y, yd, went == SINGULAR)
         drives(s)
-
-
-@equation
-def factors_again(s):
-    """Factorise S at the poses at hand once more, as other factors have taken its place."""
-    rows(s)
-    factorise(s)
 
 
 @equation
@@ -305,8 +298,7 @@ def at(s, t, y, d):
         return -1.0  # the mechanism locks between
     poses(s, place)
     constraints(s, t + d)
-    rows(s)
-    factorise(s)
+    refactorise(s)
     if s.status[0] == SINGULAR:
         return 0.0
     pivot = smallest_pivot(s)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
 from trsim.kernels.signatures import A1, A2, I1, int64, void
+from trsim.kernels.vectors import internal
 
 Array = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ def triangle(B, Q, w, order):
 
     order: filled.  w: room for a row of the wider of B and Q.
     """
-    p, q, r = B.shape[0], B.shape[1], Q.shape[1]
+    p, q = B.shape[0], B.shape[1]
     for j in range(q):
         order[j] = j
     for k in range(min(p, q)):
@@ -48,33 +49,29 @@ def triangle(B, Q, w, order):
             for i in range(p):
                 B[i, k], B[i, best] = B[i, best], B[i, k]
         alpha = -copysign(sqrt(square), B[k, k])
-        head = B[k, k] - alpha
-        scale = -1.0 / (alpha * head)  # of v v^T, v: the column with this head
-        for j in range(k + 1, q):
-            w[j] = head * B[k, j]
-        for i in range(k + 1, p):
-            for j in range(k + 1, q):
-                w[j] += B[i, k] * B[i, j]
-        for j in range(k + 1, q):
-            w[j] *= scale
-            B[k, j] -= head * w[j]
-        for i in range(k + 1, p):
-            for j in range(k + 1, q):
-                B[i, j] -= B[i, k] * w[j]
-        for j in range(r):
-            w[j] = head * Q[k, j]
-        for i in range(k + 1, p):
-            for j in range(r):
-                w[j] += B[i, k] * Q[i, j]
-        for j in range(r):
-            w[j] *= scale
-            Q[k, j] -= head * w[j]
-        for i in range(k + 1, p):
-            for j in range(r):
-                Q[i, j] -= B[i, k] * w[j]
+        B[k, k] -= alpha
+        scale = -1.0 / (alpha * B[k, k])
+        reflect(B, k, scale, B, k + 1, w)
+        reflect(B, k, scale, Q, 0, w)
         B[k, k] = alpha
         for i in range(k + 1, p):
             B[i, k] = 0.0
+
+
+@internal
+def reflect(B, k, scale, A, first, w):
+    """A -= scale v v^T A in its columns from `first` on, v: column k of B from its diagonal on."""
+    for j in range(first, A.shape[1]):
+        w[j] = B[k, k] * A[k, j]
+    for i in range(k + 1, B.shape[0]):
+        for j in range(first, A.shape[1]):
+            w[j] += B[i, k] * A[i, j]
+    for j in range(first, A.shape[1]):
+        w[j] *= scale
+        A[k, j] -= B[k, k] * w[j]
+    for i in range(k + 1, B.shape[0]):
+        for j in range(first, A.shape[1]):
+            A[i, j] -= B[i, k] * w[j]
 
 
 @compiled(int64(A2, A2))

@@ -18,8 +18,8 @@ from trsim.assemble.linear import (
     SINGULAR,
     SOUND,
     contradictory,
-    factorise,
     independent,
+    refactorise,
     solve,
 )
 from trsim.assemble.on_beams import FREE, KINETIC, POSES, PULL, RATES, RIGHT, call_beams
@@ -28,7 +28,6 @@ from trsim.assemble.schur import (
     pull,
     pull_planar,
     pull_spatial,
-    rows,
     velocity_residual,
 )
 from trsim.elements.contract import DRIVES, SCENE, call_kernel, compiled
@@ -56,8 +55,7 @@ def derivative(s, t, y, yd):
         call_beams(s.on_beams[FREE], s, y, yd, 0)
     if s.m > 0:
         constraints(s, t)
-        rows(s)
-        factorise(s)
+        refactorise(s)
         power = 0.0
         for again in range(2):
             right_hand_side(s, s.stabilisation == BAUMGARTE)
@@ -236,8 +234,7 @@ def masses_too_unequal(s):
     """
     plain_rows(s)
     unequal = independent(s)
-    rows(s)
-    factorise(s)
+    refactorise(s)
     return unequal
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from trsim.assemble.instances import Column, Instance
 from trsim.assemble.outputs import energy_columns
+from trsim.assemble.sections import N_SECTION
 from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
@@ -16,6 +17,21 @@ NOT_BY_DEFAULT = ("*.rotation",)
 # units of what is about an axis, and of what is along a line at a distance from it
 ALONG = {"N*m": "N", "rad": "m", "rad/s": "m/s", "rad/s^2": "m/s^2"}
 WITH_PEAKS = ("joints", "drives", "forces", "sensors")  # sections whose channels' extremes are told
+
+
+def no_outputs(rows: int) -> dict[str, Any]:
+    """All that tells a model of so many instances what to record: nothing."""
+    none = np.zeros(0, np.int64)
+    return {
+        "wanted": np.full(rows, -1, np.int64),
+        "joint_out": none.reshape(0, 4),
+        "column_energy": -1,
+        "n_out": 0,
+        "section": none.reshape(0, N_SECTION),
+        "section_at": np.zeros((0, 2)),
+        **dict.fromkeys(("vector", "sought", "kin", "shared"), none),
+        **dict.fromkeys(("lever", "least"), np.zeros(0)),
+    }
 
 
 def matches(name: str, patterns: tuple[str, ...]) -> bool:

@@ -55,6 +55,13 @@ def factorise(s):
 
 
 @internal
+def refactorise(s):
+    """S of the J of the last evaluation, factorised."""
+    rows(s)
+    factorise(s)
+
+
+@internal
 def diagonal(s):
     """first <- the diagonal of S; of a hub it is known when its turn comes."""
     first, row, value, through, m = s.first, s.row, s.value, s.through, s.m

@@ -4,6 +4,7 @@ All have one signature, (scene, x, out, k); what each takes for them stands in i
 """
 
 from trsim.assemble.beams import (
+    ON_BEAMS,
     divide_by_mass,
     gathered,
     node_accelerations,
@@ -17,24 +18,10 @@ from trsim.assemble.beams import (
     pull_nodes,
     slope_force,
 )
-from trsim.elements.contract import SCENE, compiled
+from trsim.elements.contract import compiled
 from trsim.kernels.calls import caller
-from trsim.kernels.signatures import A1, i8, void
 
-ON_BEAMS = void(SCENE, A1, A1, i8)
 call_beams = caller(ON_BEAMS)
-
-
-@compiled(ON_BEAMS)
-def poses(s, y, out, k):
-    """X, V and slopes of the nodes at y."""
-    node_poses(s, y)
-
-
-@compiled(ON_BEAMS)
-def free(s, x, out, k):
-    """M^-1 F into s.free."""
-    node_accelerations(s)
 
 
 @compiled(ON_BEAMS)
@@ -42,36 +29,6 @@ def rows(s, x, out, pair):
     """B of their slots, and what these add to S from `pair` on."""
     node_rows(s)
     node_products(s, s.B, pair)
-
-
-@compiled(ON_BEAMS)
-def plain(s, x, out, pair):
-    """What their slots add to J J^T from `pair` on."""
-    node_plain_rows(s, pair, 1.0 / (s.size * s.size))
-
-
-@compiled(ON_BEAMS)
-def right(s, x, out, k):
-    """x += their part of J M^-1 F - gamma."""
-    node_right_hand_side(s, x)
-
-
-@compiled(ON_BEAMS)
-def pull(s, x, out, k):
-    """s.free -= M^-1 J^T x."""
-    pull_nodes(s, x)
-
-
-@compiled(ON_BEAMS)
-def rates(s, y, yd, k):
-    """q' and V' into yd."""
-    node_rates(s, y, yd)
-
-
-@compiled(ON_BEAMS)
-def kinetic(s, y, out, k):
-    """s.moved[0, 0] = their kinetic energy at y, J."""
-    s.moved[0, 0] = node_kinetic(s, y)
 
 
 @compiled(ON_BEAMS)
@@ -97,7 +54,10 @@ def work(s, before, after, k):
     s.moved[0, 0] = total
 
 
-ALL = (poses, free, rows, plain, right, pull, rates, kinetic, residual, work)
+ALL = (
+    *(node_poses, node_accelerations, rows, node_plain_rows, node_right_hand_side, pull_nodes),
+    *(node_rates, node_kinetic, residual, work),
+)
 POSES, FREE, ROWS, PLAIN, RIGHT, PULL, RATES, KINETIC, RESIDUAL, WORK = range(len(ALL))
 
 

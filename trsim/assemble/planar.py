@@ -204,10 +204,8 @@ def reaching(at: Addresses, reach: Any, size: float) -> Iterator[tuple[str, str]
         A = at.rotation[frame] @ np.array(axes).reshape(3, 3).T
         K = A @ np.diag(diagonal) @ A.T
         if np.abs(K[2, :2]).max() > NOTHING * np.abs(K).max():
-            yield (
-                "has an axis of stiffness or damping at an angle to the plane",
-                TURNS if turning else MOVES,
-            )
+            kind = TURNS if turning else MOVES
+            yield "has an axis of stiffness or damping at an angle to the plane", kind
     if any(not level(world(*way)) for way in reach.shown):
         yield "tells what happens out of the x-y plane", TELLS
     if reach.tilts:
@@ -241,9 +239,8 @@ def of_rows(full: Model, y6: Array, rows: list[RowName]) -> list[Out]:
         within = np.abs(J[:, inside]).max(axis=1, initial=0.0) > NOTHING
         outside = np.abs(J[:, ~inside]).max(axis=1, initial=0.0) > NOTHING * max(1.0, full.size)
         for k in np.flatnonzero(within & outside).tolist():
-            found[
-                Out(f"joints.{rows[k].element}", "holds bodies at an angle to the plane", MOVES)
-            ] = None
+            whose = f"joints.{rows[k].element}"
+            found[Out(whose, "holds bodies at an angle to the plane", MOVES)] = None
         for k in np.flatnonzero(outside & ~within & (phi_t != 0.0)).tolist():
             found[Out(f"drives.{rows[k].element}", "moves out of the x-y plane", MOVES)] = None
     return list(found)

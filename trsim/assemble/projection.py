@@ -6,9 +6,9 @@ dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1
 import numpy as np
 
 from trsim.assemble.equations import constraints, equation, poses
-from trsim.assemble.linear import factorise, smallest_pivot, solve
+from trsim.assemble.linear import refactorise, smallest_pivot, solve
 from trsim.assemble.on_beams import PULL, call_beams
-from trsim.assemble.schur import pull, rows, velocity_residual
+from trsim.assemble.schur import pull, velocity_residual
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels.signatures import A1, f8, float64, i8, void
 from trsim.kernels.vectors import clear, clear_table
@@ -67,8 +67,7 @@ def project_positions(s, t, y):
     """
     poses(s, y)
     constraints(s, t)
-    rows(s)
-    factorise(s)
+    refactorise(s)
     worst = 0.0
     for k in range(s.m):
         s.x[k] = s.phi[k]
@@ -144,8 +143,7 @@ def poses_and_rows(s, t, y):
     if smallest_pivot(s) > DOUBTFUL:
         return
     constraints(s, t)
-    rows(s)
-    factorise(s)
+    refactorise(s)
 
 
 @equation

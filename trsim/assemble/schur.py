@@ -30,18 +30,12 @@ def rows(s):
 def planar_rows(s):
     """B and W of x', y' and omega_z, and what they add to S."""
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
-    slot_line, mass_inverse, inertia_inverse, hub = (
-        s.slot_line,
-        s.mass_inverse,
-        s.inertia_inverse,
-        s.hub,
-    )
     pair = 0
     for f in range(1, s.n_r):
-        first, behind, alone = frame_start[f], frame_start[f + 1], hub[f] < 0
-        by_mass, by_inertia = mass_inverse[f], inertia_inverse[f, 8]
+        first, behind, alone = frame_start[f], frame_start[f + 1], s.hub[f] < 0
+        by_mass, by_inertia = s.mass_inverse[f], s.inertia_inverse[f, 8]
         for p in range(first, behind):
-            l = slot_line[p]
+            l = s.slot_line[p]
             b0, b1, b2 = J[l, 0], J[l, 1], J[l, 5]
             w0, w1, w2 = b0 * by_mass, b1 * by_mass, b2 * by_inertia
             B[p, 0], B[p, 1], B[p, 2] = b0, b1, b2

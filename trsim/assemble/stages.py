@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from trsim.assemble.addresses import JointCoordinate
 from trsim.assemble.better import better
 from trsim.assemble.instances import Instance, RowName
+from trsim.assemble.layout import no_outputs
 from trsim.assemble.rows import all_rows
 from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, MOST, Switches, lock_name
 from trsim.elements.prescribed import AnyDrive
@@ -26,21 +27,6 @@ from trsim.elements.scene import Model, Scene
 
 Array = NDArray[np.float64]
 Rows = list[RowName]
-# the same in every stage
-OUTPUTS = (
-    "wanted",
-    "joint_out",
-    "column_energy",
-    "n_out",
-    "section",
-    "section_at",
-    "vector",
-    "sought",
-    "kin",
-    "lever",
-    "least",
-    "shared",
-)
 
 
 class Choice(NamedTuple):
@@ -126,7 +112,7 @@ class Stages:
         held -= {angle.name for _, angle in self.without_hinge(stage)}
         watch = model.watch.copy()
         watch[[event.coordinate in held for event in self.switches.events], MOST] = 0
-        outputs = {name: getattr(self.first, name) for name in OUTPUTS}
+        outputs = {name: getattr(self.first, name) for name in no_outputs(0)}
         return model.replaced(watch=watch, **outputs)
 
     def without_hinge(

@@ -28,9 +28,8 @@ from trsim.units import fits
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
-MOST = (
-    2  # column of a model's `watch`: how often an event happens (tables.py, solve/march/watch.py)
-)
+# column of a model's `watch`: how often an event happens (tables.py, solve/march/watch.py)
+MOST = 2
 # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
 TIME, LIMITS = -1, -2
 SECTION = "events"  # of the instances of locks

@@ -254,18 +254,16 @@ def norm(at: Addresses, d: int, size: float, arms: list[float]) -> tuple[NDArray
     lever: list[float] = []
     width = 2 if d == 3 else 3
     bodies, nodes = arms[1 : at.n_rigid], arms[at.n_rigid :]
-    for arm in bodies:
-        kind += [scales.LENGTH] * width + [scales.ANGLE] * (1 if d == 3 else 4)
-        lever += [1.0] * width + ([arm] if d == 3 else [2.0 * arm] * 4)
-    for arm in nodes:
-        kind += [scales.LENGTH] * width + [scales.ANGLE] * width
-        lever += [1.0] * width + [arm] * width
-    for arm in bodies:
-        kind += [scales.SPEED] * width + [scales.RATE] * (1 if d == 3 else 3)
-        lever += [1.0] * width + [arm] * (1 if d == 3 else 3)
-    for arm in nodes:
-        kind += [scales.SPEED] * width + [scales.RATE] * width
-        lever += [1.0] * width + [arm] * width
+    angles, rates = (1, 1) if d == 3 else (4, 3)  # of a body: the four are of its quaternion
+    for found, unit, turn, number, factor in (
+        (bodies, scales.LENGTH, scales.ANGLE, angles, 1.0 if d == 3 else 2.0),
+        (nodes, scales.LENGTH, scales.ANGLE, width, 1.0),
+        (bodies, scales.SPEED, scales.RATE, rates, 1.0),
+        (nodes, scales.SPEED, scales.RATE, width, 1.0),
+    ):
+        for arm in found:
+            kind += [unit] * width + [turn] * number
+            lever += [1.0] * width + [factor * arm] * number
     kind += [scales.OUTSIDE] * N_BOOK
     lever += [1.0] * N_BOOK
     for scale, _ in at.states:

@@ -29,8 +29,17 @@ from trsim.elements.contract import (
     Reach,
     Row,
     kernel,
+    measured,
 )
-from trsim.elements.frames import between_points, distance_row, helper, line, points, push
+from trsim.elements.frames import (
+    between_points,
+    distance_row,
+    helper,
+    line,
+    points,
+    push_apart,
+    scaled,
+)
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
@@ -139,27 +148,24 @@ STALLED = "reached its stall force"
 
 
 @kernel
-def coordinate(t, scene, a, b):
-    S = scene.S
-    for e in range(a, b):
-        own = Own(scene, e)
-        _, _, _, length, rate = line(scene, e)
-        S[own.coordinate, 0] = length - own.length
-        S[own.coordinate, 1] = rate
+def coordinate(t, scene, e):
+    own = Own(scene, e)
+    _, _, _, length, rate = line(scene, e)
+    scene.S[own.coordinate, 0] = length - own.length
+    scene.S[own.coordinate, 1] = rate
 
 
 @kernel
-def constraint(t, scene, a, b):
-    for e in range(a, b):
-        own = Own(scene, e)
-        k = own.row
-        if k < 0:
-            continue
-        f, f_dot, f_ddot = prescribed(t, scene, e)
-        distance_row(scene, e, k)
-        scene.phi[k] -= own.length + f
-        scene.phi_t[k] = -f_dot
-        scene.gamma[k] += f_ddot
+def constraint(t, scene, e):
+    own = Own(scene, e)
+    k = own.row
+    if k < 0:
+        return
+    f, f_dot, f_ddot = prescribed(t, scene, e)
+    distance_row(scene, e, k)
+    scene.phi[k] -= own.length + f
+    scene.phi_t[k] = -f_dot
+    scene.gamma[k] += f_ddot
 
 
 @helper
@@ -187,78 +193,68 @@ def state_of(t, scene, e):
 
 
 @kernel
-def force(t, scene, a, b):
-    F, zd = scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        P, behind, _, u_dot, _, f_dot, f_ddot = state_of(t, scene, e)
-        if own.state >= 0:
-            zd[own.state] = f_dot
-        if own.place >= 0:
-            slip = u_dot - f_dot
-            zd[own.place] = u_dot
-            zd[own.slip] = (behind - P) / own.mass - f_ddot
-            zd[DAMPERS] -= own.supply_damping * slip * slip
+def force(t, scene, e):
+    zd, own = scene.zd, Own(scene, e)
+    P, behind, _, u_dot, _, f_dot, f_ddot = state_of(t, scene, e)
+    if own.state >= 0:
+        zd[own.state] = f_dot
+    if own.place >= 0:
+        slip = u_dot - f_dot
+        zd[own.place] = u_dot
+        zd[own.slip] = (behind - P) / own.mass - f_ddot
+        zd[DAMPERS] -= own.supply_damping * slip * slip
+        zd[DRIVES] += behind * f_dot
+    if own.stiffness > 0.0:
+        stretch = scene.S[own.coordinate, 1] - u_dot
+        zd[DAMPERS] -= own.damping * stretch * stretch
+        p_i, p_j, n, _, _ = line(scene, e)
+        push_apart(scene.F, own.i, p_i, own.j, p_j, scaled(P, n))
+        if own.place < 0:
             zd[DRIVES] += behind * f_dot
-        if own.stiffness > 0.0:
-            stretch = scene.S[own.coordinate, 1] - u_dot
-            zd[DAMPERS] -= own.damping * stretch * stretch
-            p_i, p_j, n, _, _ = line(scene, e)
-            push(F, own.j, p_j, (P * n[0], P * n[1], P * n[2]))
-            push(F, own.i, p_i, (-P * n[0], -P * n[1], -P * n[2]))
-            if own.place < 0:
-                zd[DRIVES] += behind * f_dot
 
 
 @kernel
-def gap(t, scene, a, b):
+def gap(t, scene, e):
     g = scene.gap
-    for e in range(a, b):
-        own = Own(scene, e)
-        _, behind, _, u_dot, _, f_dot, _ = state_of(t, scene, e)
-        sign = 1.0 if behind > 0.0 else -1.0
-        g[e, 0] = sign * behind - own.stall
-        # of the spring alone: that of the damper takes accelerations
-        g[e, 1] = -sign * own.stiffness * (scene.S[own.coordinate, 1] - u_dot)
-        if own.place >= 0:
-            g[e, 1] = -sign * own.supply * (u_dot - f_dot)
+    own = Own(scene, e)
+    _, behind, _, u_dot, _, f_dot, _ = state_of(t, scene, e)
+    sign = 1.0 if behind > 0.0 else -1.0
+    g[e, 0] = sign * behind - own.stall
+    # of the spring alone: that of the damper takes accelerations
+    g[e, 1] = -sign * own.stiffness * (scene.S[own.coordinate, 1] - u_dot)
+    if own.place >= 0:
+        g[e, 1] = -sign * own.supply * (u_dot - f_dot)
 
 
 @kernel
-def energy(t, scene, a, b):
-    z, E = scene.z, scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.stiffness == 0.0 and own.place < 0:
-            continue
-        f, f_dot, _ = prescribed(t, scene, e)
-        u = f
-        if own.place >= 0:
-            u, u_dot = z[own.place], f_dot + z[own.slip]
-            E[SPRINGS] += 0.5 * own.supply * (u - f) ** 2 + 0.5 * own.mass * u_dot**2
-        E[SPRINGS] += 0.5 * own.stiffness * (scene.S[own.coordinate, 0] - u) ** 2
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.stiffness == 0.0 and own.place < 0:
+        return
+    f, f_dot, _ = prescribed(t, scene, e)
+    u = f
+    if own.place >= 0:
+        u, u_dot = scene.z[own.place], f_dot + scene.z[own.slip]
+        scene.E[SPRINGS] += 0.5 * own.supply * (u - f) ** 2 + 0.5 * own.mass * u_dot**2
+    scene.E[SPRINGS] += 0.5 * own.stiffness * (scene.S[own.coordinate, 0] - u) ** 2
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     S, out = scene.S, scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        P, behind, u, _, f, f_dot, _ = state_of(t, scene, e)
-        if own.row >= 0:
-            P = -scene.lam[own.row]
-            behind = P
-        _, _, n, _, _ = line(scene, e)
-        out[o] = own.sign * P
-        for c in range(3):
-            out[o + 1 + c] = P * n[c]
-        out[o + 4], out[o + 5] = S[own.coordinate, 0], S[own.coordinate, 1]
-        out[o + 6], out[o + 7], out[o + 8] = f, f_dot, behind * f_dot
-        if own.place >= 0:
-            out[o + 9], out[o + 10] = u, own.sign * behind
+    own = Own(scene, e)
+    P, behind, u, _, f, f_dot, _ = state_of(t, scene, e)
+    if own.row >= 0:
+        P = -scene.lam[own.row]
+        behind = P
+    _, _, n, _, _ = line(scene, e)
+    out[o] = own.sign * P
+    for c in range(3):
+        out[o + 1 + c] = P * n[c]
+    out[o + 4], out[o + 5] = S[own.coordinate, 0], S[own.coordinate, 1]
+    out[o + 6], out[o + 7], out[o + 8] = f, f_dot, behind * f_dot
+    if own.place >= 0:
+        out[o + 9], out[o + 10] = u, own.sign * behind
 
 
 CHANNELS = (

@@ -17,7 +17,17 @@ from typing import ClassVar
 from pydantic import model_validator
 
 from trsim.elements.cable import Cable
-from trsim.elements.contract import DAMPERS, GRAVITY, SPRINGS, Channel, Element, Memory, Row, kernel
+from trsim.elements.contract import (
+    DAMPERS,
+    GRAVITY,
+    SPRINGS,
+    Channel,
+    Element,
+    Memory,
+    Row,
+    kernel,
+    measured,
+)
 from trsim.elements.frames import cross, dot, helper
 from trsim.elements.rigid_body import RigidBody
 from trsim.errors import ScenarioError
@@ -179,22 +189,21 @@ def gathered(scene, i):
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     F, Q, element = scene.F, scene.Q, scene.element
-    for e in range(a, b):
-        own = Own(scene, e)
-        for i in range(own.first, own.first + own.nodes - 1):
-            gathered(scene, i)
-            add_force(element[E_NOW], element[E_RATE], own, own.beta, element[E_FORCE])
-            s1, s2, s3, s4 = uniform_shares(own.length)
-            for c in range(3):
-                weight = own.mass * own.field[c]
-                F[i, c] += element[E_FORCE, c] + s1 * weight
-                Q[i, c] += element[E_FORCE, 3 + c] + s2 * weight
-                F[i + 1, c] += element[E_FORCE, 6 + c] + s3 * weight
-                Q[i + 1, c] += element[E_FORCE, 9 + c] + s4 * weight
-            if own.beta > 0.0:
-                scene.zd[DAMPERS] += damping_power(element, own)
+    own = Own(scene, e)
+    for i in range(own.first, own.first + own.nodes - 1):
+        gathered(scene, i)
+        add_force(element[E_NOW], element[E_RATE], own, own.beta, element[E_FORCE])
+        s1, s2, s3, s4 = uniform_shares(own.length)
+        for c in range(3):
+            weight = own.mass * own.field[c]
+            F[i, c] += element[E_FORCE, c] + s1 * weight
+            Q[i, c] += element[E_FORCE, 3 + c] + s2 * weight
+            F[i + 1, c] += element[E_FORCE, 6 + c] + s3 * weight
+            Q[i + 1, c] += element[E_FORCE, 9 + c] + s4 * weight
+        if own.beta > 0.0:
+            scene.zd[DAMPERS] += damping_power(element, own)
 
 
 @helper
@@ -211,32 +220,30 @@ def damping_power(element, own):
 
 
 @kernel
-def stiffness(t, scene, a, b):
+def stiffness(t, scene, e):
     element = scene.element
-    for e in range(a, b):
-        own = Own(scene, e)
-        for k in range(own.nodes - 1):
-            gathered(scene, own.first + k)
-            row = 12 * (own.element + k)
-            K, C = scene.tangent[row : row + 12], scene.viscous[row : row + 12]
-            clear_table(K)
-            add_stiffness(element[E_NOW], own, element[ROOM:], K)
-            if own.beta > 0.0:
-                clear_table(C)
-                add_damping(element[E_NOW], own, element[ROOM:], C)
+    own = Own(scene, e)
+    for k in range(own.nodes - 1):
+        gathered(scene, own.first + k)
+        row = 12 * (own.element + k)
+        K, C = scene.tangent[row : row + 12], scene.viscous[row : row + 12]
+        clear_table(K)
+        add_stiffness(element[E_NOW], own, element[ROOM:], K)
+        if own.beta > 0.0:
+            clear_table(C)
+            add_damping(element[E_NOW], own, element[ROOM:], C)
 
 
 @kernel
-def energy(t, scene, a, b):
+def energy(t, scene, e):
     E, x = scene.E, scene.element[E_NOW]
-    for e in range(a, b):
-        own = Own(scene, e)
-        for i in range(own.first, own.first + own.nodes - 1):
-            gathered(scene, i)
-            stretching, bending = energies(x, own)
-            E[SPRINGS] += stretching + bending
-            for c in range(3):
-                E[GRAVITY] -= own.mass * own.field[c] * moment(x, own.length, c)
+    own = Own(scene, e)
+    for i in range(own.first, own.first + own.nodes - 1):
+        gathered(scene, i)
+        stretching, bending = energies(x, own)
+        E[SPRINGS] += stretching + bending
+        for c in range(3):
+            E[GRAVITY] -= own.mass * own.field[c] * moment(x, own.length, c)
 
 
 @helper
@@ -246,46 +253,42 @@ def moment(x, l, c):
     return s1 * x[c] + s2 * x[3 + c] + s3 * x[6 + c] + s4 * x[9 + c]
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     X, V, out, element = scene.X, scene.V, scene.out, scene.element
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        first, nodes, l = own.first, own.nodes, own.length
-        last = first + nodes - 1
-        whole = l * (nodes - 1)
-        for k in range(BAR + AT_NODE * nodes):
-            out[o + k] = 0.0
-        for i in range(first, last):
-            gathered(scene, i)
-            x, v = element[E_NOW], element[E_RATE]
-            for c in range(3):
-                out[o + c] += moment(x, l, c) / whole
-                out[o + 3 + c] += moment(v, l, c) / whole
-            stretching, bending = energies(x, own)
-            out[o + 16] += stretching + bending
-            out[o + 17] += stretching
-            for n in range(2):
-                N, M = stress(x, own, float(n))
-                # a node between two elements has the mean of both
-                share = 1.0 if i + n == first or i + n == last else 0.5
-                place = o + BAR + AT_NODE * (i + n - first)
-                out[place + 3] += share * N
-                out[place + 4] += share * M
-            if 2 * (i - first) in (nodes - 1, nodes - 2):
-                middle = position(x, l, 0.5 * (nodes - 1) - (i - first))
-                for c in range(3):
-                    out[o + 12 + c] = middle[c]
-        chord_spin(X, V, first, last, out, o + 6)
+    own = Own(scene, e)
+    first, nodes, l = own.first, own.nodes, own.length
+    last = first + nodes - 1
+    whole = l * (nodes - 1)
+    for k in range(BAR + AT_NODE * nodes):
+        out[o + k] = 0.0
+    for i in range(first, last):
+        gathered(scene, i)
+        x, v = element[E_NOW], element[E_RATE]
         for c in range(3):
-            out[o + 9 + c] = X[last, c]
-        out[o + 15] = deflection(X, first, last)
-        for k in range(nodes):
+            out[o + c] += moment(x, l, c) / whole
+            out[o + 3 + c] += moment(v, l, c) / whole
+        stretching, bending = energies(x, own)
+        out[o + 16] += stretching + bending
+        out[o + 17] += stretching
+        for n in range(2):
+            N, M = stress(x, own, float(n))
+            # a node between two elements has the mean of both
+            share = 1.0 if i + n == first or i + n == last else 0.5
+            place = o + BAR + AT_NODE * (i + n - first)
+            out[place + 3] += share * N
+            out[place + 4] += share * M
+        if 2 * (i - first) in (nodes - 1, nodes - 2):
+            middle = position(x, l, 0.5 * (nodes - 1) - (i - first))
             for c in range(3):
-                out[o + BAR + AT_NODE * k + c] = X[first + k, c]
+                out[o + 12 + c] = middle[c]
+    chord_spin(X, V, first, last, out, o + 6)
+    for c in range(3):
+        out[o + 9 + c] = X[last, c]
+    out[o + 15] = deflection(X, first, last)
+    for k in range(nodes):
+        for c in range(3):
+            out[o + BAR + AT_NODE * k + c] = X[first + k, c]
 
 
 @helper

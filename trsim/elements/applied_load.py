@@ -10,8 +10,18 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Memory, Reach, Row, Turning, kernel
-from trsim.elements.frames import arm, dot, push, spin, twist, velocity
+from trsim.elements.contract import (
+    LOADS,
+    Channel,
+    Element,
+    Memory,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+    measured,
+)
+from trsim.elements.frames import arm, dot, helper, push, scaled, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.kernels.columns import V3, i8
 from trsim.laws.functions import value
@@ -45,15 +55,20 @@ class AppliedLoad(Spec):
         return self
 
 
-class Own(Memory):
-    """Of one instance."""
+class Directed(Memory):
+    """Of every load with a direction."""
 
-    body: i8
+    body: i8  # or the first node of a bar
     frame: i8  # with which the direction turns
     function: i8  # f in tab
+    direction: V3  # in the axes of the frame
+
+
+class Own(Directed):
+    """Of one instance."""
+
     turns: i8  # 1: a torque
     point: V3  # m, in the axes of the body
-    direction: V3  # in those of the frame
 
 
 def pack(name, spec, at):
@@ -71,35 +86,32 @@ def pack(name, spec, at):
     return Row(*own, turns=is_torque, reads=load.sensors)
 
 
-@kernel
-def force(t, scene, a, b):
-    X, V, F, zd = scene.X, scene.V, scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        i, n = own.body, arm(X, own.frame, own.direction)
-        f = value(scene.tab, own.function, t, scene.S)
-        load = (f * n[0], f * n[1], f * n[2])
-        if own.turns == 1:
-            twist(F, i, load)
-            zd[LOADS] += dot(load, spin(V, i))
-        else:
-            p = arm(X, i, own.point)
-            push(F, i, p, load)
-            zd[LOADS] += dot(load, velocity(V, i, p))
+@helper
+def magnitude_and_load(t, scene, e):
+    """f, and f along its direction, world axes."""
+    own = Directed(scene, e)
+    f = value(scene.tab, own.function, t, scene.S)
+    return f, scaled(f, arm(scene.X, own.frame, own.direction))
 
 
 @kernel
-def measure(t, scene, a, b):
-    col, out = scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        own = Own(scene, e)
-        f = value(scene.tab, own.function, t, scene.S)
-        n = arm(scene.X, own.frame, own.direction)
-        out[col[e]] = f
-        for c in range(3):
-            out[col[e] + 1 + c] = f * n[c]
+def force(t, scene, e):
+    own = Own(scene, e)
+    i = own.body
+    _, load = magnitude_and_load(t, scene, e)
+    if own.turns == 1:
+        twist(scene.F, i, load)
+        scene.zd[LOADS] += dot(load, spin(scene.V, i))
+    else:
+        p = arm(scene.X, i, own.point)
+        push(scene.F, i, p, load)
+        scene.zd[LOADS] += dot(load, velocity(scene.V, i, p))
+
+
+@measured
+def measure(t, scene, e, o):
+    out = scene.out
+    out[o], (out[o + 1], out[o + 2], out[o + 3]) = magnitude_and_load(t, scene, e)
 
 
 def reach(row):

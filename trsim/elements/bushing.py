@@ -28,19 +28,21 @@ from trsim.elements.contract import (
     Springs,
     Turning,
     kernel,
+    measured,
 )
 from trsim.elements.frames import (
     TwoPoints,
+    carried,
     dot,
     helper,
+    minus,
     points,
-    push,
-    separation,
-    spin,
-    twist,
-    two_points,
-    velocity,
+    push_apart,
+    relative_spin,
+    scaled,
+    twist_apart,
 )
+from trsim.elements.joint import of_key
 from trsim.elements.rotations import gradient, into, out_of, rotation_vector, triad
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
@@ -80,10 +82,7 @@ class Bushing(Spec):
     @property
     def axes(self):
         """The three unit vectors along which stiffnesses are meant, world axes as drawn."""
-        for key in ("x_axis", "y_axis"):
-            if not any(getattr(self, key)):
-                raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
-        x, y = direction(self.x_axis), direction(self.y_axis)
+        x, y = of_key(self, "x_axis"), of_key(self, "y_axis")
         z = across(x, y)
         if max(map(abs, z)) < 1e-6:
             what = "`y_axis` has the direction of `x_axis`"
@@ -130,12 +129,11 @@ def half_square(K, v):
 
 @helper
 def slide(scene, e):
-    """The axes A_i, the arm to P_j on body i and on body j, and d."""
-    X, own = scene.X, Own(scene, e)
-    i, p_i, j, p_j = two_points(scene, e)
-    D = separation(X, i, p_i, j, p_j)
-    A = triad(X, i, own.x_i, own.y_i, own.z_i)
-    return A, (p_i[0] + D[0], p_i[1] + D[1], p_i[2] + D[2]), p_j, into(A, D)
+    """The axes A_i, the arm to P_j on body i and on body j, d and d'."""
+    own = Own(scene, e)
+    p_i, p_j, d, v = carried(scene, e)
+    A = triad(scene.X, own.i, own.x_i, own.y_i, own.z_i)
+    return A, p_i, p_j, into(A, d), into(A, v)
 
 
 @helper
@@ -147,60 +145,46 @@ def turn(X, A, own):
 @helper
 def loads(scene, e):
     """Arms on both bodies, force and moment on body j in world axes, the power lost."""
-    V, own = scene.V, Own(scene, e)
-    i, j = own.i, own.j
-    A, p_i, p_j, d = slide(scene, e)
-    v_i, v_j, o_i, o_j = velocity(V, i, p_i), velocity(V, j, p_j), spin(V, i), spin(V, j)
-    rate = into(A, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    own = Own(scene, e)
+    A, p_i, p_j, d, rate = slide(scene, e)
     k, c = diagonal(own.stiffness, d), diagonal(own.damping, rate)
-    f, m, lost = (-k[0] - c[0], -k[1] - c[1], -k[2] - c[2]), (0.0, 0.0, 0.0), dot(c, rate)
+    f, m, lost = minus(scaled(-1.0, k), c), (0.0, 0.0, 0.0), dot(c, rate)
     if own.turns == 1:
         theta = turn(scene.X, A, own)
-        omega = into(A, (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2]))
+        omega = into(A, relative_spin(scene.V, own.i, own.j))
         k = gradient(theta, diagonal(own.rotational_stiffness, theta))
         c = diagonal(own.rotational_damping, omega)
-        m = (-k[0] - c[0], -k[1] - c[1], -k[2] - c[2])
+        m = minus(scaled(-1.0, k), c)
         lost += dot(c, omega)
     return p_i, p_j, out_of(A, f), out_of(A, m), lost
 
 
 @kernel
-def force(t, scene, a, b):
-    F, zd = scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        i, j = own.i, own.j
-        p_i, p_j, f, m, lost = loads(scene, e)
-        push(F, j, p_j, f)
-        push(F, i, p_i, (-f[0], -f[1], -f[2]))
-        twist(F, j, m)
-        twist(F, i, (-m[0], -m[1], -m[2]))
-        zd[DAMPERS] -= lost
+def force(t, scene, e):
+    own = Own(scene, e)
+    p_i, p_j, f, m, lost = loads(scene, e)
+    push_apart(scene.F, own.i, p_i, own.j, p_j, f)
+    twist_apart(scene.F, own.i, own.j, m)
+    scene.zd[DAMPERS] -= lost
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        A, _, _, d = slide(scene, e)
-        E[SPRINGS] += half_square(own.stiffness, d)
-        if own.turns == 1:
-            E[SPRINGS] += half_square(own.rotational_stiffness, turn(scene.X, A, own))
+def energy(t, scene, e):
+    own = Own(scene, e)
+    A, _, _, d, _ = slide(scene, e)
+    scene.E[SPRINGS] += half_square(own.stiffness, d)
+    if own.turns == 1:
+        scene.E[SPRINGS] += half_square(own.rotational_stiffness, turn(scene.X, A, own))
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     out = scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        A, _, _, d = slide(scene, e)
-        _, _, f, m, _ = loads(scene, e)
-        theta = turn(scene.X, A, Own(scene, e))
-        for c in range(3):
-            out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
+    A, _, _, d, _ = slide(scene, e)
+    _, _, f, m, _ = loads(scene, e)
+    theta = turn(scene.X, A, Own(scene, e))
+    for c in range(3):
+        out[o + c], out[o + 3 + c], out[o + 6 + c], out[o + 9 + c] = f[c], m[c], d[c], theta[c]
 
 
 def turns_against(row):
@@ -230,10 +214,8 @@ def reach(row):
     """Its matrices of stiffness and damping; each acts in the plane where it couples no z to it."""
     own = Own.of(row)
     axes = (*own.x_i, *own.y_i, *own.z_i)
-    sliding, turning = (
-        (own.stiffness, own.damping),
-        (own.rotational_stiffness, own.rotational_damping),
-    )
+    sliding = (own.stiffness, own.damping)
+    turning = (own.rotational_stiffness, own.rotational_damping)
     laws = (*((law, False) for law in sliding), *((law, True) for law in turning))
     return Reach(
         places=((own.i, own.p_i, (own.i, own.j)),) if any(map(any, sliding)) else (),

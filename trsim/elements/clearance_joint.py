@@ -32,16 +32,19 @@ from trsim.elements.contract import (
     Reach,
     Row,
     kernel,
+    measured,
 )
 from trsim.elements.frames import (
     arm,
+    carried,
     cross,
     dot,
     helper,
+    minus,
+    plus,
     points,
-    push,
-    separation,
-    two_points,
+    push_apart,
+    scaled,
     velocity,
 )
 from trsim.elements.joint import triads
@@ -50,11 +53,7 @@ from trsim.elements.rows import TILTS, Axes, along, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
 from trsim.kernels.columns import constraint_row, f8, i8, run
-from trsim.laws.contact import (
-    elastic,
-    normal_force,
-    stored,
-)
+from trsim.laws.contact import elastic, normal_force, stored
 from trsim.laws.friction import (
     CODES,
     N_PARAMETERS,
@@ -139,75 +138,50 @@ def pack(name, spec, at):
 
 @helper
 def play(scene, e):
-    """Arms, separation, unit normal and tangent, penetration and its rate."""
-    X, V, own = scene.X, scene.V, Own(scene, e)
-    i, p_i, j, p_j = two_points(scene, e)
-    axis = arm(X, i, own.a_i)
-    d = separation(X, i, p_i, j, p_j)
-    along = dot(axis, d)
-    e_r = (d[0] - along * axis[0], d[1] - along * axis[1], d[2] - along * axis[2])
+    """Arms of the journal's centre on both bodies, unit normal and tangent, penetration and its
+    rate."""
+    own = Own(scene, e)
+    axis = arm(scene.X, own.i, own.a_i)
+    # v: against the bearing's body moving with the journal centre, as n turns with it
+    r_i, p_j, d, v = carried(scene, e)
+    e_r = minus(d, scaled(dot(axis, d), axis))
     size = sqrt(dot(e_r, e_r))
     if size == 0.0:  # centred: the normal is arbitrary and nothing touches
-        n = arm(X, i, own.u_i)
+        n = arm(scene.X, own.i, own.u_i)
     else:
         n = (e_r[0] / size, e_r[1] / size, e_r[2] / size)
-    # against the bearing's body moving with the journal centre: n turns with it
-    v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
-    v_j = velocity(V, j, p_j)
-    rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    return p_i, p_j, d, n, cross(axis, n), size - own.clearance, rate
-
-
-@helper
-def touching(p_i, p_j, d, n, reach):
-    """The contact point seen from both centres of mass.
-
-    It lies a bearing radius outside the circle of the journal centre, at the end of the bearing's
-    radius plus the penetration; reach: the journal's radius.
-    """
-    c_j = (p_j[0] + reach * n[0], p_j[1] + reach * n[1], p_j[2] + reach * n[2])
-    c_i = (
-        p_i[0] + d[0] + reach * n[0],
-        p_i[1] + d[1] + reach * n[1],
-        p_i[2] + d[2] + reach * n[2],
-    )
-    return c_i, c_j
-
-
-@helper
-def slip(V, i, c_i, j, c_j, tangent):
-    """Sliding speed of the journal against the bearing at the contact point, m/s."""
-    v_i, v_j = velocity(V, i, c_i), velocity(V, j, c_j)
-    return dot(tangent, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
+    return r_i, p_j, n, cross(axis, n), size - own.clearance, dot(n, v)
 
 
 @helper
 def sliding(scene, e):
-    """The sliding speed of instance e, m/s."""
-    own = Own(scene, e)
-    p_i, p_j, d, n, tangent, _, _ = play(scene, e)
-    c_i, c_j = touching(p_i, p_j, d, n, own.bearing_radius - own.clearance)
-    return slip(scene.V, own.i, c_i, own.j, c_j, tangent)
+    """The contact point seen from both centres of mass, the same of `play`, the sliding speed of
+    the journal against the bearing there, m/s.
+
+    It lies a bearing radius outside the circle of the journal centre, at the end of the bearing's
+    radius plus the penetration: as far as the journal's radius from its centre.
+    """
+    V, own = scene.V, Own(scene, e)
+    r_i, p_j, n, tangent, depth, rate = play(scene, e)
+    reach = scaled(own.bearing_radius - own.clearance, n)
+    c_i, c_j = plus(r_i, reach), plus(p_j, reach)
+    v_t = dot(tangent, minus(velocity(V, own.j, c_j), velocity(V, own.i, c_i)))
+    return c_i, c_j, n, tangent, depth, rate, v_t
 
 
 @helper
 def contact_forces(scene, e):
     """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
-    V, own = scene.V, Own(scene, e)
-    i, j = own.i, own.j
-    p_i, p_j, d, n, tangent, depth, rate = play(scene, e)
-    c_i, c_j = touching(p_i, p_j, d, n, own.bearing_radius - own.clearance)
+    own = Own(scene, e)
+    c_i, c_j, n, tangent, depth, rate, v_t = sliding(scene, e)
     if own.phase == FLIGHT or depth <= 0.0:
         # at the touch itself nothing presses yet, and the journal slides as it will right behind it
-        v_t = slip(V, i, c_i, j, c_j, tangent) if own.phase == CONTACT else 0.0
+        v_t = v_t if own.phase == CONTACT else 0.0
         return 0.0, 0.0, v_t, 0.0, c_i, c_j, n, tangent, depth, rate
     first = own.impact_speed
     if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
         first = max(rate, own.slowest_impact)
-    F_n = normal_force(
-        depth, rate, first, own.stiffness, own.exponent, own.clearance, own.form, own.chi
-    )
-    v_t = slip(V, i, c_i, j, c_j, tangent)
+    F_n = normal_force(depth, rate, first, own)
     w = scene.z[own.state] if own.state >= 0 else 0.0
     f = own.friction
     if own.friction_law == CORNERED and own.branch != WHOLE:
@@ -217,87 +191,69 @@ def contact_forces(scene, e):
     return F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate
 
 
-@kernel
-def force(t, scene, a, b):
-    F, zd, left = scene.F, scene.zd, scene.left
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
-        if own.friction_law == CORNERED and own.branch != WHOLE:
-            left[e] = max(left[e], beyond(own.branch, v_t, own.friction[1], own.friction[2]))
-        if depth <= 0.0:
-            continue
-        f = (
-            -F_n * n[0] + F_t * tangent[0],
-            -F_n * n[1] + F_t * tangent[1],
-            -F_n * n[2] + F_t * tangent[2],
-        )
-        push(F, own.j, c_j, f)
-        push(F, own.i, c_i, (-f[0], -f[1], -f[2]))
-        spring = elastic(depth, own.stiffness, own.exponent, own.clearance, own.form)
-        zd[IMPACTS] -= (F_n - spring) * rate
-        zd[FRICTION] += F_t * v_t
-        if own.state >= 0:
-            zd[own.state] = w_dot
+@helper
+def on_journal(F_n, F_t, n, tangent):
+    """The force on the journal."""
+    return plus(scaled(-F_n, n), scaled(F_t, tangent))
 
 
 @kernel
-def gap(t, scene, a, b):
-    g = scene.gap
-    for e in range(a, b):
-        _, _, _, _, _, g[e, 0], g[e, 1] = play(scene, e)
+def force(t, scene, e):
+    zd, left, own = scene.zd, scene.left, Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
+    if own.friction_law == CORNERED and own.branch != WHOLE:
+        left[e] = max(left[e], beyond(own.branch, v_t, own.friction[1], own.friction[2]))
+    if depth <= 0.0:
+        return
+    push_apart(scene.F, own.i, c_i, own.j, c_j, on_journal(F_n, F_t, n, tangent))
+    zd[IMPACTS] -= (F_n - elastic(depth, own)) * rate
+    zd[FRICTION] += F_t * v_t
+    if own.state >= 0:
+        zd[own.state] = w_dot
 
 
 @kernel
-def corners(t, scene, a, b):
+def gap(t, scene, e):
+    _, _, _, _, scene.gap[e, 0], scene.gap[e, 1] = play(scene, e)
+
+
+@kernel
+def corners(t, scene, e):
     out = scene.corner
-    for e in range(a, b):
-        own = Own(scene, e)
-        out[e, 0] = -1.0
-        if own.friction_law != CORNERED or own.phase != CONTACT:
-            continue
-        v_t = sliding(scene, e)
-        v0, v1, branch = own.friction[1], own.friction[2], own.branch
-        if branch == WHOLE:
-            out[e, 1] = branch_of(v_t, v0, v1)
-        else:
-            out[e, 0], out[e, 1] = beyond(branch, v_t, v0, v1), neighbour(branch, v_t, v0, v1)
+    own = Own(scene, e)
+    out[e, 0] = -1.0
+    if own.friction_law != CORNERED or own.phase != CONTACT:
+        return
+    _, _, _, _, _, _, v_t = sliding(scene, e)
+    v0, v1, branch = own.friction[1], own.friction[2], own.branch
+    if branch == WHOLE:
+        out[e, 1] = branch_of(v_t, v0, v1)
+    else:
+        out[e, 0], out[e, 1] = beyond(branch, v_t, v0, v1), neighbour(branch, v_t, v0, v1)
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        _, _, _, _, _, depth, _ = play(scene, e)
-        E[CONTACTS] += stored(depth, own.stiffness, own.exponent, own.clearance, own.form)
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    _, _, _, _, depth, _ = play(scene, e)
+    scene.E[CONTACTS] += stored(depth, own)
 
 
-@kernel
-def measure(t, scene, a, b):
-    X, V, out = scene.X, scene.V, scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
-        i, p_i, j, p_j = two_points(scene, e)
-        d = separation(X, i, p_i, j, p_j)
-        v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
-        v_j = velocity(V, j, p_j)
-        v = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-        u, w = arm(X, i, own.u_i), arm(X, i, own.w_i)
-        out[o], out[o + 1], out[o + 2] = F_n, F_t, sqrt(F_n * F_n + F_t * F_t)
-        out[o + 3], out[o + 4], out[o + 5] = depth, rate, v_t
-        out[o + 6], out[o + 7] = dot(u, d), dot(w, d)
-        out[o + 8], out[o + 9] = dot(u, v), dot(w, v)
-        for c in range(3):
-            out[o + 10 + c] = -F_n * n[c] + F_t * tangent[c]
+@measured
+def measure(t, scene, e, o):
+    out, own = scene.out, Own(scene, e)
+    F_n, F_t, v_t, _, _, _, n, tangent, depth, rate = contact_forces(scene, e)
+    _, _, d, v = carried(scene, e)
+    u, w = arm(scene.X, own.i, own.u_i), arm(scene.X, own.i, own.w_i)
+    out[o], out[o + 1], out[o + 2] = F_n, F_t, sqrt(F_n * F_n + F_t * F_t)
+    out[o + 3], out[o + 4], out[o + 5] = depth, rate, v_t
+    out[o + 6], out[o + 7] = dot(u, d), dot(w, d)
+    out[o + 8], out[o + 9] = dot(u, v), dot(w, v)
+    out[o + 10], out[o + 11], out[o + 12] = on_journal(F_n, F_t, n, tangent)
 
 
 def reach(row):

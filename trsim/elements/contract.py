@@ -9,9 +9,9 @@ every element owns one row e of the three tables of a model,
     mem (N, n_mem) float64   what it remembers; frozen while a step is being tried
 
 whose columns have names (kernels/columns.py), and the instances of one element are neighbours: a
-kernel is called once, as kernel(t, scene, a, b), for its rows a <= e < b.  It reads poses and
-twists of the scene in world axes (X, V), joint coordinates and sensors (S, angles unwrapped), the
-states z, and writes what its kind may write:
+kernel is called once, as kernel(t, scene, a, b), for its rows a <= e < b.  An element says what it
+does with one of them, (t, scene, e): it reads poses and twists of the scene in world axes (X, V),
+joint coordinates and sensors (S, angles unwrapped), the states z, and writes what its kind may:
 
     force       F[i] += force, moment about the centre of mass (N, N*m); zd[...] += powers, rates
     constraint  phi, phi_t, J, gamma of its rows:  phi' = J V + phi_t,   J V' = gamma; J of row k
@@ -25,8 +25,8 @@ states z, and writes what its kind may write:
                 such value it meets in left[e]
     energy      E[SPRINGS], E[CONTACTS], E[GRAVITY] += stored energy (J)
     stiffness   tangent, viscous: minus the derivatives of the forces of each element of a beam
-    measure     out[wanted[e] + c] = channel c; wanted[e] < 0 when nobody asked.  May also read
-                the accelerations A = V' and the multipliers lam
+    measure     (t, scene, e, o): out[o + c] = channel c, where somebody asked.  May also read the
+                accelerations A = V' and the multipliers lam
 
 A spec of the section `bodies` says of itself
 
@@ -45,6 +45,7 @@ has a branch for it.
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import wraps
 from math import inf
 from typing import Any, NamedTuple
 
@@ -53,6 +54,7 @@ from trsim.kernels.calls import caller
 from trsim.kernels.columns import Columns, f8, i8, memory
 from trsim.kernels.machine import Compiled
 from trsim.kernels.signatures import Signature, void
+from trsim.kernels.vectors import internal
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
@@ -102,8 +104,28 @@ def compiled(signature: Signature) -> Callable[[Callable], Compiled]:
 
 
 def kernel(python: Callable) -> Compiled:
-    """Decorator of the kernels of elements."""
-    return Compiled(python, KERNEL)
+    """Decorator of what a kernel does with one instance e: the kernel is the loop over them."""
+    one = internal(python)
+
+    @wraps(python)
+    def loop(t, scene, a, b):  # type: ignore[no-untyped-def]
+        for e in range(a, b):
+            one(t, scene, e)
+
+    return Compiled(loop, KERNEL)
+
+
+def measured(python: Callable) -> Compiled:
+    """The same of kernels `measure`: of instances that are asked for, with their first column."""
+    one = internal(python)
+
+    @wraps(python)
+    def loop(t, scene, a, b):  # type: ignore[no-untyped-def]
+        for e in range(a, b):
+            if scene.wanted[e] >= 0:
+                one(t, scene, e, scene.wanted[e])
+
+    return Compiled(loop, KERNEL)
 
 
 class Channel(NamedTuple):
@@ -177,9 +199,8 @@ class Row:
     states: tuple[int, ...] = ()  # entries of z it reads or changes
     limits: tuple[Limit, ...] = ()
     turns: bool = False  # it acts on an angle, or about an axis: so do units that depend on it
-    travel: str = (
-        ""  # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
-    )
+    # what its gap or its coordinate is: angle, stroke, distance; solve/march/spread.py
+    travel: str = ""
     kink: float = float("inf")  # |gap| at which it passes from one of two branches to the other
     unheld: str = ""  # the row of its element that holds nothing here
     reads: frozenset[str] = frozenset()  # sensors its functions depend on

@@ -9,7 +9,7 @@ the stroke of a body on compliant rails.
 
 from typing import Annotated, ClassVar, Literal
 
-from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel
+from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
 from trsim.elements.frames import Along, arm, points, stroke, stroke_acceleration
 from trsim.elements.joint import perpendicular
 from trsim.fields import Spec, Unit, point, vector
@@ -49,27 +49,21 @@ def pack(name, spec, at):
 
 
 @kernel
-def coordinate(t, scene, a, b):
-    S = scene.S
-    for e in range(a, b):
-        own = Own(scene, e)
-        s = own.coordinate
-        x, x_dot = stroke(scene, e, arm(scene.X, own.i, own.axis))
-        S[s, 0] = own.sign * x + own.at_start
-        S[s, 1] = own.sign * x_dot
+def coordinate(t, scene, e):
+    own = Own(scene, e)
+    s = own.coordinate
+    x, x_dot = stroke(scene, e, arm(scene.X, own.i, own.axis))
+    scene.S[s, 0] = own.sign * x + own.at_start
+    scene.S[s, 1] = own.sign * x_dot
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     S, out = scene.S, scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
-        out[o], out[o + 1] = S[s, 0], S[s, 1]
-        out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
+    own = Own(scene, e)
+    s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
+    out[o], out[o + 1] = S[s, 0], S[s, 1]
+    out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
 
 
 def reach(row):

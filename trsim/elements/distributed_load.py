@@ -10,13 +10,21 @@ from typing import ClassVar
 
 from pydantic import model_validator
 
-from trsim.elements.contract import LOADS, Channel, Element, Memory, Reach, Row, Turning, kernel
-from trsim.elements.frames import arm, helper
+from trsim.elements.applied_load import Directed, magnitude_and_load
+from trsim.elements.contract import (
+    LOADS,
+    Channel,
+    Element,
+    Reach,
+    Row,
+    Turning,
+    kernel,
+    measured,
+)
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, direction, vector
-from trsim.kernels.columns import V3, f8, i8
+from trsim.kernels.columns import f8, i8
 from trsim.laws.cable_section import uniform_shares
-from trsim.laws.functions import value
 
 
 class DistributedLoad(Spec):
@@ -41,15 +49,11 @@ class DistributedLoad(Spec):
         return self
 
 
-class Own(Memory):
-    """Of one instance."""
+class Own(Directed):
+    """Of one instance; its body is that of a bar which is rigid for a start, or the first node."""
 
-    first: i8  # node, or the body of a bar that is rigid for a start
     nodes: i8
-    frame: i8  # with which the direction turns
-    function: i8  # f in tab
     length: f8  # m, of an element
-    direction: V3  # in the axes of the frame
 
 
 def pack(name, spec, at):
@@ -66,61 +70,48 @@ def pack(name, spec, at):
     n = at.axes(frame, direction(spec.direction))
     f = at.function(spec.force_per_length, "force_per_length")
     # stiff for a start: all of it at the centre
-    where = {"first": i, "nodes": 1, "length": bar.length} if beam is None else {}
-    own = Own.packed(beam, **where, frame=frame, function=f, direction=n)
+    where = {"nodes": 1, "length": bar.length} if beam is None else {}
+    body = i if beam is None else beam.first
+    own = Own.packed(beam, **where, body=body, frame=frame, function=f, direction=n)
     return Row(*own, reads=spec.force_per_length.sensors)
 
 
 def acts_on(row):
     """A load in a fixed direction is the same wherever the bar is."""
     own = Own.of(row)
-    return frozenset({own.frame, *range(own.first, own.first + own.nodes)} if own.frame else ())
-
-
-@helper
-def load(t, scene, e):
-    """Force per length, world axes."""
-    own = Own(scene, e)
-    f = value(scene.tab, own.function, t, scene.S)
-    n = arm(scene.X, own.frame, own.direction)
-    return f, (f * n[0], f * n[1], f * n[2])
+    return frozenset({own.frame, *range(own.body, own.body + own.nodes)} if own.frame else ())
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     V, G, F, Q = scene.V, scene.G, scene.F, scene.Q
-    for e in range(a, b):
-        own = Own(scene, e)
-        _, p = load(t, scene, e)
-        if own.nodes == 1:
-            i, l = own.first, own.length
-            for c in range(3):
-                F[i, c] += l * p[c]
-                scene.zd[LOADS] += l * p[c] * V[i, c]
-        s1, s2, s3, s4 = uniform_shares(own.length)
-        for i in range(own.first, own.first + own.nodes - 1):
-            for c in range(3):
-                F[i, c] += s1 * p[c]
-                Q[i, c] += s2 * p[c]
-                F[i + 1, c] += s3 * p[c]
-                Q[i + 1, c] += s4 * p[c]
-                scene.zd[LOADS] += p[c] * (
-                    s1 * V[i, c] + s2 * G[i, 3 + c] + s3 * V[i + 1, c] + s4 * G[i + 1, 3 + c]
-                )
-
-
-@kernel
-def measure(t, scene, a, b):
-    out, wanted = scene.out, scene.wanted
-    for e in range(a, b):
-        if wanted[e] < 0:
-            continue
-        own = Own(scene, e)
-        f, p = load(t, scene, e)
-        whole = own.length * max(own.nodes - 1, 1)
-        out[wanted[e]] = f
+    own = Own(scene, e)
+    _, p = magnitude_and_load(t, scene, e)  # per length
+    if own.nodes == 1:
+        i, l = own.body, own.length
         for c in range(3):
-            out[wanted[e] + 1 + c] = whole * p[c]
+            F[i, c] += l * p[c]
+            scene.zd[LOADS] += l * p[c] * V[i, c]
+    s1, s2, s3, s4 = uniform_shares(own.length)
+    for i in range(own.body, own.body + own.nodes - 1):
+        for c in range(3):
+            F[i, c] += s1 * p[c]
+            Q[i, c] += s2 * p[c]
+            F[i + 1, c] += s3 * p[c]
+            Q[i + 1, c] += s4 * p[c]
+            scene.zd[LOADS] += p[c] * (
+                s1 * V[i, c] + s2 * G[i, 3 + c] + s3 * V[i + 1, c] + s4 * G[i + 1, 3 + c]
+            )
+
+
+@measured
+def measure(t, scene, e, o):
+    own = Own(scene, e)
+    f, p = magnitude_and_load(t, scene, e)
+    whole = own.length * max(own.nodes - 1, 1)
+    scene.out[o] = f
+    for c in range(3):
+        scene.out[o + 1 + c] = whole * p[c]
 
 
 def reach(row):

@@ -21,20 +21,22 @@ from trsim.elements.contract import (
     Element,
     Row,
     kernel,
+    measured,
 )
 from trsim.elements.frames import (
     along_row,
     arm,
+    carried,
     cross,
     dot,
     helper,
     on_joint,
-    push,
-    separation,
+    push_apart,
+    relative_spin,
+    scaled,
     spin,
     turn_lines,
-    twist,
-    two_points,
+    twist_apart,
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.fields import Function, Spec, Unit
@@ -89,11 +91,7 @@ class Drive(Spec):
         return self.model_copy(update={"compliance": self.compliance.model_copy(update=without)})
 
 
-COMPLIANCE_UNITS = (
-    ("stiffness", "N*m/rad", "N/m"),
-    ("damping", "N*m*s/rad", "N*s/m"),
-    ("mass", "kg*m^2", "kg"),
-)
+WITH_UNITS = ("stiffness", "damping", "mass")  # of a compliance
 
 
 def pack(name, spec, at):
@@ -102,8 +100,7 @@ def pack(name, spec, at):
     word = "velocity" if by_velocity else "position"
     rates = ("rad/s", "m/s") if by_velocity else ("rad", "m")
     at.check_unit(x.kind, *rates, "drives", name, word)
-    for key, turning, sliding in COMPLIANCE_UNITS:
-        at.check_unit(x.kind, turning, sliding, "drives", name, "compliance", key)
+    at.check_units(x.kind, Compliance, WITH_UNITS, "drives", name, "compliance")
     motion = spec.velocity if by_velocity else spec.position
     wanted = rates[0 if x.kind == "angle" else 1]
     f = at.function(motion, word, time_only=True, wanted=wanted)
@@ -126,96 +123,77 @@ def pack(name, spec, at):
 
 
 @kernel
-def constraint(t, scene, a, b):
-    X, V, phi, phi_t, gamma = scene.X, scene.V, scene.phi, scene.phi_t, scene.gamma
-    for e in range(a, b):
-        own = AnyDrive(scene, e)
-        i, j, k = own.i, own.j, own.row
-        if k < 0:
-            continue
-        f, f_dot, f_ddot = prescribed(t, scene, e)
-        axis = arm(X, i, own.axis)
-        o_i, o_j = spin(V, i), spin(V, j)
-        if own.rotates == 1:
-            turn_lines(scene, k, axis)
-            turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-            gamma[k] = f_ddot - dot(cross(o_i, axis), turn)
-        else:
-            _, p_i, _, p_j = two_points(scene, e)
-            along_row(scene, i, p_i, axis, j, p_j, k)
-            gamma[k] += f_ddot
-        phi[k] = scene.S[own.coordinate, 0] - f
-        phi_t[k] = -f_dot
+def constraint(t, scene, e):
+    own = AnyDrive(scene, e)
+    i, j, k = own.i, own.j, own.row
+    if k < 0:
+        return
+    f, f_dot, f_ddot = prescribed(t, scene, e)
+    axis = arm(scene.X, i, own.axis)
+    if own.rotates == 1:
+        turn_lines(scene, k, axis)
+        scene.gamma[k] = f_ddot - dot(cross(spin(scene.V, i), axis), relative_spin(scene.V, i, j))
+    else:
+        along_row(scene, e, axis, k)
+        scene.gamma[k] += f_ddot
+    scene.phi[k] = scene.S[own.coordinate, 0] - f
+    scene.phi_t[k] = -f_dot
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     S, zd = scene.S, scene.zd
-    for e in range(a, b):
-        own = AnyDrive(scene, e)
-        state, k = own.state, own.stiffness
-        if k == 0.0 and state < 0:
-            continue
-        f, f_dot, _ = prescribed(t, scene, e)
-        if state >= 0:
-            zd[state] = f_dot if holds(scene, e) else 0.0
-        if k > 0.0:
-            s = own.coordinate
-            slip = S[s, 1] - f_dot
-            damping = -own.damping * slip
-            pull = -k * (S[s, 0] - f) + damping
-            zd[DAMPERS] += damping * slip
-            zd[DRIVES] += pull * f_dot
-            act(scene, e, pull)
+    own = AnyDrive(scene, e)
+    state, k = own.state, own.stiffness
+    if k == 0.0 and state < 0:
+        return
+    f, f_dot, _ = prescribed(t, scene, e)
+    if state >= 0:
+        zd[state] = f_dot if holds(scene, e) else 0.0
+    if k > 0.0:
+        s = own.coordinate
+        slip = S[s, 1] - f_dot
+        damping = -own.damping * slip
+        pull = -k * (S[s, 0] - f) + damping
+        zd[DAMPERS] += damping * slip
+        zd[DRIVES] += pull * f_dot
+        act(scene, e, pull)
 
 
 @helper
 def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
-    X, F, own = scene.X, scene.F, AnyDrive(scene, e)
-    i, p_i, j, p_j = two_points(scene, e)
-    axis = arm(X, i, own.axis)
-    f = (pull * axis[0], pull * axis[1], pull * axis[2])
-    g = (-f[0], -f[1], -f[2])
+    own = AnyDrive(scene, e)
+    f = scaled(pull, arm(scene.X, own.i, own.axis))
     if own.rotates == 1:
-        twist(F, j, f)
-        twist(F, i, g)
+        twist_apart(scene.F, own.i, own.j, f)
     else:
-        d = separation(X, i, p_i, j, p_j)
-        push(F, j, p_j, f)
-        push(F, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]), g)
+        r_i, p_j, _, _ = carried(scene, e)
+        push_apart(scene.F, own.i, r_i, own.j, p_j, f)
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = AnyDrive(scene, e)
-        if own.stiffness > 0.0:
-            f, _, _ = prescribed(t, scene, e)
-            slip = scene.S[own.coordinate, 0] - f
-            E[SPRINGS] += 0.5 * own.stiffness * slip * slip
+def energy(t, scene, e):
+    own = AnyDrive(scene, e)
+    if own.stiffness > 0.0:
+        f, _, _ = prescribed(t, scene, e)
+        slip = scene.S[own.coordinate, 0] - f
+        scene.E[SPRINGS] += 0.5 * own.stiffness * slip * slip
 
 
-@kernel
-def measure(t, scene, a, b):
-    S, col, out = scene.S, scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        own = AnyDrive(scene, e)
-        f, f_dot, _ = prescribed(t, scene, e)
-        s = own.coordinate
-        if not holds(scene, e):
-            f, f_dot = S[s, 0], S[s, 1]
-        if own.row >= 0:
-            pull = -scene.lam[own.row]
-        else:
-            pull = -own.stiffness * (S[s, 0] - f) - own.damping * (S[s, 1] - f_dot)
-        out[col[e]] = own.sign * pull
-        out[col[e] + 1] = f
-        out[col[e] + 2] = f_dot
-        out[col[e] + 3] = pull * f_dot
+@measured
+def measure(t, scene, e, o):
+    S, out = scene.S, scene.out
+    own = AnyDrive(scene, e)
+    f, f_dot, _ = prescribed(t, scene, e)
+    s = own.coordinate
+    if not holds(scene, e):
+        f, f_dot = S[s, 0], S[s, 1]
+    if own.row >= 0:
+        pull = -scene.lam[own.row]
+    else:
+        pull = -own.stiffness * (S[s, 0] - f) - own.damping * (S[s, 1] - f_dot)
+    out[o], out[o + 1], out[o + 2], out[o + 3] = own.sign * pull, f, f_dot, pull * f_dot
 
 
 ELEMENT = Element(
@@ -233,12 +211,7 @@ ELEMENT = Element(
         Channel("power", "W", "given to the mechanism"),
     ),
     loads={"force": "force"},
-    kernels={
-        "constraint": constraint,
-        "force": force,
-        "energy": energy,
-        "measure": measure,
-    },
+    kernels={"constraint": constraint, "force": force, "energy": energy, "measure": measure},
     example="""
 bodies:
   disc: {mass: 2 kg, inertia: 0.01 kg*m^2}

@@ -77,6 +77,21 @@ def arm(X, i, s):
 
 
 @helper
+def plus(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@helper
+def minus(a, b):
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@helper
+def scaled(c, a):
+    return c * a[0], c * a[1], c * a[2]
+
+
+@helper
 def cross(a, b):
     return (
         a[1] * b[2] - a[2] * b[1],
@@ -148,6 +163,20 @@ def push(F, i, p, f):
 
 
 @helper
+def push_apart(F, i, p_i, j, p_j, f):
+    """Apply the force f to body j at the end of the arm p_j, and -f to body i at that of p_i."""
+    push(F, j, p_j, f)
+    push(F, i, p_i, (-f[0], -f[1], -f[2]))
+
+
+@helper
+def twist_apart(F, i, j, m):
+    """Apply the moment m to body j and -m to body i."""
+    twist(F, j, m)
+    twist(F, i, (-m[0], -m[1], -m[2]))
+
+
+@helper
 def twist(F, i, m):
     """Apply the moment m to body i."""
     F[i, 3] += m[0]
@@ -166,9 +195,36 @@ def separation(X, i, p_i, j, p_j):
 
 
 @helper
-def _fill(J, line, sign, f, p):
-    """A line of J: the force direction f at the arm p, times sign."""
-    _put(J, line, sign, f, cross(p, f))
+def apart(scene, e):
+    """Arms of the points of instance e, their separation and its rate."""
+    V = scene.V
+    i, p_i, j, p_j = two_points(scene, e)
+    d_dot = minus(velocity(V, j, p_j), velocity(V, i, p_i))
+    return p_i, p_j, separation(scene.X, i, p_i, j, p_j), d_dot
+
+
+@helper
+def carried(scene, e):
+    """Arms on both bodies of the second point of instance e, their separation as above, and how
+    fast the point moves against body i there."""
+    V = scene.V
+    i, p_i, j, p_j = two_points(scene, e)
+    d = separation(scene.X, i, p_i, j, p_j)
+    r_i = plus(p_i, d)
+    return r_i, p_j, d, minus(velocity(V, j, p_j), velocity(V, i, r_i))
+
+
+@helper
+def relative_spin(V, i, j):
+    """Angular velocity of body j against body i."""
+    return minus(spin(V, j), spin(V, i))
+
+
+@helper
+def lines(scene, k, f, m_i, m_j):
+    """J of row k between two frames: the force f on j and -f on i, with their moments."""
+    _put(scene.J, scene.row_start[k], -1.0, f, m_i)
+    _put(scene.J, scene.row_start[k] + 1, 1.0, f, m_j)
 
 
 @helper
@@ -191,49 +247,35 @@ def turn_lines(scene, k, n):
 
 @helper
 def point_rows(scene, e):
-    """The points of instance e coincide along the world axes whose row is not negative.  Returns
-    its bodies."""
-    X, V = scene.X, scene.V
-    phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
+    """The points of instance e coincide along the world axes whose row is not negative."""
+    V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
     i, p_i, j, p_j = two_points(scene, e)
     own = Coincident(scene, e)
     kx, ky, kz = own.x, own.y, own.z
-    d = separation(X, i, p_i, j, p_j)
+    d = separation(scene.X, i, p_i, j, p_j)
     if scene.d == 3:
-        c_i, c_j = inward(V, i, p_i), inward(V, j, p_j)
+        c = minus(inward(V, i, p_i), inward(V, j, p_j))
     else:
-        c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
+        c = minus(centripetal(V, i, p_i), centripetal(V, j, p_j))
     if kx >= 0:
-        phi[kx], phi_t[kx], gamma[kx] = d[0], 0.0, c_i[0] - c_j[0]
-        l = scene.row_start[kx]
-        _put(J, l, -1.0, (1.0, 0.0, 0.0), (0.0, p_i[2], -p_i[1]))
-        _put(J, l + 1, 1.0, (1.0, 0.0, 0.0), (0.0, p_j[2], -p_j[1]))
+        phi[kx], phi_t[kx], gamma[kx] = d[0], 0.0, c[0]
+        lines(scene, kx, (1.0, 0.0, 0.0), (0.0, p_i[2], -p_i[1]), (0.0, p_j[2], -p_j[1]))
     if ky >= 0:
-        phi[ky], phi_t[ky], gamma[ky] = d[1], 0.0, c_i[1] - c_j[1]
-        l = scene.row_start[ky]
-        _put(J, l, -1.0, (0.0, 1.0, 0.0), (-p_i[2], 0.0, p_i[0]))
-        _put(J, l + 1, 1.0, (0.0, 1.0, 0.0), (-p_j[2], 0.0, p_j[0]))
+        phi[ky], phi_t[ky], gamma[ky] = d[1], 0.0, c[1]
+        lines(scene, ky, (0.0, 1.0, 0.0), (-p_i[2], 0.0, p_i[0]), (-p_j[2], 0.0, p_j[0]))
     if kz >= 0:
-        phi[kz], phi_t[kz], gamma[kz] = d[2], 0.0, c_i[2] - c_j[2]
-        l = scene.row_start[kz]
-        _put(J, l, -1.0, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0))
-        _put(J, l + 1, 1.0, (0.0, 0.0, 1.0), (p_j[1], -p_j[0], 0.0))
-    return i, j
+        phi[kz], phi_t[kz], gamma[kz] = d[2], 0.0, c[2]
+        lines(scene, kz, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0), (p_j[1], -p_j[0], 0.0))
 
 
 @helper
-def along_row(scene, i, p_i, u, j, p_j, k):
-    """u . d with u an arm of body i (world axes) and d the separation of the two points."""
-    if k < 0:
-        return
-    X, V = scene.X, scene.V
-    phi, phi_t, J, gamma = scene.phi, scene.phi_t, scene.J, scene.gamma
-    d = separation(X, i, p_i, j, p_j)
+def along_row(scene, e, u, k):
+    """u . d as row k, u an arm of body i (world axes), d the separation of the points of e."""
+    V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
+    i, p_i, j, p_j = two_points(scene, e)
+    d = separation(scene.X, i, p_i, j, p_j)
     # the direction turns with body i, so its lever on i reaches to the point on j
-    reach = (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2])
-    l = scene.row_start[k]
-    _fill(J, l, -1.0, u, reach)
-    _fill(J, l + 1, 1.0, u, p_j)
+    lines(scene, k, u, cross(plus(p_i, d), u), cross(p_j, u))
     phi_t[k] = 0.0
     if scene.d == 3:
         o_i, o_j = V[i, 5], V[j, 5]
@@ -246,8 +288,7 @@ def along_row(scene, i, p_i, u, j, p_j, k):
             - 2.0 * (o_i * u[0] * v_y - o_i * u[1] * v_x) - (u_c[0] * d[0] + u_c[1] * d[1])
         )  # fmt: skip
         return
-    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
+    d_dot = minus(velocity(V, j, p_j), velocity(V, i, p_i))
     u_dot = cross(spin(V, i), u)
     c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
     phi[k] = dot(u, d)
@@ -256,14 +297,10 @@ def along_row(scene, i, p_i, u, j, p_j, k):
 
 @helper
 def perpendicular_row(scene, i, u, j, w, k):
-    """u . w with u an arm of body i and w an arm of body j, both in world axes."""
-    if k < 0:
-        return
-    V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
-    n = cross(u, w)
-    phi[k] = dot(u, w)
-    phi_t[k] = 0.0
-    gamma[k] = (
+    """u . w as row k, with u an arm of body i and w an arm of body j, both in world axes."""
+    V, n = scene.V, cross(u, w)
+    scene.phi[k], scene.phi_t[k] = dot(u, w), 0.0
+    scene.gamma[k] = (
         -2.0 * dot(cross(spin(V, i), u), cross(spin(V, j), w))
         - dot(centripetal(V, i, u), w)
         - dot(u, centripetal(V, j, w))
@@ -277,33 +314,24 @@ def line(scene, e):
 
     A line without length has no direction: its unit vector is zero.
     """
-    X, V = scene.X, scene.V
-    i, p_i, j, p_j = two_points(scene, e)
-    d = separation(X, i, p_i, j, p_j)
+    p_i, p_j, d, d_dot = apart(scene, e)
     length = sqrt(dot(d, d))
     if length == 0.0:
         return p_i, p_j, (0.0, 0.0, 0.0), 0.0, 0.0
     n = (d[0] / length, d[1] / length, d[2] / length)
-    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-    rate = dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    return p_i, p_j, n, length, rate
+    return p_i, p_j, n, length, dot(n, d_dot)
 
 
 @helper
 def distance_row(scene, e, k):
     """The length of the line of instance e, as row k; phi is the length itself."""
     V, own = scene.V, Pair(scene, e)
-    i, j = own.i, own.j
     p_i, p_j, n, length, rate = line(scene, e)
-    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
-    scene.phi[k] = length
-    scene.phi_t[k] = 0.0
+    _, _, _, d_dot = apart(scene, e)
+    c_i, c_j = centripetal(V, own.i, p_i), centripetal(V, own.j, p_j)
+    scene.phi[k], scene.phi_t[k] = length, 0.0
     scene.gamma[k] = dot(n, c_i) - dot(n, c_j) - (dot(d_dot, d_dot) - rate * rate) / length
-    l = scene.row_start[k]
-    _fill(scene.J, l, -1.0, n, p_i)
-    _fill(scene.J, l + 1, 1.0, n, p_j)
+    lines(scene, k, n, cross(p_i, n), cross(p_j, n))
 
 
 @helper
@@ -318,37 +346,23 @@ def turn_acceleration(scene, e, axis):
     """Second rate of the angle of body j against body i about an axis of body i."""
     V, A, own = scene.V, scene.A, Pair(scene, e)
     i, j = own.i, own.j
-    o_i, o_j = spin(V, i), spin(V, j)
-    turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-    return dot(axis, (A[j, 3] - A[i, 3], A[j, 4] - A[i, 4], A[j, 5] - A[i, 5])) + dot(
-        cross(o_i, axis), turn
-    )
+    return dot(axis, relative_spin(A, i, j)) + dot(cross(spin(V, i), axis), relative_spin(V, i, j))
 
 
 @helper
 def stroke(scene, e, axis):
     """axis . d and its rate, with the axis fixed in body i and d the separation."""
-    X, V = scene.X, scene.V
-    i, p_i, j, p_j = two_points(scene, e)
-    d = separation(X, i, p_i, j, p_j)
-    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-    return dot(axis, d), dot(axis, d_dot) + dot(cross(spin(V, i), axis), d)
+    _, _, d, d_dot = apart(scene, e)
+    return dot(axis, d), dot(axis, d_dot) + dot(cross(spin(scene.V, Pair(scene, e).i), axis), d)
 
 
 @helper
 def stroke_acceleration(scene, e, axis):
     """Second rate of the same."""
-    X, V, A = scene.X, scene.V, scene.A
+    V, A = scene.V, scene.A
     i, p_i, j, p_j = two_points(scene, e)
-    d = separation(X, i, p_i, j, p_j)
-    v_i, v_j = velocity(V, i, p_i), velocity(V, j, p_j)
-    d_dot = (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2])
-    c_i, c_j = centripetal(V, i, p_i), centripetal(V, j, p_j)
-    a_i, a_j = velocity(A, i, p_i), velocity(A, j, p_j)
-    d_ddot = (a_j[0] + c_j[0] - a_i[0] - c_i[0], a_j[1] + c_j[1] - a_i[1] - c_i[1],
-              a_j[2] + c_j[2] - a_i[2] - c_i[2])  # fmt: skip
-    turning = cross(spin(A, i), axis)
-    centre = centripetal(V, i, axis)
-    axis_ddot = (turning[0] + centre[0], turning[1] + centre[1], turning[2] + centre[2])
+    _, _, d, d_dot = apart(scene, e)
+    a_j = plus(velocity(A, j, p_j), centripetal(V, j, p_j))
+    d_ddot = minus(minus(a_j, velocity(A, i, p_i)), centripetal(V, i, p_i))
+    axis_ddot = plus(cross(spin(A, i), axis), centripetal(V, i, axis))
     return dot(axis, d_ddot) + 2.0 * dot(cross(spin(V, i), axis), d_dot) + dot(axis_ddot, d)

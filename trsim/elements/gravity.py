@@ -41,22 +41,17 @@ def pack(name, spec, at):
 
 
 @kernel
-def force(t, scene, a, b):
-    F = scene.F
-    for e in range(a, b):
-        own = Own(scene, e)
-        i, weight = own.body, own.weight
-        F[i, 0] += weight[0]
-        F[i, 1] += weight[1]
-        F[i, 2] += weight[2]
+def force(t, scene, e):
+    own = Own(scene, e)
+    for c in range(3):
+        scene.F[own.body, c] += own.weight[c]
 
 
 @kernel
-def energy(t, scene, a, b):
+def energy(t, scene, e):
     X, E = scene.X, scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        E[GRAVITY] -= dot(own.weight, (X[own.body, 0], X[own.body, 1], X[own.body, 2]))
+    own = Own(scene, e)
+    E[GRAVITY] -= dot(own.weight, (X[own.body, 0], X[own.body, 1], X[own.body, 2]))
 
 
 def reach(row):

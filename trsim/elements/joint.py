@@ -116,6 +116,13 @@ def perpendicular(axis, frame=None):
     return u, across(a, u), a
 
 
+def of_key(spec, key):
+    """The unit vector along a direction of a spec."""
+    if not any(getattr(spec, key)):
+        raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
+    return direction(getattr(spec, key))
+
+
 def held(i, j, u, w, a, at):
     """The axes of a joint, of a triad in world axes as drawn."""
     return {

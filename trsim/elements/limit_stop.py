@@ -28,21 +28,23 @@ from trsim.elements.contract import (
     Row,
     Turning,
     kernel,
+    measured,
 )
 from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.frames import (
     Along,
     arm,
+    carried,
     dot,
     helper,
+    minus,
     on_joint,
     points,
-    push,
-    separation,
-    twist,
-    two_points,
-    velocity,
+    push_apart,
+    scaled,
+    twist_apart,
 )
+from trsim.elements.frames import point as place
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.kernels.columns import f8, i8
@@ -127,13 +129,7 @@ class LimitStop(Spec):
         return joints[name].bodies, None if slides else joints[name]
 
 
-UNITS = (
-    ("lower", "rad", "m"),
-    ("upper", "rad", "m"),
-    ("ramp", "rad", "m"),
-    ("stiffness", "N*m/rad", "N/m"),
-    ("damping", "N*m*s/rad", "N*s/m"),
-)
+WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping")
 ON_WALL, ON_ANGLE, ON_STROKE = 0, 1, 2
 UNBOUNDED = 1e300
 
@@ -158,8 +154,7 @@ def pack(name, spec, at):
                 "name two different bodies",
                 ("point", "body"),
             )
-        for key, turning, sliding in UNITS:
-            at.check_unit("wall", turning, sliding, "forces", name, key)
+        at.check_units("wall", LimitStop, WITH_UNITS, "forces", name)
         # on a flexible bar the wall belongs to the node that is nearest to it
         i = at.body(spec.wall.body, "wall", "body", near=spec.wall.at, off=1.0)
         j = at.body(spec.point.body, "point", "body", near=spec.point.at)
@@ -168,8 +163,7 @@ def pack(name, spec, at):
         own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0)
         return Row(*own, contact, travel="stroke")
     x = at.coordinate(spec.joint)
-    for key, turning, sliding in UNITS:
-        at.check_unit(x.kind, turning, sliding, "forces", name, key)
+    at.check_units(x.kind, LimitStop, WITH_UNITS, "forces", name)
     kind = ON_ANGLE if x.kind == "angle" else ON_STROKE
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
@@ -181,107 +175,87 @@ def pack(name, spec, at):
 @helper
 def touch(scene, e):
     """Penetration, its rate, and the direction of the force on body j (world, or + - axis)."""
-    X, V, S, own = scene.X, scene.V, scene.S, Own(scene, e)
-    i, j, n = own.i, own.j, arm(X, own.i, own.axis)
+    S, own = scene.S, Own(scene, e)
+    n = arm(scene.X, own.i, own.axis)
     if own.kind != ON_WALL:
         s = own.coordinate
         low, high = own.lower - S[s, 0], S[s, 0] - own.upper
         if low > high:
             return low, -S[s, 1], n
         return high, S[s, 1], (-n[0], -n[1], -n[2])
-    _, p_i, _, p_j = two_points(scene, e)
-    d = separation(X, i, p_i, j, p_j)
     # the wall turns: the speed of its body under the point counts
-    v_i = velocity(V, i, (p_i[0] + d[0], p_i[1] + d[1], p_i[2] + d[2]))
-    v_j = velocity(V, j, p_j)
-    rate = -dot(n, (v_j[0] - v_i[0], v_j[1] - v_i[1], v_j[2] - v_i[2]))
-    return -dot(n, d), rate, n
+    _, _, d, v = carried(scene, e)
+    return -dot(n, d), -dot(n, v), n
 
 
 @kernel
-def force(t, scene, a, b):
-    X, F, zd, left = scene.X, scene.F, scene.zd, scene.left
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        d, d_dot, n = touch(scene, e)
-        if d <= 0.0 and own.phase != CONTACT:
-            continue
-        i, j, branch = own.i, own.j, own.branch
-        k, c, ramp = own.stiffness, own.damping, own.ramp
-        if own.phase == CONTACT and c > 0.0 and branch != WHOLE:
-            left[e] = max(left[e], ramped_beyond(branch, d, d_dot, k, c, ramp))
-            f = ramped_on_branch(branch, d, d_dot, k, c, ramp)
-        else:
-            # a trial step past the separation goes on smoothly; it is cut at the root of d
-            f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
-        on_j, on_i = (f * n[0], f * n[1], f * n[2]), (-f * n[0], -f * n[1], -f * n[2])
-        if own.kind == ON_ANGLE:
-            twist(F, j, on_j)
-            twist(F, i, on_i)
-        else:
-            p_j = arm(X, j, own.p_j)
-            push(F, j, p_j, on_j)
-            r_i = (X[j, 0] + p_j[0] - X[i, 0], X[j, 1] + p_j[1] - X[i, 1],
-                   X[j, 2] + p_j[2] - X[i, 2])  # fmt: skip
-            push(F, i, r_i, on_i)
-        zd[IMPACTS] -= (f - k * d) * d_dot
+def force(t, scene, e):
+    X, left = scene.X, scene.left
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    d, d_dot, n = touch(scene, e)
+    if d <= 0.0 and own.phase != CONTACT:
+        return
+    i, j, branch = own.i, own.j, own.branch
+    k, c, ramp = own.stiffness, own.damping, own.ramp
+    if own.phase == CONTACT and c > 0.0 and branch != WHOLE:
+        left[e] = max(left[e], ramped_beyond(branch, d, d_dot, k, c, ramp))
+        f = ramped_on_branch(branch, d, d_dot, k, c, ramp)
+    else:
+        # a trial step past the separation goes on smoothly; it is cut at the root of d
+        f = k * d if d <= 0.0 else ramped_damping(d, d_dot, k, c, ramp)
+    if own.kind == ON_ANGLE:
+        twist_apart(scene.F, i, j, scaled(f, n))
+    else:
+        p_j = arm(X, j, own.p_j)
+        r_i = minus(place(X, j, p_j), (X[i, 0], X[i, 1], X[i, 2]))
+        push_apart(scene.F, i, r_i, j, p_j, scaled(f, n))
+    scene.zd[IMPACTS] -= (f - k * d) * d_dot
 
 
 @kernel
-def gap(t, scene, a, b):
-    g = scene.gap
-    for e in range(a, b):
-        g[e, 0], g[e, 1], _ = touch(scene, e)
+def gap(t, scene, e):
+    scene.gap[e, 0], scene.gap[e, 1], _ = touch(scene, e)
 
 
 @kernel
-def corners(t, scene, a, b):
+def corners(t, scene, e):
     out = scene.corner
-    for e in range(a, b):
-        own = Own(scene, e)
-        out[e, 0] = -1.0
-        k, c, ramp, branch = own.stiffness, own.damping, own.ramp, own.branch
-        if c == 0.0 or own.phase != CONTACT:
-            continue
-        d, d_dot, _ = touch(scene, e)
-        if branch == WHOLE:
-            out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
-        else:
-            out[e, 0] = ramped_beyond(branch, d, d_dot, k, c, ramp)
-            out[e, 1] = ramped_neighbour(branch, d, d_dot, k, c, ramp)
+    own = Own(scene, e)
+    out[e, 0] = -1.0
+    k, c, ramp, branch = own.stiffness, own.damping, own.ramp, own.branch
+    if c == 0.0 or own.phase != CONTACT:
+        return
+    d, d_dot, _ = touch(scene, e)
+    if branch == WHOLE:
+        out[e, 1] = ramped_branch_of(d, d_dot, k, c, ramp)
+    else:
+        out[e, 0] = ramped_beyond(branch, d, d_dot, k, c, ramp)
+        out[e, 1] = ramped_neighbour(branch, d, d_dot, k, c, ramp)
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        if own.phase == FLIGHT:
-            continue
-        d, _, _ = touch(scene, e)
-        if d > 0.0:
-            E[CONTACTS] += 0.5 * own.stiffness * d * d
+def energy(t, scene, e):
+    own = Own(scene, e)
+    if own.phase == FLIGHT:
+        return
+    d, _, _ = touch(scene, e)
+    if d > 0.0:
+        scene.E[CONTACTS] += 0.5 * own.stiffness * d * d
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     out = scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        d, d_dot, n = touch(scene, e)
-        f = 0.0
-        if own.phase != FLIGHT and d > 0.0:
-            f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)
-        out[o] = f
-        out[o + 1] = d
-        out[o + 2] = f * n[0]
-        out[o + 3] = f * n[1]
-        out[o + 4] = f * n[2]
+    own = Own(scene, e)
+    d, d_dot, n = touch(scene, e)
+    f = 0.0
+    if own.phase != FLIGHT and d > 0.0:
+        f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)
+    out[o], out[o + 1] = f, d
+    for c in range(3):
+        out[o + 2 + c] = f * n[c]
 
 
 def reach(row):

@@ -15,13 +15,14 @@ from pydantic import BeforeValidator
 
 from trsim import elements
 from trsim.elements.cable import Cable
-from trsim.elements.contract import Channel, Element, Memory, Row, kernel
+from trsim.elements.contract import Channel, Element, Memory, Row, measured
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
 from trsim.kernels.columns import f8, i8
 
 KG_M2 = Unit("kg*m^2")
 INERTIA = Annotated[float, Ge(0), KG_M2]
+PRODUCT = Annotated[float, KG_M2]
 ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
@@ -55,14 +56,7 @@ class RigidBody(Spec):
     inertia: (
         INERTIA
         | tuple[INERTIA, INERTIA, INERTIA]
-        | tuple[
-            INERTIA,
-            INERTIA,
-            INERTIA,
-            Annotated[float, KG_M2],
-            Annotated[float, KG_M2],
-            Annotated[float, KG_M2],
-        ]
+        | tuple[INERTIA, INERTIA, INERTIA, PRODUCT, PRODUCT, PRODUCT]
     )
     at: point("m") = (0.0, 0.0, 0.0)
     angle: Annotated[float, Unit("rad")] = 0.0
@@ -114,21 +108,18 @@ def pack(name, spec, at):
     return Row(*Own.packed(spec, body=at.body(name)))
 
 
-@kernel
-def measure(t, scene, a, b):
-    X, V, A, col, out = scene.X, scene.V, scene.A, scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        i, o = Own(scene, e).body, col[e]
-        for c in range(3):
-            out[o + c] = X[i, c]
-            out[o + 3 + c] = V[i, c]
-            out[o + 6 + c] = A[i, c]
-            out[o + 9 + c] = V[i, 3 + c]
-            out[o + 12 + c] = A[i, 3 + c]
-        for c in range(9):
-            out[o + 15 + c] = X[i, 3 + c]
+@measured
+def measure(t, scene, e, o):
+    X, V, A, out = scene.X, scene.V, scene.A, scene.out
+    i = Own(scene, e).body
+    for c in range(3):
+        out[o + c] = X[i, c]
+        out[o + 3 + c] = V[i, c]
+        out[o + 6 + c] = A[i, c]
+        out[o + 9 + c] = V[i, 3 + c]
+        out[o + 12 + c] = A[i, 3 + c]
+    for c in range(9):
+        out[o + 15 + c] = X[i, 3 + c]
 
 
 ELEMENT = Element(

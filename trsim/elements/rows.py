@@ -1,7 +1,7 @@
 """Joints as lists of rows: what each row holds, and the kernels made of them.
 
 A joint stands between the triads u, w, a of body i and of body j, which coincide as drawn, at two
-points that coincide too (JointPar of joint.py).  Its rows are, first one of
+points that coincide too (Axes).  Its rows are, first one of
 
     POINT          three rows: the points coincide
     along          Phi = u_i . d = 0            d from the point on i to the point on j
@@ -32,9 +32,8 @@ from trsim.elements.frames import (
     nearest_branch,
     perpendicular_row,
     point_rows,
-    spin,
+    relative_spin,
     stroke,
-    two_points,
 )
 from trsim.kernels.columns import V3, f8
 
@@ -84,14 +83,13 @@ def constraint_of(rows):
     one, two, three, four, five, six = (*fills, *(nothing,) * (6 - len(fills)))
 
     @kernel
-    def constraint(t, scene, a, b):
-        for e in range(a, b):
-            one(scene, e)
-            two(scene, e)
-            three(scene, e)
-            four(scene, e)
-            five(scene, e)
-            six(scene, e)
+    def constraint(t, scene, e):
+        one(scene, e)
+        two(scene, e)
+        three(scene, e)
+        four(scene, e)
+        five(scene, e)
+        six(scene, e)
 
     return constraint
 
@@ -118,8 +116,7 @@ def fill_of(row, column):
     def slide(scene, e):
         k = scene.con[e, column]
         if k >= 0:
-            i, p_i, j, p_j = two_points(scene, e)
-            along_row(scene, i, p_i, arm(scene.X, i, axis(scene, e, c)), j, p_j, k)
+            along_row(scene, e, arm(scene.X, Pair(scene, e).i, axis(scene, e, c)), k)
 
     return turn if row.of_j else slide
 
@@ -135,14 +132,12 @@ def write_angle(scene, e, s):
     """The angle of instance e and its rate, as entry s of S."""
     X, V, S, own = scene.X, scene.V, scene.S, Axes(scene, e)
     i, j = own.i, own.j
-    o_i, o_j = spin(V, i), spin(V, j)
     # of rigid bodies in a plane what comes in is the angle itself
     if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
         u, w, u_j = arm(X, i, own.u_i), arm(X, i, own.w_i), arm(X, j, own.u_j)
         angle = atan2(dot(w, u_j), dot(u, u_j)) + own.drawn
         S[s, 0] = nearest_branch(angle, S[s, 0])
-    turn = (o_j[0] - o_i[0], o_j[1] - o_i[1], o_j[2] - o_i[2])
-    S[s, 1] = dot(arm(X, i, own.a_i), turn)
+    S[s, 1] = dot(arm(X, i, own.a_i), relative_spin(V, i, j))
 
 
 @helper
@@ -162,13 +157,12 @@ def coordinate_of(coordinates, n_rows):
     c, o = column_of(0, n_rows), column_of(len(coordinates) - 1, n_rows)
 
     @kernel
-    def coordinate(t, scene, a, b):
+    def coordinate(t, scene, e):
         con = scene.con
-        for e in range(a, b):
-            if con[e, c] >= 0:
-                first(scene, e, con[e, c])
-            if o != c and con[e, o] >= 0:
-                last(scene, e, con[e, o])
+        if con[e, c] >= 0:
+            first(scene, e, con[e, c])
+        if o != c and con[e, o] >= 0:
+            last(scene, e, con[e, o])
 
     return coordinate
 

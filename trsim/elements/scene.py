@@ -109,9 +109,8 @@ class Model(Packed):
     shared: I1  # columns of forces and moments, which rows may share between them
     joint_out: I2  # (n_j, 4) reactions: row e, first of its rows in con, how many, column
     watch: I2  # (n_w, 3) user events: entry of S or -1 for t, direction, how often   events.py
-    watch_at: (
-        A2  # (n_w, 2) the value that is crossed; how far it must be left before it counts again
-    )
+    # (n_w, 2) the value that is crossed; how far it must be left before it counts again
+    watch_at: A2
     feature: I2  # (n_features, 7) functions with corners                   assemble/features.py
     jump: A2  # (n_instants, 2) of the place and the rate of a motion there       jumps.py
     instant: A1  # when those are met that the time alone decides
@@ -200,51 +199,37 @@ def scene(model: Model) -> Scene:
     rows = m + len(model.redundant)
     elements = int(np.sum(model.beam[:, 1] - 1))
     loops = 1 if model.near_rows > 0.0 else 0
+    n_y = model.n_q + model.n_v + model.n_z
+    shapes = (
+        (("X",), (n, 12)),
+        (("V", "A", "F", "G", "moved", "free"), (n, 6)),
+        (("Q",), (n, 3)),
+        (("element",), (7, 12)),
+        (("tangent", "viscous"), (12 * elements, 12)),
+        (("S",), (max(model.n_s, 1), 2)),
+        (("branch",), (max(model.n_s, 1),)),
+        (("z", "zd"), (model.n_z,)),
+        (("mem",), (len(model.con), model.n_mem)),
+        (("gap", "corner"), (len(model.con), 2)),
+        (("left",), (len(model.con),)),
+        (("phi", "phi_t", "gamma", "lam"), (rows,)),
+        (("J",), (len(model.line_row), 6)),
+        (("B", "W"), (slots, 6)),
+        (("value",), (len(model.row),)),
+        (("first", "x", "r", "r2"), (n_x,)),
+        (("through",), (m,)),
+        (("aside",), (10, max(n_y, model.n_v + m + 1))),
+        (("root", "part_root"), (3 * loops, n_x)),
+        (("kept_rows",), (4 * loops, 6 * slots)),
+        (("kept_factors",), (4 * loops, len(model.row))),
+        (("kept_roots",), (2 * loops, n_x)),
+        (("own",), (2 * loops, 6 * n)),
+        (("E",), (N_STORED,)),
+        (("out",), (max(model.n_out, 1),)),
+    )
     made = Scene(
         model,
-        {
-            "X": (n, 12),
-            "element": (7, 12),
-            "tangent": (12 * elements, 12),
-            "viscous": (12 * elements, 12),
-            "G": (n, 6),
-            "Q": (n, 3),
-            "V": (n, 6),
-            "A": (n, 6),
-            "S": (max(model.n_s, 1), 2),
-            "branch": (max(model.n_s, 1),),
-            "z": (model.n_z,),
-            "zd": (model.n_z,),
-            "mem": (len(model.con), model.n_mem),
-            "F": (n, 6),
-            "phi": (rows,),
-            "phi_t": (rows,),
-            "J": (len(model.line_row), 6),
-            "gamma": (rows,),
-            "lam": (rows,),
-            "B": (slots, 6),
-            "W": (slots, 6),
-            "value": (len(model.row),),
-            "first": (n_x,),
-            "through": (m,),
-            "x": (n_x,),
-            "r": (n_x,),
-            "r2": (n_x,),
-            "aside": (10, max(model.n_q + model.n_v + model.n_z, model.n_v + m + 1)),
-            "root": (3 * loops, n_x),
-            "part_root": (3 * loops, n_x),
-            "kept_rows": (4 * loops, 6 * slots),
-            "kept_factors": (4 * loops, len(model.row)),
-            "kept_roots": (2 * loops, n_x),
-            "own": (2 * loops, 6 * n),
-            "moved": (n, 6),
-            "free": (n, 6),
-            "gap": (len(model.con), 2),
-            "corner": (len(model.con), 2),
-            "left": (len(model.con),),
-            "E": (N_STORED,),
-            "out": (max(model.n_out, 1),),
-        },
+        {name: shape for names, shape in shapes for name in names},
         tab=model.tab.copy(),  # scratch, and what functions are held on
         status=np.zeros(7, np.int64),
     )

@@ -7,7 +7,7 @@ Loads, expressions and plots use sensors; x is the angle or stroke of the joint.
 
 from typing import Annotated, ClassVar, Literal
 
-from trsim.elements.contract import Channel, Element, Row, kernel
+from trsim.elements.contract import Channel, Element, Row, kernel, measured
 from trsim.elements.frames import (
     Along,
     arm,
@@ -53,29 +53,24 @@ def pack(name, spec, at):
 
 
 @kernel
-def coordinate(t, scene, a, b):
+def coordinate(t, scene, e):
     S = scene.S
-    for e in range(a, b):
-        own = Own(scene, e)
-        s, x = own.coordinate, own.source
-        S[s, 0] = own.sign * (S[x, 0] - own.drawn) + own.at_start
-        S[s, 1] = own.sign * S[x, 1]
+    own = Own(scene, e)
+    s, x = own.coordinate, own.source
+    S[s, 0] = own.sign * (S[x, 0] - own.drawn) + own.at_start
+    S[s, 1] = own.sign * S[x, 1]
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     S, out = scene.S, scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        own = Own(scene, e)
-        out[o], out[o + 1] = S[own.coordinate, 0], S[own.coordinate, 1]
-        axis = arm(scene.X, own.i, own.axis)
-        if own.turns == 1:
-            out[o + 2] = own.sign * turn_acceleration(scene, e, axis)
-        else:
-            out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
+    own = Own(scene, e)
+    out[o], out[o + 1] = S[own.coordinate, 0], S[own.coordinate, 1]
+    axis = arm(scene.X, own.i, own.axis)
+    if own.turns == 1:
+        out[o + 2] = own.sign * turn_acceleration(scene, e, axis)
+    else:
+        out[o + 2] = own.sign * stroke_acceleration(scene, e, axis)
 
 
 ELEMENT = Element(

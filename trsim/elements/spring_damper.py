@@ -19,8 +19,9 @@ from trsim.elements.contract import (
     Reach,
     Row,
     kernel,
+    measured,
 )
-from trsim.elements.frames import TwoPoints, between_points, line, points, push
+from trsim.elements.frames import TwoPoints, between_points, line, points, push_apart, scaled
 from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import f8
 
@@ -63,39 +64,30 @@ def pack(name, spec, at):
 
 
 @kernel
-def force(t, scene, a, b):
-    F, zd = scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        p_i, p_j, n, length, rate = line(scene, e)
-        damping = own.damping * rate
-        T = own.preload + own.stiffness * (length - own.free_length) + damping
-        push(F, own.i, p_i, (T * n[0], T * n[1], T * n[2]))
-        push(F, own.j, p_j, (-T * n[0], -T * n[1], -T * n[2]))
-        zd[DAMPERS] -= damping * rate
+def force(t, scene, e):
+    own = Own(scene, e)
+    p_i, p_j, n, length, rate = line(scene, e)
+    damping = own.damping * rate
+    T = own.preload + own.stiffness * (length - own.free_length) + damping
+    push_apart(scene.F, own.i, p_i, own.j, p_j, scaled(-T, n))
+    scene.zd[DAMPERS] -= damping * rate
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        _, _, _, length, _ = line(scene, e)
-        x = length - own.free_length
-        E[SPRINGS] += 0.5 * own.stiffness * x * x + own.preload * x
+def energy(t, scene, e):
+    own = Own(scene, e)
+    _, _, _, length, _ = line(scene, e)
+    x = length - own.free_length
+    scene.E[SPRINGS] += 0.5 * own.stiffness * x * x + own.preload * x
 
 
-@kernel
-def measure(t, scene, a, b):
-    col, out = scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        own = Own(scene, e)
-        _, _, _, length, rate = line(scene, e)
-        spring = own.preload + own.stiffness * (length - own.free_length)
-        out[col[e]] = spring + own.damping * rate
-        out[col[e] + 1] = length
+@measured
+def measure(t, scene, e, o):
+    own = Own(scene, e)
+    _, _, _, length, rate = line(scene, e)
+    spring = own.preload + own.stiffness * (length - own.free_length)
+    scene.out[o] = spring + own.damping * rate
+    scene.out[o + 1] = length
 
 
 def reach(row):

@@ -36,6 +36,7 @@ from trsim.elements.contract import (
     Memory,
     Row,
     kernel,
+    measured,
 )
 from trsim.elements.frames import helper
 from trsim.errors import ScenarioError
@@ -126,15 +127,9 @@ def pack(name, spec, at):
     n = len(spec.actuators)
     losses = {"loss": 1.0 - spec.efficiency, "loss_back": 1.0 / back - 1.0}
     own = Own.packed(
-        spec,
-        i=0,
-        j=0,
-        count=n,
-        stations=stations,
-        **losses,
-        lost_at=spec.lost_at or 0.0,
+        spec, i=0, j=0, count=n, stations=stations, **losses, lost_at=spec.lost_at or 0.0,
         masses=masses,
-    )
+    )  # fmt: skip
     said = "synchronism was lost: the strokes of two neighbours differ too much"
     limits = (Limit("lost", spec.lost_at, "m", "jammed", said),) if spec.lost_at else ()
     states = tuple(s for s in stations if s >= 0)
@@ -188,24 +183,23 @@ def gear(scene, e, k):
 
 
 @kernel
-def force(t, scene, a, b):
+def force(t, scene, e):
     zd = scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        n = own.count
-        for k in range(n - 1):
-            _, u_dot = place(scene, e, k)
-            _, v_dot = place(scene, e, k + 1)
-            twist = own.ratio * (v_dot - u_dot)
-            zd[DAMPERS] -= own.damping * twist * twist
-        for k in range(n):
-            ideal, G, speed = gear(scene, e, k)
-            zd[FRICTION] += (G - ideal) * speed
-            slip = own.stations[2 * k + 1]
-            if slip >= 0:
-                zd[slip] += G / own.masses[k]
-            else:
-                zd[DRIVES] -= G * speed  # whoever prescribes the motion takes the force
+    own = Own(scene, e)
+    n = own.count
+    for k in range(n - 1):
+        _, u_dot = place(scene, e, k)
+        _, v_dot = place(scene, e, k + 1)
+        twist = own.ratio * (v_dot - u_dot)
+        zd[DAMPERS] -= own.damping * twist * twist
+    for k in range(n):
+        ideal, G, speed = gear(scene, e, k)
+        zd[FRICTION] += (G - ideal) * speed
+        slip = own.stations[2 * k + 1]
+        if slip >= 0:
+            zd[slip] += G / own.masses[k]
+        else:
+            zd[DRIVES] -= G * speed  # whoever prescribes the motion takes the force
 
 
 @helper
@@ -222,41 +216,34 @@ def largest_difference(scene, e):
 
 
 @kernel
-def gap(t, scene, a, b):
-    for e in range(a, b):
-        # the rate is that of the last evaluation: near enough to see whether it turns
-        difference, rate = largest_difference(scene, e)
-        scene.gap[e, 0] = difference - Own(scene, e).lost_at
-        scene.gap[e, 1] = rate
+def gap(t, scene, e):
+    # the rate is that of the last evaluation: near enough to see whether it turns
+    difference, rate = largest_difference(scene, e)
+    scene.gap[e, 0] = difference - Own(scene, e).lost_at
+    scene.gap[e, 1] = rate
 
 
 @kernel
-def energy(t, scene, a, b):
-    E = scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        for k in range(own.count - 1):
-            u, _ = place(scene, e, k)
-            v, _ = place(scene, e, k + 1)
-            twist = own.ratio * (v - u)
-            E[SPRINGS] += 0.5 * own.stiffness * twist * twist
+def energy(t, scene, e):
+    own = Own(scene, e)
+    for k in range(own.count - 1):
+        u, _ = place(scene, e, k)
+        v, _ = place(scene, e, k + 1)
+        twist = own.ratio * (v - u)
+        scene.E[SPRINGS] += 0.5 * own.stiffness * twist * twist
 
 
-@kernel
-def measure(t, scene, a, b):
+@measured
+def measure(t, scene, e, o):
     out = scene.out
-    for e in range(a, b):
-        o = scene.wanted[e]
-        if o < 0:
-            continue
-        n = Own(scene, e).count
-        for k in range(n - 1):
-            out[o + k] = torque(scene, e, k)
-        for k in range(n):
-            _, G, _ = gear(scene, e, k)
-            out[o + n - 1 + k] = G
-        difference, _ = largest_difference(scene, e)
-        out[o + 2 * n - 1] = difference
+    n = Own(scene, e).count
+    for k in range(n - 1):
+        out[o + k] = torque(scene, e, k)
+    for k in range(n):
+        _, G, _ = gear(scene, e, k)
+        out[o + n - 1 + k] = G
+    difference, _ = largest_difference(scene, e)
+    out[o + 2 * n - 1] = difference
 
 
 def doubts(name, spec, largest):

@@ -16,8 +16,9 @@ from trsim.elements.contract import (
     Element,
     Row,
     kernel,
+    measured,
 )
-from trsim.elements.frames import Along, arm, on_joint, twist
+from trsim.elements.frames import Along, arm, on_joint, scaled, twist_apart
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8
 
@@ -53,37 +54,28 @@ def pack(name, spec, at):
 
 
 @kernel
-def force(t, scene, a, b):
-    X, S, F, zd = scene.X, scene.S, scene.F, scene.zd
-    for e in range(a, b):
-        own = Own(scene, e)
-        s, axis = own.coordinate, arm(X, own.i, own.axis)
-        damping = -own.damping * S[s, 1]
-        tau = own.preload - own.stiffness * (S[s, 0] - own.drawn) + damping
-        twist(F, own.j, (tau * axis[0], tau * axis[1], tau * axis[2]))
-        twist(F, own.i, (-tau * axis[0], -tau * axis[1], -tau * axis[2]))
-        zd[DAMPERS] += damping * S[s, 1]
+def force(t, scene, e):
+    S, own = scene.S, Own(scene, e)
+    s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
+    damping = -own.damping * S[s, 1]
+    tau = own.preload - own.stiffness * (S[s, 0] - own.drawn) + damping
+    twist_apart(scene.F, own.i, own.j, scaled(tau, axis))
+    scene.zd[DAMPERS] += damping * S[s, 1]
 
 
 @kernel
-def energy(t, scene, a, b):
-    S, E = scene.S, scene.E
-    for e in range(a, b):
-        own = Own(scene, e)
-        turn = S[own.coordinate, 0] - own.drawn
-        E[SPRINGS] += 0.5 * own.stiffness * turn * turn - own.preload * turn
+def energy(t, scene, e):
+    own = Own(scene, e)
+    turn = scene.S[own.coordinate, 0] - own.drawn
+    scene.E[SPRINGS] += 0.5 * own.stiffness * turn * turn - own.preload * turn
 
 
-@kernel
-def measure(t, scene, a, b):
-    S, col, out = scene.S, scene.wanted, scene.out
-    for e in range(a, b):
-        if col[e] < 0:
-            continue
-        own = Own(scene, e)
-        s = own.coordinate
-        spring = own.preload - own.stiffness * (S[s, 0] - own.drawn)
-        out[col[e]] = spring - own.damping * S[s, 1]
+@measured
+def measure(t, scene, e, o):
+    own = Own(scene, e)
+    s = own.coordinate
+    spring = own.preload - own.stiffness * (scene.S[s, 0] - own.drawn)
+    scene.out[o] = spring - own.damping * scene.S[s, 1]
 
 
 ELEMENT = Element(

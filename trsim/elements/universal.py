@@ -12,7 +12,7 @@ from typing import ClassVar
 
 from trsim.elements.contract import Reach, Row
 from trsim.elements.frames import points
-from trsim.elements.joint import Joint, held, joint
+from trsim.elements.joint import Joint, held, joint, of_key
 from trsim.elements.rows import POINT, Axes, perpendicular
 from trsim.errors import ScenarioError
 from trsim.fields import direction, vector
@@ -35,10 +35,7 @@ class Universal(Joint):
 
 def axes(spec):
     """Unit vectors along both axes, world axes as drawn, exactly perpendicular."""
-    for key in ("axis", "second_axis"):
-        if not any(getattr(spec, key)):
-            raise ScenarioError("an axis must not be zero", "for example [0, 0, 1]", (key,))
-    a, b = direction(spec.axis), direction(spec.second_axis)
+    a, b = of_key(spec, "axis"), of_key(spec, "second_axis")
     along = sum(p * q for p, q in zip(a, b, strict=True))
     across = tuple(q - along * p for p, q in zip(a, b, strict=True))
     if abs(along) > SQUARE:

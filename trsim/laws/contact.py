@@ -16,6 +16,7 @@ so the delivered restitution e depends on chi alone, not on mass, speed, K or n.
 """
 
 from math import asinh, exp, gamma, inf, pi, sqrt
+from typing import NamedTuple
 
 from trsim.kernels.lazy import law
 from trsim.laws.tables import smoothstep
@@ -23,17 +24,24 @@ from trsim.laws.tables import smoothstep
 HERTZ, CYLINDER = 0, 1  # form
 
 
+class Pair(NamedTuple):
+    """What two surfaces are to each other, as any record with these numbers."""
+
+    stiffness: float  # K, N/m^n (form 0) or N/m (form 1)
+    exponent: float  # n of form 0, 3/2 for a sphere or a short cylinder; form 1 has none
+    clearance: float  # c, radial, m; > 0, read by form 1 only
+    form: int  # 0 hertz, 1 cylinder
+    chi: float = 0.0  # damping factor, see `damping_factor`
+
+
 @law
-def elastic(d, K, n, c, form):
+def elastic(d, pair):
     """Elastic part of the contact force.
 
     Parameters
     ----------
     d : float            penetration, m; d <= 0 means no contact
-    K : float            stiffness, N/m^n (form 0) or N/m (form 1)
-    n : float            exponent of form 0, 3/2 for a sphere or a short cylinder; form 1 has none
-    c : float            radial clearance, m; > 0, read by form 1 only
-    form : int           0 hertz, 1 cylinder
+    pair : Pair
 
     Returns
     -------
@@ -45,9 +53,10 @@ def elastic(d, K, n, c, form):
     cos a = c / (c + d):  F_e = 1/2 pi L E* d sin(a/2), with sin(a/2) = sqrt(d / (2 (c + d))).
     It is Hertz-like (d^1.5) while d << c and linear once d >> c.
     """
+    K, n, c = pair.stiffness, pair.exponent, pair.clearance
     if d <= 0.0:
         return 0.0
-    if form == CYLINDER:
+    if pair.form == CYLINDER:
         return K * d * sqrt(d / (d + c))
     if n == 1.5:  # four times quicker than a general power
         return K * d * sqrt(d)
@@ -55,15 +64,16 @@ def elastic(d, K, n, c, form):
 
 
 @law
-def stored(d, K, n, c, form):
+def stored(d, pair):
     """Elastic energy, the integral of F_e from 0 to d, J.  Parameters as in `elastic`.
 
     hertz      K d^(n+1) / (n + 1)
     cylinder   K c^2 [s^3 C / 2 - 3/4 s C + 3/4 asinh s]     s = sqrt(d/c), C = sqrt(1 + d/c)
     """
+    K, n, c = pair.stiffness, pair.exponent, pair.clearance
     if d <= 0.0:
         return 0.0
-    if form == HERTZ:
+    if pair.form == HERTZ:
         if n == 1.5:
             return K * d * d * sqrt(d) / 2.5
         return K * d ** (n + 1.0) / (n + 1.0)
@@ -81,7 +91,7 @@ def stored(d, K, n, c, form):
 
 
 @law
-def normal_force(d, d_dot, d_dot0, K, n, c, form, chi):
+def normal_force(d, d_dot, d_dot0, pair):
     """Normal force of a dissipative contact, F = max(0, F_e (1 + chi d'/d0')).
 
     Parameters
@@ -89,8 +99,7 @@ def normal_force(d, d_dot, d_dot0, K, n, c, form, chi):
     d : float            penetration, m; d <= 0 means no contact
     d_dot : float        penetration rate, m/s; > 0 while approaching
     d_dot0 : float       penetration rate at the start of this contact, m/s; > 0
-    K, n, c, form        elastic law, see `elastic`
-    chi : float          damping factor, see `damping_factor`
+    pair : Pair
 
     Returns
     -------
@@ -101,7 +110,7 @@ def normal_force(d, d_dot, d_dot0, K, n, c, form, chi):
     In a free impact 1 + chi d'/d0' stays positive.  Bodies torn apart by something else may turn
     it negative; the force is then cut at zero, for the reasons in [ModelicaElastoGap].
     """
-    return max(0.0, elastic(d, K, n, c, form) * (1.0 + chi * d_dot / d_dot0))
+    return max(0.0, elastic(d, pair) * (1.0 + pair.chi * d_dot / d_dot0))
 
 
 @law

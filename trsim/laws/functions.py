@@ -240,6 +240,18 @@ def operands(tab, o, p):
 
 
 @law
+def read(tab, slot):
+    """The three numbers of a slot."""
+    return tab[slot], tab[slot + 1], tab[slot + 2]
+
+
+@law
+def write(tab, slot, f):
+    """Three numbers into a slot."""
+    tab[slot], tab[slot + 1], tab[slot + 2] = f
+
+
+@law
 def run(tab, o):
     """Value of an expression whose inputs are in their slots."""
     n, p, out = operations(tab, o)
@@ -257,14 +269,10 @@ def run_rates(tab, o):
     n, p, out = operations(tab, o)
     for _ in range(n):
         code, a, b = operands(tab, o, p)
-        tab[out], tab[out + 1], tab[out + 2] = operation_rates(
-            code, tab[a], tab[a + 1], tab[a + 2],
-            tab[b], tab[b + 1], tab[b + 2], tab[p + HELD],
-        )  # fmt: skip
+        write(tab, out, operation_rates(code, read(tab, a), read(tab, b), tab[p + HELD]))
         p += WIDTH
         out += 3
-    out = o + int(tab[o + RESULT])
-    return tab[out], tab[out + 1], tab[out + 2]
+    return read(tab, o + int(tab[o + RESULT]))
 
 
 @law
@@ -388,23 +396,36 @@ CLEAR, MEETS, UNSURE = 0, 1, 2
 
 
 @law
-def judged(u, l, h, m, n, low, high):
-    """Whether u stays between low and high: it is in l..h, its rate in m..n, and it ends at u."""
+def judged(u, ranges, low, high):
+    """Whether u stays between low and high, with these ranges of it and its rate; it ends at u."""
+    (l, h), rate = ranges
     if low < l and h < high:
         return CLEAR
-    if not (m > 0.0 or n < 0.0):
+    if not (rate[0] > 0.0 or rate[1] < 0.0):
         return UNSURE
     return MEETS if u < low or u > high else CLEAR
 
 
 @law
-def enclosed(tab, o, t0, t1, S, seen, box):
-    """Whether a function stays on its pieces from t0 to t1, where its sensors show S.
+def in_row(row):
+    """The ranges of a number and of its rate that stand in a row."""
+    return (row[0], row[1]), (row[2], row[3])
+
+
+@law
+def into_row(row, ranges):
+    """The opposite."""
+    (row[0], row[1]), (row[2], row[3]) = ranges
+
+
+@law
+def enclosed(tab, o, stretch, S, seen, box):
+    """Whether a function stays on its pieces in a stretch of time, at whose end its sensors show S.
 
     Parameters
     ----------
     tab, o, S                as in `value`
-    t0, t1 : float           s
+    stretch : (float, float) its begin and its end, s
     seen : (n_s, 4)          ranges of the sensors and of their rates meanwhile
     box : (n_slots, 4)       scratch: those of the slots
 
@@ -415,38 +436,30 @@ def enclosed(tab, o, t0, t1, S, seen, box):
     if tab[o] == TABLE:
         k = int(tab[o + VARIABLE])
         low, high = ends_of(tab, o, o + HELD_OF_TABLE)
-        r = seen[k]
-        return judged(S[k, 0], r[0], r[1], r[2], r[3], low, high)
-    inputs(tab, o, t1, S)
+        return judged(S[k, 0], in_row(seen[k]), low, high)
+    inputs(tab, o, stretch[1], S)
     run(tab, o)
     n_in, first = int(tab[o + N_IN]), o + int(tab[o + SLOTS])
     n_op, p, _ = operations(tab, o)
-    box[0, 0], box[0, 1], box[0, 2], box[0, 3] = t0, t1, 1.0, 1.0
+    into_row(box[0], (stretch, (1.0, 1.0)))
     for i in range(n_in):
-        for c in range(4):
-            box[i + 1, c] = seen[int(tab[o + HEAD + i]), c]
+        into_row(box[i + 1], in_row(seen[int(tab[o + HEAD + i])]))
     for k in range(1 + n_in + n_op, box.shape[0]):
         place = first + 3 * k
         if place >= tab.size:
             break
-        box[k, 0] = box[k, 1] = tab[place]
-        box[k, 2] = box[k, 3] = 0.0
+        into_row(box[k], ((tab[place], tab[place]), (0.0, 0.0)))
     worst = CLEAR
     for k in range(1 + n_in, 1 + n_in + n_op):
         code, slot_a, slot_b = operands(tab, o, p)
         held = tab[p + HELD]
-        x, y = box[(slot_a - first) // 3], box[(slot_b - first) // 3]
-        a, b, r0, r1, c, d, q0, q1 = x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3]
+        x, y = in_row(box[(slot_a - first) // 3]), in_row(box[(slot_b - first) // 3])
         if tab[p + WATCHED] == BY_SENSORS and held != FREE:
             low, high = branch_ends(code, held)
             u = switching(code, tab[slot_a], tab[slot_b])
-            if code == ATAN2 or code >= NEG:
-                worst = max(worst, judged(u, a, b, r0, r1, low, high))
-            else:
-                l, h, m, n = ranged(SUB, a, b, r0, r1, c, d, q0, q1, FREE)
-                worst = max(worst, judged(u, l, h, m, n, low, high))
-        f = ranged(code, a, b, r0, r1, c, d, q0, q1, held)
-        box[k, 0], box[k, 1], box[k, 2], box[k, 3] = f[0], f[1], f[2], f[3]
+            of_u = x if code == ATAN2 or code >= NEG else ranged(SUB, x, y, FREE)
+            worst = max(worst, judged(u, of_u, low, high))
+        into_row(box[k], ranged(code, x, y, held))
         p += WIDTH
     return worst
 
@@ -473,21 +486,19 @@ def swing(tab, o, t, length, S0, rate0, S1, rate1):
     S0, rate0, S1, rate1 : (n_s,)   what the sensors show, and its rate, at t and `length` later
     """
     first = o + int(tab[o + SLOTS])
-    tab[first], tab[first + 1], tab[first + 2] = t, 1.0, 0.0
+    write(tab, first, (t, 1.0, 0.0))
     for i in range(int(tab[o + N_IN])):
         k, slot = int(tab[o + HEAD + i]), first + 3 * (i + 1)
         mean = abs(S1[k] - S0[k]) / length
         # what begins and ends at rest goes faster between
         rate = max(abs(rate0[k]), abs(rate1[k]), BETWEEN * mean)
-        tab[slot], tab[slot + 1], tab[slot + 2] = S1[k], rate, 0.0
+        write(tab, slot, (S1[k], rate, 0.0))
     run(tab, o)
     n, p, out = operations(tab, o)
     for _ in range(n):
         code, a, b = operands(tab, o, p)
-        tab[out], tab[out + 1], tab[out + 2] = swinging(
-            code, tab[out], abs(tab[a]), tab[a + 1], tab[a + 2],
-            abs(tab[b]), tab[b + 1], tab[b + 2],
-        )  # fmt: skip
+        x, y = (abs(tab[a]), tab[a + 1], tab[a + 2]), (abs(tab[b]), tab[b + 1], tab[b + 2])
+        write(tab, out, swinging(code, tab[out], x, y))
         p += WIDTH
         out += 3
     w = tab[o + int(tab[o + RESULT]) + 2]
@@ -539,11 +550,11 @@ def value_and_rate(tab, o, t, S):
         f, f_x, _ = looked_up(tab, o, t if k < 0 else S[k, 0])
         return f, f_x if k < 0 else f_x * S[k, 1]
     slot = o + int(tab[o + SLOTS])
-    tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
+    write(tab, slot, (t, 1.0, 0.0))
     for i in range(int(tab[o + N_IN])):
         k, slot = int(tab[o + HEAD + i]), slot + 3
         # the second derivative of a sensor is unknown and not asked for
-        tab[slot], tab[slot + 1], tab[slot + 2] = S[k, 0], S[k, 1], 0.0
+        write(tab, slot, (S[k, 0], S[k, 1], 0.0))
     f, f1, _ = run_rates(tab, o)
     return f, f1
 
@@ -567,6 +578,5 @@ def motion(tab, o, t):
         return looked_up(tab, o, t)
     if kind == TABLE or tab[o + N_IN] > 0.0:
         return math.nan, math.nan, math.nan
-    slot = o + int(tab[o + SLOTS])
-    tab[slot], tab[slot + 1], tab[slot + 2] = t, 1.0, 0.0
+    write(tab, o + int(tab[o + SLOTS]), (t, 1.0, 0.0))
     return run_rates(tab, o)

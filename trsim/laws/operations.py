@@ -229,21 +229,23 @@ def single_rates(code, a):
 
 
 @law
-def chain(f, f_a, f_aa, a1, a2):
-    """f(a) and its derivatives in time; f_a may be infinite where a does not move."""
+def chain(f, f_a, f_aa, x):
+    """f(a) and its derivatives in time, x = (a, a', a''); f_a may be infinite where a rests."""
+    _, a1, a2 = x
     if a1 == 0.0 and a2 == 0.0:
         return f, 0.0, 0.0
     return f, f_a * a1, f_aa * a1 * a1 + f_a * a2
 
 
 @law
-def power_rates(a, a1, a2, b, b1, b2):
+def power_rates(x, y):
     """a**b and its derivatives."""
+    (a, a1, a2), (b, b1, b2) = x, y
     f = a**b
     if a == 0.0 < b or (b1 == 0.0 and b2 == 0.0):  # a fixed exponent allows a <= 0
         f_a = b * a ** (b - 1.0) if b != 0.0 else 0.0
         f_aa = b * (b - 1.0) * a ** (b - 2.0) if b != 0.0 and b != 1.0 else 0.0
-        return chain(f, f_a, f_aa, a1, a2)
+        return chain(f, f_a, f_aa, x)
     # ln f = b ln a
     u = b1 * log(a) + b * a1 / a
     u1 = b2 * log(a) + (2.0 * b1 * a1 + b * a2) / a - b * a1 * a1 / (a * a)
@@ -251,8 +253,9 @@ def power_rates(a, a1, a2, b, b1, b2):
 
 
 @law
-def operation_rates(code, a, a1, a2, b, b1, b2, held):
+def operation_rates(code, x, y, held):
     """An operation on (a, a', a'') and (b, b', b''), on the branch it is held on."""
+    (a, a1, a2), (b, b1, b2) = x, y
     if code == ADD:
         return a + b, a1 + b1, a2 + b2
     if code == SUB:
@@ -265,29 +268,30 @@ def operation_rates(code, a, a1, a2, b, b1, b2, held):
         return f, f1, (a2 - 2.0 * f1 * b1 - f * b2) / b
     if code == POW:
         if held == FREE or a >= 0.0:
-            return power_rates(a, a1, a2, b, b1, b2)
-        f, f1, f2 = power_rates(-a, -a1, -a2, b, b1, b2)
+            return power_rates(x, y)
+        f, f1, f2 = power_rates((-a, -a1, -a2), y)
         return -f, -f1, -f2
     if code == MIN:
-        return (b, b1, b2) if (b < a if held == FREE else held > 0.0) else (a, a1, a2)
+        return y if (b < a if held == FREE else held > 0.0) else x
     if code == MAX:
-        return (b, b1, b2) if (b > a if held == FREE else held < 0.0) else (a, a1, a2)
+        return y if (b > a if held == FREE else held < 0.0) else x
     if code == ATAN2:
         r, r1 = a * a + b * b, 2.0 * (a * a1 + b * b1)
         f1 = (b * a1 - a * b1) / r
         return held_angle(a, b, held), f1, (b * a2 - a * b2 - f1 * r1) / r
     if code >= NEG:
         f, f_a, f_aa = single_rates(code, a) if held == FREE else held_single(code, a, held)
-        return chain(f, f_a, f_aa, a1, a2)
+        return chain(f, f_a, f_aa, x)
     return operation(code, a, b, held), 0.0, 0.0
 
 
 @law
-def swinging(code, f, a, a1, aw, b, b1, bw):
+def swinging(code, f, x, y):
     """Bounds of an operation's size and rate, and the rate of its waves, from those of a and b.
 
     f: its value, which stands for the size and the slope of what is no wave.
     """
+    (a, a1, aw), (b, b1, bw) = x, y
     w = max(aw, bw)
     if code in (ADD, SUB):
         return a + b, a1 + b1, w

@@ -1,6 +1,6 @@
 """Interval arithmetic of compiled expressions: what an operation can be while its inputs vary.
 
-    (l, h, l', h')       l <= f <= h and l' <= f' <= h' throughout a stretch of time
+    (l, h), (l', h')     l <= f <= h and l' <= f' <= h' throughout a stretch of time
 
 An operation with branches is taken on the one it is held on (operations.py); FREE, where it may
 change, its rate is without bounds.  Every result is widened by rounding.            [Moore1966]
@@ -39,24 +39,36 @@ from trsim.laws.operations import (
 
 ROUNDING = 1e-15  # of each operation
 WHOLE = 64.0  # the largest whole power taken as a product
+ALL = (-inf, inf)  # without bounds
 
 
 @law
 def widened(l, h):
     """An interval made larger by rounding; without bounds where it is no number."""
     if not (l <= h):
-        return -inf, inf
+        return ALL
     return l - ROUNDING * abs(l), h + ROUNDING * abs(h)
 
 
 @law
-def plus(a, b, c, d):
-    return widened(a + c, b + d)
+def spanned(p, q, r, s):
+    """The interval with four numbers."""
+    return widened(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
 
 
 @law
-def minus(a, b, c, d):
-    return widened(a - d, b - c)
+def negative(x):
+    return -x[1], -x[0]
+
+
+@law
+def plus(x, y):
+    return widened(x[0] + y[0], x[1] + y[1])
+
+
+@law
+def minus(x, y):
+    return widened(x[0] - y[1], x[1] - y[0])
 
 
 @law
@@ -66,22 +78,23 @@ def product(x, y):
 
 
 @law
-def times(a, b, c, d):
-    p, q, r, s = product(a, c), product(a, d), product(b, c), product(b, d)
-    return widened(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+def times(x, y):
+    (a, b), (c, d) = x, y
+    return spanned(product(a, c), product(a, d), product(b, c), product(b, d))
 
 
 @law
-def over(a, b, c, d):
+def over(x, y):
     """Without bounds where the divisor may be zero."""
-    if c <= 0.0 <= d:
-        return -inf, inf
-    return times(a, b, 1.0 / d, 1.0 / c)
+    if y[0] <= 0.0 <= y[1]:
+        return ALL
+    return times(x, (1.0 / y[1], 1.0 / y[0]))
 
 
 @law
-def whole_power(a, b, n):
-    """Between which numbers x^n lies for a <= x <= b, n >= 0 a whole number."""
+def whole_power(x, n):
+    """Between which numbers the n-th power of an interval lies, n >= 0 a whole number."""
+    a, b = x
     l, h = a**n, b**n
     if n == 0.0:
         return 1.0, 1.0
@@ -93,12 +106,9 @@ def whole_power(a, b, n):
 
 
 @law
-def powered(a, b, n):
-    """Between which numbers x^n lies for a <= x <= b, n any whole number."""
-    if n >= 0.0:
-        return whole_power(a, b, n)
-    l, h = whole_power(a, b, -n)
-    return over(1.0, 1.0, l, h)
+def powered(x, n):
+    """Between which numbers the n-th power of an interval lies, n any whole number."""
+    return whole_power(x, n) if n >= 0.0 else over((1.0, 1.0), whole_power(x, -n))
 
 
 @law
@@ -116,27 +126,20 @@ def cosine(a, b):
 
 
 @law
-def sine(a, b):
-    return cosine(a - 0.5 * pi, b - 0.5 * pi)
-
-
-@law
-def quotient(a0, a1, r0, r1, b0, b1, q0, q1):
+def quotient(x, y):
     """(a/b)' = (a' - (a/b) b') / b."""
-    l, h = over(a0, a1, b0, b1)
-    c, d = times(l, h, q0, q1)
-    m, n = minus(r0, r1, c, d)
-    rl, rh = over(m, n, b0, b1)
-    return l, h, rl, rh
+    f = over(x[0], y[0])
+    return f, over(minus(x[1], times(f, y[1])), y[0])
 
 
 @law
-def smooth_step(code, a, b, r0, r1, held):
+def smooth_step(code, x, held):
     """A smooth step on a branch: the cubic or quintic is drawn on where it is held inside."""
+    (a, b), rate = x
     if held == BELOW or (held == FREE and b <= 0.0):
-        return 0.0, 0.0, 0.0, 0.0
+        return (0.0, 0.0), (0.0, 0.0)
     if held == ABOVE or (held == FREE and a >= 1.0):
-        return 1.0, 1.0, 0.0, 0.0
+        return (1.0, 1.0), (0.0, 0.0)
     if held == FREE:
         a, b = min(max(a, 0.0), 1.0), min(max(b, 0.0), 1.0)
     f0, _, _ = held_single(code, a, INSIDE)
@@ -152,126 +155,94 @@ def smooth_step(code, a, b, r0, r1, held):
     if code == SMOOTHSTEP:
         low, high = 6.0 * low, 6.0 * high
     else:
-        low, high = whole_power(low, high, 2.0)
+        low, high = whole_power((low, high), 2.0)
         low, high = 30.0 * low, 30.0 * high
-    rl, rh = times(low, high, r0, r1)
-    l, h = widened(l, h)
-    return l, h, rl, rh
+    return widened(l, h), times((low, high), rate)
 
 
 @law
-def one(code, a, b, r0, r1, held):
+def one(code, x, held):
     """An operation on one number."""
+    (a, b), rate = x
     if code == NEG:
-        return -b, -a, -r1, -r0
+        return negative(x[0]), negative(rate)
     if code in (SMOOTHSTEP, QUINTIC):
-        return smooth_step(code, a, b, r0, r1, held)
+        return smooth_step(code, x, held)
     if code == ABS:
         if held == ABOVE or (held == FREE and a >= 0.0):
-            return a, b, r0, r1
+            return x
         if held == BELOW or (held == FREE and b <= 0.0):
-            return -b, -a, -r1, -r0
-        return 0.0, max(-a, b), min(r0, -r1), max(r1, -r0)
+            return negative(x[0]), negative(rate)
+        return (0.0, max(-a, b)), (min(rate[0], -rate[1]), max(rate[1], -rate[0]))
     if code in (SIN, COS, TAN):
-        s0, s1 = sine(a, b)
-        c0, c1 = cosine(a, b)
+        s, c = cosine(a - 0.5 * pi, b - 0.5 * pi), cosine(a, b)
+        s_rate, c_rate = times(c, rate), times(negative(s), rate)
         if code == SIN:
-            l, h = times(c0, c1, r0, r1)
-            return s0, s1, l, h
-        m, n = times(-s1, -s0, r0, r1)
-        if code == COS:
-            return c0, c1, m, n
-        l, h = times(c0, c1, r0, r1)
-        return quotient(s0, s1, l, h, c0, c1, m, n)
+            return s, s_rate
+        return (c, c_rate) if code == COS else quotient((s, s_rate), (c, c_rate))
     if code == SQRT and a < 0.0 and held != FREE:
-        l, h = widened(-sqrt(-a), sqrt(b) if b > 0.0 else -sqrt(-b))
-        return l, h, -inf, inf
+        return widened(-sqrt(-a), sqrt(b) if b > 0.0 else -sqrt(-b)), ALL
     if code == SQRT:
         l, h = widened(sqrt(max(a, 0.0)), sqrt(max(b, 0.0)))
-        m, n = over(r0, r1, 2.0 * l, 2.0 * h)
-        return max(l, 0.0), h, m, n
+        return (max(l, 0.0), h), over(rate, (2.0 * l, 2.0 * h))
     if code == EXP:
-        l, h = widened(exp(a), exp(b))
-        m, n = times(l, h, r0, r1)
-        return l, h, m, n
+        f = widened(exp(a), exp(b))
+        return f, times(f, rate)
     if a <= 0.0:
-        return -inf, inf, -inf, inf
-    l, h = widened(log(a), log(b))
-    m, n = over(r0, r1, a, b)
-    return l, h, m, n
+        return ALL, ALL
+    return widened(log(a), log(b)), over(rate, x[0])
 
 
 @law
-def raised(a, b, r0, r1, c, d, q0, q1):
+def raised(x, y):
     """a**b: whole powers as products, others as exp(b log a) where a is surely positive."""
-    if c == d and c == floor(c) and abs(c) <= WHOLE:
-        l, h = powered(a, b, c)
-        m, n = powered(a, b, c - 1.0)
-        m, n = times(m, n, c, c)
-        m, n = times(m, n, r0, r1)
-        return l, h, m, n
-    l, h, m, n = one(LOG, a, b, r0, r1, FREE)
-    u, v = times(l, h, c, d)
-    x, y = times(m, n, c, d)
-    z, w = times(l, h, q0, q1)
-    x, y = plus(x, y, z, w)
-    return one(EXP, u, v, x, y, FREE)
+    c = y[0]
+    if c[0] == c[1] and c[0] == floor(c[0]) and abs(c[0]) <= WHOLE:
+        return powered(x[0], c[0]), times(times(powered(x[0], c[0] - 1.0), c), x[1])
+    f, rate = one(LOG, x, FREE)
+    return one(EXP, (times(f, c), plus(times(rate, c), times(f, y[1]))), FREE)
 
 
 @law
-def angle(a, b, r0, r1, c, d, q0, q1, held):
+def angle(x, y, held):
     """atan2(a, b): of a box that does not hold the origin, from its corners."""
+    (a, b), (c, d) = x[0], y[0]
     if (a <= 0.0 <= b and c <= 0.0 <= d) or (held == FREE and a <= 0.0 <= b and c < 0.0):
-        return -2.0 * pi, 2.0 * pi, -inf, inf
-    e, f = held_angle(a, c, held), held_angle(a, d, held)
-    g, i = held_angle(b, c, held), held_angle(b, d, held)
-    l, h = widened(min(min(e, f), min(g, i)), max(max(e, f), max(g, i)))
-    u, v = whole_power(a, b, 2.0)
-    w, x = whole_power(c, d, 2.0)
-    u, v = plus(u, v, w, x)
-    m, n = times(c, d, r0, r1)
-    w, x = times(a, b, q0, q1)
-    m, n = minus(m, n, w, x)
-    m, n = over(m, n, u, v)
-    return l, h, m, n
+        return (-2.0 * pi, 2.0 * pi), ALL
+    f = spanned(
+        held_angle(a, c, held), held_angle(a, d, held),
+        held_angle(b, c, held), held_angle(b, d, held),
+    )  # fmt: skip
+    square = plus(whole_power(x[0], 2.0), whole_power(y[0], 2.0))
+    return f, over(minus(times(y[0], x[1]), times(x[0], y[1])), square)
 
 
 @law
-def ranged(code, a, b, r0, r1, c, d, q0, q1, held):
-    """An operation on (a, b, r0, r1) and (c, d, q0, q1), on the branch it is held on."""
+def ranged(code, x, y, held):
+    """An operation on two of (l, h), (l', h'), on the branch it is held on."""
+    (a, b), (c, d) = x[0], y[0]
     if code == ADD:
-        l, h = plus(a, b, c, d)
-        m, n = plus(r0, r1, q0, q1)
-        return l, h, m, n
+        return plus(x[0], y[0]), plus(x[1], y[1])
     if code == SUB:
-        l, h = minus(a, b, c, d)
-        m, n = minus(r0, r1, q0, q1)
-        return l, h, m, n
+        return minus(x[0], y[0]), minus(x[1], y[1])
     if code == MUL:
-        l, h = times(a, b, c, d)
-        m, n = times(r0, r1, c, d)
-        u, v = times(a, b, q0, q1)
-        m, n = plus(m, n, u, v)
-        return l, h, m, n
+        return times(x[0], y[0]), plus(times(x[1], y[0]), times(x[0], y[1]))
     if code == DIV:
-        return quotient(a, b, r0, r1, c, d, q0, q1)
+        return quotient(x, y)
     if code == POW:
-        return raised(a, b, r0, r1, c, d, q0, q1)
+        return raised(x, y)
     if code in (MIN, MAX):
-        first = (held == BELOW) == (code == MIN)
-        if held == FREE:
-            if code == MIN:
-                return min(a, c), min(b, d), min(r0, q0), max(r1, q1)
-            return max(a, c), max(b, d), min(r0, q0), max(r1, q1)
-        return (a, b, r0, r1) if first else (c, d, q0, q1)
+        if held != FREE:
+            return x if (held == BELOW) == (code == MIN) else y
+        rate = (min(x[1][0], y[1][0]), max(x[1][1], y[1][1]))
+        if code == MIN:
+            return (min(a, c), min(b, d)), rate
+        return (max(a, c), max(b, d)), rate
     if code == ATAN2:
-        return angle(a, b, r0, r1, c, d, q0, q1, held)
+        return angle(x, y, held)
     if code >= NEG:
-        return one(code, a, b, r0, r1, held)
-    if held != FREE:
-        f = compared(code, held)
-        return f, f, 0.0, 0.0
-    if b < c or a > d:
-        f = compared(code, a - d if a > d else b - c)
-        return f, f, 0.0, 0.0
-    return 0.0, 1.0, -inf, inf
+        return one(code, x, held)
+    if held != FREE or b < c or a > d:
+        f = compared(code, held if held != FREE else a - d if a > d else b - c)
+        return (f, f), (0.0, 0.0)
+    return (0.0, 1.0), ALL

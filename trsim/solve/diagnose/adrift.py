@@ -17,9 +17,9 @@ from collections.abc import Iterator
 from math import sqrt
 from typing import Any
 
-from trsim.assemble.beside import factors_again, plain_pivot, speed, unit
+from trsim.assemble.beside import plain_pivot, speed, unit
 from trsim.assemble.equations import evaluate
-from trsim.assemble.linear import TINY, smallest_pivot
+from trsim.assemble.linear import TINY, refactorise, smallest_pivot
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import DOUBTFUL, poses_and_rows, project_velocities
 from trsim.elements.contract import compiled
@@ -67,7 +67,7 @@ def look_at_drift(s, r, b, setting, t, step):
 def plain(s):
     """The smallest pivot, whatever the masses: small ones of theirs say nothing of branches."""
     smallest = plain_pivot(s)
-    factors_again(s)
+    refactorise(s)
     return max(smallest, TINY)
 
 

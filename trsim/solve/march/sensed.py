@@ -129,7 +129,7 @@ def verdict(s, b, t0, t1):
     worst = CLEAR
     for n in range(s.feature.shape[0]):
         if s.feature[n, SENSED] > 0:
-            found = enclosed(s.tab, s.feature[n, OFFSET], t0, t1, s.S, b.seen, b.box)
+            found = enclosed(s.tab, s.feature[n, OFFSET], (t0, t1), s.S, b.seen, b.box)
             worst = max(worst, found)
     return worst
 

@@ -63,13 +63,13 @@ def figure_3(_: list[Shown]) -> Any:
 
 def stiffnesses(axes: Any) -> None:
     """The elastic force for both readings of the radii."""
-    from trsim.laws.contact import elastic, hertz_stiffness
+    from trsim.laws.contact import Pair, elastic, hertz_stiffness
 
     depth = np.linspace(0.0, 25e-6, 200)
     for k, c in enumerate(CLEARANCES):
         for form, dash in (("internal", "-"), ("paper", "--")):
             K = hertz_stiffness(RADIUS, RADIUS - c, YOUNG, POISSON, YOUNG, POISSON, form)
-            force = [1e-3 * elastic(d, K, 1.5, c, 0) for d in depth]
+            force = [1e-3 * elastic(d, Pair(K, 1.5, c, 0)) for d in depth]
             label = f"{1e3 * c:g} mm" if form == "internal" else None
             axes.plot(1e6 * depth, force, dash, color=colour(k), label=label, lw=1.2)
     axes.plot([], [], "--", color="0.4", label="$R_i + R_j$")
@@ -82,16 +82,16 @@ def stiffnesses(axes: Any) -> None:
 
 def loops(axes: Any) -> None:
     """Force over penetration in free impacts, 0.3 mm."""
-    from trsim.laws.contact import damping_factor, hertz_stiffness, normal_force
+    from trsim.laws.contact import Pair, damping_factor, hertz_stiffness, normal_force
 
     c = CLEARANCES[1]
     K = hertz_stiffness(RADIUS, RADIUS - c, YOUNG, POISSON, YOUNG, POISSON, "internal")
-    chi = damping_factor("lankarani_nikravesh", RESTITUTION)
+    pair = Pair(K, 1.5, c, 0, damping_factor("lankarani_nikravesh", RESTITUTION))
     for k, start in enumerate(SPEEDS):
         d, v, h = 0.0, start, 2e-8  # semi-implicit steps of a fraction of the contact time
         path = [(0.0, 0.0)]
         while d >= 0.0:
-            force = normal_force(d, v, start, K, 1.5, c, 0, chi)
+            force = normal_force(d, v, start, pair)
             v -= h * force / MASS
             d += h * v
             path.append((1e6 * d, 1e-3 * force))
