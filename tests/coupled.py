@@ -21,13 +21,13 @@ from trsim.elements.frames import (
     centripetal,
     cross,
     dot,
-    helper,
     separation,
     spin,
     velocity,
 )
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import constraint_row, f8, i8, run
+from trsim.kernels.lazy import internal
 
 TERM = 10  # numbers of a term: coefficient, points on i and j, axis
 
@@ -89,7 +89,7 @@ def pack_gear(name, spec, at):
     return row
 
 
-@helper
+@internal
 def line_of(scene, k, f):
     """The line of J in which row k has the frame f."""
     line = scene.row_start[k]
@@ -98,7 +98,7 @@ def line_of(scene, k, f):
     return line
 
 
-@helper
+@internal
 def add(J, line, c, f, m):
     """A line of J += the force c f and the moment c m."""
     for a in range(3):
@@ -106,7 +106,7 @@ def add(J, line, c, f, m):
         J[line, 3 + a] += c * m[a]
 
 
-@helper
+@internal
 def term(scene, e, k, q):
     """What the q-th coordinate of instance e adds to row k."""
     X, V, J, gamma = scene.X, scene.V, scene.J, scene.gamma

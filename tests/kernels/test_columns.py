@@ -8,11 +8,11 @@ import pytest
 from trsim.elements.contract import compiled
 from trsim.kernels import fingerprint
 from trsim.kernels.columns import V3, Columns, constraint_row, f8, i8, memory, run
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A2, I2, Packed
 from trsim.kernels.plain import run as plainly
 from trsim.kernels.signatures import float64, void
 from trsim.kernels.signatures import i8 as whole
-from trsim.kernels.vectors import internal
 
 
 class Tables(Packed):

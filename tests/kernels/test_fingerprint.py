@@ -18,7 +18,7 @@ import pytest
 
 import trsim
 from trsim.kernels import fingerprint, machine
-from trsim.kernels.lazy import Lazy, law
+from trsim.kernels.lazy import Lazy, internal
 from trsim.kernels.machine import Caller, Compiled
 from trsim.kernels.signatures import f8, float64
 from trsim.sweep.slot import ONE_THREAD
@@ -279,10 +279,12 @@ NAMES = [f"name_{k}" for k in range(300)]  # more than a byte can count
 MANY = f"def f(x):\n  y = {'+'.join(NAMES)}\n  return m.inner.g(x)"
 WAYS = {
     "by name": lambda g: function(PLAIN, g=g),
-    "law": lambda g: function(PLAIN, g=law(g)),
+    "law": lambda g: function(PLAIN, g=internal(g)),
     "kernel": lambda g: function(PLAIN, g=Compiled(g, float64(f8))),
     "module": lambda g: function("def f(x): return m.inner.g(x)", m=modules(g)),
-    "a law of a module": lambda g: function("def f(x): return m.inner.g(x)", m=modules(law(g))),
+    "a law of a module": lambda g: function(
+        "def f(x): return m.inner.g(x)", m=modules(internal(g))
+    ),
     "module, as a value": lambda g: function(HELD, m=modules(g)),
     "many names": lambda g: function(MANY, m=modules(g), **dict.fromkeys(NAMES, 1)),
     "closure": closed,
@@ -424,7 +426,7 @@ def test_what_python_and_numpy_have_is_told_by_name(g):
 
 def test_machine_code_that_the_key_does_not_cover_is_not_kept(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    inside = law(FunctionType(two.__code__, {"__name__": __name__}, "inside"))
+    inside = internal(FunctionType(two.__code__, {"__name__": __name__}, "inside"))
     outside = Compiled(function(PLAIN, g=inside, __name__=__name__), float64(f8))
     assert outside.key
     assert fingerprint.covered(outside.python) == {outside.python.__code__, two.__code__}
@@ -439,7 +441,7 @@ def test_machine_code_that_the_key_does_not_cover_is_not_kept(tmp_path, monkeypa
 
 def through(g):
     """A function of the same code for every g."""
-    inside = law(g)
+    inside = internal(g)
 
     def f(x):
         return inside(x)
@@ -448,7 +450,9 @@ def through(g):
 
 
 def test_closures_of_one_body_are_covered_with_what_each_reaches():
-    both = function("def f(x): return g(x) + h(x)", g=law(through(one)), h=law(through(two)))
+    both = function(
+        "def f(x): return g(x) + h(x)", g=internal(through(one)), h=internal(through(two))
+    )
     codes = both.__code__, through(one).__code__, one.__code__, two.__code__
     assert fingerprint.covered(both) == set(codes)
 

@@ -13,11 +13,10 @@ from numba.core.types.functions import BaseFunction
 
 from trsim.elements.contract import compiled
 from trsim.kernels import fingerprint, machine
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.kernels.machine import Compiled, folder
 from trsim.kernels.packed import Packed
 from trsim.kernels.signatures import A1, A2, T3, Kind, f8, float64, i8, int64, void
-from trsim.kernels.vectors import internal
 
 FACTOR = 2.0
 
@@ -109,11 +108,11 @@ def test_what_another_process_compiled_meanwhile_is_taken(cache, monkeypatch):
 
 @pytest.mark.parametrize("first", ["Python", "compiled code"])
 def test_a_law_called_from_both_sides(first, cache):
-    @law
+    @internal
     def inside(x):
         return min(x, 2.0) + 1.0
 
-    @law
+    @internal
     def outside(x):
         return 2.0 * inside(x)
 

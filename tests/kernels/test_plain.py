@@ -12,7 +12,7 @@ import pytest
 from trsim.elements import load
 from trsim.elements.contract import compiled
 from trsim.kernels.calls import caller
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, T3, Packed, f8, i8
 from trsim.kernels.plain import LEAST, SAME, address, run, whole
 from trsim.kernels.signatures import float64, int64
@@ -85,12 +85,12 @@ class Numbers(Packed):
     k: i8
 
 
-@law
+@internal
 def share(a, b):
     return a / b
 
 
-@law
+@internal
 def root(x):
     return sqrt(x)
 

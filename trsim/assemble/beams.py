@@ -15,13 +15,13 @@ entries of M^-1 between their nodes (`across`).
 from math import sqrt
 
 from trsim.elements.contract import SCENE, compiled
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, i8, void
-from trsim.kernels.vectors import internal as equation
 
 ON_BEAMS = void(SCENE, A1, A1, i8)  # of what is called by its address: on_beams.py
 
 
-@equation
+@internal
 def components(s):
     """Directions a node moves in: two in a plane, three in space."""
     return s.d_node // 2
@@ -52,7 +52,7 @@ def node_poses(s, y, out, k):
             cross_section(X, s.axes, f, t0, t1, t2)
 
 
-@equation
+@internal
 def cross_section(X, axes, f, t0, t1, t2):
     """Axes of a node in space: those as drawn, turned along the shortest way to the tangent.
 
@@ -82,7 +82,7 @@ def cross_section(X, axes, f, t0, t1, t2):
         X[f, 5 + 3 * r] = -u * c - v * bc + w * (1.0 - cc)
 
 
-@equation
+@internal
 def slope_force(s, f, c):
     """What acts along component c of the slope of node f: the elastic force and the moments."""
     G, F = s.G, s.F
@@ -102,7 +102,7 @@ def node_accelerations(s, x, out, k):
     divide_by_mass(s, s.free)
 
 
-@equation
+@internal
 def divide_by_mass(s, u):
     """u <- M^-1 u on the rows of all nodes: one pass along every beam and one back.
 
@@ -132,7 +132,7 @@ def divide_by_mass(s, u):
                 u[f, c], u[f, width + c] = place - L[k, 1] * slope, slope
 
 
-@equation
+@internal
 def node_rows(s):
     """B of the slots on nodes."""
     J, B, G, width = s.J, s.B, s.G, components(s)
@@ -146,7 +146,7 @@ def node_rows(s):
                 B[p, width + c] = (J[l, 3 + x] * G[f, y] - J[l, 3 + y] * G[f, x]) / square
 
 
-@equation
+@internal
 def node_products(s, B, pair):
     """What the slots on nodes add to S, with their rows in B; pair: of `entry`, the first."""
     value, entry, across, width = s.value, s.entry, s.across, components(s)
@@ -202,7 +202,7 @@ def node_right_hand_side(s, x, out, k):
             x[s.slot_row[p]] += total
 
 
-@equation
+@internal
 def gathered(s, u, x):
     """u = J^T x on the rows of all nodes."""
     for f in range(s.n_r, s.n):
@@ -244,7 +244,7 @@ def node_rates(s, y, yd, k):
         A[f, 5] = (G[f, 0] * w1 - G[f, 1] * w0) / square - 2.0 * sigma * V[f, 5]
 
 
-@equation
+@internal
 def times_mass(s, v, x, o, out):
     """out <- M x of all nodes; their entries begin at x[v] and at out[o]."""
     M, width, step = s.consistent, components(s), s.d_node

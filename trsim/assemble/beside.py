@@ -40,7 +40,6 @@ from typing import Any
 from trsim.assemble.equations import (
     DERIVATIVE,
     constraints,
-    equation,
     free_accelerations,
     in_world,
     poses,
@@ -60,6 +59,7 @@ from trsim.assemble.linear import (
 from trsim.assemble.projection import move_all, project_positions, project_velocities
 from trsim.assemble.schur import plain_rows, pull
 from trsim.elements.contract import DRIVES, compiled
+from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear
 from trsim.scenario.methods import METHODS
 
@@ -148,7 +148,7 @@ def beside(s, t, y, yd):
         drives(s)
 
 
-@equation
+@internal
 def plain_pivot(s):
     """The smallest pivot of J J^T: how far rows are from depending on each other, whatever the
     masses.  Takes the place of the factors of S."""
@@ -157,7 +157,7 @@ def plain_pivot(s):
     return eliminate(s, TINY)
 
 
-@equation
+@internal
 def apart(s, yd):
     """By how much the limit differs from accelerations in yd, rad/s^2 or sizes/s^2."""
     most = 0.0
@@ -166,13 +166,13 @@ def apart(s, yd):
     return most
 
 
-@equation
+@internal
 def seen(s, scale):
     """The difference from the limit below which it is left to the error estimate."""
     return 0.0 if s.status[5] > 0 else SEEN * s.tolerance * scale
 
 
-@equation
+@internal
 def idle(s, yd, best, scale):
     """Whether a limit known to `best` is known well enough not to be taken for what is in yd."""
     for k in range(s.m):
@@ -181,13 +181,13 @@ def idle(s, yd, best, scale):
     return apart(s, yd) + PLAINLY * best <= seen(s, scale)
 
 
-@equation
+@internal
 def unit(s, i):
     """The unit of the i-th velocity: the mechanism's size or 1."""
     return s.size if i % s.d < s.d // 2 + s.d % 2 else 1.0
 
 
-@equation
+@internal
 def speed(s):
     """The fastest rate of a body, rad/s or sizes/s."""
     fastest = 0.0
@@ -197,7 +197,7 @@ def speed(s):
     return fastest
 
 
-@equation
+@internal
 def look_beside(s, t, y, yd, fastest, own):
     """The limit into s.aside[FOUND]; by how much it changed at last, and the size of it.
 
@@ -238,7 +238,7 @@ def look_beside(s, t, y, yd, fastest, own):
     return best, scale
 
 
-@equation
+@internal
 def between(s, t, y, d, own):
     """The mean of accelerations and multipliers at d from y to both sides, into s.aside[MEAN].
 
@@ -255,7 +255,7 @@ def between(s, t, y, d, own):
     return THERE
 
 
-@equation
+@internal
 def extrapolate(s, d, newest, n):
     """Take the mean at d into the table: its row j becomes the value at y of the polynomial in d^2
     through the last j + 1 of them, up to the row `newest`; Neville's scheme.  Behind the values of
@@ -272,7 +272,7 @@ def extrapolate(s, d, newest, n):
     aside[TABLE, n] = d
 
 
-@equation
+@internal
 def at(s, t, y, d):
     """Add half of the accelerations and multipliers at d from y along the motion to s.aside[MEAN].
 
@@ -317,7 +317,7 @@ def at(s, t, y, d):
     return pivot
 
 
-@equation
+@internal
 def drives(s):
     """The limit into the multipliers of what moves: the power of a drive is finite, so they do not
     grow like 1/delta, and rounding makes eps v^2/delta^3 of them."""
@@ -326,7 +326,7 @@ def drives(s):
             s.lam[k] = s.aside[FOUND, s.n_v + k]
 
 
-@equation
+@internal
 def take(s, y, yd, reactions):
     """The limit into yd, A and the power of the drives; with `reactions` into lam too."""
     found = s.aside[FOUND]

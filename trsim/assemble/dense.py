@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.elements.contract import compiled
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, A2, I1, int64, void
-from trsim.kernels.vectors import internal
 
 Array = NDArray[np.float64]
 

@@ -33,9 +33,9 @@ from trsim.assemble.schur import (
 from trsim.elements.contract import DRIVES, SCENE, call_kernel, compiled
 from trsim.elements.scene import BAUMGARTE
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, f8, float64, void
 from trsim.kernels.vectors import clear, clear_table
-from trsim.kernels.vectors import internal as equation
 from trsim.laws.sine import sine_cosine
 
 #                        scene  t   y   y'
@@ -101,7 +101,7 @@ def without_feedback(s, t, y, yd):
     accelerations(s, y, yd)
 
 
-@equation
+@internal
 def evaluate(s, t, y, yd):
     """`derivative` called by its address: compiled once, not into every caller."""
     call_derivative(s.derivative, s, t, y, yd)
@@ -136,7 +136,7 @@ def poses(s, y):
     call_all(s, s.coordinate, 0.0)
 
 
-@equation
+@internal
 def spatial_pose(X, V, f, y, q, v):
     """Rotation matrix R(p) / |p|^2 of the quaternion and world-axes angular velocity R omega."""
     e0, e1, e2, e3 = y[q + 3], y[q + 4], y[q + 5], y[q + 6]
@@ -171,14 +171,14 @@ def forces(s, t):
     call_all(s, s.force, t)
 
 
-@equation
+@internal
 def call_all(s, kernels, t):
     """Call every kernel of a table."""
     for k in range(kernels.shape[0]):
         call_kernel(kernels[k, 0], t, s, kernels[k, 1], kernels[k, 2])
 
 
-@equation
+@internal
 def call_one(s, kernels, t, e):
     """Call the kernel of a table that instance e has, for e alone."""
     for k in range(kernels.shape[0]):
@@ -192,7 +192,7 @@ def constraints(s, t):
     call_all(s, s.constraint, t)
 
 
-@equation
+@internal
 def free_accelerations(s):
     """M^-1 (F - omega x I omega) of the rigid bodies, in the axes of the solve."""
     X, V, F, a = s.X, s.V, s.F, s.free
@@ -225,7 +225,7 @@ def free_accelerations(s):
         a[f, 5] = K[6] * m0 + K[7] * m1 + K[8] * m2
 
 
-@equation
+@internal
 def masses_too_unequal(s):
     """Whether S is singular only to rounding: bodies so unequal that its small part is lost.
 
@@ -238,7 +238,7 @@ def masses_too_unequal(s):
     return unequal
 
 
-@equation
+@internal
 def right_hand_side(s, feedback):
     """x = J M^-1 F - gamma, with Baumgarte's terms where asked for."""
     B, free, x, gamma = s.B, s.free, s.x, s.gamma
@@ -258,7 +258,7 @@ def right_hand_side(s, feedback):
             x[slot_row[p]] += total
 
 
-@equation
+@internal
 def accelerations(s, y, yd):
     """V' = M^-1 (F - J^T x) into yd and, in world axes, into A; q' into yd."""
     X, A = s.X, s.A
@@ -294,7 +294,7 @@ def accelerations(s, y, yd):
         yd[q + 6] = 0.5 * (e0 * o2 + e1 * o1 - e2 * o0)
 
 
-@equation
+@internal
 def in_world(s, f):
     """The accelerations of a rigid body, from the axes of the solve into A."""
     X, A, a = s.X, s.A, s.free

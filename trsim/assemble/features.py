@@ -24,8 +24,8 @@ from trsim.assemble.travel import of_instance
 from trsim.elements.contract import SCENE, Pair, compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import f8, i8, void
-from trsim.kernels.vectors import internal
 from trsim.laws.functions import (
     BY_SENSORS,
     FREE,

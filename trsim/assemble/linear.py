@@ -21,7 +21,8 @@ from math import sqrt
 
 from trsim.assemble.on_beams import RESIDUAL, call_beams
 from trsim.assemble.schur import rows
-from trsim.kernels.vectors import clear_table, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear_table, copy_to
 
 SOUND, POOR, SINGULAR = 0, 1, 2  # how a factorisation went, in s.status[0]
 TINY = 1e-10  # of the diagonal: a smaller pivot is a dependent row

@@ -9,10 +9,11 @@ The reaction of a joint is what its rows put on body j, as force and moment abou
 In a planar scene the out-of-plane components are those of the planar problem: zero.
 """
 
-from trsim.assemble.equations import call_all, call_derivative, equation, kinetic, stored_energy
+from trsim.assemble.equations import call_all, call_derivative, kinetic, stored_energy
 from trsim.elements.contract import BOOK, N_BOOK, STORED
 from trsim.elements.frames import TwoPoints, arm
 from trsim.elements.scene import N_STORED
+from trsim.kernels.lazy import internal
 
 
 def energy_columns(jumps):
@@ -27,7 +28,7 @@ def energy_columns(jumps):
     )
 
 
-@equation
+@internal
 def measure(s, t, y, work_projection, energy_0):
     """Fill s.out; uses the last evaluation, which was at (t, y)."""
     if s.plain != 0:
@@ -54,7 +55,7 @@ def measure(s, t, y, work_projection, energy_0):
     out[o + 1] = total
 
 
-@equation
+@internal
 def reaction(s, k):
     """Force and moment of one joint on its body j, at the joint."""
     out, lam, J, row_start = s.out, s.lam, s.J, s.row_start

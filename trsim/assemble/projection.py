@@ -5,11 +5,12 @@ dq = -M^-1 J^T S^-1 Phi,      dv = -M^-1 J^T S^-1 (J v + Phi_t),      S = J M^-1
 
 import numpy as np
 
-from trsim.assemble.equations import constraints, equation, poses
+from trsim.assemble.equations import constraints, poses
 from trsim.assemble.linear import refactorise, smallest_pivot, solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, velocity_residual
 from trsim.elements.contract import SCENE, compiled
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, f8, float64, i8, void
 from trsim.kernels.vectors import clear, clear_table
 
@@ -27,7 +28,7 @@ def move_all(s, y, dx):
         y[s.q_node + k - s.v_node] += dx[k]
 
 
-@equation
+@internal
 def move(s, y, f, dx):
     """Move the rigid body of frame f by the small displacement dx (d) in the axes of the solve."""
     if s.d == 3:
@@ -48,7 +49,7 @@ def move(s, y, f, dx):
         y[q + 3 + a] /= length
 
 
-@equation
+@internal
 def normalise(s, y):
     """Quaternions back to length one."""
     if s.d == 6:
@@ -101,7 +102,7 @@ def close_positions(s, t, y, near, steps):
     return worst
 
 
-@equation
+@internal
 def brought_back(s, y, first):
     """y[first:] -= M^-1 J^T S^-1 x of rigid bodies, with the factors at hand; x, and then S^-1 x,
     is in s.x."""
@@ -113,7 +114,7 @@ def brought_back(s, y, first):
             y[first + s.d * (f - 1) + a] += s.free[f, a]
 
 
-@equation
+@internal
 def onto_rows(s, w):
     """w -= M^-1 J^T S^-1 J w: what the rows allow of rates of bodies, nearest in the metric of M.
 
@@ -146,7 +147,7 @@ def poses_and_rows(s, t, y):
     refactorise(s)
 
 
-@equation
+@internal
 def put_on_rows(s, t, y):
     """Bring a state to the rows, its velocities too, as closely as rounding lets."""
     close_positions(s, t, y, CLOSED * s.size, NEWTON)

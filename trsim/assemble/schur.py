@@ -11,11 +11,11 @@ B and -M stand in the matrix themselves (pattern.py).
 """
 
 from trsim.assemble.on_beams import PLAIN, ROWS, call_beams
+from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear
-from trsim.kernels.vectors import internal as equation
 
 
-@equation
+@internal
 def rows(s):
     """B, W and S of the J of the last evaluation."""
     clear(s.value)
@@ -26,7 +26,7 @@ def rows(s):
         call_beams(s.on_beams[ROWS], s, s.x, s.x, pair)
 
 
-@equation
+@internal
 def planar_rows(s):
     """B and W of x', y' and omega_z, and what they add to S."""
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
@@ -54,7 +54,7 @@ def planar_rows(s):
     return pair
 
 
-@equation
+@internal
 def spatial_rows(s):
     """B and W of the velocity and the body-axes angular velocity, and what they add to S."""
     J, B, W, value, entry, frame_start = s.J, s.B, s.W, s.value, s.entry, s.frame_start
@@ -93,7 +93,7 @@ def spatial_rows(s):
     return pair
 
 
-@equation
+@internal
 def hub_rows(s, f, B, W, pair):
     """The rows on a hub, and what of S acts through it on their diagonal; `pair` moves on."""
     value, entry, through = s.value, s.entry, s.through
@@ -107,7 +107,7 @@ def hub_rows(s, f, B, W, pair):
     return pair
 
 
-@equation
+@internal
 def hub_mass(s, f, pair):
     """-M of a hub; `pair` moves on."""
     value, entry, I = s.value, s.entry, s.inertia
@@ -125,7 +125,7 @@ def hub_mass(s, f, pair):
     return pair
 
 
-@equation
+@internal
 def plain_rows(s):
     """J J^T in place of S, from B; rotations are weighed by the mechanism's size."""
     B, value, turn = s.B, s.value, 1.0 / (s.size * s.size)
@@ -146,7 +146,7 @@ def plain_rows(s):
         call_beams(s.on_beams[PLAIN], s, s.x, s.x, pair)
 
 
-@equation
+@internal
 def plain_hub(s, f, pair, turn):
     """J J^T of a hub, as if it had the mass 1 and the inertia 1 / turn; `pair` moves on."""
     B, value, entry = s.B, s.value, s.entry
@@ -167,7 +167,7 @@ def plain_hub(s, f, pair, turn):
     return pair + 9
 
 
-@equation
+@internal
 def velocity_residual(s, k):
     """Phi' = J V + Phi_t of row k."""
     J, V, line_frame = s.J, s.V, s.line_frame
@@ -181,7 +181,7 @@ def velocity_residual(s, k):
     return total
 
 
-@equation
+@internal
 def pull(s, f, x):
     """free -= M^-1 J^T x of one rigid body, in the axes of the solve."""
     if s.d == 3:
@@ -190,7 +190,7 @@ def pull(s, f, x):
         pull_spatial(s, f, x)
 
 
-@equation
+@internal
 def pull_planar(s, f, x):
     """`pull` of a body in the plane; what is left, too: to read it again at once is slow."""
     W, a, slot_row = s.W, s.free, s.slot_row
@@ -204,7 +204,7 @@ def pull_planar(s, f, x):
     return a0, a1, a2
 
 
-@equation
+@internal
 def pull_spatial(s, f, x):
     """`pull` of a body in space; what is left, too: to read it again at once is slow."""
     W, a, slot_row = s.W, s.free, s.slot_row

@@ -31,19 +31,12 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import (
-    between_points,
-    distance_row,
-    helper,
-    line,
-    points,
-    push_apart,
-    scaled,
-)
+from trsim.elements.frames import between_points, distance_row, line, points, push_apart, scaled
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
 from trsim.kernels.columns import f8, i8
+from trsim.kernels.lazy import internal
 
 
 class Supply(Spec):
@@ -168,7 +161,7 @@ def constraint(t, scene, e):
     scene.gamma[k] += f_ddot
 
 
-@helper
+@internal
 def state_of(t, scene, e):
     """Thrust, force of the supply on the piston, piston u and u', f, f' and f'' of instance e.
 

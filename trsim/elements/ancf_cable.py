@@ -28,11 +28,12 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import cross, dot, helper
+from trsim.elements.frames import cross, dot
 from trsim.elements.rigid_body import RigidBody
 from trsim.errors import ScenarioError
 from trsim.fields import point, vector
 from trsim.kernels.columns import V3, f8, i8
+from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear_table
 from trsim.laws.cable import CURVATURES, add_force, energies
 from trsim.laws.cable_section import position, stress, uniform_shares
@@ -174,7 +175,7 @@ def at_node(k):
     )
 
 
-@helper
+@internal
 def gathered(scene, i):
     """Coordinates and rates of the element between nodes i and i + 1, into scene.element."""
     X, V, G, element = scene.X, scene.V, scene.G, scene.element
@@ -206,7 +207,7 @@ def force(t, scene, e):
             scene.zd[DAMPERS] += damping_power(element, own)
 
 
-@helper
+@internal
 def damping_power(element, own):
     """Power of the damping forces of the element last gathered, W; never positive."""
     power = 0.0
@@ -246,7 +247,7 @@ def energy(t, scene, e):
             E[GRAVITY] -= own.mass * own.field[c] * moment(x, own.length, c)
 
 
-@helper
+@internal
 def moment(x, l, c):
     """int x_c dx over an element: its length times the place of its centre."""
     s1, s2, s3, s4 = uniform_shares(l)
@@ -291,7 +292,7 @@ def measure(t, scene, e, o):
             out[o + BAR + AT_NODE * k + c] = X[first + k, c]
 
 
-@helper
+@internal
 def chord_spin(X, V, first, last, out, o):
     """Angular velocity of the line from one frame to another, without spin about it."""
     d = (X[last, 0] - X[first, 0], X[last, 1] - X[first, 1], X[last, 2] - X[first, 2])
@@ -301,7 +302,7 @@ def chord_spin(X, V, first, last, out, o):
         out[o + c] = n[c] / square if square > 0.0 else 0.0
 
 
-@helper
+@internal
 def deflection(X, first, last):
     """Largest distance of a frame between two from the line through them, m."""
     d = (X[last, 0] - X[first, 0], X[last, 1] - X[first, 1], X[last, 2] - X[first, 2])

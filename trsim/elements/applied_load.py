@@ -21,9 +21,10 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import arm, dot, helper, push, scaled, spin, twist, velocity
+from trsim.elements.frames import arm, dot, push, scaled, spin, twist, velocity
 from trsim.fields import Function, Spec, direction, point, vector
 from trsim.kernels.columns import V3, i8
+from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
 
 
@@ -86,7 +87,7 @@ def pack(name, spec, at):
     return Row(*own, turns=is_torque, reads=load.sensors)
 
 
-@helper
+@internal
 def magnitude_and_load(t, scene, e):
     """f, and f along its direction, world axes."""
     own = Directed(scene, e)

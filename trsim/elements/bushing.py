@@ -34,7 +34,6 @@ from trsim.elements.frames import (
     TwoPoints,
     carried,
     dot,
-    helper,
     minus,
     points,
     push_apart,
@@ -48,6 +47,7 @@ from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.frame import across
 from trsim.kernels.columns import V3, i8
+from trsim.kernels.lazy import internal
 
 Least0 = Annotated[float, Ge(0)]
 Three = tuple[Least0, Least0, Least0]
@@ -115,19 +115,19 @@ def pack(name, spec, at):
     return Row(*Own.packed(spec, **points(at, i, j, spec.at, spec.at), **own, turns=turns))
 
 
-@helper
+@internal
 def diagonal(K, v):
     """K v with the diagonal K."""
     return (K[0] * v[0], K[1] * v[1], K[2] * v[2])
 
 
-@helper
+@internal
 def half_square(K, v):
     """(v^T K v)/2 with the diagonal K."""
     return 0.5 * dot(v, diagonal(K, v))
 
 
-@helper
+@internal
 def slide(scene, e):
     """The axes A_i, the arm to P_j on body i and on body j, d and d'."""
     own = Own(scene, e)
@@ -136,13 +136,13 @@ def slide(scene, e):
     return A, p_i, p_j, into(A, d), into(A, v)
 
 
-@helper
+@internal
 def turn(X, A, own):
     """theta."""
     return rotation_vector(A, triad(X, own.j, own.x_j, own.y_j, own.z_j))
 
 
-@helper
+@internal
 def loads(scene, e):
     """Arms on both bodies, force and moment on body j in world axes, the power lost."""
     own = Own(scene, e)

@@ -39,7 +39,6 @@ from trsim.elements.frames import (
     carried,
     cross,
     dot,
-    helper,
     minus,
     plus,
     points,
@@ -53,6 +52,7 @@ from trsim.elements.rows import TILTS, Axes, along, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
 from trsim.kernels.columns import constraint_row, f8, i8, run
+from trsim.kernels.lazy import internal
 from trsim.laws.contact import elastic, normal_force, stored
 from trsim.laws.friction import (
     CODES,
@@ -136,7 +136,7 @@ def pack(name, spec, at):
     return Row(*own, contact, states=(state,), travel="distance")
 
 
-@helper
+@internal
 def play(scene, e):
     """Arms of the journal's centre on both bodies, unit normal and tangent, penetration and its
     rate."""
@@ -153,7 +153,7 @@ def play(scene, e):
     return r_i, p_j, n, cross(axis, n), size - own.clearance, dot(n, v)
 
 
-@helper
+@internal
 def sliding(scene, e):
     """The contact point seen from both centres of mass, the same of `play`, the sliding speed of
     the journal against the bearing there, m/s.
@@ -169,7 +169,7 @@ def sliding(scene, e):
     return c_i, c_j, n, tangent, depth, rate, v_t
 
 
-@helper
+@internal
 def contact_forces(scene, e):
     """Normal force, friction on the journal along t, sliding speed, bristle rate, arms, n, t."""
     own = Own(scene, e)
@@ -191,7 +191,7 @@ def contact_forces(scene, e):
     return F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate
 
 
-@helper
+@internal
 def on_journal(F_n, F_t, n, tangent):
     """The force on the journal."""
     return plus(scaled(-F_n, n), scaled(F_t, tangent))

@@ -52,9 +52,9 @@ from typing import Any, NamedTuple
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
 from trsim.kernels.columns import Columns, f8, i8, memory
+from trsim.kernels.lazy import internal
 from trsim.kernels.machine import Compiled
 from trsim.kernels.signatures import Signature, void
-from trsim.kernels.vectors import internal
 from trsim.statuses import Ended
 
 KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")

@@ -29,7 +29,6 @@ from trsim.elements.frames import (
     carried,
     cross,
     dot,
-    helper,
     on_joint,
     push_apart,
     relative_spin,
@@ -40,6 +39,7 @@ from trsim.elements.frames import (
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.fields import Function, Spec, Unit
+from trsim.kernels.lazy import internal
 
 
 class Compliance(Spec):
@@ -160,7 +160,7 @@ def force(t, scene, e):
         act(scene, e, pull)
 
 
-@helper
+@internal
 def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
     own = AnyDrive(scene, e)

@@ -23,7 +23,7 @@ from math import sqrt
 
 from trsim.elements.contract import Pair, Turning
 from trsim.kernels.columns import V3, constraint_row
-from trsim.kernels.vectors import internal as helper
+from trsim.kernels.lazy import internal
 
 
 class TwoPoints(Pair):
@@ -66,7 +66,7 @@ class Coincident(TwoPoints):
     z: constraint_row
 
 
-@helper
+@internal
 def arm(X, i, s):
     """R_i s, world axes."""
     return (
@@ -76,22 +76,22 @@ def arm(X, i, s):
     )
 
 
-@helper
+@internal
 def plus(a, b):
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-@helper
+@internal
 def minus(a, b):
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-@helper
+@internal
 def scaled(c, a):
     return c * a[0], c * a[1], c * a[2]
 
 
-@helper
+@internal
 def cross(a, b):
     return (
         a[1] * b[2] - a[2] * b[1],
@@ -100,31 +100,31 @@ def cross(a, b):
     )
 
 
-@helper
+@internal
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@helper
+@internal
 def two_points(scene, e):
     """Both bodies of instance e with the arms of its points."""
     own = TwoPoints(scene, e)
     return own.i, arm(scene.X, own.i, own.p_i), own.j, arm(scene.X, own.j, own.p_j)
 
 
-@helper
+@internal
 def spin(V, i):
     """omega_i."""
     return (V[i, 3], V[i, 4], V[i, 5])
 
 
-@helper
+@internal
 def point(X, i, p):
     """World position of the end of the arm p."""
     return (X[i, 0] + p[0], X[i, 1] + p[1], X[i, 2] + p[2])
 
 
-@helper
+@internal
 def velocity(V, i, p):
     """World velocity of the end of the arm p."""
     o0, o1, o2 = V[i, 3], V[i, 4], V[i, 5]
@@ -135,7 +135,7 @@ def velocity(V, i, p):
     )
 
 
-@helper
+@internal
 def centripetal(V, i, p):
     """omega x (omega x p)."""
     o = (V[i, 3], V[i, 4], V[i, 5])
@@ -144,14 +144,14 @@ def centripetal(V, i, p):
     return (o[0] * w - p[0] * o2, o[1] * w - p[1] * o2, o[2] * w - p[2] * o2)
 
 
-@helper
+@internal
 def inward(V, i, p):
     """omega x (omega x p) where nothing leaves the plane."""
     o2 = V[i, 5] * V[i, 5]
     return (-p[0] * o2, -p[1] * o2, 0.0)
 
 
-@helper
+@internal
 def push(F, i, p, f):
     """Apply the force f to body i at the end of the arm p."""
     F[i, 0] += f[0]
@@ -162,21 +162,21 @@ def push(F, i, p, f):
     F[i, 5] += p[0] * f[1] - p[1] * f[0]
 
 
-@helper
+@internal
 def push_apart(F, i, p_i, j, p_j, f):
     """Apply the force f to body j at the end of the arm p_j, and -f to body i at that of p_i."""
     push(F, j, p_j, f)
     push(F, i, p_i, (-f[0], -f[1], -f[2]))
 
 
-@helper
+@internal
 def twist_apart(F, i, j, m):
     """Apply the moment m to body j and -m to body i."""
     twist(F, j, m)
     twist(F, i, (-m[0], -m[1], -m[2]))
 
 
-@helper
+@internal
 def twist(F, i, m):
     """Apply the moment m to body i."""
     F[i, 3] += m[0]
@@ -184,7 +184,7 @@ def twist(F, i, m):
     F[i, 5] += m[2]
 
 
-@helper
+@internal
 def separation(X, i, p_i, j, p_j):
     """From the point on i to the point on j, world axes."""
     return (
@@ -194,7 +194,7 @@ def separation(X, i, p_i, j, p_j):
     )
 
 
-@helper
+@internal
 def apart(scene, e):
     """Arms of the points of instance e, their separation and its rate."""
     V = scene.V
@@ -203,7 +203,7 @@ def apart(scene, e):
     return p_i, p_j, separation(scene.X, i, p_i, j, p_j), d_dot
 
 
-@helper
+@internal
 def carried(scene, e):
     """Arms on both bodies of the second point of instance e, their separation as above, and how
     fast the point moves against body i there."""
@@ -214,27 +214,27 @@ def carried(scene, e):
     return r_i, p_j, d, minus(velocity(V, j, p_j), velocity(V, i, r_i))
 
 
-@helper
+@internal
 def relative_spin(V, i, j):
     """Angular velocity of body j against body i."""
     return minus(spin(V, j), spin(V, i))
 
 
-@helper
+@internal
 def lines(scene, k, f, m_i, m_j):
     """J of row k between two frames: the force f on j and -f on i, with their moments."""
     _put(scene.J, scene.row_start[k], -1.0, f, m_i)
     _put(scene.J, scene.row_start[k] + 1, 1.0, f, m_j)
 
 
-@helper
+@internal
 def _put(J, line, sign, f, m):
     """A line of J: the force f and the moment m, times sign."""
     J[line, 0], J[line, 1], J[line, 2] = sign * f[0], sign * f[1], sign * f[2]
     J[line, 3], J[line, 4], J[line, 5] = sign * m[0], sign * m[1], sign * m[2]
 
 
-@helper
+@internal
 def turn_lines(scene, k, n):
     """J of row k between two frames, where Phi' = n . (omega_j - omega_i)."""
     J, l = scene.J, scene.row_start[k]
@@ -245,7 +245,7 @@ def turn_lines(scene, k, n):
         J[l + 1, 3 + c] = n[c]
 
 
-@helper
+@internal
 def point_rows(scene, e):
     """The points of instance e coincide along the world axes whose row is not negative."""
     V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
@@ -268,7 +268,7 @@ def point_rows(scene, e):
         lines(scene, kz, (0.0, 0.0, 1.0), (p_i[1], -p_i[0], 0.0), (p_j[1], -p_j[0], 0.0))
 
 
-@helper
+@internal
 def along_row(scene, e, u, k):
     """u . d as row k, u an arm of body i (world axes), d the separation of the points of e."""
     V, phi, phi_t, gamma = scene.V, scene.phi, scene.phi_t, scene.gamma
@@ -295,7 +295,7 @@ def along_row(scene, e, u, k):
     gamma[k] = dot(u, c_i) - dot(u, c_j) - 2.0 * dot(u_dot, d_dot) - dot(centripetal(V, i, u), d)
 
 
-@helper
+@internal
 def perpendicular_row(scene, i, u, j, w, k):
     """u . w as row k, with u an arm of body i and w an arm of body j, both in world axes."""
     V, n = scene.V, cross(u, w)
@@ -308,7 +308,7 @@ def perpendicular_row(scene, i, u, j, w, k):
     turn_lines(scene, k, (-n[0], -n[1], -n[2]))
 
 
-@helper
+@internal
 def line(scene, e):
     """Arms, unit vector from i to j, length and its rate of the line between two points.
 
@@ -322,7 +322,7 @@ def line(scene, e):
     return p_i, p_j, n, length, dot(n, d_dot)
 
 
-@helper
+@internal
 def distance_row(scene, e, k):
     """The length of the line of instance e, as row k; phi is the length itself."""
     V, own = scene.V, Pair(scene, e)
@@ -334,14 +334,14 @@ def distance_row(scene, e, k):
     lines(scene, k, n, cross(p_i, n), cross(p_j, n))
 
 
-@helper
+@internal
 def nearest_branch(angle, guess):
     """The value of an angle known up to full turns that lies nearest to the guess."""
     turns = (guess - angle) / 6.283185307179586
     return angle + 6.283185307179586 * round(turns)
 
 
-@helper
+@internal
 def turn_acceleration(scene, e, axis):
     """Second rate of the angle of body j against body i about an axis of body i."""
     V, A, own = scene.V, scene.A, Pair(scene, e)
@@ -349,14 +349,14 @@ def turn_acceleration(scene, e, axis):
     return dot(axis, relative_spin(A, i, j)) + dot(cross(spin(V, i), axis), relative_spin(V, i, j))
 
 
-@helper
+@internal
 def stroke(scene, e, axis):
     """axis . d and its rate, with the axis fixed in body i and d the separation."""
     _, _, d, d_dot = apart(scene, e)
     return dot(axis, d), dot(axis, d_dot) + dot(cross(spin(scene.V, Pair(scene, e).i), axis), d)
 
 
-@helper
+@internal
 def stroke_acceleration(scene, e, axis):
     """Second rate of the same."""
     V, A = scene.V, scene.A

@@ -36,7 +36,6 @@ from trsim.elements.frames import (
     arm,
     carried,
     dot,
-    helper,
     minus,
     on_joint,
     points,
@@ -48,6 +47,7 @@ from trsim.elements.frames import point as place
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.kernels.columns import f8, i8
+from trsim.kernels.lazy import internal
 from trsim.laws.contact import (
     ramped_beyond,
     ramped_branch_of,
@@ -172,7 +172,7 @@ def pack(name, spec, at):
     return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 
 
-@helper
+@internal
 def touch(scene, e):
     """Penetration, its rate, and the direction of the force on body j (world, or + - axis)."""
     S, own = scene.S, Own(scene, e)

@@ -10,8 +10,9 @@ the motion began; f is the velocity then.
 from typing import Any
 
 from trsim.elements.contract import compiled
-from trsim.elements.frames import Along, helper
+from trsim.elements.frames import Along
 from trsim.kernels.columns import constraint_row, f8, i8
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, void
 from trsim.laws.functions import motion
 
@@ -44,14 +45,14 @@ def rates_at(tab: Any, offset: int, t: float) -> tuple[float, float, float]:
     return f, f_dot, f_ddot
 
 
-@helper
+@internal
 def holds(scene, e):
     """Whether a drive acts on its joint: it has not let go."""
     own = AnyDrive(scene, e)
     return own.row >= 0 or own.stiffness > 0.0
 
 
-@helper
+@internal
 def prescribed(t, scene, e):
     """Prescribed place, its rate and second rate at time t."""
     own = AnyDrive(scene, e)

@@ -13,24 +13,25 @@ A triad is three unit vectors in world axes.
 
 from math import atan2, sqrt, tan
 
-from trsim.elements.frames import arm, cross, dot, helper
+from trsim.elements.frames import arm, cross, dot
+from trsim.kernels.lazy import internal
 
 SMALL = 0.1  # rad: below, h is its series; the first term left out is 5e-15 of it
 
 
-@helper
+@internal
 def triad(X, i, x, y, z):
     """Three vectors in the axes of body i, world axes."""
     return arm(X, i, x), arm(X, i, y), arm(X, i, z)
 
 
-@helper
+@internal
 def into(A, v):
     """A^T v: a vector in world axes, in the axes of the triad."""
     return (dot(A[0], v), dot(A[1], v), dot(A[2], v))
 
 
-@helper
+@internal
 def out_of(A, v):
     """A v: a vector in the axes of the triad, in world axes."""
     return (
@@ -40,7 +41,7 @@ def out_of(A, v):
     )
 
 
-@helper
+@internal
 def rotation_vector(A_i, A_j):
     """theta, rad, by the quaternion of Q, taken from its largest component [Shepperd1978]."""
     x, y, z = into(A_i, A_j[0]), into(A_i, A_j[1]), into(A_i, A_j[2])  # columns of Q
@@ -61,7 +62,7 @@ def rotation_vector(A_i, A_j):
     return (factor * v[0], factor * v[1], factor * v[2])
 
 
-@helper
+@internal
 def gradient(theta, g):
     """H^T g: the moment that does the work of g along theta."""
     angle = sqrt(dot(theta, theta))

@@ -28,7 +28,6 @@ from trsim.elements.frames import (
     along_row,
     arm,
     dot,
-    helper,
     nearest_branch,
     perpendicular_row,
     point_rows,
@@ -36,6 +35,7 @@ from trsim.elements.frames import (
     stroke,
 )
 from trsim.kernels.columns import V3, f8
+from trsim.kernels.lazy import internal
 
 
 class Axes(TwoPoints):
@@ -94,7 +94,7 @@ def constraint_of(rows):
     return constraint
 
 
-@helper
+@internal
 def nothing(scene, e):
     """Where a joint has no more rows."""
 
@@ -104,7 +104,7 @@ def fill_of(row, column):
     c = Axes.columns[f"{row.of_i}_i"].at
     o = Axes.columns[f"{row.of_j}_j"].at if row.of_j else -1
 
-    @helper
+    @internal
     def turn(scene, e):
         k = scene.con[e, column]
         if k >= 0:
@@ -112,7 +112,7 @@ def fill_of(row, column):
             u, w = arm(X, own.i, axis(scene, e, c)), arm(X, own.j, axis(scene, e, o))
             perpendicular_row(scene, own.i, u, own.j, w, k)
 
-    @helper
+    @internal
     def slide(scene, e):
         k = scene.con[e, column]
         if k >= 0:
@@ -121,13 +121,13 @@ def fill_of(row, column):
     return turn if row.of_j else slide
 
 
-@helper
+@internal
 def axis(scene, e, c):
     """What stands in the columns of par from c on."""
     return scene.par[e, c], scene.par[e, c + 1], scene.par[e, c + 2]
 
 
-@helper
+@internal
 def write_angle(scene, e, s):
     """The angle of instance e and its rate, as entry s of S."""
     X, V, S, own = scene.X, scene.V, scene.S, Axes(scene, e)
@@ -140,7 +140,7 @@ def write_angle(scene, e, s):
     S[s, 1] = dot(arm(X, i, own.a_i), relative_spin(V, i, j))
 
 
-@helper
+@internal
 def write_stroke(scene, e, s):
     """The stroke of instance e and its rate, as entry s of S."""
     own = Axes(scene, e)

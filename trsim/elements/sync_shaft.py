@@ -38,10 +38,10 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import helper
 from trsim.errors import ScenarioError
 from trsim.fields import Flag, Spec, Unit
 from trsim.kernels.columns import f8, i8, run
+from trsim.kernels.lazy import internal
 
 
 class SyncShaft(Spec):
@@ -153,14 +153,14 @@ def channels(n):
     )
 
 
-@helper
+@internal
 def place(scene, e, k):
     """Stroke of piston k and its rate, which its actuator left in zd."""
     s = Own(scene, e).stations[2 * k]
     return scene.z[s], scene.zd[s]
 
 
-@helper
+@internal
 def torque(scene, e, k):
     """Torque in segment k between pistons k and k + 1; zero beyond the ends."""
     own = Own(scene, e)
@@ -171,7 +171,7 @@ def torque(scene, e, k):
     return own.ratio * (own.stiffness * (v - u) + own.damping * (v_dot - u_dot))
 
 
-@helper
+@internal
 def gear(scene, e, k):
     """Ideal and real force on piston k, and its speed."""
     own = Own(scene, e)
@@ -202,7 +202,7 @@ def force(t, scene, e):
             zd[DRIVES] -= G * speed  # whoever prescribes the motion takes the force
 
 
-@helper
+@internal
 def largest_difference(scene, e):
     """The largest difference of the strokes of neighbours, and its rate."""
     largest, rate = -1.0, 0.0

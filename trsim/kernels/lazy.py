@@ -61,6 +61,6 @@ class Lazy:
         return self.dispatcher(*arguments, **named)
 
 
-def law(python: Callable) -> Lazy:
-    """Decorator of laws."""
+def internal(python: Callable) -> Lazy:
+    """Decorator of functions that compiled code calls: laws, and parts of kernels and methods."""
     return Lazy(python)

@@ -5,9 +5,7 @@ Slice assignments of numba carry shape checks and their error texts: a second of
 
 from math import isfinite
 
-from trsim.kernels.lazy import Lazy
-
-internal = Lazy  # decorator of functions that only compiled code calls
+from trsim.kernels.lazy import internal
 
 
 @internal

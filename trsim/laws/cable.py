@@ -30,7 +30,7 @@ straight place no curvature has a direction, and every one that grows is resiste
 with k' = a^(-q/2) (r'' - b/a r')' across the tangent.  The blend makes the force differentiable.
 """
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.cable_stretch import pulled, squared, stretching_energy
 
 EXACT, GERSTMAYR, PAPER = 0, 1, 2
@@ -43,13 +43,13 @@ BENDING, BENDING_WEIGHT = 0.3872983346207417, 5.0 / 18.0
 MIDDLE_OF_3 = 4.0 / 9.0
 
 
-@law
+@internal
 def dot(x, y):
     """x . y"""
     return x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
 
 
-@law
+@internal
 def mixed(c, P):
     """c_0 P_0 + c_1 P_1 + c_2 P_2"""
     x, y, z = P
@@ -60,7 +60,7 @@ def mixed(c, P):
     )
 
 
-@law
+@internal
 def parabola(e, l):
     """P_0, P_1, P_2 of r', each a vector; of the rates of e, their rates."""
     u = 1.0 / l
@@ -72,7 +72,7 @@ def parabola(e, l):
     return mixed((1.5, -0.25, -0.25), g), mixed((0.0, -1.0, 1.0), g), mixed((-6.0, 3.0, 3.0), g)
 
 
-@law
+@internal
 def products(P, R):
     """(p00, p01, 2 p02 + p11, p12, p22, p11) of p_ij = (P_i . R_j + P_j . R_i) / 2."""
     p11 = dot(P[1], R[1])
@@ -86,7 +86,7 @@ def products(P, R):
     )
 
 
-@law
+@internal
 def invariants(p, n, u):
     """a = r'.r', b = r'.r'', c = r''.r'' at n from `products`; u = 1 / l."""
     b = p[1] + n * (p[2] + n * (3.0 * p[3] + n * 2.0 * p[4]))
@@ -94,7 +94,7 @@ def invariants(p, n, u):
     return squared(p, n), u * b, u * u * c
 
 
-@law
+@internal
 def bend(a, b, c, curvature):
     """kappa^2 and the derivatives of kappa^2 / 2 in a, b and c; 1/m^2, ..."""
     if curvature == PAPER:
@@ -110,7 +110,7 @@ def bend(a, b, c, curvature):
     return weight * across, 0.5 * weight * (s * s - q * across * y), -weight * s, 0.5 * weight
 
 
-@law
+@internal
 def flexed(p, p_dot, n, l, EI, beta, curvature):
     """EI times the derivatives of kappa^2 / 2 at n, damped: of r'.r', 2 r'.r'' / l, r''.r'' / l^2.
 
@@ -126,7 +126,7 @@ def flexed(p, p_dot, n, l, EI, beta, curvature):
     return 2.0 * EI * k_a, EI * u * k_b, 2.0 * EI * u * u * k_c
 
 
-@law
+@internal
 def bent(p, p_dot, l, EI, beta, curvature):
     """What the bend adds to M: m00, m01, m02, m11, m12, m22, N*m."""
     i, j = BENDING_WEIGHT * l * EI, MIDDLE_OF_3 * l * EI
@@ -145,7 +145,7 @@ def bent(p, p_dot, l, EI, beta, curvature):
     )
 
 
-@law
+@internal
 def straight_resistance(P, P_dot, n, l, EI_beta, curvature):
     """Forces on r' and r'' of the damping that straight places have alone, N and N*m."""
     u = 1.0 / l
@@ -165,7 +165,7 @@ def straight_resistance(P, P_dot, n, l, EI_beta, curvature):
     return f1, mixed((1.0, grown, 0.0), (f2, r1, r1))
 
 
-@law
+@internal
 def add_to_ends(G, l, F):
     """F -= forces G on P_0, P_1, P_2, as felt by the twelve coordinates."""
     chord = mixed((1.5, 0.0, -6.0), G)
@@ -185,7 +185,7 @@ def add_to_ends(G, l, F):
     F[11] -= at_b[2]
 
 
-@law
+@internal
 def add_straight_damping(P, P_dot, n, l, EI_beta, curvature, F):
     """F += what straight places add to the damping, at n."""
     u = 1.0 / l
@@ -194,7 +194,7 @@ def add_straight_damping(P, P_dot, n, l, EI_beta, curvature, F):
     add_to_ends(G, l, F)
 
 
-@law
+@internal
 def add_force(e, v, bar, beta, F):
     """F += elastic and damping force of one element.
 
@@ -235,7 +235,7 @@ def add_force(e, v, bar, beta, F):
     add_to_ends(G, l, F)
 
 
-@law
+@internal
 def energies(e, bar):
     """Energy of the stretch and of the bend, J.  Parameters as in `add_force`."""
     l, curvature = bar.length, bar.curvature

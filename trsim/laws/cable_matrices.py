@@ -4,24 +4,24 @@ A strain is a function of products of r' and r''.  Its gradient in the coordinat
 coefficients of the nodes times a vector; the second derivatives of a product are unit matrices.
 """
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 
 
-@law
+@internal
 def slopes(n, u):
     """Coefficients of r_a, r_xa, r_b, r_xb in r' at n = x / l - 1/2; u = 1 / l."""
     chord = u * (1.5 - 6.0 * n * n)
     return -chord, n * (3.0 * n - 1.0) - 0.25, chord, n * (3.0 * n + 1.0) - 0.25
 
 
-@law
+@internal
 def bends(n, u):
     """Coefficients of r_a, r_xa, r_b, r_xb in r'' at n = x / l - 1/2; u = 1 / l."""
     chord = -12.0 * n * u * u
     return -chord, u * (6.0 * n - 1.0), chord, u * (6.0 * n + 1.0)
 
 
-@law
+@internal
 def place(row, k, x, y, v, w):
     """row[3 k ... 3 k + 2] <- x v + y w."""
     row[3 * k] = x * v[0] + y * w[0]
@@ -29,7 +29,7 @@ def place(row, k, x, y, v, w):
     row[3 * k + 2] = x * v[2] + y * w[2]
 
 
-@law
+@internal
 def fill(row, c, v, d, w):
     """row (12,) <- c_k v + d_k w for the four nodes k."""
     place(row, 0, c[0], d[0], v, w)
@@ -38,7 +38,7 @@ def fill(row, c, v, d, w):
     place(row, 3, c[3], d[3], v, w)
 
 
-@law
+@internal
 def add_square(M, h, x):
     """M += h x x^T."""
     for i in range(12):
@@ -46,7 +46,7 @@ def add_square(M, h, x):
             M[i, j] += h * (x[i] * x[j])
 
 
-@law
+@internal
 def add_form(M, aa, ab, ac, bb, G):
     """M += aa a a^T + ab (a b^T + b a^T) + ac (a c^T + c a^T) + bb b b^T, a, b, c the rows of G."""
     a, b, c = G[0], G[1], G[2]
@@ -61,7 +61,7 @@ def add_form(M, aa, ab, ac, bb, G):
             )
 
 
-@law
+@internal
 def add_units(M, h, c, d):
     """M += h (c_k d_m + d_k c_m) times a unit matrix in each of the blocks k, m of nodes."""
     add_unit_row(M, 0, h, c[0], d[0], c, d)
@@ -70,7 +70,7 @@ def add_units(M, h, c, d):
     add_unit_row(M, 9, h, c[3], d[3], c, d)
 
 
-@law
+@internal
 def add_unit_row(M, row, h, x, y, c, d):
     """The three rows of one node in `add_units`."""
     for i in range(3):

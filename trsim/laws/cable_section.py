@@ -8,25 +8,25 @@ The mass matrix is constant: there are no terms of velocity.
 
 from math import sqrt
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.cable import bend, dot, mixed, parabola
 from trsim.laws.cable_stretch import stretch
 
 
-@law
+@internal
 def shapes(xi, l):
     """S1, -, S2, m, S3, -, S4, m at xi = x / l; they also share a force at xi out."""
     y = 1.0 - xi
     return y * y * (1.0 + 2.0 * xi), l * xi * y * y, xi * xi * (3.0 - 2.0 * xi), -l * xi * xi * y
 
 
-@law
+@internal
 def uniform_shares(l):
     """Integrals of S1, m, S2, m^2, S3, m, S4, m^2: of a force per undeformed length."""
     return 0.5 * l, l * l / 12.0, 0.5 * l, -l * l / 12.0
 
 
-@law
+@internal
 def mass(l, rho_A):
     """Consistent mass of the four shapes, four rows of four; rho_A in kg/m, l in m."""
     w = rho_A * l / 420.0
@@ -40,7 +40,7 @@ def mass(l, rho_A):
     )
 
 
-@law
+@internal
 def position(e, l, xi):
     """r at xi, m."""
     s1, s2, s3, s4 = shapes(xi, l)
@@ -51,7 +51,7 @@ def position(e, l, xi):
     )
 
 
-@law
+@internal
 def stress(e, bar, xi):
     """Axial force EA eps, N, positive in tension, and moment EI kappa >= 0, N*m, at xi.
 

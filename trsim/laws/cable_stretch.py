@@ -18,7 +18,7 @@ parabola, so these are the same in both; and a mean that is exact makes that of 
 
 from math import sqrt
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 
 GREEN, ENGINEERING = 0, 1
 ASSUMED, FULL = 0, 1
@@ -34,13 +34,13 @@ NEAR, NEAR_WEIGHT = 0.26923465505284155, 0.23931433524968324
 MIDDLE_OF_5 = 64.0 / 225.0
 
 
-@law
+@internal
 def squared(p, n):
     """a = r'.r' at n from `cable.products`."""
     return p[0] + n * (2.0 * p[1] + n * (p[2] + n * (2.0 * p[3] + n * p[4])))
 
 
-@law
+@internal
 def sampled(p):
     """r'.r' at Lobatto's four points from `cable.products`."""
     ends, skew = p[0] + 0.25 * p[2] + 0.0625 * p[4], p[1] + 0.25 * p[3]
@@ -48,7 +48,7 @@ def sampled(p):
     return ends - skew, inside - aside, inside + aside, ends + skew
 
 
-@law
+@internal
 def stretch(a, strain):
     """Axial strain eps of a = r'.r', and 2 d eps / da."""
     if strain == GREEN:
@@ -57,14 +57,14 @@ def stretch(a, strain):
     return s - 1.0, 1.0 / s
 
 
-@law
+@internal
 def damped(a, a_dot, beta, strain):
     """eps + beta eps' of r'.r' and r'.(r')', and 2 d eps / da."""
     eps, turn = stretch(a, strain)
     return eps + beta * turn * a_dot, turn
 
 
-@law
+@internal
 def forces(a, b, c, d):
     """Derivatives of U / (EA l) of the assumed strain in those of Lobatto's four points."""
     m, difference = OUTER * (a + d) + INNER * (b + c), d - a
@@ -73,7 +73,7 @@ def forces(a, b, c, d):
     return ends - OUTER * difference, INNER * (m - curved), ends + OUTER * difference
 
 
-@law
+@internal
 def pulled(p, p_dot, l, EA, beta, strain, stretching):
     """What the stretch adds to M of `cable.add_force`: m00, m01, m02, m11, m12, m22, N*m."""
     if stretching == FULL:
@@ -106,7 +106,7 @@ def pulled(p, p_dot, l, EA, beta, strain, stretching):
     )
 
 
-@law
+@internal
 def pulled_everywhere(p, p_dot, EAl, beta, strain):
     """`pulled` of five Gauss points."""
     m00, m01, m02, m12, m22 = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -119,7 +119,7 @@ def pulled_everywhere(p, p_dot, EAl, beta, strain):
     return m00, m01, m02, m02, m12, m22
 
 
-@law
+@internal
 def gauss(k):
     """Place and weight of the k-th of five Gauss points."""
     if k < 2:
@@ -129,7 +129,7 @@ def gauss(k):
     return 0.0, MIDDLE_OF_5
 
 
-@law
+@internal
 def stretching_energy(p, l, EA, strain, stretching):
     """Energy of the stretch from `cable.products`, J."""
     total = 0.0

@@ -10,7 +10,7 @@ the twelve coordinates, and W the energy at the point.  Both matrices are symmet
 semidefinite.  What the damping force gains when e changes at fixed rates is not in either.
 """
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.cable import (
     BENDING,
     BENDING_WEIGHT,
@@ -36,7 +36,7 @@ from trsim.laws.cable_stretch import (
 )
 
 
-@law
+@internal
 def bend_again(a, b, c, curvature):
     """Second derivatives of kappa^2 / 2: aa, ab, ac, bb; bc and cc are 0."""
     if curvature == PAPER:
@@ -50,7 +50,7 @@ def bend_again(a, b, c, curvature):
     return aa, (q + 1.0) * g * b / a, -0.5 * q * g, -g
 
 
-@law
+@internal
 def add_axial(n, P, l, EA, strain, G, K):
     """K += stiffness of the stretch at n; EA with the weight of the point."""
     u = 1.0 / l
@@ -66,7 +66,7 @@ def add_axial(n, P, l, EA, strain, G, K):
     add_units(K, 0.5 * EA * eps * turn, c, c)
 
 
-@law
+@internal
 def elongation(n, P, l, strain, row):
     """row <- 2 d eps / de at n; eps, and 2 d eps / da there."""
     r1 = mixed((1.0, n, n * n), P)
@@ -77,7 +77,7 @@ def elongation(n, P, l, strain, row):
     return eps, turn
 
 
-@law
+@internal
 def add_second(n, l, f, turn, strain, row, K):
     """K += f d2 eps / de2 at n; row: 2 d eps / de."""
     c = slopes(n, 1.0 / l)
@@ -86,7 +86,7 @@ def add_second(n, l, f, turn, strain, row, K):
         add_square(K, -0.25 * f * turn, row)
 
 
-@law
+@internal
 def add_products(EAl, G, K):
     """K += EA l times the second derivatives of U / (EA l) in the strains with gradients G / 2."""
     for i in range(12):
@@ -98,7 +98,7 @@ def add_products(EAl, G, K):
     add_square(K, EAl / 20.0, G[2])
 
 
-@law
+@internal
 def add_assumed(P, l, EA, strain, G, K):
     """K += stiffness of the assumed stretch."""
     a, turn_a = elongation(-0.5, P, l, strain, G[0])
@@ -114,7 +114,7 @@ def add_assumed(P, l, EA, strain, G, K):
     add_products(EAl, G, K)
 
 
-@law
+@internal
 def add_bending(n, P, l, EI, curvature, G, K):
     """K += stiffness of the bend at n; EI with the weight of the point."""
     u = 1.0 / l
@@ -133,7 +133,7 @@ def add_bending(n, P, l, EI, curvature, G, K):
     add_units(K, EI * k_c, c2, c2)
 
 
-@law
+@internal
 def add_stiffness(e, bar, G, K):
     """K += d2U/de2 of one element, (12, 12), symmetric.
 
@@ -156,7 +156,7 @@ def add_stiffness(e, bar, G, K):
     add_bending(BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
 
 
-@law
+@internal
 def add_axial_damping(n, P, l, EA_beta, strain, G, C):
     """C += damping of the stretch at n."""
     c = slopes(n, 1.0 / l)
@@ -166,7 +166,7 @@ def add_axial_damping(n, P, l, EA_beta, strain, G, C):
     add_square(C, 0.25 * EA_beta * turn * turn, G[0])
 
 
-@law
+@internal
 def add_assumed_damping(P, l, EA_beta, strain, G, C):
     """C += damping of the assumed stretch."""
     elongation(-0.5, P, l, strain, G[0])
@@ -176,7 +176,7 @@ def add_assumed_damping(P, l, EA_beta, strain, G, C):
     add_products(EA_beta * l, G, C)
 
 
-@law
+@internal
 def add_bending_damping(n, P, l, EI_beta, curvature, G, C):
     """C += damping of the bend at n."""
     u = 1.0 / l
@@ -202,7 +202,7 @@ def add_bending_damping(n, P, l, EI_beta, curvature, G, C):
         add_square(C, m / a, G[2])
 
 
-@law
+@internal
 def add_damping(e, bar, G, C):
     """C += -dF/de' of one element, (12, 12), symmetric.
 

@@ -18,7 +18,7 @@ so the delivered restitution e depends on chi alone, not on mass, speed, K or n.
 from math import asinh, exp, gamma, inf, pi, sqrt
 from typing import NamedTuple
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.tables import smoothstep
 
 HERTZ, CYLINDER = 0, 1  # form
@@ -34,7 +34,7 @@ class Pair(NamedTuple):
     chi: float = 0.0  # damping factor, see `damping_factor`
 
 
-@law
+@internal
 def elastic(d, pair):
     """Elastic part of the contact force.
 
@@ -63,7 +63,7 @@ def elastic(d, pair):
     return K * d**n
 
 
-@law
+@internal
 def stored(d, pair):
     """Elastic energy, the integral of F_e from 0 to d, J.  Parameters as in `elastic`.
 
@@ -90,7 +90,7 @@ def stored(d, pair):
     return K * c * c * z * z * s * total
 
 
-@law
+@internal
 def normal_force(d, d_dot, d_dot0, pair):
     """Normal force of a dissipative contact, F = max(0, F_e (1 + chi d'/d0')).
 
@@ -113,7 +113,7 @@ def normal_force(d, d_dot, d_dot0, pair):
     return max(0.0, elastic(d, pair) * (1.0 + pair.chi * d_dot / d_dot0))
 
 
-@law
+@internal
 def ramped_damping(pen, pen_dot, k, c, ramp):
     """Force of a stop or seat: a linear spring whose damper fades in over the first ramp metres.
 
@@ -135,13 +135,13 @@ def ramped_damping(pen, pen_dot, k, c, ramp):
     return max(0.0, uncut(pen, pen_dot, k, c, ramp))
 
 
-@law
+@internal
 def uncut(pen, pen_dot, k, c, ramp):
     """Force of a stop or seat before it is cut at zero, N or N*m; where pen < 0 of the spring."""
     return k * pen + c * smoothstep(pen / ramp) * pen_dot
 
 
-@law
+@internal
 def ramped_branch_of(pen, pen_dot, k, c, ramp):
     """The branch of `ramped_damping` that a penetration and its rate are on.
 
@@ -152,7 +152,7 @@ def ramped_branch_of(pen, pen_dot, k, c, ramp):
     return 0.0 if pen < ramp else 1.0
 
 
-@law
+@internal
 def ramped_on_branch(branch, pen, pen_dot, k, c, ramp):
     """`ramped_damping` with one branch drawn on beyond its ends, so that it has no corner, N."""
     if branch == 2.0:
@@ -163,7 +163,7 @@ def ramped_on_branch(branch, pen, pen_dot, k, c, ramp):
     return k * pen + (c * x * x * (3.0 - 2.0 * x) * pen_dot if x > 0.0 else 0.0)
 
 
-@law
+@internal
 def pulling(pen_dot, k, c, ramp):
     """Between which penetrations, of the ramp, the force of `ramped_damping` would pull.
 
@@ -177,7 +177,7 @@ def pulling(pen_dot, k, c, ramp):
     return 0.25 * (3.0 - root), 1.0 / a if a <= 1.0 else 0.25 * (3.0 + root), 0.0
 
 
-@law
+@internal
 def ramped_beyond(branch, pen, pen_dot, k, c, ramp):
     """How far a branch has been left, of the ramp: negative inside, zero at a corner."""
     if branch == 2.0:
@@ -190,7 +190,7 @@ def ramped_beyond(branch, pen, pen_dot, k, c, ramp):
     return max(pull, along if branch == 0.0 else -along)
 
 
-@law
+@internal
 def ramped_neighbour(branch, pen, pen_dot, k, c, ramp):
     """The branch on the other side of the nearest corner."""
     along = pen / ramp - 1.0

@@ -15,7 +15,7 @@ normal force.  w, m, is the mean deflection of the bristles, positive in the dir
 
 from math import exp
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 
 # the word of a scenario -> the code of `friction_force`
 CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}
@@ -23,7 +23,7 @@ CODES = {"none": 0, "coulomb": 1, "modified_coulomb": 2, "sticking": 3}
 N_PARAMETERS = 6  # at most
 
 
-@law
+@internal
 def coulomb(F_n, v_t, mu):
     """Dry friction with a jump at rest, for reference.
 
@@ -42,7 +42,7 @@ def coulomb(F_n, v_t, mu):
     return -mu * F_n if v_t > 0.0 else mu * F_n
 
 
-@law
+@internal
 def modified_coulomb(F_n, v_t, mu, v0, v1):
     """Dry friction with a dead band and a linear ramp.                    [Ambrosio2003]
 
@@ -72,7 +72,7 @@ def modified_coulomb(F_n, v_t, mu, v0, v1):
     return -F if v_t > 0.0 else F
 
 
-@law
+@internal
 def branch_of(v_t, v0, v1):
     """The branch of `modified_coulomb` at a speed: 0 dead band, 1 ramp, 2 full; with its sign."""
     s = abs(v_t)
@@ -82,7 +82,7 @@ def branch_of(v_t, v0, v1):
     return size if v_t > 0.0 else -size
 
 
-@law
+@internal
 def on_branch(branch, F_n, v_t, mu, v0, v1):
     """`modified_coulomb` with one branch drawn on beyond its ends, so that it has no corner.
 
@@ -96,7 +96,7 @@ def on_branch(branch, F_n, v_t, mu, v0, v1):
     return -mu * F_n if branch > 0.0 else mu * F_n
 
 
-@law
+@internal
 def beyond(branch, v_t, v0, v1):
     """How far a speed has left its branch, m/s: negative inside, zero at a corner."""
     size = abs(branch)
@@ -106,7 +106,7 @@ def beyond(branch, v_t, v0, v1):
     return max(v0 - s, s - v1) if size == 1.0 else v1 - s
 
 
-@law
+@internal
 def neighbour(branch, v_t, v0, v1):
     """The branch on the other side of the nearest corner."""
     size = abs(branch)
@@ -118,7 +118,7 @@ def neighbour(branch, v_t, v0, v1):
     return 2.0 * sign if sign * v_t - v0 > v1 - sign * v_t else 0.0
 
 
-@law
+@internal
 def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     """Load-proportional bristle friction, which sticks.                   [CanudasDeWit1995]
 
@@ -159,7 +159,7 @@ def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     return F, v_t - sigma0 * s * w / g
 
 
-@law
+@internal
 def friction_force(code, F_n, v_t, w, par):
     """Friction by code: 0 none, 1 coulomb, 2 modified_coulomb, 3 sticking (bristle).
 

@@ -25,7 +25,7 @@ per call: `tab` must be writable, and two threads must not evaluate the same arr
 
 import math
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.operations import (
     ABOVE,
     ADD,
@@ -226,32 +226,32 @@ def expression(node, sensors):
     return [float(x) for x in out]
 
 
-@law
+@internal
 def operations(tab, o):
     """How many operations an expression has, where the first of them stands, and its slot."""
     n_in = int(tab[o + N_IN])
     return int(tab[o + N_OP]), o + HEAD + n_in, o + int(tab[o + SLOTS]) + 3 * (1 + n_in)
 
 
-@law
+@internal
 def operands(tab, o, p):
     """The code of the operation at p, and its slots a and b."""
     return int(tab[p]), o + int(tab[p + 1]), o + int(tab[p + 2])
 
 
-@law
+@internal
 def read(tab, slot):
     """The three numbers of a slot."""
     return tab[slot], tab[slot + 1], tab[slot + 2]
 
 
-@law
+@internal
 def write(tab, slot, f):
     """Three numbers into a slot."""
     tab[slot], tab[slot + 1], tab[slot + 2] = f
 
 
-@law
+@internal
 def run(tab, o):
     """Value of an expression whose inputs are in their slots."""
     n, p, out = operations(tab, o)
@@ -263,7 +263,7 @@ def run(tab, o):
     return tab[o + int(tab[o + RESULT])]
 
 
-@law
+@internal
 def run_rates(tab, o):
     """Value and two derivatives of an expression whose inputs are in their slots."""
     n, p, out = operations(tab, o)
@@ -275,7 +275,7 @@ def run_rates(tab, o):
     return read(tab, o + int(tab[o + RESULT]))
 
 
-@law
+@internal
 def looked_up(tab, o, x):
     """Value and two derivatives of a table at x, on the piece it is held on."""
     held, n = tab[o + HELD_OF_TABLE], int(tab[o + POINTS])
@@ -284,7 +284,7 @@ def looked_up(tab, o, x):
     return held_cubic(tab, o + OF_TABLE, n, x, held)
 
 
-@law
+@internal
 def inputs(tab, o, t, S):
     """Put t and the sensors into their slots, as values."""
     slot = o + int(tab[o + SLOTS])
@@ -293,7 +293,7 @@ def inputs(tab, o, t, S):
         tab[slot + 3 * (i + 1)] = S[int(tab[o + HEAD + i]), 0]
 
 
-@law
+@internal
 def hold(tab, o, t, S, which):
     """Hold a function on the pieces it is on at t: those met by time, or those met by sensors.
 
@@ -323,7 +323,7 @@ def hold(tab, o, t, S, which):
 # --- corners: each is known by its place in tab, of what is held there -----------------------
 
 
-@law
+@internal
 def sensed(tab, o, place):
     """Whether sensors meet a corner."""
     if tab[o] == TABLE:
@@ -331,7 +331,7 @@ def sensed(tab, o, place):
     return tab[place - HELD + WATCHED] == BY_SENSORS
 
 
-@law
+@internal
 def corner(tab, o, place, S):
     """u of a corner that sensors meet, its rate, and the size of what u is the difference of.
 
@@ -346,14 +346,14 @@ def corner(tab, o, place, S):
     return tab[a] - tab[b], tab[a + 1] - tab[b + 1], abs(tab[a]) + abs(tab[b])
 
 
-@law
+@internal
 def located(tab, o, t, S):
     """Fill the slots of an expression with values and rates at t."""
     if tab[o] == EXPRESSION:
         value_and_rate(tab, o, t, S)
 
 
-@law
+@internal
 def ends_of(tab, o, place):
     """Between which u the piece lies that is held."""
     held = tab[place]
@@ -364,7 +364,7 @@ def ends_of(tab, o, place):
     return interval_ends(tab, o + OF_TABLE, int(tab[o + POINTS]), held)
 
 
-@law
+@internal
 def piece_at(tab, o, place, u):
     """The piece that u is on; at a corner the one above."""
     if tab[o] == TABLE:
@@ -372,7 +372,7 @@ def piece_at(tab, o, place, u):
     return branch_at(int(tab[place - HELD]), u)
 
 
-@law
+@internal
 def neighbour(tab, o, place, above):
     """The piece next to the one that is held."""
     held = tab[place]
@@ -383,7 +383,7 @@ def neighbour(tab, o, place, above):
     return beside(int(tab[place - HELD]), held, above)
 
 
-@law
+@internal
 def brief(tab, o, place):
     """Whether the piece that is held may be a short event: exp between its outer edges."""
     held = tab[place]
@@ -395,7 +395,7 @@ def brief(tab, o, place):
 CLEAR, MEETS, UNSURE = 0, 1, 2
 
 
-@law
+@internal
 def judged(u, ranges, low, high):
     """Whether u stays between low and high, with these ranges of it and its rate; it ends at u."""
     (l, h), rate = ranges
@@ -406,19 +406,19 @@ def judged(u, ranges, low, high):
     return MEETS if u < low or u > high else CLEAR
 
 
-@law
+@internal
 def in_row(row):
     """The ranges of a number and of its rate that stand in a row."""
     return (row[0], row[1]), (row[2], row[3])
 
 
-@law
+@internal
 def into_row(row, ranges):
     """The opposite."""
     (row[0], row[1]), (row[2], row[3]) = ranges
 
 
-@law
+@internal
 def enclosed(tab, o, stretch, S, seen, box):
     """Whether a function stays on its pieces in a stretch of time, at whose end its sensors show S.
 
@@ -472,7 +472,7 @@ def waves(code):
     return any(code[p] in (SIN, COS, TAN) for p in range(first, int(code[SLOTS]), WIDTH))
 
 
-@law
+@internal
 def swing(tab, o, t, length, S0, rate0, S1, rate1):
     """How fast an expression may swing from t on, in rad/s of the fastest wave in it.
 
@@ -505,7 +505,7 @@ def swing(tab, o, t, length, S0, rate0, S1, rate1):
     return w if w < math.inf else 0.0
 
 
-@law
+@internal
 def value(tab, o, t, S):
     """The number at time t.
 
@@ -530,7 +530,7 @@ def value(tab, o, t, S):
     return run(tab, o)
 
 
-@law
+@internal
 def value_and_rate(tab, o, t, S):
     """The number at time t and its total rate in time, through the rates of the sensors.
 
@@ -559,7 +559,7 @@ def value_and_rate(tab, o, t, S):
     return f, f1
 
 
-@law
+@internal
 def motion(tab, o, t):
     """A prescribed motion and its first and second derivative in time.
 

@@ -23,7 +23,7 @@ passed over by one that begins before it and ends behind.
 from math import atan2, exp, inf, log, pi, sqrt, tan
 
 from trsim.expressions import NOTHING, SOME
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.sine import sine_cosine
 from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rates
 
@@ -43,13 +43,13 @@ DRAWN = 1.0  # the same of a root or a power
 RISING, LARGE = 3.0, 4.0  # exp between its second and third edge, and up to its fourth
 
 
-@law
+@internal
 def switching(code, a, b):
     """u of an operation with branches."""
     return a if code == ATAN2 or code >= NEG else a - b
 
 
-@law
+@internal
 def branch_at(code, u):
     """The branch of an operation at u; at an end of it the one above."""
     if code in (SMOOTHSTEP, QUINTIC):
@@ -61,7 +61,7 @@ def branch_at(code, u):
     return BELOW if u < 0.0 else ABOVE
 
 
-@law
+@internal
 def branch_ends(code, held):
     """Between which u a branch lies."""
     if held == FREE:
@@ -75,7 +75,7 @@ def branch_ends(code, held):
     return 1.0 if code in (SMOOTHSTEP, QUINTIC) else 0.0, inf
 
 
-@law
+@internal
 def edges_of(held):
     """Between which u a branch of exp lies."""
     if held == BELOW:
@@ -87,7 +87,7 @@ def edges_of(held):
     return (SOME, NOTHING) if held == LARGE else (NOTHING, inf)
 
 
-@law
+@internal
 def beside(code, held, above):
     """The branch next to one."""
     if code == EXP:
@@ -103,7 +103,7 @@ def beside(code, held, above):
     return ABOVE if above else BELOW
 
 
-@law
+@internal
 def compared(code, u):
     """1 or 0: a comparison by its u = a - b."""
     if code == LT:
@@ -119,7 +119,7 @@ def compared(code, u):
     return 1.0 if u != 0.0 else 0.0
 
 
-@law
+@internal
 def held_angle(a, b, held):
     """atan2 drawn on across its cut, a = 0 where b < 0."""
     f = atan2(a, b)
@@ -130,7 +130,7 @@ def held_angle(a, b, held):
     return f
 
 
-@law
+@internal
 def held_single(code, a, held):
     """abs, exp, a smooth step or a root on a branch: value, first and second derivative in a."""
     if code == ABS:
@@ -151,7 +151,7 @@ def held_single(code, a, held):
     return f, 30.0 * y * y, 60.0 * y * (1.0 - 2.0 * a)
 
 
-@law
+@internal
 def single(code, a):
     """Value of an operation on one number."""
     if code == NEG:
@@ -175,7 +175,7 @@ def single(code, a):
     return quintic(a)
 
 
-@law
+@internal
 def operation(code, a, b, held):
     """Value of an operation, on the branch it is held on; operations on one number ignore b."""
     if code == ADD:
@@ -199,7 +199,7 @@ def operation(code, a, b, held):
     return compared(code, a - b if held == FREE else held)
 
 
-@law
+@internal
 def single_rates(code, a):
     """Value of an operation on one number, with first and second derivative in a."""
     if code == NEG:
@@ -228,7 +228,7 @@ def single_rates(code, a):
     return quintic_rates(a)
 
 
-@law
+@internal
 def chain(f, f_a, f_aa, x):
     """f(a) and its derivatives in time, x = (a, a', a''); f_a may be infinite where a rests."""
     _, a1, a2 = x
@@ -237,7 +237,7 @@ def chain(f, f_a, f_aa, x):
     return f, f_a * a1, f_aa * a1 * a1 + f_a * a2
 
 
-@law
+@internal
 def power_rates(x, y):
     """a**b and its derivatives."""
     (a, a1, a2), (b, b1, b2) = x, y
@@ -252,7 +252,7 @@ def power_rates(x, y):
     return f, f * u, f * (u * u + u1)
 
 
-@law
+@internal
 def operation_rates(code, x, y, held):
     """An operation on (a, a', a'') and (b, b', b''), on the branch it is held on."""
     (a, a1, a2), (b, b1, b2) = x, y
@@ -285,7 +285,7 @@ def operation_rates(code, x, y, held):
     return operation(code, a, b, held), 0.0, 0.0
 
 
-@law
+@internal
 def swinging(code, f, x, y):
     """Bounds of an operation's size and rate, and the rate of its waves, from those of a and b.
 
@@ -312,7 +312,7 @@ def swinging(code, f, x, y):
     )
 
 
-@law
+@internal
 def slope(code, f, a, a1, b, b1):
     """About the rate of an operation that is no wave."""
     if a1 == 0.0 and b1 == 0.0:

@@ -8,7 +8,7 @@ change, its rate is without bounds.  Every result is widened by rounding.       
 
 from math import ceil, cos, exp, floor, inf, isfinite, log, pi, sqrt
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 from trsim.laws.operations import (
     ABOVE,
     ABS,
@@ -42,7 +42,7 @@ WHOLE = 64.0  # the largest whole power taken as a product
 ALL = (-inf, inf)  # without bounds
 
 
-@law
+@internal
 def widened(l, h):
     """An interval made larger by rounding; without bounds where it is no number."""
     if not (l <= h):
@@ -50,40 +50,40 @@ def widened(l, h):
     return l - ROUNDING * abs(l), h + ROUNDING * abs(h)
 
 
-@law
+@internal
 def spanned(p, q, r, s):
     """The interval with four numbers."""
     return widened(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
 
 
-@law
+@internal
 def negative(x):
     return -x[1], -x[0]
 
 
-@law
+@internal
 def plus(x, y):
     return widened(x[0] + y[0], x[1] + y[1])
 
 
-@law
+@internal
 def minus(x, y):
     return widened(x[0] - y[1], x[1] - y[0])
 
 
-@law
+@internal
 def product(x, y):
     """0 times anything is 0: a bound may be infinite."""
     return 0.0 if x == 0.0 or y == 0.0 else x * y
 
 
-@law
+@internal
 def times(x, y):
     (a, b), (c, d) = x, y
     return spanned(product(a, c), product(a, d), product(b, c), product(b, d))
 
 
-@law
+@internal
 def over(x, y):
     """Without bounds where the divisor may be zero."""
     if y[0] <= 0.0 <= y[1]:
@@ -91,7 +91,7 @@ def over(x, y):
     return times(x, (1.0 / y[1], 1.0 / y[0]))
 
 
-@law
+@internal
 def whole_power(x, n):
     """Between which numbers the n-th power of an interval lies, n >= 0 a whole number."""
     a, b = x
@@ -105,13 +105,13 @@ def whole_power(x, n):
     return widened(l, h)
 
 
-@law
+@internal
 def powered(x, n):
     """Between which numbers the n-th power of an interval lies, n any whole number."""
     return whole_power(x, n) if n >= 0.0 else over((1.0, 1.0), whole_power(x, -n))
 
 
-@law
+@internal
 def cosine(a, b):
     """-1 or 1 where a whole multiple of pi may lie inside."""
     if not (isfinite(a) and isfinite(b)):
@@ -125,14 +125,14 @@ def cosine(a, b):
     return max(l, -1.0), min(h, 1.0)
 
 
-@law
+@internal
 def quotient(x, y):
     """(a/b)' = (a' - (a/b) b') / b."""
     f = over(x[0], y[0])
     return f, over(minus(x[1], times(f, y[1])), y[0])
 
 
-@law
+@internal
 def smooth_step(code, x, held):
     """A smooth step on a branch: the cubic or quintic is drawn on where it is held inside."""
     (a, b), rate = x
@@ -160,7 +160,7 @@ def smooth_step(code, x, held):
     return widened(l, h), times((low, high), rate)
 
 
-@law
+@internal
 def one(code, x, held):
     """An operation on one number."""
     (a, b), rate = x
@@ -193,7 +193,7 @@ def one(code, x, held):
     return widened(log(a), log(b)), over(rate, x[0])
 
 
-@law
+@internal
 def raised(x, y):
     """a**b: whole powers as products, others as exp(b log a) where a is surely positive."""
     c = y[0]
@@ -203,7 +203,7 @@ def raised(x, y):
     return one(EXP, (times(f, c), plus(times(rate, c), times(f, y[1]))), FREE)
 
 
-@law
+@internal
 def angle(x, y, held):
     """atan2(a, b): of a box that does not hold the origin, from its corners."""
     (a, b), (c, d) = x[0], y[0]
@@ -217,7 +217,7 @@ def angle(x, y, held):
     return f, over(minus(times(y[0], x[1]), times(x[0], y[1])), square)
 
 
-@law
+@internal
 def ranged(code, x, y, held):
     """An operation on two of (l, h), (l', h'), on the branch it is held on."""
     (a, b), (c, d) = x[0], y[0]

@@ -10,7 +10,7 @@ exact, and l is what is lost of y.  S and C are the polynomials of least error o
 
 from math import cos, sin
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 
 FARTHEST = 1e6  # rad: up to there n has 20 bits; beyond, the C library
 TWO_OVER_PI = 6.36619772367581382433e-01
@@ -38,7 +38,7 @@ C1, C2, C3, C4, C5, C6 = (
 )
 
 
-@law
+@internal
 def sine_cosine(x):
     """sin x and cos x, each off by less than one unit in its last place.
 

@@ -16,13 +16,13 @@ A table in a flat array is, from its offset,   ends, x (n), then a b c d of each
 
 import math
 
-from trsim.kernels.lazy import law
+from trsim.kernels.lazy import internal
 
 ENDS = {"hold": 0, "extrapolate": 1, "refuse": 2}  # outside: end value, straight line, nan
 TIED = 1e-9  # two weights this small against the largest of the table are roundoff
 
 
-@law
+@internal
 def smoothstep_rates(x):
     """Cubic step from 0 to 1 and its first two derivatives in x."""
     if x <= 0.0:
@@ -32,7 +32,7 @@ def smoothstep_rates(x):
     return x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x), 6.0 - 12.0 * x
 
 
-@law
+@internal
 def quintic_rates(x):
     """Quintic step from 0 to 1 and its first two derivatives in x."""
     if x <= 0.0:
@@ -43,13 +43,13 @@ def quintic_rates(x):
     return x**3 * (10.0 + x * (6.0 * x - 15.0)), 30.0 * y * y, 60.0 * y * (1.0 - 2.0 * x)
 
 
-@law
+@internal
 def smoothstep(x):
     """Cubic step from 0 at x <= 0 to 1 at x >= 1."""
     return smoothstep_rates(x)[0]
 
 
-@law
+@internal
 def quintic(x):
     """Quintic step from 0 at x <= 0 to 1 at x >= 1."""
     return quintic_rates(x)[0]
@@ -141,7 +141,7 @@ def akima_table(x, y, ends="hold"):
     return [float(ENDS[ends]), *map(float, x), *coefficients.ravel().tolist()]
 
 
-@law
+@internal
 def outside(f, f_x, s, ends):
     """Value and derivatives a distance s beyond an end with value f and slope f_x."""
     if ends == 0.0:
@@ -151,7 +151,7 @@ def outside(f, f_x, s, ends):
     return math.nan, math.nan, math.nan
 
 
-@law
+@internal
 def akima(tab, o, n, x):
     """Value and first two derivatives in x of the table at tab[o:], of n points.
 
@@ -177,7 +177,7 @@ def akima(tab, o, n, x):
     return f, f_x, f_xx
 
 
-@law
+@internal
 def interval(tab, o, n, x):
     """Between which points x lies: 1 for the first and the second; beyond the ends the nearest."""
     low, high = 1, n
@@ -190,7 +190,7 @@ def interval(tab, o, n, x):
     return low
 
 
-@law
+@internal
 def cubic(tab, o, n, k, s):
     """Value and two derivatives of the k-th cubic, at a distance s from its first point."""
     p = o + 1 + n + 4 * (k - 1)
@@ -199,7 +199,7 @@ def cubic(tab, o, n, k, s):
     return f, f_x, 2.0 * c + 6.0 * s * d
 
 
-@law
+@internal
 def interval_at(tab, o, n, x):
     """The piece of the table x is on: -1 below its first point, k as in `interval`, n above.
 
@@ -213,7 +213,7 @@ def interval_at(tab, o, n, x):
     return float(interval(tab, o, n, x))
 
 
-@law
+@internal
 def interval_ends(tab, o, n, held):
     """Between which x such a piece lies."""
     if held < 0.0:
@@ -222,7 +222,7 @@ def interval_ends(tab, o, n, held):
     return tab[o + k], math.inf if k == n else tab[o + k + 1]
 
 
-@law
+@internal
 def held_cubic(tab, o, n, x, held):
     """Value and two derivatives of such a piece, drawn on beyond its ends."""
     if held < 0.0:

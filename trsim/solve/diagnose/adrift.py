@@ -24,7 +24,8 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import DOUBTFUL, poses_and_rows, project_velocities
 from trsim.elements.contract import compiled
 from trsim.elements.scene import NONE
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.diagnose.locked import dependent
 from trsim.solve.march.calls import LOOK
 from trsim.solve.march.openings import closed, look, opening

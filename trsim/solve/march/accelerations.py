@@ -20,7 +20,7 @@ stiff, of places and rates.
 from math import sqrt
 
 from trsim.elements.contract import FLIGHT, Memory
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 
 ROUNDING = 2e-14  # of accelerations that cancel: what is left
 ROUNDED = 5e-16  # of places, the mechanism's size and speeds: what places and rates are rounded to

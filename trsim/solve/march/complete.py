@@ -10,8 +10,9 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import FLIGHT, GRAVITY, SCENE, Memory, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import I1
-from trsim.kernels.vectors import all_finite, copy_table, copy_to, internal
+from trsim.kernels.vectors import all_finite, copy_table, copy_to
 from trsim.solve.march.accelerations import held
 from trsim.solve.march.calls import (
     BEYOND_AT,

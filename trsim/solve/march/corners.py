@@ -7,7 +7,7 @@ where the branch is left at the end of a step or at any stage of it.
 
 from trsim.assemble.equations import call_one, poses
 from trsim.elements.contract import CONTACT, WHOLE, Memory
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import call_interpolate
 from trsim.solve.march.illinois import between, narrowed
 

@@ -2,7 +2,8 @@
 
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
-from trsim.kernels.vectors import clear_table, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear_table, copy_to
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
 from trsim.solve.march.earlier import this_step
 from trsim.solve.march.land import evaluate_inside

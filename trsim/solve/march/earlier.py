@@ -6,7 +6,8 @@ is asked for, or kept if it was.  Whichever step it is, what channels inside it 
     y0, dense output, start, work of projections up to its start, and in it
 """
 
-from trsim.kernels.vectors import copy_table, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_table, copy_to
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, STAGES_AT, call_dense
 from trsim.solve.march.samples import older
 

@@ -18,7 +18,7 @@ from trsim.assemble.equations import call_one
 from trsim.assemble.switches import LIMITS
 from trsim.assemble.travel import ANGLE
 from trsim.elements.contract import FLIGHT, UNLOCATED, Memory
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.corners import NONE, any_left, corner_root, show
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.spread import spread, spread_at_stages

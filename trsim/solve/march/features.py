@@ -12,8 +12,9 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import f8
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.vectors import copy_to
 from trsim.laws.functions import BY_TIME
 from trsim.solve.march.land import land
 from trsim.solve.march.record import (

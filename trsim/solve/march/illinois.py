@@ -4,7 +4,7 @@ A bracket is (low, f_low, high, f_high, side): two places with values of differe
 values halved where the same end moved twice, and which end moved last (-1 low, 1 high, 0 none).
 """
 
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 
 
 @internal

@@ -17,7 +17,8 @@ from trsim.assemble.projection import (
 )
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.scene import NONE, PROJECTION
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.march.own_rows import ends_in, keep_roots, keep_rows, look_at
 from trsim.solve.march.settle import AT_END, at_rest
 from trsim.solve.march.watch import see

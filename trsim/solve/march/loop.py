@@ -9,8 +9,9 @@ from math import isfinite
 from trsim.assemble.outputs import measure
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import I2, i8
-from trsim.kernels.vectors import clear_table, copy_to, internal
+from trsim.kernels.vectors import clear_table, copy_to
 from trsim.solve.march.accelerations import blurred, largest
 from trsim.solve.march.calls import (
     COMPLETE_AT,

@@ -5,8 +5,8 @@ from math import cos
 from trsim.assemble.projection import close_positions
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1
-from trsim.kernels.vectors import internal
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.openings import CLOSED, NEWTON
 from trsim.solve.march.own_rows import cosine, keep, own

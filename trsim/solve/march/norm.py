@@ -18,7 +18,7 @@ from trsim.elements.scene import ANGLE, MAGNITUDE, RATE
 from trsim.elements.scene import LENGTH as LENGTH_SCALE
 from trsim.elements.scene import SPEED as SPEED_SCALE
 from trsim.kernels import signatures as types
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 
 

@@ -28,7 +28,8 @@ from trsim.assemble.tables import turns_by
 from trsim.elements.contract import compiled
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.march.calls import LOOK
 from trsim.solve.march.record import Record
 

@@ -1,7 +1,8 @@
 """Output rows inside a step: its channels at the times that are due."""
 
 from trsim.elements.scene import PROJECTION
-from trsim.kernels.vectors import all_finite, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import all_finite, copy_to
 from trsim.solve.march.calls import LOOK_AT, STEP_AT, call_look
 from trsim.solve.march.dense_output import measure_inside
 

@@ -11,7 +11,8 @@ from math import sqrt
 from trsim.assemble.equations import constraints, poses
 from trsim.assemble.linear import diagonal, eliminate
 from trsim.assemble.schur import rows
-from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear, copy_to
 
 FINEST = 1e-15  # of the diagonal: rounding of a pivot
 # cosine: below that a row turned by more than it does in half of a way on its branch.  One that

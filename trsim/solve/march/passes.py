@@ -16,8 +16,9 @@ from trsim.assemble.projection import close_positions
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import i8
-from trsim.kernels.vectors import copy_table, copy_to, internal
+from trsim.kernels.vectors import copy_table, copy_to
 from trsim.solve.march.meetings import inside, known, meet
 from trsim.solve.march.openings import CLOSED, NEWTON
 from trsim.solve.march.own_rows import (

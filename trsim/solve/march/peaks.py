@@ -21,8 +21,8 @@ from trsim.assemble.outputs import measure
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, I1, f8
-from trsim.kernels.vectors import internal
 from trsim.solve.march.dense_output import build, measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
 from trsim.solve.march.land import evaluate_inside

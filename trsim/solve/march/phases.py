@@ -5,8 +5,8 @@ import numpy as np
 from trsim.assemble.equations import corners, evaluate, poses
 from trsim.assemble.features import call_hold
 from trsim.elements.contract import CONTACT, FLIGHT, SCENE, ContactNumbers, Memory, Pair, compiled
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import void
-from trsim.kernels.vectors import internal
 from trsim.laws.functions import BY_SENSORS, BY_TIME
 from trsim.solve.march.corners import look
 from trsim.solve.march.events import NONE, SAME, hertz_step

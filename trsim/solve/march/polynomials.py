@@ -10,7 +10,7 @@ is made once: the products (x - t0) ... (x - ti) at PARTS + 1 places between the
 
 from math import sqrt
 
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.record import PARTS, POINTS
 
 ENOUGH = 5  # nodes of a polynomial whose last terms tell how fast they fall

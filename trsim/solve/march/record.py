@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from trsim.elements.scene import N_STORED, Model
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8, i8
-from trsim.kernels.vectors import internal
 from trsim.solve.march.works import N_WORKED
 
 NO_JACOBIAN, OLD, FRESH, NO_RATES = 0, 1, 2, 3

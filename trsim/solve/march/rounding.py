@@ -29,8 +29,9 @@ from trsim.assemble.linear import SOUND
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import I1, f8
-from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.kernels.vectors import clear, copy_to
 from trsim.solve.march.calls import NO_STEP, call_step
 from trsim.solve.march.norm import weight_of
 from trsim.solve.march.record import BUFFERS, RECORD, REJECTED, SETTINGS

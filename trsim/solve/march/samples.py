@@ -20,7 +20,7 @@ from math import sqrt
 
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.land import limits_to_measure
 from trsim.solve.march.polynomials import ENOUGH, SLOWEST, differences, doubt, factors, invert, lay
 from trsim.solve.march.record import PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, POINTS

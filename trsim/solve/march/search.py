@@ -5,7 +5,7 @@ Called by its address, which is 0 where nothing can happen: such a run compiles 
 
 from trsim.assemble.equations import evaluate, poses
 from trsim.elements.contract import compiled
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import LAST_AT, SEARCH, STAGES_AT
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.events import NONE, SAME, any_change, first_change

@@ -42,7 +42,7 @@ from trsim.assemble.sections import (
     Y,
 )
 from trsim.elements.contract import FLIGHT, Memory, compiled
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import LAST_AT, SECTIONS
 from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME

@@ -37,8 +37,8 @@ from trsim.assemble.travel import ANGLE
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import I1, f8, i8
-from trsim.kernels.vectors import internal
 from trsim.laws.functions import (
     CLEAR,
     FREE,

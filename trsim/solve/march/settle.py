@@ -22,7 +22,8 @@ from trsim.assemble.linear import SOUND, smallest_pivot
 from trsim.assemble.projection import DOUBTFUL, normalise, onto_rows, put_on_rows
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import PROJECTION
-from trsim.kernels.vectors import all_finite, clear, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import all_finite, clear, copy_to
 from trsim.solve.march.accelerations import ALLOWED, apart, furthest, largest, settles
 from trsim.solve.march.calls import call_rate, call_soften
 from trsim.solve.march.record import CHANGES_KEPT

@@ -36,7 +36,7 @@ from trsim.elements.frames import (
     two_points,
     velocity,
 )
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import (
     CONTROL_AT,
     DEGREE_AT,

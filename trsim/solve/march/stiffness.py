@@ -24,7 +24,8 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import PROJECTION
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.march.accelerations import furthest, touches
 from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.methods.displacements import active, displace, w_index

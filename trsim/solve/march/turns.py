@@ -12,7 +12,7 @@ Angles of bodies in the plane are sums of coordinates and have no such bound.
 
 from math import sqrt
 
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.laws.functions import swing
 from trsim.solve.march.spread import coordinates_of
 

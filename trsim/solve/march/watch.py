@@ -11,7 +11,7 @@ In the tables of gaps and of roots the watched sensors follow the contacts.
 
 from trsim.assemble.equations import gaps
 from trsim.assemble.travel import CLOCK
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched
 from trsim.solve.march.record import JUST_NOW, SIDE, TIMES
 from trsim.solve.march.spread import spread_at_stages

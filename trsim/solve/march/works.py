@@ -16,7 +16,8 @@ that the works in them are none: a load that jumps does so at one point of time.
 
 from trsim.elements.contract import N_BOOK
 from trsim.elements.scene import N_STORED
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 
 # of what a step is held to, which is a fifth to a twentieth of the tolerance asked for: see
 # `settings` in outcome.py

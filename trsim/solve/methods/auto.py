@@ -13,7 +13,8 @@ one as well.
 
 from math import sqrt
 
-from trsim.kernels.vectors import clear, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear
 from trsim.solve.march.record import (
     EVENT_ANGLE,
     NO_HISTORY,

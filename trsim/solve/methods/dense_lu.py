@@ -6,7 +6,7 @@ Substitution goes column by column: no number waits for the one before it, as in
 
 import numpy as np
 
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 
 
 @internal

@@ -8,7 +8,7 @@ node of a beam the coordinates themselves.
 from math import cos, sin, sqrt
 
 from trsim.elements.contract import N_BOOK
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 
 
 @internal

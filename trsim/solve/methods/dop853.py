@@ -8,9 +8,9 @@ from math import comb, sqrt
 
 import numpy as np
 
-from trsim.assemble.equations import equation, evaluate
+from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.accelerations import (
     EACH,
     ROUNDED,
@@ -76,7 +76,7 @@ STEADY = 0.25
 IN_DENSE = np.flatnonzero(np.any(D != 0.0, axis=0))  # and those that the dense output does
 
 
-@equation
+@internal
 def stage(K, y, h, s, out):
     """out = y + h sum_j A[s, j] K[j]."""
     combined(K, s, 0, y.size, out)
@@ -84,7 +84,7 @@ def stage(K, y, h, s, out):
         out[c] = y[c] + h * out[c]
 
 
-@equation
+@internal
 def combined(K, s, first, beyond, out):
     """out = sum_j (row s of the sums)[j] K[j] of these entries.
 

@@ -17,7 +17,8 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import all_finite, copy_to
 from trsim.solve.march.accelerations import FURTHEST, ONE, doubted, held, in_units, largest, share
 from trsim.solve.march.calls import DENSE, NO_STEP, STEP
 from trsim.solve.march.record import FRESH, NO_JACOBIAN, OLD

@@ -11,7 +11,8 @@ from trsim.assemble.beams import divide_by_mass, slope_force, times_mass
 from trsim.assemble.equations import constraints, forces, free_accelerations, poses
 from trsim.assemble.schur import rows
 from trsim.elements.contract import DRIVES, N_BOOK
-from trsim.kernels.vectors import clear, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear
 from trsim.solve.methods.displacements import first_of, frame_of, moved_by, part_of, width_of
 
 

@@ -9,7 +9,8 @@ from math import sqrt
 from trsim.assemble.equations import evaluate, poses, stiffnesses
 from trsim.assemble.linear import substitute
 from trsim.assemble.schur import velocity_residual
-from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear, copy_to
 from trsim.solve.march.norm import weight_of
 from trsim.solve.march.record import FRESH
 from trsim.solve.methods.auto import ITERATIONS, grown, sown

@@ -22,7 +22,8 @@ from trsim.assemble.beams import node_products
 from trsim.assemble.linear import factorise, substitute
 from trsim.assemble.schur import hub_mass, hub_rows
 from trsim.elements.contract import N_BOOK
-from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear, copy_to
 from trsim.solve.methods.dense_lu import divide, quotient
 from trsim.solve.methods.displacements import active, moved_by, twisted, w_index, width_of
 from trsim.solve.methods.ggl_equations import across, add_product, block_times, mass_times

@@ -6,7 +6,8 @@ equations.py, whose constraints hold by their accelerations.
 
 from trsim.assemble.equations import evaluate
 from trsim.assemble.schur import velocity_residual
-from trsim.kernels.vectors import all_finite, clear, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import all_finite, clear, copy_to
 from trsim.solve.methods.dense_lu import divide, squared
 from trsim.solve.methods.displacements import twisted, w_index
 from trsim.solve.methods.ggl_equations import across, add_product, mass_times, moving, pull

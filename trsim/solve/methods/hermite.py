@@ -1,7 +1,7 @@
 """Dense output of methods that have none of their own: the cubic through both ends, order 3."""
 
 from trsim.elements.contract import compiled
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import INTERPOLATE
 
 ROWS = 3

@@ -11,7 +11,8 @@ smallest penetration that matters.
 """
 
 from trsim.assemble.equations import evaluate
-from trsim.kernels.vectors import copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.march.norm import weight_of
 from trsim.solve.march.record import FRESH, NO_JACOBIAN, NO_RATES, OLD
 from trsim.solve.methods.displacements import active, displace, frame_of, place_of, w_index

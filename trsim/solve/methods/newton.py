@@ -6,7 +6,7 @@ at which changes become smaller, what is left after it is d theta / (1 - theta).
 
 from math import sqrt
 
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 
 GOES_ON, FAILS, CONVERGED, NEXT_TO_NOTHING = range(4)
 LITTLE = 0.1  # of what may be left: so small a change is taken for the last without a rate

@@ -19,7 +19,8 @@ import numpy as np
 from trsim.assemble.dense import inverse
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import N_BOOK, compiled
-from trsim.kernels.vectors import all_finite, clear, copy_to, internal
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import all_finite, clear, copy_to
 from trsim.solve.march.accelerations import (
     ONE,
     apart,

@@ -16,9 +16,10 @@ import numpy as np
 
 from trsim.assemble.equations import evaluate
 from trsim.elements.contract import DRIVES, SCENE, compiled
+from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, f8
 from trsim.kernels.signatures import float64
-from trsim.kernels.vectors import clear, copy_to, internal
+from trsim.kernels.vectors import clear, copy_to
 from trsim.solve.march.accelerations import (
     ROUNDED,
     apart,

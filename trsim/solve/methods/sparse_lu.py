@@ -10,7 +10,7 @@ the solution is a step of.
 
 import numpy as np
 
-from trsim.kernels.vectors import internal
+from trsim.kernels.lazy import internal
 from trsim.solve.methods.dense_lu import quotient
 
 TINY = 1e-10  # of the terms of a pivot
