@@ -29,9 +29,9 @@ BREAKS = {
         "taut",
         [
             (
-                "trsim/solve/march/openings.py",
-                "bool(len(mechanism.model.redundant) or mechanism.stages.switches.names)",
-                "False",
+                "trsim/solve/outcome.py",
+                "elif len(model.redundant) or mechanism.stages.switches.names:",
+                "elif False:",
             ),
             (
                 "trsim/assemble/rows.py",
