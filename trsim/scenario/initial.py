@@ -58,7 +58,11 @@ def initial_of(data: Any, info: Any) -> Initial:
             if of:
                 rates |= _rate(key, value, of, parameters, rates)
             continue
-        has_one = of_joint(split(key, of)[0], of)
+        joint, which = split(key, of)
+        has_one = of_joint(joint, of)
+        if which and has_one and which not in has_one.values():
+            hint = known(key, [*has_one, *(f"{one}{RATE}" for one in has_one)])
+            raise ScenarioError(f"joint '{joint}' has no {which}", hint, (key,))
         own = named(key, of, path=(key,))[0] if has_one else key
         try:
             values[own] = number(value, ("rad", "m"), parameters)
