@@ -16,6 +16,7 @@ WORDS = {
     "drive": "an entry of `drives`, in messages",
     "sensor": "an entry of `sensors`, in messages",
     "gravity": "a key of the scenario",
+    "marker": "how a figure shows a point",
 }
 
 

@@ -94,3 +94,29 @@ def test_the_readme_scenario_runs(tmp_path):
     (tmp_path / "slider_crank.yaml").write_text(block)
     r = run(load(tmp_path / "slider_crank.yaml", ["solver.end=1 ms"]))
     assert r.outcome.status == "done"
+
+
+def test_a_point_of_a_coupler():
+    r = run(load(VALIDATION / "coupler_point.yaml"))
+    a = 10.0 * r.t
+    b = np.arcsin(50.0 / 120.0 * np.sin(a))
+    b_dot = 10.0 * (50.0 / 120.0) * np.cos(a) / np.cos(b)
+    s = np.array([0.08 * np.cos(b) + 0.03 * np.sin(b), 0.03 * np.cos(b) - 0.08 * np.sin(b)])
+    v = 0.5 * np.array([-np.sin(a), np.cos(a)]) - b_dot * np.array([-s[1], s[0]])
+    there = 0.05 * np.array([np.cos(a), np.sin(a)]) + s
+    assert r["tracer.position"][:, :2] == pytest.approx(there.T, abs=1e-8)
+    assert r["tracer.velocity"][:, :2] == pytest.approx(v.T, abs=1e-7)
+    # the derivative of v by hand, from b'' = (b'^2 sin b - 100 (50/120) sin a)/cos b
+    b_ddot = (b_dot**2 * np.sin(b) - 100.0 * (50.0 / 120.0) * np.sin(a)) / np.cos(b)
+    turned = np.array([-s[1], s[0]])
+    acceleration = -5.0 * np.array([np.cos(a), np.sin(a)]) - b_ddot * turned - b_dot**2 * s
+    assert r["tracer.acceleration"][:, :2] == pytest.approx(acceleration.T, abs=1e-5)
+    assert r["tracer.acceleration"][0] == pytest.approx([-6.388889, -0.520833, 0.0], abs=1e-6)
+
+
+def test_a_four_bar_begun_by_one_rate():
+    r = run(load(VALIDATION / "four_bar_one_rate.yaml"))
+    assert r["coupler.velocity"][0] == pytest.approx([-10.0, 0.0, 0.0], abs=1e-9)
+    assert r["coupler.angular_velocity"][0, 2] == pytest.approx(0.0, abs=1e-9)
+    assert r["rocker.angular_velocity"][0, 2] == pytest.approx(5.0, abs=1e-9)
+    assert r["energy.kinetic"] == pytest.approx(81.25, rel=1e-6)

@@ -293,6 +293,7 @@ EXPECTED = {
 FIXED = {
     "rigid_body": {**BODY, "rotation": "-"},
     "displacement": LENGTH,
+    "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},
     "gravity": {},
     "actuator": {"force": "N", "reaction": "N", "stroke": "m", "stroke_rate": "m/s",
                  "position": "m", "velocity": "m/s", "power": "W"},

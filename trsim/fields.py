@@ -5,9 +5,13 @@
     axis: vector("-")                                       the same; a free vector
     force: Function("N")                                    a number, an expression, a table
 
+A point may also be the name of one of the scenario's `points`, and a direction an axis of such a
+point, `tip.x`.
+
 A plain number is SI.  A quantity has the dimension of its field.  The validation context may hold
 `parameters`, {"speed": 0.5}; `frame`, from which vectors are turned, and points moved too, into
-the world; `names`, {"door": "left_door"}, what references mean.
+the world; `names`, {"door": "left_door"}, what references mean; `points`, {"tip": a spec with a
+`frame`}, what places may be named after.
 """
 
 import math
@@ -100,8 +104,15 @@ class _VectorUnit(Unit):
     """Two or three numbers; z = 0 when omitted.  From the frame of the context into the world."""
 
     into_world = staticmethod(Frame.turned)
+    otherwise = "axis of a point"  # what may stand instead of numbers
+
+    def __init__(self, *units: str, named: bool = True) -> None:
+        super().__init__(*units)
+        self.by_name = named
 
     def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
+        if isinstance(value, str) and self.by_name and context.get("points") is not None:
+            return self.named(value, context)
         if not isinstance(value, list | tuple) or len(value) not in (2, 3):
             raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
         for k, item in enumerate(value):  # a frame moves numbers, whatever pydantic says later
@@ -112,22 +123,57 @@ class _VectorUnit(Unit):
         whole = tuple([*numbers, 0.0][:3])
         return self.into_world(frame, whole) if (frame := context.get("frame")) else whole
 
+    def named(self, value: str, context: dict) -> Any:
+        """The axis of a point: world axes, whatever frame this is read in."""
+        name, _, axis = value.rpartition(".")
+        if name.isidentifier() and axis in ("x", "y", "z"):
+            return getattr(_frame_of(name, context), axis)
+        what = f"must be [x, y], [x, y, z] or an axis of a point, got {described(value)}"
+        raise ScenarioError(what, "The axes of a point `tip` are tip.x, tip.y and tip.z.")
+
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
-        return {**super().__get_pydantic_json_schema__(schema, handler), "minItems": 2}
+        numbers = {**super().__get_pydantic_json_schema__(schema, handler), "minItems": 2}
+        named = {"type": "string", "title": self.otherwise}
+        return {"anyOf": [numbers, named]} if self.by_name else numbers
 
 
 class _PointUnit(_VectorUnit):
     into_world = staticmethod(Frame.moved)
+    otherwise = "name of a point"
+
+    def named(self, value: str, context: dict) -> Any:
+        if value.isidentifier():
+            return _frame_of(value, context).at
+        what = f"must be [x, y], [x, y, z] or the name of a point, got {described(value)}"
+        raise ScenarioError(what)
 
 
-def vector(*units: str) -> Any:
-    """The type of a free vector (a direction, a velocity): three floats; two or three numbers."""
-    return Annotated[tuple[float, float, float], _VectorUnit(*units)]
+def _frame_of(name: str, context: dict) -> Frame:
+    """The frame of one of the points of the context, in world axes as drawn."""
+    points = context["points"]
+    try:
+        found: Frame = points[(context.get("names") or {}).get(name, name)].frame
+    except KeyError:
+        hint = known(name, points) if points else "Describe it under `points`."
+        raise ScenarioError(f"no point named {described(name)}", hint) from None
+    return found
 
 
-def point(*units: str) -> Any:
-    """The type of a place: three floats, given as two or three numbers."""
-    return Annotated[tuple[float, float, float], _PointUnit(*units)]
+def vector(*units: str, named: bool = True) -> Any:
+    """The type of a free vector (a direction, a velocity): three floats; two or three numbers.
+
+    named: a direction may also be an axis of a point.
+    """
+    mark = _VectorUnit(*units, named=named and units == ("-",))
+    return Annotated[tuple[float, float, float], mark]
+
+
+def point(*units: str, named: bool = True) -> Any:
+    """The type of a place: three floats, given as two or three numbers.
+
+    named: or by the name of a point.
+    """
+    return Annotated[tuple[float, float, float], _PointUnit(*units, named=named)]
 
 
 def direction(v: Iterable[float]) -> tuple[float, ...]:

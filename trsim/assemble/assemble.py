@@ -177,7 +177,7 @@ def pack(  # type: ignore[no-untyped-def]
     """Every element of the scenario as an Instance, neighbours of one kind together."""
     wanted: list[tuple[str, str, str, Any]] = []
     bodies = members(scenario, stiff)
-    sections = {s: getattr(scenario, s) for s in ("joints", "drives", "sensors")}
+    sections = {s: getattr(scenario, s) for s in ("points", "joints", "drives", "sensors")}
     sections |= {"bodies": bodies, "forces": scenario.forces}
     sections |= {SECTION: locks(scenario)} if drives is None else {"drives": drives}
     for section, entries in sections.items():

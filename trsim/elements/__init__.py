@@ -24,6 +24,7 @@ ELEMENTS = {
     "actuator": "drives",
     "sensor": "sensors",
     "displacement": "sensors",
+    "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
     "distributed_load": "forces",
@@ -37,7 +38,7 @@ ELEMENTS = {
 # word -> the key that makes it another element, and which
 BECOMES = {"revolute": ("clearance", "clearance_joint")}
 # section -> what an entry is that names no type
-DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor"}
+DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor", "points": "marker"}
 
 
 def load(word: str) -> "Element":

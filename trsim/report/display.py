@@ -9,8 +9,8 @@ from trsim.store.read import Run
 from trsim.units import unit
 
 DEFAULT = {"angle": "deg", "length": "mm"}
-COMPARED = ("parameters", "bodies", "joints", "drives", "forces", "contact_laws", "gravity",
-            "solver")  # fmt: skip
+COMPARED = ("parameters", "points", "bodies", "joints", "drives", "forces", "contact_laws",
+            "gravity", "solver")  # fmt: skip
 MINOR = ("contact", "type")  # keys that say nothing where another one differs
 SHORT = 0.05  # s: a shorter run is told in ms
 MOST = 3  # parameters in a label

@@ -7,6 +7,8 @@ from trsim.errors import ScenarioError, described, known
 from trsim.numbers import number
 
 ALL = "all"  # the joints
+RATE = ".rate"  # behind a coordinate: how fast it changes at the start
+UNITS = {"angle": "rad/s", "stroke": "m/s"}
 
 
 class Initial(NamedTuple):
@@ -15,6 +17,7 @@ class Initial(NamedTuple):
     equilibrium: tuple[str, ...] = ()  # joints free in the balance of forces
     values: dict[str, float] = {}  # of coordinates of joints, rad or m  # noqa: RUF012
     whole: bool = False  # `equilibrium: all`, of which there may be no joint
+    rates: dict[str, float] = {}  # of coordinates, rad/s or m/s  # noqa: RUF012
 
     @property
     def settles(self) -> bool:
@@ -34,7 +37,8 @@ def initial_of(data: Any, info: Any) -> Initial:
         names = list(info.data.get("joints", ()))
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
         raise ScenarioError(f"must be a list of joints, or `{ALL}`", path=("equilibrium",))
-    parameters, values = (info.context or {}).get("parameters"), {}
+    parameters, values = (info.context or {}).get("parameters"), dict[str, float]()
+    rates: dict[str, float] = {}
     of, joints = info.data.get("joints", {}), [*info.data.get("joints", ()), "equilibrium"]
     for k, name in enumerate(names):
         if name not in joints[:-1] and "joints" in info.data:
@@ -45,14 +49,34 @@ def initial_of(data: Any, info: Any) -> Initial:
     for key, value in data.items():
         if key == "equilibrium":
             continue
-        if split(key, joints)[0] not in joints and "joints" in info.data:
+        coordinate = key.removesuffix(RATE)
+        if split(coordinate, joints)[0] not in joints and "joints" in info.data:
             raise ScenarioError(f"unknown key {described(key)}", known(key, joints), (key,))
         if not isinstance(value, str | int | float):
             raise ScenarioError(f"must be a number, got {described(value)}", path=(key,))
-        has_one = of_joint(split(key, of)[0], of)
+        if coordinate != key:
+            if of:
+                rates |= _rate(key, value, of, parameters, rates)
+            continue
+        joint, which = split(key, of)
+        has_one = of_joint(joint, of)
+        if which and has_one and which not in has_one.values():
+            hint = known(key, [*has_one, *(f"{one}{RATE}" for one in has_one)])
+            raise ScenarioError(f"joint '{joint}' has no {which}", hint, (key,))
         own = named(key, of, path=(key,))[0] if has_one else key
         try:
             values[own] = number(value, ("rad", "m"), parameters)
         except ScenarioError as error:
             raise error.at(key) from None
-    return Initial(tuple(names), values, whole)
+    return Initial(tuple(names), values, whole, rates)
+
+
+def _rate(key: str, value: Any, joints: Any, parameters: Any, others: Any) -> dict[str, float]:
+    """A rate under the name of its coordinate."""
+    own, _, kind = named(key.removesuffix(RATE), joints, path=(key,))
+    if own in others:
+        raise ScenarioError(f"the rate of {own} is given twice", "Keep one of them.", (key,))
+    try:
+        return {own: number(value, (UNITS[kind],), parameters)}
+    except ScenarioError as error:
+        raise error.at(key) from None

@@ -23,7 +23,7 @@ class Limits(Spec):
     bodies   rigid ones and flexible bars
     rows     constraint rows of joints and drives
     nodes    of all flexible bars
-    entries  bodies, joints, drives, sensors, forces and events together
+    entries  points, bodies, joints, drives, sensors, forces and events together
     """
 
     type: ClassVar[str] = "limits"

@@ -17,6 +17,7 @@ from trsim.laws.contact import (
 from trsim.scenario import plausible
 from trsim.scenario.methods import METHODS
 from trsim.scenario.slender import slender
+from trsim.scenario.strangers import strangers
 
 LARGE, SMALL = 3.0, 0.01  # radius of gyration over the reach of the joints
 ROUNDED = 1e-3  # inertias are typed with three or four digits
@@ -32,7 +33,7 @@ def lint(scenario: Any) -> tuple[str, ...]:
     checks = (
         *(_inertias, _sizes, plausible.densities, plausible.moduli, plausible.coefficients),
         *(_conformity, _restitutions, _speeds, _stops, _fixed_step, _ignored_step, _ground, _rows),
-        *(slender, _unused),
+        *(slender, strangers, _unused),
     )
     found = (message for check in checks for message in check(scenario))
     return tuple(dict.fromkeys(_as_written(scenario, message) for message in found))

@@ -16,20 +16,29 @@ class Memory:
         self.pieces: dict[int, tuple[Any, str, list[str]]] = {}  # the data is kept: its id is too
         self.joined: dict[tuple[int, int], tuple[Any, Any, Any]] = {}
         of = [data, *mapping(data, "templates").values()]
-        names = {name for one in of for name in mapping(one, "parameters")}
+        names = {
+            name for one in of for key in ("parameters", "points") for name in mapping(one, key)
+        }
         self.word = re.compile("|".join(rf"\b{name}\b" for name in names) or r"(?!)")
 
     def key(
-        self, section: str, data: Any, parameters: dict[str, float], scope: Scope | None
+        self,
+        section: str,
+        data: Any,
+        parameters: dict[str, float],
+        scope: Scope | None,
+        points: dict[str, Any],
     ) -> tuple:
-        """What a piece of data depends on: its text, the values of the parameters that the text
-        names, and what the text means where it stands."""
+        """What a piece of data depends on: its text, the values of the parameters and the points
+        that the text names, and what the text means where it stands."""
         if id(data) not in self.pieces:
             text = json.dumps(data)
             self.pieces[id(data)] = data, text, sorted(set(self.word.findall(text)))
         _, text, names = self.pieces[id(data)]
         means = (scope.frame, *scope.names.items()) if scope else ()
-        return section, text, means, *(parameters.get(name) for name in names)
+        meant = scope.names if scope else {}
+        named = [points.get(meant.get(name, name)) for name in names]
+        return section, text, means, *(parameters.get(name) for name in names), *named
 
     def merged(self, base: Any, over: Any) -> Any:
         """One piece of data overridden by another; the same piece for the same two."""

@@ -11,8 +11,17 @@ from typing import Any
 from trsim.errors import Place, ScenarioError, UsageError, described, known
 from trsim.scenario.text import Tree, read
 
-NAMED = ("bodies", "joints", "drives", "sensors", "forces", "contact_laws", "events")  # by name
+NAMED = (  # sections whose entries have names
+    *("points", "bodies", "joints", "drives", "sensors", "forces", "contact_laws", "events"),
+)
 KNOWN = ("parameters", *NAMED, "templates", "instances")  # --set changes what is there
+
+
+def keys_of(dotted: str) -> list[str]:
+    """The keys of a dotted path.  Those of `initial` have dots themselves: `bearing.rate`."""
+    keys = dotted.split(".")
+    coordinate = keys[0] == "initial" and len(keys) > 2 and keys[1] != "equilibrium"
+    return [keys[0], ".".join(keys[1:])] if coordinate else keys
 
 
 def mapping(data: Any, key: Any) -> dict[str, Any]:
@@ -104,7 +113,7 @@ def override(tree: Tree, text: str) -> None:
 def setting(text: str) -> tuple[list[str], Any, Place, Place]:
     """The keys and the value of a --set, and their places."""
     dotted, equals, value = text.partition("=")
-    keys = dotted.strip().split(".")
+    keys = keys_of(dotted.strip())
     if not equals or not all(keys):
         raise UsageError(f"--set {described(text)}: write --set section.name.key=value")
     key_place = Place("--set", 0, 1, text)

@@ -7,7 +7,7 @@ from typing import Any
 
 from trsim.errors import ScenarioError, described, known
 from trsim.expressions import FUNCTIONS
-from trsim.scenario.merge import NAMED, mapping
+from trsim.scenario.merge import NAMED, keys_of, mapping
 from trsim.scenario.vary import sweep
 
 # what stands beside the channels in a result file; `component` begins the names of their scales
@@ -63,13 +63,13 @@ def sweep_faults(data: dict) -> Iterator[ScenarioError]:
         return
     for axis in axes if not data.get("cases") else ():
         inner: Any = data
-        words = axis.key.split(".")
-        for k, key in enumerate(words):
+        keys = keys_of(axis.key)
+        for k, key in enumerate(keys):
             entries = inner if isinstance(inner, dict) else {}
             if isinstance(inner, list):
                 entries = {str(k): item for k, item in enumerate(inner)}
             if key not in entries:
-                if isinstance(inner, dict) and k == len(words) - 1 and k and words[0] not in NEW:
+                if isinstance(inner, dict) and k == len(keys) - 1 and k and keys[0] not in NEW:
                     break
                 what = f"nothing to vary at {described(axis.key)}: no {described(key)}"
                 yield ScenarioError(what, known(key, entries), ("sweep", axis.key))

@@ -12,6 +12,7 @@ from annotated_types import Ge, Gt, Interval
 from pydantic import AfterValidator, BeforeValidator, PrivateAttr, model_validator
 
 from trsim import elements
+from trsim.elements.placed import Placed
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import EMPTY, Flag, Spec, Unit, vector
 from trsim.scenario import shown
@@ -51,8 +52,9 @@ def _element(section: str, data: Any, info: Any) -> Any:
     if not isinstance(data, dict):
         raise ScenarioError(f"must be a mapping of keys, got {described(data)}")
     memory, key = context.get("memory"), ()
+    context = {**context, "points": info.data.get("points", _AnyPoint())}
     if memory is not None:
-        key = memory.key(section, data, context["parameters"], scope)
+        key = memory.key(section, data, context["parameters"], scope, context["points"])
         if key in memory.made:
             return memory.made[key]
     spec: Any = elements.load(word(section, data)).spec
@@ -61,6 +63,13 @@ def _element(section: str, data: Any, info: Any) -> Any:
     if memory is not None:
         memory.made[key] = made
     return made
+
+
+class _AnyPoint(dict):
+    """What is taken for the points where one of them is wrong: its fault is told already."""
+
+    def __missing__(self, name: str) -> Placed:
+        return Placed()
 
 
 def word(section: str, data: dict) -> str:
@@ -193,6 +202,7 @@ class Scenario(Spec):
     planar           whether the motion stays in the x-y plane; found out unless given
     gravity          acceleration of a free fall
     parameters       named numbers that every number may use: `velocity: 2*speed`
+    points           places on bodies or on the ground that others name, with their motion recorded
     bodies           what has mass
     joints           what holds bodies together
     drives           prescribed motion of joints
@@ -218,6 +228,7 @@ class Scenario(Spec):
     planar: Flag | None = None
     gravity: vector("m/s^2") = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
     parameters: dict[str, float] = EMPTY
+    points: dict[str, Annotated[Any, _Element("points")]] = EMPTY  # first: all others may name them
     bodies: dict[str, Annotated[Any, _Element("bodies")]] = EMPTY
     joints: dict[str, Annotated[Any, _Element("joints")]] = EMPTY
     drives: dict[str, Annotated[Any, _Element("drives")]] = EMPTY
@@ -266,6 +277,15 @@ class Scenario(Spec):
         scope = self._unfolded.scope(path)
         names = {"t", *(scope.parameters if scope else self.parameters)}  # 1/t is none per tonne
         return quantity(raw, names) if isinstance(raw, str) else None
+
+    def points_at(self, *path: str) -> tuple[Any, ...]:
+        """The points named at the path of an entry, a place or a list of them; None for numbers."""
+        raw, scope = self._unfolded.value(path), self._unfolded.scope(path)
+        meant = scope.names if scope else {}
+        words = raw if isinstance(raw, list) else [raw]
+        return tuple(
+            self.points.get(meant.get(one, one)) if isinstance(one, str) else None for one in words
+        )
 
     @property
     def bare(self) -> tuple[str, ...]:

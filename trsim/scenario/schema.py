@@ -30,7 +30,10 @@ INITIAL = {
             "anyOf": [{"enum": [ALL]}, {"type": "array", "items": {"type": "string"}}],
         }
     },
-    "additionalProperties": {"description": "coordinate of the joint (rad or m)", **NUMBER},
+    "additionalProperties": {
+        "description": "coordinate of the joint (rad or m); of JOINT.rate its rate (rad/s or m/s)",
+        **NUMBER,
+    },
 }
 
 

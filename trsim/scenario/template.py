@@ -6,17 +6,16 @@ instances:
   left: {template: chain, frame: {at: [0, 0.3, 0.4], y_axis: [0, 0.6, 0.8]}}
 """
 
-from math import sqrt
 from typing import Annotated, Any, ClassVar
 
 from pydantic import WrapValidator, model_validator
 
+from trsim.elements.placed import Placed
 from trsim.errors import ScenarioError, check_keys
-from trsim.fields import EMPTY, Spec, direction, point, vector
-from trsim.frame import Frame, across
+from trsim.fields import EMPTY, Spec
+from trsim.frame import Frame
 
-SECTIONS = ("bodies", "joints", "drives", "sensors", "forces", "events")  # of a template
-PARALLEL = 1e-6  # sine of an angle
+SECTIONS = ("points", "bodies", "joints", "drives", "sensors", "forces", "events")  # of a template
 
 
 def _later(value: Any, _: Any) -> Any:
@@ -25,46 +24,18 @@ def _later(value: Any, _: Any) -> Any:
     return value
 
 
-class Placement(Spec):
-    """Where an instance stands.
-
-    at      its origin
-    x_axis  direction of its x axis, of any length
-    y_axis  direction of its y axis, made perpendicular to x; z = x cross y
-    """
+class Placement(Placed):
+    """Where an instance stands."""
 
     type: ClassVar[str] = "placement"
-    at: point("m") = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
-    x_axis: vector("-") = (1.0, 0.0, 0.0)  # type: ignore[valid-type]
-    y_axis: vector("-") = (0.0, 1.0, 0.0)  # type: ignore[valid-type]
-
-    @model_validator(mode="after")
-    def axes(self) -> "Placement":
-        for key in ("x_axis", "y_axis"):
-            if not any(getattr(self, key)):
-                raise ScenarioError("an axis must not be zero", "for example [1, 0, 0]", (key,))
-        if _across(direction(self.x_axis), direction(self.y_axis))[1] < PARALLEL:
-            what = "y_axis is parallel to x_axis"
-            raise ScenarioError(what, "z = x cross y needs two directions", ("y_axis",))
-        return self
 
     @property
-    def frame(self) -> Frame | None:
+    def moved(self) -> Frame | None:
         """The frame; None where it is the world's."""
-        x = direction(self.x_axis)
-        y = direction(_across(x, direction(self.y_axis))[0])
-        found = Frame(self.at, (x[0], x[1], x[2]), (y[0], y[1], y[2]), across(x, y))
-        return None if found == WORLD else found
+        return None if self.frame == WORLD else self.frame
 
 
-WORLD = Frame((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-
-def _across(x: Any, y: Any) -> tuple[tuple[float, ...], float]:
-    """The part of y across a unit vector x, and its length."""
-    along = sum(p * q for p, q in zip(x, y, strict=True))
-    part = tuple(q - along * p for p, q in zip(x, y, strict=True))
-    return part, sqrt(sum(c * c for c in part))
+WORLD = Placed().frame
 
 
 class Template(Spec):
@@ -72,6 +43,7 @@ class Template(Spec):
 
     parameters  numbers an instance may change, with what they are otherwise
     frame       where an instance stands that says nothing else
+    points      places on bodies or on the ground that others name
     bodies      what has mass
     joints      what holds bodies together
     drives      prescribed motion of joints
@@ -83,6 +55,7 @@ class Template(Spec):
     type: ClassVar[str] = "template"
     parameters: dict[str, Any] = EMPTY
     frame: Annotated[Placement | None, WrapValidator(_later)] = None
+    points: dict[str, Any] = EMPTY
     bodies: dict[str, Any] = EMPTY
     joints: dict[str, Any] = EMPTY
     drives: dict[str, Any] = EMPTY
@@ -107,6 +80,7 @@ class Instance(Spec):
     frame       where: its points and directions are seen from there; the world's unless given
     parameters  values of the template's parameters
     bodies      keys of bodies that differ in this instance; null leaves a body out
+    points      the same of points
     joints      the same of joints
     drives      the same of drives
     sensors     the same of sensors
@@ -118,6 +92,7 @@ class Instance(Spec):
     template: str
     frame: Annotated[Placement | None, WrapValidator(_later)] = None
     parameters: dict[str, Any] = EMPTY
+    points: dict[str, Any] = EMPTY
     bodies: dict[str, Any] = EMPTY
     joints: dict[str, Any] = EMPTY
     drives: dict[str, Any] = EMPTY

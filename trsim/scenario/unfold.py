@@ -157,6 +157,6 @@ def _frame(
     both = len(written) > 1 and all(isinstance(one, dict) for one in written)
     view["frame"] = merge(written[0], written[1]) if both else written[-1]
     try:
-        return Placement.model_validate(view["frame"], context={"parameters": values}).frame, []
+        return Placement.model_validate(view["frame"], context={"parameters": values}).moved, []
     except ValueError as error:  # as pydantic has it, or one of ours
         return None, [(error, ("instances", name, "frame"))]

@@ -16,7 +16,7 @@ from trsim.scenario.cases import cases as named_cases
 from trsim.scenario.expand import SWEPT, expand
 from trsim.scenario.load import of_tree, valid
 from trsim.scenario.memory import Memory
-from trsim.scenario.merge import put, setting
+from trsim.scenario.merge import keys_of, put, setting
 from trsim.scenario.scenario import Scenario
 from trsim.scenario.text import Tree
 from trsim.sweep.digest import Digests
@@ -82,7 +82,7 @@ class _Named(NamedTuple):
         tree = Tree(data, dict(self.tree.marks), dict(self.tree.keys), self.tree.files)
         for key, setting_ in self.settings.items():
             source = setting_.axis.same_as or key
-            put(tree, key.split("."), values[source], setting_.at, setting_.key_place)
+            put(tree, keys_of(key), values[source], setting_.at, setting_.key_place)
         for key in SWEPT:
             tree.data.pop(key, None)
         return tree
@@ -165,7 +165,7 @@ def _with_axes(
         if isinstance(_at(tree.data, key), list) and not any(isinstance(v, list) for v in value):
             hint = f"For one value write --set {key}=[[...]]."
             raise ScenarioError("a list of values varies the key, which is a list itself", hint,
-                                tuple(key.split(".")), at)  # fmt: skip
+                                tuple(keys_of(key)), at)  # fmt: skip
     if not set(block) - set(vary.SETTINGS) and not axes and isinstance(given, dict) and fixed:
         return _Named(tree, text, vary.Sweep(), {})
     where = {key: (at, key_place) for key, _, at, key_place in axes}
@@ -188,7 +188,7 @@ def _with_axes(
 
 def _at(data: Any, key: str) -> Any:
     """What stands at a dotted path; None where nothing does."""
-    for word in key.split("."):
+    for word in keys_of(key):
         if isinstance(data, list) and word.isdigit() and int(word) < len(data):
             data = data[int(word)]
         else:
@@ -214,7 +214,7 @@ def _cases(name: str, one: _Named, digests: "Digests") -> Iterator[Case]:
     for point in found:
         data = base
         for key, value in point.values.items():
-            data = changed(data, key.split("."), value)
+            data = changed(data, keys_of(key), value)
         label = point.name or _label(short, point.values, own)
         whole = ",".join(part for part in (name, label) if part)
         yield Case(whole, name, {key: point.values[key] for key in own}, data, digests.of(data))

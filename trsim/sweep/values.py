@@ -6,6 +6,7 @@ from typing import Any
 
 from trsim.errors import TrsimError
 from trsim.scenario.load import unit_of
+from trsim.scenario.merge import keys_of
 from trsim.units import quantity, si
 
 
@@ -54,7 +55,7 @@ def units(
 
 
 def _of_field(scenario: Any, key: str) -> str:
-    inner, words = scenario, scenario.meant(key.split("."))
+    inner, words = scenario, scenario.meant(keys_of(key))
     for k, word in enumerate(words):
         if isinstance(inner, dict):
             inner = inner.get(word)

@@ -1,6 +1,6 @@
 """Velocities a run starts with: what joints and drives demand, nearest to what was given."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -25,7 +25,7 @@ from trsim.assemble.reduce import (
     weights,
     world_rates,
 )
-from trsim.elements.coordinates import of_joint
+from trsim.elements.coordinates import of_joint, split
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Model, Scene, scene, workspace
 from trsim.errors import ModelError
@@ -34,6 +34,7 @@ from trsim.solve.start.bars import as_rigid, moving_as_rigid
 
 Array = NDArray[np.float64]
 
+SAME = 1e-6  # of its size: how far a rate may be from what the others make it
 INDEPENDENT = 1e-8  # of its own size: what must be left of a wish that is not fixed already
 
 
@@ -45,20 +46,22 @@ def velocities(scenario: Any, mechanism: Mechanism, y: Array, named: tuple[str, 
     bushings hold is at rest, unless a body's velocity is given: they would spring back as soon as
     the motion begins.
     After an equilibrium closed stops stay closed, and where that leaves the named joints a choice
-    their rates are zero.
+    their rates are zero.  Before all these wishes come the rates of joints that `initial` gives.
     """
+    rates = scenario.initial.rates
     if not mechanism.beams:
         ideal = at_the_start(scenario, mechanism, named)
         y_ideal = as_of(ideal, y)
-        return with_velocities(
-            mechanism.model, y, nearest(ideal, y_ideal, named, not given(scenario))
-        )
+        v = nearest(ideal, y_ideal, named, not given(scenario), rates)
+        return with_velocities(mechanism.model, y, v)
     try:
         stiff = at_the_start(scenario, mechanism, named)
-        v = nearest(stiff, as_rigid(mechanism, stiff, y), named, not given(scenario))
+        v = nearest(stiff, as_rigid(mechanism, stiff, y), named, not given(scenario), rates)
         moving = with_velocities(mechanism.model, y, moving_as_rigid(mechanism, stiff, y, v))
-    except ModelError:  # it moves only because its bars give way
-        moving = y
+    except ModelError:
+        if rates:
+            raise
+        moving = y  # it moves only because its bars give way
     return allowed(mechanism.model, moving)
 
 
@@ -71,23 +74,28 @@ def at_the_start(scenario: Any, mechanism: Mechanism, named: tuple[str, ...]) ->
     """The mechanism whose velocities a run starts with: ideal joints, stiff bars."""
     joints = scenario.joints.items() if not given(scenario) else ()
     playing = frozenset(n for n, s in joints if elements.load(s.type).ideal)
+    named += tuple(split(own, scenario.joints)[0] for own in scenario.initial.rates)
     wanted = {own for n in named for own in of_joint(n, scenario.joints)}
     if not playing and not mechanism.beams and wanted <= {*mechanism.coordinates}:
         return mechanism
     return assemble(scenario, playing, coordinates=named, stiff=True, planar=mechanism.planar)
 
 
-def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> Array:
+def nearest(
+    ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool, rates: Mapping[str, float]
+) -> Array:
     """World-axes rates nearest to those of y that joints, drives and closed stops allow.
 
-    held: whether what bushings hold is to be at rest.
+    held: whether what bushings hold is to be at rest; rates: those that joints must have.
     """
     model = workspace(ideal.model)
     ideal = replace(ideal, model=model)  # one workspace for all that follows
     y_ideal = follow(ideal, y)
     _, phi_t, J = jacobian(model, 0.0, y_ideal)
     rate = -phi_t
-    wishes = compliant_drives(ideal, y_ideal)
+    turned = [(ideal.coordinates[name], value) for name, value in rates.items()]
+    asked = [(rate_of_entry(model, y_ideal, x.entry, (x.i, x.j)), f) for x, f in turned]
+    wishes = asked + compliant_drives(ideal, y_ideal)
     wishes += [(gradient, 0.0) for gradient in (of_springs(ideal, y_ideal) if held else ())]
     if named:
         wishes += [(gradient, 0.0) for gradient in closed_stops(ideal, y_ideal)]
@@ -95,6 +103,7 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
         wishes += [(rate_of_entry(model, y_ideal, x.entry, (x.i, x.j)), 0.0) for x in moving]
     scale = weights(model)
     kept = independent(J * scale, [gradient * scale for gradient, _ in wishes])
+    bound = J  # by joints and drives
     J = np.vstack([J, *(wishes[k][0] for k in kept)])
     rate = np.append(rate, [wishes[k][1] for k in kept])
     v = world_rates(model, y_ideal)
@@ -108,6 +117,7 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
             f"no velocities at t = 0 satisfy the joints and drives (off by {left:.3g})",
             "two drives on one degree of freedom, or a start in a dead centre?",
         )
+    check_rates(ideal, rates, [g * scale for g, _ in asked], bound * scale, v / scale)
     if ideal.beams or not len(J):
         return np.asarray(v)
     rows = list(range(model.m + len(model.redundant)))
@@ -115,6 +125,31 @@ def nearest(ideal: Mechanism, y: Array, named: tuple[str, ...], held: bool) -> A
         model, y_ideal, all_rows(model, y_ideal), rows, J[model.m :], moves(model, planar), C
     )
     return branches.onward(np.asarray(v))
+
+
+def check_rates(
+    mechanism: Mechanism, rates: Mapping[str, float], gradients: list[Array], J: Array, v: Array
+) -> None:
+    """Refuse a rate that joints, drives and the rates before it do not allow.
+
+    gradients: of the rates; J: rows of joints and drives; v: the velocities they left possible.
+    """
+    before: list[str] = []
+    for (name, value), gradient in zip(rates.items(), gradients, strict=True):
+        found, size = float(np.sum(gradient * v)), float(np.sum(np.abs(gradient * v)))
+        alone = not independent(J, [gradient])
+        if abs(found - value) > SAME * max(size, abs(value)):
+            unit = {"angle": "rad/s", "stroke": "m/s"}[mechanism.coordinates[name].kind]
+            others = "" if alone else "".join(f"{other}.rate, " for other in before)
+            hint = "give no more rates than there are free motions, or those that fit together"
+            raise ModelError(
+                f"{value:g} {unit} contradicts {others}joints and drives: they make it "
+                f"{found:.6g} {unit}",
+                hint,
+                ("initial", f"{name}.rate"),
+            )
+        if not alone:
+            before.append(name)
 
 
 def independent(J: Array, wishes: list[Array]) -> list[int]:
