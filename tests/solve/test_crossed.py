@@ -80,8 +80,12 @@ def cross(u, v):
 
 def changes(r, x):
     """How often x changes its sign, what is zero to ten tolerances left out: on a branch it is some
-    0.7 wide, and a row in a step past such a place is no better than its tolerance."""
-    sign = np.sign(x[np.abs(x) > max(0.02, 10.0 * r.scenario.solver.tolerance)])
+    0.7 wide, and a row in a step past such a place is no better than its tolerance.  The last row
+    may be just behind such a place, and is the end of a step."""
+    zero = 10.0 * r.scenario.solver.tolerance
+    counted = np.abs(x) > max(0.02, zero)
+    counted[-1] = abs(x[-1]) > zero
+    sign = np.sign(x[counted])
     return int(np.sum(sign[1:] != sign[:-1]))
 
 
