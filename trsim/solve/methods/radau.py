@@ -88,13 +88,13 @@ HALVE = NO_STEP  # Newton failed: take about half the step
 @compiled(STEP)
 def step(s, r, b, setting, t, h):
     corner = r.jacobian == NO_RATES
-    for attempt in range(3):
+    for attempt in range(2):
         if missing(r) or (attempt > 0 and r.jacobian == OLD):
             jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
             r.contraction = 1.0
             r.factored_h = 0.0
-        elif attempt > 0:
-            return HALVE
+        elif attempt > 0:  # no older matrix is to blame
+            return hidden(s, r, b, setting, t, h)
         if r.factored_h != h and not factorised(s, r, h):
             r.factored_h = 0.0
             return HALVE
