@@ -16,6 +16,9 @@ WORDS = {
     "drive": "an entry of `drives`, in messages",
     "sensor": "an entry of `sensors`, in messages",
     "gravity": "a key of the scenario",
+    "link": "of an object in a result file that has two names",
+    "parallel": "an array of the model",
+    "planar": "a key of the scenario, and a fact of the mechanism",
 }
 
 
