@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import TrsimError
+from trsim.solve.diagnose.doubts import doubts
 
 from ..runs import built, energy_error, run
 
@@ -80,7 +81,29 @@ def test_while_the_bend_changes():
     r = run(SWINGING)
     assert r["turn_in"] == pytest.approx(20 * r.t, abs=1e-8)
     assert r["turn_out"] == pytest.approx(r["turn_in"], abs=1e-8)
+    # the axis of the fork is across the shaft: the bend is how far the fork has swung
+    assert r["between.bend"] == pytest.approx(np.abs(1.2 * np.sin(3 * r.t)), abs=1e-7)
     assert energy_error(r) < 1e-9
+
+
+def said(r):
+    found = doubts(r.scenario, r.mechanism, r.outcome)
+    return [sentence for sentence in found if sentence.startswith("joints.joint")]
+
+
+def test_bent_by_half_a_turn_it_is_told():
+    text = """
+bodies: {rod: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0.3, 0]}}
+joints: {joint: {type: constant_velocity, bodies: [ground, rod], at: [0, 0], axis: [1, 0]},
+         hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}}
+drives: {swing: {joint: hinge, position: %s*smoothstep(t)}}
+solver: {end: 1.2}
+output: {every: 0.01}
+"""
+    bent, little = run(text % "3.1"), run(text % "2.9")
+    told = said(bent)
+    assert len(told) == 1 and "bent by 177.6 deg at 1" in told[0]
+    assert not said(little)
 
 
 PLANE = """

@@ -6,7 +6,7 @@ import pytest
 from trsim.assemble.reduce import jacobian
 from trsim.elements.scene import scene
 
-from ..runs import built
+from ..runs import built, energy_error, run
 from .test_constraints import JOINTS, written
 
 # what one body may still do against another, in space
@@ -82,3 +82,34 @@ def test_is_closed_as_drawn(word):
     for x in m.coordinates.values():
         work.branch[x.entry] = x.drawn
     assert np.abs(jacobian(work, 0.0, m.y0)[0]).max() < 1e-12
+
+
+FLYING = """
+planar: false
+bodies:
+  left: {mass: 2, inertia: [0.02, 0.03, 0.04], at: [0.1, -0.2, 0.3], angle: 2.7,
+         velocity: [1, 2, 3], angular_velocity: [5, -3, 4]}
+  right: {mass: 3, inertia: [0.05, 0.04, 0.03], at: [0.5, 0.2, -0.1], angle: -0.9,
+          velocity: [0.5, 1, -1], angular_velocity: [1, 2, 9]}
+"""
+INERTIA = {"left": (2, np.diag([0.02, 0.03, 0.04])), "right": (3, np.diag([0.05, 0.04, 0.03]))}
+
+
+@pytest.mark.parametrize("word", IDEAL)
+def test_a_pair_in_free_flight_keeps_its_momentum(word):
+    """What a joint does to one body it takes from the other, force, moment and energy."""
+    r = run(f"""{FLYING}
+joints: {{j: {{bodies: [left, right], {written(word)}}}}}
+solver: {{end: 2, tolerance: 1e-10}}
+output: {{every: 0.05, channels: ["*", "*.rotation"]}}
+""")
+    momentum, turning = 0.0, 0.0
+    for body, (m, I) in INERTIA.items():
+        R = r[f"{body}.rotation"].reshape(-1, 3, 3)
+        v, omega = r[f"{body}.velocity"], r[f"{body}.angular_velocity"]
+        momentum = momentum + m * v
+        own = np.einsum("nij,jk,nlk,nl->ni", R, I, R, omega)
+        turning = turning + np.cross(r[f"{body}.position"], m * v) + own
+    assert np.abs(momentum - momentum[0]).max() < 1e-10
+    assert np.abs(turning - turning[0]).max() < 1e-8
+    assert np.abs(r["right.angular_velocity"]).max() > 1.0 and energy_error(r) < 1e-9

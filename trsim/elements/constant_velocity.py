@@ -10,13 +10,15 @@ any motion
 
     (omega_j - omega_i) . (a_i + a_j)/2 = 0
 
-so two shafts in bearings that stand turn equally fast at every bend below half a turn.
-reaction acts on body j at the point, reaction_moment in the direction of a_i + a_j.
+so two shafts in bearings that stand turn equally fast at every bend below half a turn, where
+nothing tells any more how one is turned against the other.  reaction acts on body j at the point,
+reaction_moment in the direction of a_i + a_j.
 """
 
+from math import atan2, degrees, pi, sqrt
 from typing import ClassVar
 
-from trsim.elements.contract import Reach, Row
+from trsim.elements.contract import Channel, Reach, Row, measured
 from trsim.elements.frames import (
     arm,
     cross,
@@ -36,6 +38,8 @@ from trsim.fields import vector
 from trsim.frame import across
 from trsim.kernels.columns import V3
 from trsim.kernels.lazy import internal
+
+NEXT_TO_HALF = 0.2  # rad: a bend so near to half a turn is told
 
 
 class ConstantVelocity(Joint):
@@ -102,11 +106,33 @@ def twist(scene, e, k):
     turn_lines(scene, k, n)
 
 
+@measured
+def measure(t, scene, e, o):
+    X, own = scene.X, Own(scene, e)
+    a_i, a_j = arm(X, own.i, own.a_i), arm(X, own.j, own.a_j)
+    n = cross(a_i, a_j)
+    scene.out[o] = atan2(sqrt(dot(n, n)), dot(a_i, a_j))
+
+
+def doubts(name, spec, largest):
+    """A bend at which it comes to hold nothing but the point."""
+    bend, when = largest(f"{name}.bend")
+    if bend > pi - NEXT_TO_HALF:
+        yield (
+            f"joints.{name}: bent by {degrees(bend):.4g} deg at {when:.4g} s; at half a turn it "
+            "does not tell how its shafts are turned against each other, and reactions grow "
+            "without bound: keep the bend below by a stop, or take a `universal`"
+        )
+
+
 ELEMENT = joint(
     key="constant_velocity",
     spec=ConstantVelocity,
     rows=(*POINT, JointRow("turn", "c", fill=twist)),
     pack=pack,
+    channels=(Channel("bend", "rad", "angle between the shafts", least=0.0),),
+    kernels={"measure": measure},
+    doubts=doubts,
     reach=lambda _: Reach(tilts=True),
     dear=True,
     example="""

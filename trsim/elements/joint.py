@@ -93,12 +93,13 @@ PICTURES = {
 def joint(key, spec, rows, coordinates=(), pack=pack, **other):
     """The element that a list of rows makes (rows.py), with the coordinates these leave free.
 
-    other: fields of Element, also those that follow from the rows where they are to differ.
+    other: fields of Element, also those that follow from the rows where they are to differ; and
+    more kernels.
     """
     room = (-1,) * (len(rows) + len(coordinates[1:]))  # of con, for what assembly knows
     places, turns = sum(row.places for row in rows), sum(row.turns for row in rows)
     ball, whole = rows == POINT, places == len(rows)
-    kernels = {"constraint": constraint_of(rows)}
+    kernels = {"constraint": constraint_of(rows)} | other.pop("kernels", {})
     if coordinates:
         kernels["coordinate"] = coordinate_of(coordinates, len(rows))
         other.setdefault("reach", lambda row: reach(row, coordinates))

@@ -52,9 +52,7 @@ Array = NDArray[np.float64]
 
 CREEP = 1e-2  # of a body's reach: motion over less in a whole run counts as none
 FARTHEST = 1.0  # rad: what a joint is turned by in a step of the way to its initial position
-COUNTED = (
-    2.5  # rad: the same of other joints, as of a thread that is moved along: half a turn is 3.14
-)
+COUNTED = 2.5  # rad: the same of joints that are moved along, as a thread: half a turn is 3.14
 SETBACKS = 25  # steps of the way to an initial position that may fail, one after the other or not
 
 
