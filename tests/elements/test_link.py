@@ -106,6 +106,52 @@ def test_a_length_that_is_given(planar):
     assert r["piston.position"][:, 0] == pytest.approx(0.05 * np.cos(a) + root, abs=1e-8)
 
 
+def platform(legs):
+    """A plate on links from the ground, as those of a flight simulator."""
+    at = np.deg2rad([0, 17, 120, 137, 240, 257])
+    feet = np.stack([np.cos(at), np.sin(at), 0 * at], axis=1)
+    heads = np.stack([0.5 * np.cos(at[[1, 2, 3, 4, 5, 0]] - 0.2),
+                      0.5 * np.sin(at[[1, 2, 3, 4, 5, 0]] - 0.2), 0 * at + 1], axis=1)  # fmt: skip
+    links = "\n".join(
+        f"  leg_{k}: {{type: link, bodies: [ground, plate], "
+        f"points: [{feet[k].tolist()}, {heads[k].tolist()}]}}"
+        for k in range(legs)
+    )
+    return (
+        feet,
+        heads,
+        f"""
+planar: false
+bodies: {{plate: {{mass: 10, inertia: [1, 1, 2], at: [0.1, 0.05, 1.1], angle: 0.3}}}}
+joints:
+{links}
+gravity: [0, 0, -9.81]
+solver: {{end: 0.3, tolerance: 1e-9}}
+""",
+    )
+
+
+def test_six_links_hold_a_plate():
+    """Their forces are those of six equations of balance, solved here."""
+    feet, heads, text = platform(6)
+    r = run(text)
+    assert (r.mechanism.mobility, r.mechanism.redundant) == (0, ())
+    n = (heads - feet) / np.linalg.norm(heads - feet, axis=1)[:, None]
+    balance = np.vstack([n.T, np.cross(heads, n).T])
+    weight = np.array([0, 0, -98.1])
+    load = np.concatenate([weight, np.cross([0.1, 0.05, 1.1], weight)])
+    found = [r[f"leg_{k}.force"][0] for k in range(6)]
+    # pulled, a rod pulls the plate towards its foot
+    assert found == pytest.approx(np.linalg.solve(balance, load), abs=1e-7)
+
+
+def test_five_links_leave_one_motion():
+    *_, text = platform(5)
+    r = run(text)
+    assert (r.mechanism.mobility, r.mechanism.redundant) == (1, ())
+    assert np.ptp(r["plate.position"][:, 2]) > 1e-4 and energy_error(r) < 1e-8
+
+
 def test_two_links_that_hold_the_same():
     """The second one is told as redundant, and that neither force is the only one possible."""
     text = BOB.format(planar="true", o=0, x=0.3, solver="")

@@ -166,6 +166,59 @@ forces: {hanger: {type: spring_damper, bodies: [ground, nut], points: [[0, 0, 1]
     assert np.abs(r["stroke"] - r["stroke"][0]).max() < 1e-6
 
 
+def test_a_differential_screw():
+    """Threads of 6 and 5 mm on one spindle: the slider goes 1 mm in each turn, and the crank lifts
+    the slider with the difference and the spindle with the whole."""
+    r = run("""
+planar: false
+bodies:
+  spindle: {mass: 3, inertia: [0.01, 0.01, 0.004], at: [0, 0, 0.2], angle: 350 deg}
+  slider: {mass: 5, inertia: [1, 1, 1], at: [0, 0, 0.5]}
+joints:
+  coarse: {type: screw, bodies: [ground, spindle], at: [0, 0, 0], axis: [0, 0, 1], pitch: 6 mm}
+  fine: {type: screw, bodies: [slider, spindle], at: [0, 0, 0.4], axis: [0, 0, 1], pitch: 5 mm}
+  guide: {type: prismatic, bodies: [ground, slider], axis: [0, 0, 1]}
+drives: {crank: {joint: coarse.angle, velocity: 50}}
+sensors: {height: {joint: guide}, turn: {joint: coarse.angle}}
+gravity: [0, 0, -9.81]
+solver: {end: 2, tolerance: 1e-10}
+output: {every: 0.01}
+""")
+    assert r["turn"] == pytest.approx(50 * r.t, abs=1e-7)
+    assert r["height"] == pytest.approx(1e-3 * r["turn"] / (2 * np.pi), abs=1e-10)
+    work = 9.81 * (5 * 1e-3 + 3 * 6e-3)  # of one turn
+    assert 2 * np.pi * r["crank.force"] == pytest.approx(work, abs=1e-8)
+
+
+def test_a_lock_of_one_coordinate_holds_both():
+    """The nut stops on its thread, and falls on from rest."""
+    more = """
+events:
+  hold: {when: angle, value: 30, do: {lock: [thread.stroke, thread.angle]}}
+  free: {when: t, value: 2.5, do: {unlock: [thread.stroke, thread.angle]}}
+"""
+    r = run(nut(more))
+    arrives = np.sqrt(2 * 30 * H / FALL)
+    held, free = (r.t > arrives) & (r.t < 2.5), r.t > 2.5
+    assert r["angle"][held] == pytest.approx(30, abs=1e-8)
+    again = 30 * H + FALL * (r.t[free] - 2.5) ** 2 / 2
+    assert r["stroke"][free] == pytest.approx(again, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    "more, path, words",
+    [
+        ("drives: {x: {joint: thread.angle, velocity: 1}, y: {joint: thread.stroke, velocity: 1}}",
+         ("drives", "y"), "already fix"),
+        ("initial: {thread.angle: 1, thread.stroke: 2}", ("initial", "thread.stroke"), "fixes"),
+    ],
+)  # fmt: skip
+def test_its_two_coordinates_are_one_freedom(more, path, words):
+    with pytest.raises(TrsimError) as caught:
+        run(nut(more))
+    assert caught.value.path == path and words in caught.value.what
+
+
 def test_released_it_falls_and_turns_on():
     r = run(nut("events: {off: {when: t, value: 2, do: {release: [thread]}}}"))
     free = r.t > 2
