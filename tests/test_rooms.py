@@ -17,6 +17,9 @@ WORDS = {
     "sensor": "an entry of `sensors`, in messages",
     "gravity": "a key of the scenario",
     "marker": "how a figure shows a point",
+    "link": "of an object in a result file that has two names",
+    "parallel": "an array of the model",
+    "planar": "a key of the scenario, and a fact of the mechanism",
 }
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
 from trsim.scenario.load import load
 
@@ -52,6 +53,47 @@ def test_four_bar_in_space():
     b = r["crank.position"] * 2.0
     c = 2.0 * r["rocker.position"] - [0.3, 0.0, 0.0]
     assert np.linalg.norm(c - b, axis=1) == pytest.approx(0.3, abs=1e-5)
+
+
+def test_screw_jack():
+    """A thread without friction: 2 pi T = p F."""
+    r = run(load(VALIDATION / "screw_jack.yaml", ["output.channels=['*']"]))
+    assert r.mechanism.mobility == 0 and len(r.mechanism.redundant) == 4
+    assert r["height"] == pytest.approx(6e-3 * r["turn"] / (2 * np.pi), abs=1e-9)
+    lift = 100 * (9.81 + r["table.acceleration"][:, 2])
+    torque = r["crank.force"] + 0.004 * r["spindle.angular_acceleration"][:, 2]
+    assert 2 * np.pi * torque == pytest.approx(6e-3 * lift, abs=1e-6)
+    assert r["crank.force"][-1] == pytest.approx(0.9368, abs=1e-4)
+
+
+def test_kitchen_door():
+    r = run(load(VALIDATION / "kitchen_door.yaml", ["output.channels=['*']"]))
+    m = r.mechanism
+    assert (m.mobility, m.mobility_by_count) == (1, -4)
+    assert len(m.redundant) == 5 and {row.split(".")[0] for row in m.redundant} <= {"bottom", "top"}
+    rate = np.sqrt(12 * 9.81 * np.sin(np.deg2rad(5)) * 0.3 / (0.36 + 12 * 0.09))
+    period = 4 * ellipk(np.sin(np.deg2rad(20)) ** 2) / rate
+    assert (period, 2 * np.pi / rate) == pytest.approx((4.4323, 4.2977), abs=1e-4)
+    assert r["opening"][0] == pytest.approx(np.deg2rad(40), abs=1e-9)
+    again = np.interp(period, r.t, r["opening"])
+    assert again == pytest.approx(np.deg2rad(40), abs=1e-5)
+    both = r["bottom.reaction"] + r["top.reaction"]
+    g = 9.81 * np.array([np.sin(np.deg2rad(5)), 0, -np.cos(np.deg2rad(5))])
+    assert both == pytest.approx(12 * (r["door.acceleration"] - g), abs=1e-6)
+
+
+@pytest.mark.parametrize("name, c", [("cardan_shaft", 1.0), ("cardan_shaft_phase_error", None)])
+def test_cardan_shaft(name, c):
+    """tan(out) = c tan(in), by the phase of the forks."""
+    c = c or np.cos(np.deg2rad(25)) ** 2
+    r = run(load(VALIDATION / f"{name}.yaml"))
+    turn = r["turn_in"]
+    assert turn[-1] == pytest.approx(6 * np.pi, abs=1e-7) and r.mechanism.mobility == 0
+    out = np.unwrap(np.arctan2(c * np.sin(turn), np.cos(turn)))
+    assert r["turn_out"] == pytest.approx(out, abs=1e-7)
+    ratio = r["turn_out.rate"] / r["turn_in.rate"]
+    assert ratio == pytest.approx(c / (np.cos(turn) ** 2 + (c * np.sin(turn)) ** 2), abs=1e-7)
+    assert (ratio.min(), ratio.max()) == pytest.approx((c, 1 / c), abs=1e-3)
 
 
 def periodic(*sets):

@@ -19,9 +19,14 @@ KEYS = {
     "at": "[0.2, 0.1, 0]",
     "axis": "[0.48, 0.6, 0.64]",
     "second_axis": "[0.6, -0.48, 0]",
+    "x_axis": "[0.8, -0.1, 0.3]",
+    "pitch": "0.7",
+    "points": "[[0.2, 0.1, 0], [0.5, -0.3, 0.4]]",
     "clearance": "0.03",
     "contact": "law",
 }
+# where a joint must be drawn another way
+OTHERS = {"constant_velocity": {"second_axis": "[0.8, -0.1, 0.3]"}}
 JOINTS = {word: elements.load(word) for word, of in elements.ELEMENTS.items() if of == "joints"}
 LAW = """
 contact_laws: {law: {normal: hunt_crossley, stiffness: 1e6, bearing_radius: 0.2, restitution: 0.9}}
@@ -42,7 +47,8 @@ CASES |= {
 def written(word):
     """A joint of a type, with the keys that it has."""
     fields = JOINTS[word].spec.model_fields
-    own = ", ".join(f"{key}: {value}" for key, value in KEYS.items() if key in fields)
+    keys = KEYS | OTHERS.get(word, {})
+    own = ", ".join(f"{key}: {value}" for key, value in keys.items() if key in fields)
     return f"type: {JOINTS[word].ideal or word}, {own}"
 
 
@@ -56,10 +62,12 @@ def thrown(case, seed):
     text += f"drives: {{drive: {{joint: {of}, {DRIVES[drive]}}}}}\n" if drive else ""
     b = bench(text, rng)
     assert b.mechanism.model.m == len(JOINTS[joint].rows) + bool(drive)
-    if coordinate == "angle":
+    counted = "lead" in JOINTS[joint].rows
+    if coordinate == "angle" or counted:
         # an angle is one only while the axes are parallel, and its rate while they stay so
         put_right(b, PLACE, rng.uniform(-2, 2) * AXIS, np.zeros(3))
-        b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS)
+        if not counted:
+            b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS)
     return b
 
 

@@ -343,6 +343,24 @@ def test_spring(hatch):
     assert np.ptp(np.linalg.norm(ends[1] - ends[0], axis=1)) > 1e-2
 
 
+def test_link(tmp_path):
+    """A rod from ball to ball, wherever they go."""
+    text = """
+bodies: {bob: {mass: 2, inertia: 0.01, at: [0.5, 0]}}
+joints: {rope: {type: link, bodies: [ground, bob], points: [[0, 0.1], [0.5, 0]]}}
+gravity: [0, -9.81, 0]
+solver: {end: 0.5 s}
+"""
+    moved, _, things = named(of(tmp_path, "output.every=5 ms", text=text))
+    rod, head = things["rope rod"], things["rope head"]
+    length = np.hypot(0.5, 0.1)
+    assert rod.scale[:, 0] == pytest.approx(length, abs=1e-6)
+    end = rod.place + turns.turned(rod.turn, length * X + np.zeros((len(rod.turn), 3)))
+    assert end == pytest.approx(head.place, abs=1e-6)
+    assert head.place[:, :2] == pytest.approx(moved.places["bob"][:, :2], abs=1e-9)
+    assert np.ptp(head.place[:, 0]) > 0.1
+
+
 def test_spring_without_length(tmp_path):
     """Two points that are always one have no direction: nothing is drawn between them."""
     text = (

@@ -13,7 +13,8 @@ from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
 from trsim.elements.coordinates import named
-from trsim.elements.joint import perpendicular
+from trsim.elements.joint import triad
+from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
 from trsim.frame import Frame
@@ -189,12 +190,13 @@ class Addresses:
 
     def coordinate(self, reference: str, kind: str = "") -> JointCoordinate:
         """A coordinate of a joint; entering it in S is what makes it computed."""
-        name, joint, kind = named(reference, self.scenario.joints, kind)
+        name, joint, own = named(reference, self.scenario.joints, kind)
+        kind, letter = COORDINATES[own]
         if name not in self.coordinates:
             spec = self.scenario.joints[joint]
             i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
-            axis = perpendicular(spec.axis, spec.drawn_in)[2]
+            axis = triad(spec)["uwa".index(letter)]
             drawn = self.drawn_angle(i, j, axis, spec.drawn_in) if kind == "angle" else 0.0
             points, s = (self.local(i, place), self.local(j, place)), self.entry()
             self.coordinates[name] = JointCoordinate(

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
@@ -56,7 +57,7 @@ from trsim.assemble.travel import travels
 from trsim.elements.contract import N_BOOK, Pair
 from trsim.elements.coordinates import of_joint
 from trsim.elements.rows import column_of
-from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
+from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, Scene, scene
 from trsim.errors import ScenarioError
 
 
@@ -76,8 +77,7 @@ def assemble(
     """
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
-    full = scene(build(scenario, at, instances, rows, 6))  # one workspace for all
-    y6 = drawn(at, 6)
+    full, y6 = as_drawn(scenario, at, instances, rows)  # one workspace for all
     verdict = (
         planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
     )
@@ -128,6 +128,16 @@ def assemble(
     )
 
 
+def as_drawn(
+    scenario: Any, at: Addresses, instances: list[Instance], rows: list[RowName]
+) -> tuple[Scene, NDArray[np.float64]]:
+    """The scene with some rows in space, its angles on the turn of the drawing, and its state."""
+    full = scene(build(scenario, at, instances, rows, 6))
+    for x in at.coordinates.values():
+        full.branch[x.entry] = x.drawn
+    return full, drawn(at, 6)
+
+
 def stages(
     scenario: Any, at: Addresses, instances: list[Instance], first: Choice, planar: bool
 ) -> Stages:
@@ -139,14 +149,14 @@ def stages(
     d = 3 if planar else 6
 
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
-        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
+        full, y6 = as_drawn(scenario, at, instances, rows)
         kept, found = choose_rows(full, y6, instances, planar, rows)
         own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
         return Choice(build(scenario, at, instances, kept, d, own, left), kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
         rows = [*kept, *left]
-        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
+        full, y6 = as_drawn(scenario, at, instances, rows)
         own = hubs(full, y6, rows, kept, planar, spans(at))
         return build(scenario, at, instances, kept, d, own, left)
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.elements.joint import perpendicular
+from trsim.elements.joint import perpendicular, place_on
 from trsim.errors import ModelError, ScenarioError
 from trsim.scenario.slender import ends
 
@@ -150,7 +150,7 @@ def off_the_nodes(scenario: Any, name: str, beam: Beam, place: Array) -> tuple[s
 
 def held(scenario: Any, name: str) -> list[tuple[float, ...]]:
     """Where joints and forces need a node of a body."""
-    found = [j.at for j in scenario.joints.values() if name in j.bodies]
+    found = [place_on(j, name) for j in scenario.joints.values() if name in j.bodies]
     for force in scenario.forces.values():
         point = getattr(force, "point", None)
         pairs = [

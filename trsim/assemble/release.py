@@ -19,16 +19,14 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.assemble import build, pack
+from trsim.assemble.assemble import as_drawn, pack
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
 from trsim.assemble.reduce import jacobian, moves, weights
 from trsim.assemble.redundant import nearby
 from trsim.assemble.rows import all_rows, in_solve
-from trsim.assemble.tables import drawn
 from trsim.elements.rows import Axes
-from trsim.elements.scene import scene
 
 Array = NDArray[np.float64]
 
@@ -107,8 +105,7 @@ def self_stress(
 ) -> Stress:
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
-    full = scene(build(scenario, at, instances, rows, 6))
-    y6 = drawn(at, 6)
+    full, y6 = as_drawn(scenario, at, instances, rows)
     inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
     keep = moves(full, mechanism.planar)
     geometric = [r for r in inside if instances[rows[r].instance].section == "joints"]
@@ -165,11 +162,12 @@ def joint_types() -> dict[tuple[str, str], str]:
 
 
 def shape(holds: str) -> tuple[str, str]:
-    """The displacements and the turns that are held; which one turn it is does not matter."""
+    """The displacements, turns, relations that are held; which one turn it is does not matter."""
     points = sum(one in "xyz" for one in holds)
     places = {*holds} & {*"uwa"} | {*"uwa"[:points]}
     turns = "".join(sorted({*holds} & {*"UWA"}))
-    return "".join(sorted(places)), turns if len(turns) > 1 else "1" * len(turns)
+    relations = "".join(sorted({*holds} - {*"xyzuwaUWA"}))
+    return "".join(sorted(places)), (turns if len(turns) > 1 else "1" * len(turns)) + relations
 
 
 def choices(options: list[list[Change]], k: int) -> Iterator[tuple[Change, ...]]:

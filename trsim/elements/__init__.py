@@ -18,6 +18,12 @@ ELEMENTS = {
     "prismatic": "joints",
     "cylindrical": "joints",
     "inline": "joints",
+    "inplane": "joints",
+    "planar": "joints",
+    "parallel": "joints",
+    "screw": "joints",
+    "constant_velocity": "joints",
+    "link": "joints",
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`
     "drive": "drives",

@@ -1,9 +1,10 @@
-"""Coordinates of joints by name: `hinge`; of a joint with two `slide.angle`, `slide.stroke`."""
+"""Coordinates of joints by name: `hinge`; of a joint with several `slide.angle`, `slide.stroke`."""
 
 from collections.abc import Mapping
 from typing import Any
 
 from trsim import elements
+from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, known
 
 
@@ -22,9 +23,10 @@ def of_joint(joint: str, joints: Mapping[str, Any]) -> dict[str, str]:
 def named(
     reference: str, joints: Mapping[str, Any], kind: str = "", path: tuple = ("joint",)
 ) -> tuple[str, str, str]:
-    """What the coordinate is called that is meant, its joint and its kind.
+    """What the coordinate is called that is meant, its joint and which of its coordinates it is.
 
-    kind: what it must be.  Raises ScenarioError where it is none, or may be several.
+    kind: what it must be, angle or stroke.  Raises ScenarioError where it is none, or may be
+    several.
     """
     joint, which = split(reference, joints)
     if joint not in joints:
@@ -38,7 +40,11 @@ def named(
         )
     if which and which not in there.values():
         raise ScenarioError(f"joint '{joint}' has no {which}", known(reference, there), path)
-    fits = [(name, own) for name, own in there.items() if which in ("", own) and kind in ("", own)]
+    fits = [
+        (name, own)
+        for name, own in there.items()
+        if which in ("", own) and kind in ("", COORDINATES[own].kind)
+    ]
     if not fits:
         raise ScenarioError(
             f"joint '{joint}' has a {which or ' and a '.join(there.values())}, not an {kind}",

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from trsim.elements.contract import Element, Reach, Row, Turning
 from trsim.elements.frames import between_points, points
-from trsim.elements.rows import POINT, Axes, constraint_of, coordinate_of
+from trsim.elements.rows import COORDINATES, POINT, Axes, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
 from trsim.frame import across
@@ -27,8 +27,35 @@ def pack(name, spec, at):
     """A joint about its axis, or z; without a place at the second body's centre of mass."""
     i, j = at.bodies(spec.bodies, spec.at)
     place = at.centre(j) if spec.at is None else spec.at
-    axes = triads(i, j, getattr(spec, "axis", Z), at, spec.drawn_in)
-    return Row(*Axes.packed(**points(at, i, j, place, place), **axes))
+    return Row(*Axes.packed(**points(at, i, j, place, place), **of_triad(i, j, spec, at)))
+
+
+def place_on(spec, body):
+    """Where a joint holds one of its bodies, as drawn; None: at its centre of mass."""
+    points = getattr(spec, "points", ())
+    return points[spec.bodies.index(body)] if points else spec.at
+
+
+def triad(spec):
+    """Unit vectors u, w, a of a joint, world axes as drawn: a its axis, u its x axis if given."""
+    u, w, a = perpendicular(getattr(spec, "axis", Z), spec.drawn_in)
+    if getattr(spec, "x_axis", None) is None:
+        return u, w, a
+    x = of_key(spec, "x_axis")
+    along = sum(p * q for p, q in zip(x, a, strict=True))
+    level = tuple(p - along * q for p, q in zip(x, a, strict=True))
+    if max(map(abs, level)) < 1e-6:
+        near = ", ".join(f"{p:.6g}" for p in u)
+        what = "`x_axis` has the direction of `axis`"
+        raise ScenarioError(what, f"give one across it, for example [{near}]", ("x_axis",))
+    u = direction(level)
+    return u, across(a, u), a
+
+
+def of_triad(i, j, spec, at):
+    """The columns of a joint between bodies i and j about the axes of its spec."""
+    u, w, a = triad(spec)
+    return held(i, j, u, w, a, at) | {"drawn": at.drawn_angle(i, j, a, spec.drawn_in)}
 
 
 def on_line(row):
@@ -39,11 +66,16 @@ def on_line(row):
 
 def reach(row, coordinates):
     """Bodies turn about the axis of an angle, and slide along that of a stroke."""
-    axis = ((Axes.of(row).i, Axes.of(row).a_i),)
-    return Reach(
-        hinges=axis if "angle" in coordinates else (),
-        slides=axis if "stroke" in coordinates else (),
-    )
+    own, axes = Axes.of(row), {"angle": [], "stroke": []}
+    for kind, letter in (COORDINATES[one] for one in coordinates):
+        axes[kind].append((own.i, getattr(own, f"{letter}_i")))
+    return Reach(hinges=tuple(axes["angle"]), slides=tuple(axes["stroke"]))
+
+
+def tilting(row):
+    """Of rows that let bodies turn about an axis that is not across the plane."""
+    x, y, _ = Axes.of(row).a_i
+    return Reach(tilts=max(abs(x), abs(y)) > 1e-9)
 
 
 # by how many displacements and turns a joint holds: its picture, see report/animation/drawing.py
@@ -61,12 +93,13 @@ PICTURES = {
 def joint(key, spec, rows, coordinates=(), pack=pack, **other):
     """The element that a list of rows makes (rows.py), with the coordinates these leave free.
 
-    other: fields of Element, also those that follow from the rows where they are to differ.
+    other: fields of Element, also those that follow from the rows where they are to differ; and
+    more kernels.
     """
     room = (-1,) * (len(rows) + len(coordinates[1:]))  # of con, for what assembly knows
-    places = sum(not row.of_j for row in rows)
-    turns, ball = len(rows) - places, rows == POINT
-    kernels = {"constraint": constraint_of(rows)}
+    places, turns = sum(row.places for row in rows), sum(row.turns for row in rows)
+    ball, whole = rows == POINT, places == len(rows)
+    kernels = {"constraint": constraint_of(rows)} | other.pop("kernels", {})
     if coordinates:
         kernels["coordinate"] = coordinate_of(coordinates, len(rows))
         other.setdefault("reach", lambda row: reach(row, coordinates))
@@ -79,8 +112,8 @@ def joint(key, spec, rows, coordinates=(), pack=pack, **other):
         "meets": places == 3,
         "welds": (places, turns) == (3, 3),
         "pin": (2, 3) if ball else (2,) if places == 3 and "angle" in coordinates else (),
-        "holds_twist": turns > 0,
-        "turning": between_points if ball else None if turns else on_line,
+        "holds_twist": not whole,
+        "turning": between_points if ball else on_line if whole else None,
         "picture": PICTURES.get((places, turns), ""),
     }
     return Element(

@@ -44,6 +44,7 @@ from trsim.elements.frames import (
     twist_apart,
 )
 from trsim.elements.frames import point as place
+from trsim.elements.rows import slides
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.kernels.columns import f8, i8
@@ -125,8 +126,8 @@ class LimitStop(Spec):
         name, _ = split(self.joint, joints)
         if name not in joints:
             return (), None
-        slides = of_joint(name, joints).get(called(self.joint, joints)) == "stroke"
-        return joints[name].bodies, None if slides else joints[name]
+        own = of_joint(name, joints).get(called(self.joint, joints), "")
+        return joints[name].bodies, None if own and slides((own,)) else joints[name]
 
 
 WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping")

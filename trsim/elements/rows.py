@@ -9,15 +9,19 @@ points that coincide too (Axes).  Its rows are, first one of
 and then
 
     perpendicular  Phi = u_i . a_j = 0          [Nikravesh1988]
+    Relation       a row of the joint's own, such as one between its angle and its stroke
 
 A row holds a displacement along one of u, w, a (written u, w, a) or a turn about one (U, W, A);
-those of a point are along the world axes (x, y, z).  Names that begin with tilt or turn are those
-of angles.  Coordinates of a joint, of which some may be there:
+those of a point are along the world axes (x, y, z), and a relation has any other letter.  Names
+that begin with tilt or turn are those of angles.  Coordinates of a joint, of which some may be
+there:
 
     angle          of the triad of body j against that of body i about a_i, unwrapped
     stroke         a_i . d
+    x, y           u_i . d,  w_i . d
 """
 
+from collections.abc import Callable
 from functools import cache
 from math import atan2
 from typing import NamedTuple
@@ -56,6 +60,17 @@ class JointRow(NamedTuple):
     holds: str  # u, w, a: a displacement along it; U, W, A: a turn about it; x, y, z: of a point
     of_i: str = ""  # axis of body i; of a point none
     of_j: str = ""  # axis of body j; of a turn
+    fill: Callable | None = None  # (scene, e, k) writes row k, of a relation
+
+    @property
+    def places(self) -> bool:
+        """Whether it holds a displacement."""
+        return self.holds in "xyzuwa"
+
+    @property
+    def turns(self) -> bool:
+        """Whether it holds a turn about one axis."""
+        return self.holds in "UWA"
 
 
 def along(axis: str, name: str) -> JointRow:
@@ -78,7 +93,8 @@ TURN = perpendicular("w", "u", "turn")
 @cache
 def constraint_of(rows):
     """The kernel that fills a list of rows, six at most; those of a point count as one."""
-    fills = [fill_of(row, FIRST_ROW + k) for k, row in enumerate(rows) if row.of_i]
+    own = [(row, FIRST_ROW + k) for k, row in enumerate(rows) if row.of_i or row.fill]
+    fills = [fill_of(*row) for row in own]
     fills = [point_rows, *fills] if rows[:3] == POINT else fills
     one, two, three, four, five, six = (*fills, *(nothing,) * (6 - len(fills)))
 
@@ -101,6 +117,8 @@ def nothing(scene, e):
 
 def fill_of(row, column):
     """What fills a row whose index stands in a column of con."""
+    if row.fill:
+        return related(row.fill, column)
     c = Axes.columns[f"{row.of_i}_i"].at
     o = Axes.columns[f"{row.of_j}_j"].at if row.of_j else -1
 
@@ -119,6 +137,18 @@ def fill_of(row, column):
             along_row(scene, e, arm(scene.X, Pair(scene, e).i, axis(scene, e, c)), k)
 
     return turn if row.of_j else slide
+
+
+def related(fill, column):
+    """The same of a relation."""
+
+    @internal
+    def relation(scene, e):
+        k = scene.con[e, column]
+        if k >= 0:
+            fill(scene, e, k)
+
+    return relation
 
 
 @internal
@@ -140,29 +170,60 @@ def write_angle(scene, e, s):
     S[s, 1] = dot(arm(X, i, own.a_i), relative_spin(V, i, j))
 
 
-@internal
-def write_stroke(scene, e, s):
-    """The stroke of instance e and its rate, as entry s of S."""
-    own = Axes(scene, e)
-    scene.S[s, 0], scene.S[s, 1] = stroke(scene, e, arm(scene.X, own.i, own.a_i))
+def write_along(letter):
+    """What writes the displacement along an axis of body i and its rate, as entry s of S."""
+    c = Axes.columns[f"{letter}_i"].at
+
+    @internal
+    def write(scene, e, s):
+        a = arm(scene.X, Pair(scene, e).i, axis(scene, e, c))
+        scene.S[s, 0], scene.S[s, 1] = stroke(scene, e, a)
+
+    return write
 
 
-WRITERS = {"angle": write_angle, "stroke": write_stroke}
+class Coordinate(NamedTuple):
+    """A coordinate that a joint may have."""
+
+    kind: str  # angle or stroke
+    axis: str  # u, w or a, along which it is, or about which
+
+
+COORDINATES = {
+    "angle": Coordinate("angle", "a"),
+    "stroke": Coordinate("stroke", "a"),
+    "x": Coordinate("stroke", "u"),
+    "y": Coordinate("stroke", "w"),
+}
+
+
+def slides(coordinates) -> bool:
+    """Whether one of some coordinates is a displacement."""
+    return any(COORDINATES[one].kind == "stroke" for one in coordinates)
+
+
+@cache
+def writer_of(coordinate):
+    """What writes one coordinate."""
+    own = COORDINATES[coordinate]
+    return write_angle if own.kind == "angle" else write_along(own.axis)
 
 
 @cache
 def coordinate_of(coordinates, n_rows):
-    """The kernel of the coordinates of a joint with so many rows."""
-    first, last = WRITERS[coordinates[0]], WRITERS[coordinates[-1]]
-    c, o = column_of(0, n_rows), column_of(len(coordinates) - 1, n_rows)
+    """The kernel of the coordinates of a joint with so many rows, three at most."""
+    own = [(writer_of(one), column_of(k, n_rows)) for k, one in enumerate(coordinates)]
+    (first, c), (second, o), (third, q) = (*own, *((own[0][0], -1),) * (3 - len(own)))
 
     @kernel
     def coordinate(t, scene, e):
         con = scene.con
         if con[e, c] >= 0:
             first(scene, e, con[e, c])
-        if o != c and con[e, o] >= 0:
-            last(scene, e, con[e, o])
+        if o >= 0 and con[e, o] >= 0:
+            second(scene, e, con[e, o])
+        if q >= 0 and con[e, q] >= 0:
+            third(scene, e, con[e, q])
 
     return coordinate
 

@@ -14,6 +14,7 @@ from math import dist, sqrt
 from typing import Any
 
 from trsim import elements
+from trsim.elements.rows import slides as moves_along
 
 SOFTEST, HARDEST = 1e6, 1e12  # Pa
 POISSON = 0.3  # where a law that gives K says nothing
@@ -92,7 +93,7 @@ def slides(scenario: Any) -> set[str]:
     return {
         body
         for joint in scenario.joints.values()
-        if "stroke" in elements.load(joint.type).coordinates
+        if moves_along(elements.load(joint.type).coordinates)
         for body in joint.bodies
     }
 

@@ -13,6 +13,7 @@ from math import ceil, dist, hypot, pi, sqrt
 from typing import Any, NamedTuple
 
 from trsim.elements.cable import MOST_ELEMENTS
+from trsim.elements.joint import place_on
 from trsim.errors import ScenarioError
 from trsim.scenario import plausible
 
@@ -39,8 +40,9 @@ class Bar(NamedTuple):
 
 def ends(scenario: Any, name: str) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """The two joints of a body that lie farthest apart; twice the same where there are no two."""
-    places = [j.at for j in scenario.joints.values() if name in j.bodies and j.at is not None]
-    pairs = [(a, b) for a in places for b in places]
+    places = [place_on(j, name) for j in scenario.joints.values() if name in j.bodies]
+    known = [place for place in places if place is not None]
+    pairs = [(a, b) for a in known for b in known]
     return max(pairs, key=lambda pair: dist(*pair), default=((), ()))
 
 

@@ -23,7 +23,7 @@ SPATIAL = ("ball", "cross")  # joints that let a body leave a plane
 STIFF = ("slide", "weld")  # joints that let no body turn against the other
 LOOSE = (*SPATIAL, "bead")  # joints that keep no axis
 JOINTS = (*IDEAL_POINTS, *SLIDES, "journal")
-LINES = ("cylinder", "coil", "block")  # forces and drives that have a place
+LINES = ("cylinder", "coil", "block", "rod")  # forces, drives and links that have a place
 
 
 class Joint(NamedTuple):
@@ -45,7 +45,7 @@ class Joint(NamedTuple):
 
 
 class Line(NamedTuple):
-    """What acts between a point of body i and a point of body j without joining them."""
+    """What acts between a point of body i and a point of body j."""
 
     name: str
     picture: str
@@ -130,9 +130,9 @@ def joints(drawn: Drawing) -> tuple[Joint, ...]:
 
 
 def lines(drawn: Drawing) -> tuple[Line, ...]:
-    """Actuators, springs and bushings between bodies that are drawn."""
-    found = []
-    for name, spec in {**drawn.scenario.drives, **drawn.scenario.forces}.items():
+    """Actuators, springs, bushings and links between bodies that are drawn."""
+    found, of = [], drawn.scenario
+    for name, spec in {**of.joints, **of.drives, **of.forces}.items():
         picture = elements.load(spec.type).picture
         if picture not in LINES or not all(drawn.has(body) for body in spec.bodies):
             continue

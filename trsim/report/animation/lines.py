@@ -1,4 +1,4 @@
-"""Actuators, springs and bushings as solids between the bodies they act on."""
+"""Actuators, springs, bushings and links as solids between the bodies they act on."""
 
 from collections.abc import Iterator
 
@@ -17,7 +17,7 @@ STEEL = "#7f8790"
 
 def lines(moved: Motion, look: Look) -> Iterator[Thing]:
     """Every line of the mechanism; in a flat one in front of the bodies it acts on."""
-    kinds = {"cylinder": actuator, "coil": spring, "block": bushing}
+    kinds = {"cylinder": actuator, "coil": spring, "block": bushing, "rod": link}
     for line in moved.drawn.lines:
         yield from kinds[line.picture](moved, look, line)
 
@@ -56,6 +56,16 @@ def spring(moved: Motion, look: Look, line: Line) -> Iterator[Thing]:
     coil = solids.coil(usual, 0.8 * r, 0.15 * r, COILS)
     size = np.stack([length / usual, *[np.ones(len(length))] * 2], axis=1)
     yield Thing(line.name, ((coil, STEEL),), a, turn, size, label=line.name)
+
+
+def link(moved: Motion, look: Look, line: Line) -> Iterator[Thing]:
+    """A rod with a ball at each end."""
+    a, along, turn, length = course(moved, look, line)
+    r, ball = look.radius, solids.ball(look.radius)
+    yield Thing(line.name, ((ball, PIN),), a, turn, label=line.name)
+    size = np.stack([length, *[np.full(len(length), 0.5 * r)] * 2], axis=1)
+    yield Thing(f"{line.name} rod", ((solids.tube(), SUPPORT),), a, turn, size)
+    yield Thing(f"{line.name} head", ((ball, PIN),), a + along, turns.STILL[None])
 
 
 def bushing(moved: Motion, look: Look, line: Line) -> Iterator[Thing]:

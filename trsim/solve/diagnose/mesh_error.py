@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import Beam
+from trsim.elements.joint import place_on
 from trsim.laws.cable import CURVATURES
 from trsim.laws.cable_matrices import slopes
 from trsim.laws.cable_section import mass
@@ -125,11 +126,12 @@ def mesh_errors(scenario: Any, mechanism: Mechanism, y: Array) -> Iterator[MeshE
 
 def supports(scenario: Any, name: str, beam: Beam) -> list[tuple[int, bool]]:
     """Nodes that joints hold, and whether their direction is held too."""
-    joints = [j for j in scenario.joints.values() if name in j.bodies and j.at is not None]
+    there = (j for j in scenario.joints.values() if name in j.bodies)
+    joints = [j for j in there if place_on(j, name) is not None]
     grounded = [j for j in joints if "ground" in j.bodies] or joints[:1]
     found: dict[int, bool] = {}
     for joint in grounded:
-        node = int(np.argmin(np.linalg.norm(beam.places - np.array(joint.at), axis=1)))
+        node = int(np.argmin(np.linalg.norm(beam.places - np.array(place_on(joint, name)), axis=1)))
         found[node] = found.get(node, False) or elements.load(joint.type).welds
     return [*found.items()]
 

@@ -52,6 +52,7 @@ Array = NDArray[np.float64]
 
 CREEP = 1e-2  # of a body's reach: motion over less in a whole run counts as none
 FARTHEST = 1.0  # rad: what a joint is turned by in a step of the way to its initial position
+COUNTED = 2.5  # rad: the same of joints that are moved along, as a thread: half a turn is 3.14
 SETBACKS = 25  # steps of the way to an initial position that may fail, one after the other or not
 
 
@@ -296,8 +297,11 @@ def approach(
                     ("initial",),
                 ) from None
             continue
+        before = model.branch[model.wound]
         remember(model, trial)
-        y, done, step = trial, ahead, min(2.0 * step, most)
+        turned = float(np.max(np.abs(model.branch[model.wound] - before), initial=0.0))
+        longest = (ahead - done) * COUNTED / max(turned, 1e-300)
+        y, done, step = trial, ahead, min(2.0 * step, most, longest)
     return y, residual
 
 

@@ -19,6 +19,7 @@ from trsim.assemble.reduce import along_rates, closest, displaced, jacobian, mov
 from trsim.elements.contract import IMPACT_SPEED, PHASE, UNLOCATED, ContactNumbers
 from trsim.elements.scene import Model, Scene, workspace
 from trsim.errors import ModelError
+from trsim.solve.start.angles import remember
 
 Array = NDArray[np.float64]
 
@@ -160,6 +161,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
         push = max(push, 1e-14 * float(np.abs(values).max()))
         if r_new < 20.0 * size or limit < 1.0:
             y, (F, J, Z) = y_new, there
+            remember(model, y)  # threads and springs may turn round on the way
     raise ModelError(
         f"no static equilibrium found: a force of {left:.3g} N stays unbalanced",
         "is there a load that nothing holds? drop `equilibrium` to start as drawn",
