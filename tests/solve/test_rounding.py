@@ -49,13 +49,13 @@ def end_of_needle(r):
 def test_a_needle(method, small):
     """About itself a rod without thickness turns by what rounding makes of its weight.
 
-    A hundred times more steps were made before, to follow that; six leaves room for how often a
-    method fails before rounding is looked at.
+    A hundred times more steps were made before, to follow that; fifteen leaves room for how often
+    a method fails before rounding is looked at.
     """
     sets = (f"solver.method={method}", "solver.tolerance=1e-10", "solver.max_steps=200000")
     thick, r = run(NEEDLE % "1e-4", *sets), run(NEEDLE % small, *sets)
     assert "rounding_of_tolerance" not in thick.outcome.statistics
-    assert r.outcome.statistics["steps"] < 6 * thick.outcome.statistics["steps"]
+    assert r.outcome.statistics["steps"] < 15 * thick.outcome.statistics["steps"]
     assert r.outcome.statistics["rounding_of_tolerance"] > 1.0
     [told] = [d for d in doubts(r.scenario, r.mechanism, r.outcome) if "rounding" in d]
     assert "angular velocity of 'rod'" in told and "larger tolerance" in told
