@@ -56,7 +56,7 @@ from trsim.assemble.travel import travels
 from trsim.elements.contract import N_BOOK, Pair
 from trsim.elements.coordinates import of_joint
 from trsim.elements.rows import column_of
-from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, scene
+from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, Scene, scene
 from trsim.errors import ScenarioError
 
 
@@ -76,7 +76,7 @@ def assemble(
     """
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
-    full = scene(build(scenario, at, instances, rows, 6))  # one workspace for all
+    full = looked_at(scenario, at, instances, rows)  # one workspace for all
     y6 = drawn(at, 6)
     verdict = (
         planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
@@ -139,22 +139,25 @@ def stages(
     d = 3 if planar else 6
 
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
-        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
+        full, y6 = looked_at(scenario, at, instances, rows), drawn(at, 6)
         kept, found = choose_rows(full, y6, instances, planar, rows)
         own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
         return Choice(build(scenario, at, instances, kept, d, own, left), kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
         rows = [*kept, *left]
-        full, y6 = scene(build(scenario, at, instances, rows, 6)), drawn(at, 6)
+        full, y6 = looked_at(scenario, at, instances, rows), drawn(at, 6)
         own = hubs(full, y6, rows, kept, planar, spans(at))
         return build(scenario, at, instances, kept, d, own, left)
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
     rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
-    entries = [(i.section, i.name, Pair.of(i.row).coordinate) for i in rigid]
-    turning = {(of, name): angles[x] for of, name, x in entries if x in angles}
-    return Stages(at.switches, instances, first, built, rebuilt, turning)
+    turning = [((i.section, i.name), angles.get(Pair.of(i.row).coordinate)) for i in rigid]
+    turning += [
+        ((i.section, i.name), angles.get(entry)) for i in instances for entry in i.row.relates
+    ]
+    held = [(of, angle) for of, angle in turning if angle is not None]
+    return Stages(at.switches, instances, first, built, rebuilt, held)
 
 
 def notes(scenario: Any) -> tuple[str, ...]:
@@ -232,6 +235,17 @@ def pack(  # type: ignore[no-untyped-def]
 def spans(at: Addresses) -> list[tuple[int, int]]:
     """First frame and number of nodes of every flexible bar."""
     return [(beam.first, beam.nodes) for beam in at.beams.values()]
+
+
+def looked_at(
+    scenario: Any, at: Addresses, instances: list[Instance], rows: list[RowName]
+) -> Scene:
+    """A workspace of a model with all these rows, in space, its angles on the turns of the drawing:
+    seen from others a row that relates angles would be far from closed."""
+    found = scene(build(scenario, at, instances, rows, 6))
+    for x in at.coordinates.values():
+        found.branch[x.entry] = x.drawn
+    return found
 
 
 def build(

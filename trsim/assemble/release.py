@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from trsim import elements
 from trsim.assemble.addresses import Addresses
-from trsim.assemble.assemble import build, pack
+from trsim.assemble.assemble import looked_at, pack
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.rank import DEPENDENT, dependent_rows, unique_reactions
@@ -28,7 +28,6 @@ from trsim.assemble.redundant import nearby
 from trsim.assemble.rows import all_rows, in_solve
 from trsim.assemble.tables import drawn
 from trsim.elements.rows import Axes
-from trsim.elements.scene import scene
 
 Array = NDArray[np.float64]
 
@@ -107,7 +106,7 @@ def self_stress(
 ) -> Stress:
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
-    full = scene(build(scenario, at, instances, rows, 6))
+    full = looked_at(scenario, at, instances, rows)
     y6 = drawn(at, 6)
     inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
     keep = moves(full, mechanism.planar)
