@@ -96,6 +96,48 @@ def test_cardan_shaft(name, c):
     assert (ratio.min(), ratio.max()) == pytest.approx((c, 1 / c), abs=1e-3)
 
 
+def test_planetary_gear():
+    r = run(load(VALIDATION / "planetary_gear.yaml"))
+    assert r.mechanism.planar and r.mechanism.mobility == 0
+    rate = r["sun_angle.rate"]
+    assert rate[-1] == pytest.approx(300.0)
+    assert r["carrier_angle.rate"] == pytest.approx(2 / 7 * rate, abs=1e-11 * 300)
+    assert r["planet_angle.rate"] + r["carrier_angle.rate"] == pytest.approx(
+        -2 / 3 * rate, abs=1e-11 * 300
+    )
+    for name, ratio in (("carrier_angle", 2 / 7), ("planet_angle", -20 / 21)):
+        assert np.abs(r[name] - ratio * r["sun_angle"]).max() < 1e-12 * r["sun_angle"].max()
+    steady = r.t > 0.5
+    assert r["motor.force"][steady] == pytest.approx(2 / 7 * 35, rel=1e-7)
+    # all on the ring together: torques on the carrier, the second body of its bearing
+    ring = sum(r[f"outer{k}.torque_1"] for k in (1, 2, 3))[steady]
+    sun = sum(r[f"inner{k}.torque_2"] for k in (1, 2, 3))[steady]
+    assert -ring == pytest.approx(-5 / 7 * 35, rel=1e-7)
+    assert np.abs(sun).max() > 1.0
+
+
+def test_differential():
+    r = run(load(VALIDATION / "differential.yaml"))
+    assert r.mechanism.mobility == 2 and not r.mechanism.planar
+    case, left, right = (r[f"{name}.angular_velocity"][:, 2] for name in ("case", "left", "right"))
+    assert case == pytest.approx((left + right) / 2, abs=1e-10)
+    # pinions turn at half the difference; their mass goes round with the case
+    about = 0.03 + 2 * (0.2 * 0.04**2 + 3e-5)
+    spin = 2 * 4e-5
+    M = 0.02 * np.eye(2) + about / 4 * np.ones((2, 2)) + spin / 4 * np.array([[1, -1], [-1, 1]])
+    rates = np.linalg.solve(M, [10.0 - 4.0, 10.0])
+    assert np.stack([left, right]) == pytest.approx(np.outer(rates, r.t), abs=1e-7)
+    assert r["left_angle"] == pytest.approx(-r["right_angle"], abs=1e-10)
+
+
+def test_rack_and_pinion():
+    r = run(load(VALIDATION / "rack_and_pinion.yaml"))
+    assert r["stroke"] == pytest.approx(-7 * r.t**2 / 2, abs=1e-7)
+    assert np.abs(r["angle"] * 0.05 - r["stroke"]).max() < 1e-12
+    assert r["teeth.force_2"] == pytest.approx(5.62, rel=1e-6)
+    assert r["teeth.torque_1"] == pytest.approx(-5.62 * 0.05, rel=1e-6)
+
+
 def periodic(*sets):
     """The points of the section `turn`, and how far those of every second turn lie apart, m."""
     points = run(load(VALIDATION / "slider_crank_periodic.yaml", [*sets])).section("turn")[:, 1:]

@@ -14,16 +14,16 @@ import numpy as np
 import pytest
 
 from trsim.assemble import hubs as choosing
+from trsim.assemble.assemble import as_drawn, pack
 from trsim.assemble.coupling import nodes
+from trsim.assemble.reduce import jacobian
 from trsim.assemble.release import release
+from trsim.assemble.rows import all_rows
 from trsim.scenario.load import loads
 from trsim.solve.methods.ggl_tables import tables
 
-from ..coupled import coupled  # noqa: F401 - a fixture
 from ..runs import built, energy_error, run
 from .test_schur import dense, evaluated, filled
-
-pytestmark = pytest.mark.usefixtures("coupled")
 
 M, D = 0.5, 0.3  # kg of a planet, m
 I_C, I_S, I_P = 0.08, 0.02, 0.01
@@ -135,9 +135,9 @@ def test_hubs_are_found_where_they_pay():
 @pytest.mark.parametrize("space", SPACES)
 @pytest.mark.parametrize("method", METHODS)
 def test_a_gear_that_repeats_another_is_redundant(space, method):
-    again = "  again: {type: gear, joints: [middle, pin0], radii: [2, 1]}"
+    again = "  again: {type: gear, joints: [middle, pin0], teeth: [2, 1]}"
     found = run(epicyclic(space, method, more=again))
-    assert found.mechanism.redundant == ("again.turn",)
+    assert found.mechanism.redundant == ("again.relation",)
     check(found, error=METHODS[method][1])
 
 
@@ -158,11 +158,11 @@ def test_a_gear_that_is_released(space, method):
 
 
 def test_of_redundant_gears_one_is_released():
-    again = "  again: {type: gear, joints: [middle, pin0], radii: [2, 1]}"
+    again = "  again: {type: gear, joints: [middle, pin0], teeth: [2, 1]}"
     scenario = loads(epicyclic(more=again))
     found = release(scenario, built(epicyclic(more=again)))
     assert found.proven
-    assert found.rows in (("again.turn",), ("teeth0.turn",))
+    assert found.rows in (("again.relation",), ("teeth0.relation",))
 
 
 def test_a_gear_couples_all_its_bodies_in_sparse_systems():
@@ -171,6 +171,24 @@ def test_a_gear_couples_all_its_bodies_in_sparse_systems():
     groups = nodes(mechanism).groups
     assert frozenset({0, 1, 2}) in groups and frozenset({0, 1, 3}) in groups
     assert tables(nodes(mechanism), mechanism, mechanism.model)
+
+
+def test_angles_are_looked_at_on_the_turns_of_the_drawing():
+    """Drawn 9 rad from its carrier a wheel is no whole turn away from where its gear has it."""
+    scenario = loads("""
+planar: false
+bodies:
+  one: {mass: 1, inertia: [1, 1, 1], at: [0, 0], angle: 9}
+  two: {mass: 1, inertia: [1, 1, 1], at: [0.3, 0]}
+joints:
+  first: {type: revolute, bodies: [ground, one], at: [0, 0]}
+  other: {type: revolute, bodies: [ground, two], at: [0.3, 0]}
+  teeth: {type: gear, joints: [first, other], radii: [0.1, 0.2]}
+""")
+    at, instances = pack(scenario, frozenset(), None, ())
+    assert at.coordinates["first"].drawn == 9.0
+    work, y = as_drawn(scenario, at, instances, all_rows(instances))
+    assert np.abs(jacobian(work, 0.0, y)[0]).max() < 1e-15
 
 
 # --- a coupler of four joints ----------------------------------------------------------------

@@ -129,20 +129,33 @@ def bench(
     return Bench(mechanism, r, p, V, z, mem)
 
 
+THIRD = """
+  third: {mass: 1, inertia: [0.02, 0.05, 0.04, 0.002, 0.001, 0.003], at: [-0.3, 0.4, 0.2],
+          angle: 1.1}
+"""
+
+
 def drawn(b: Bench, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Position and quaternion of a body as drawn."""
-    spec = {"left": (0.1, -0.2, 0.3, 0.7), "right": (0.5, 0.2, -0.1, -0.4)}[name]
+    spec = {
+        "left": (0.1, -0.2, 0.3, 0.7),
+        "right": (0.5, 0.2, -0.1, -0.4),
+        "third": (-0.3, 0.4, 0.2, 1.1),
+    }[name]
     return np.array(spec[:3]), quaternion(np.array([0.0, 0.0, spec[3]]))
 
 
-def put_right(b: Bench, at: np.ndarray, turn: np.ndarray, shift: np.ndarray) -> None:
-    """Place the right body so that it is as drawn against the left one, but for a turn about the
-    point `at` and then a shift, both in world axes as drawn."""
-    (r_i, p_i), (r_j, p_j) = drawn(b, "left"), drawn(b, "right")
+def put_right(
+    b: Bench, at: np.ndarray, turn: np.ndarray, shift: np.ndarray, name: str = "right"
+) -> None:
+    """Place the right body, or another, so that it is as drawn against the left one, but for a turn
+    about the point `at` and then a shift, both in world axes as drawn."""
+    (r_i, p_i), (r_j, p_j) = drawn(b, "left"), drawn(b, name)
+    f = b.mechanism.frames[name]
     q = quaternion(turn)
     r_j, p_j = at + matrix(q) @ (r_j - at) + shift, product(q, p_j)
     now = product(b.p[1], p_i * [1, -1, -1, -1])  # from drawn axes to those of the left body now
-    b.r[2], b.p[2] = b.r[1] + matrix(now) @ (r_j - r_i), product(now, p_j)
+    b.r[f], b.p[f] = b.r[1] + matrix(now) @ (r_j - r_i), product(now, p_j)
 
 
 def now(b: Bench, direction: np.ndarray) -> np.ndarray:

@@ -6,12 +6,14 @@ At constant twists V' = 0, so gamma is minus the rate of J V + Phi_t.  And the r
 they put on the bodies and the ground adds up to no force and no moment.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from trsim import elements
 
-from .bench import bench, check_action_is_reaction, now, put_right
+from .bench import THIRD, TWO_BODIES, bench, check_action_is_reaction, now, put_right
 
 AXIS, PLACE = np.array([0.48, 0.6, 0.64]), np.array([0.2, 0.1, 0.0])
 # of the keys a joint has
@@ -27,7 +29,8 @@ KEYS = {
 }
 # where a joint must be drawn another way
 OTHERS = {"constant_velocity": {"second_axis": "[0.8, -0.1, 0.3]"}}
-JOINTS = {word: elements.load(word) for word, of in elements.ELEMENTS.items() if of == "joints"}
+ALL = {word: elements.load(word) for word, of in elements.ELEMENTS.items() if of == "joints"}
+JOINTS = {word: joint for word, joint in ALL.items() if "bodies" in joint.spec.model_fields}
 LAW = """
 contact_laws: {law: {normal: hunt_crossley, stiffness: 1e6, bearing_radius: 0.2, restitution: 0.9}}
 """
@@ -37,7 +40,30 @@ DRIVES = {
     "table": "velocity: {table: [[0, 1], [0.2, 2], [0.5, 1], [1, 0]]}",
     "constant": "velocity: 0.7",
 }
-CASES = {name: (name, "", "") for name in JOINTS}
+# between bodies on the left one: about AXIS at PLACE, and about or along SECOND elsewhere
+SECOND, AWAY = np.array([0.6, 0.0, -0.8]), np.array([-0.4, 0.3, 0.5])
+HINGE, SLEEVE = (
+    f"one: {{type: {word}, bodies: [left, right], at: {PLACE.tolist()}, axis: {AXIS.tolist()}}}"
+    for word in ("revolute", "cylindrical")
+)
+OTHER, BACK = (
+    f"two: {{type: revolute, bodies: [{pair}], at: {AWAY.tolist()}, axis: {SECOND.tolist()}}}"
+    for pair in ("left, third", "third, left")
+)
+PARALLEL, LINE = (
+    f"two: {{type: {word}, bodies: [left, third], at: {AWAY.tolist()}, axis: {axis.tolist()}}}"
+    for word, axis in (("revolute", AXIS), ("inline", SECOND))
+)
+MESH = {  # joints of which a transmission relates coordinates, what it is, axis of the third body
+    "gear": (HINGE, PARALLEL, "teeth: [20, 31]", AXIS),
+    "gear, crossed": (HINGE, OTHER, "ratio: -2.5", SECOND),
+    "gear, carrier second": (HINGE, BACK, "ratio: 0.7", SECOND),
+    "worm": (HINGE, OTHER, "teeth: [2, 31], hand: left", SECOND),
+    "rack_and_pinion": (HINGE, LINE, "ratio: -0.3", None),
+    "coupler": (HINGE, LINE, "coefficients: [0.4, -1.3]", None),
+    "coupler, three": (SLEEVE, OTHER, "coefficients: [0.4, 0.7, -0.2]", SECOND),
+}
+CASES = {name: (name, "", "") for name in JOINTS} | {name: (name, "", "") for name in MESH}
 CASES |= {
     f"{d} of {j}'s {x}": (j, d, x)
     for j, joint in JOINTS.items() if not joint.ideal for x in joint.coordinates for d in DRIVES
@@ -52,10 +78,30 @@ def written(word):
     return f"type: {JOINTS[word].ideal or word}, {own}"
 
 
+def meshing(case, rng):
+    """A transmission between three bodies, in a random pose that their hinges allow."""
+    one, two, how, axis = MESH[case]
+    names = "one, two" if "cylindrical" not in one else "one.angle, two, one.stroke"
+    text = (
+        f"joints: {{{one}, {two}, mesh: {{type: {case.split(',')[0]}, joints: [{names}], {how}}}}}"
+    )
+    b = bench(text, rng, TWO_BODIES + THIRD[1:])
+    shift = rng.normal() * AXIS if "cylindrical" in one else np.zeros(3)
+    put_right(b, PLACE, rng.uniform(-2, 2) * AXIS, shift)
+    b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS)
+    if axis is not None:
+        put_right(b, AWAY, rng.uniform(-2, 2) * axis, np.zeros(3), "third")
+        b.V[3, 3:] = b.V[1, 3:] + rng.normal() * now(b, axis)
+    assert "mesh.relation" in b.mechanism.rows
+    return b
+
+
 def thrown(case, seed):
     """The joint in a random pose; with a turning drive in one that the joint allows."""
     joint, drive, coordinate = CASES[case]
     rng = np.random.default_rng(seed)
+    if case in MESH:
+        return meshing(case, rng)
     text = f"joints: {{joint: {{bodies: [left, right], {written(joint)}}}}}\n"
     text += LAW if JOINTS[joint].ideal else ""
     of = f"joint.{coordinate}"
@@ -71,15 +117,38 @@ def thrown(case, seed):
     return b
 
 
+def jacobian(w):
+    """J of all frames, row by row."""
+    J = np.zeros((w.m, w.n, 6))
+    for k, (a, b) in enumerate(pairwise(w.row_start)):
+        for line in range(a, b):
+            J[k, w.line_frame[line]] += w.J[line]
+    return J
+
+
+def test_every_joint_has_a_case():
+    assert {case.split(",")[0] for case in CASES if " of " not in case} == {*ALL}
+
+
 @pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("seed", range(3))
 def test_derivatives(case, seed):
     b, h = thrown(case, seed), 1e-5
     w, ahead, behind = b.rows(), b.later(h).rows(), b.later(-h).rows()
-    V = np.hstack([b.V[1], b.V[2]])
-    phi_dot, later, before = (s.J.reshape(-1, 12) @ V + s.phi_t for s in (w, ahead, behind))
+    phi_dot, later, before = (np.tensordot(jacobian(s), b.V) + s.phi_t for s in (w, ahead, behind))
     assert phi_dot == pytest.approx((ahead.phi - behind.phi) / (2 * h), abs=1e-7)
     assert w.gamma == pytest.approx(-(later - before) / (2 * h), abs=1e-7)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_gamma_is_that_of_any_twists(case):
+    """Also where an axis turns that bodies do not turn about alone: J V' = gamma keeps J V."""
+    b, h = thrown(case, 5), 1e-5
+    b.V[1:] = np.random.default_rng(5).normal(size=b.V[1:].shape)
+    later, before = (
+        np.tensordot(jacobian(s), b.V) + s.phi_t for s in (b.later(h).rows(), b.later(-h).rows())
+    )
+    assert b.rows().gamma == pytest.approx(-(later - before) / (2 * h), abs=1e-7)
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -87,17 +156,20 @@ def test_rows_against_every_twist(case):
     """Each column of J by moving one body at a time (a turning drive: from where it is allowed)."""
     b, h = thrown(case, 7), 1e-5
     columns = []
-    for k in range(6, 18):
-        twist = np.zeros(18)
+    for k in range(6, b.V.size):
+        twist = np.zeros(b.V.size)
         twist[k] = 1.0
-        twist = twist.reshape(3, 6)
+        twist = twist.reshape(-1, 6)
         columns.append((b.moved(twist, h).rows().phi - b.moved(twist, -h).rows().phi) / (2 * h))
-    assert pytest.approx(np.array(columns).T, abs=1e-8) == b.rows().J.reshape(-1, 12)
+    J = jacobian(b.rows())[:, 1:].reshape(-1, b.V.size - 6)
+    assert pytest.approx(np.array(columns).T, abs=1e-8) == J
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_reactions_add_no_force_and_no_moment(case):
     b = thrown(case, 9)
     put_right(b, PLACE, np.zeros(3), np.zeros(3))  # closed: off it, a pair of forces has a lever
-    for row in b.rows().J.reshape(-1, 2, 6):
-        check_action_is_reaction(b, np.vstack([np.zeros(6), row]))
+    if len(b.V) > 3:
+        put_right(b, AWAY, np.zeros(3), np.zeros(3), "third")
+    for row in jacobian(b.rows()):
+        check_action_is_reaction(b, row)

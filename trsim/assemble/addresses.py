@@ -38,6 +38,7 @@ class JointCoordinate(NamedTuple):
     axis_i: tuple[float, ...]  # its axis in body i
     axis: tuple[float, ...]  # and in world axes as drawn
     drawn: float  # value as drawn
+    place: tuple[float, ...]  # the joint's point in world axes as drawn
 
 
 UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
@@ -188,9 +189,14 @@ class Addresses:
         away = np.cross(place - centre, a)
         return float(own + self.mass(i) * (away @ away))
 
-    def coordinate(self, reference: str, kind: str = "") -> JointCoordinate:
-        """A coordinate of a joint; entering it in S is what makes it computed."""
-        name, joint, own = named(reference, self.scenario.joints, kind)
+    def coordinate(
+        self, reference: str, kind: str = "", path: tuple[str | int, ...] = ("joint",)
+    ) -> JointCoordinate:
+        """A coordinate of a joint; entering it in S is what makes it computed.
+
+        kind: what it must be; path: where it is named.
+        """
+        name, joint, own = named(reference, self.scenario.joints, kind, path)
         kind, letter = COORDINATES[own]
         if name not in self.coordinates:
             spec = self.scenario.joints[joint]
@@ -200,7 +206,7 @@ class Addresses:
             drawn = self.drawn_angle(i, j, axis, spec.drawn_in) if kind == "angle" else 0.0
             points, s = (self.local(i, place), self.local(j, place)), self.entry()
             self.coordinates[name] = JointCoordinate(
-                name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn
+                name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn, tuple(place)
             )
         return self.coordinates[name]
 

@@ -131,7 +131,8 @@ def assemble(
 def as_drawn(
     scenario: Any, at: Addresses, instances: list[Instance], rows: list[RowName]
 ) -> tuple[Scene, NDArray[np.float64]]:
-    """The scene with some rows in space, its angles on the turn of the drawing, and its state."""
+    """The scene with some rows in space, its angles on the turns of the drawing (from others a row
+    that relates angles is far from closed), and its state."""
     full = scene(build(scenario, at, instances, rows, 6))
     for x in at.coordinates.values():
         full.branch[x.entry] = x.drawn
@@ -162,9 +163,12 @@ def stages(
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
     rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
-    entries = [(i.section, i.name, Pair.of(i.row).coordinate) for i in rigid]
-    turning = {(of, name): angles[x] for of, name, x in entries if x in angles}
-    return Stages(at.switches, instances, first, built, rebuilt, turning)
+    turning = [((i.section, i.name), angles.get(Pair.of(i.row).coordinate)) for i in rigid]
+    turning += [
+        ((i.section, i.name), angles.get(entry)) for i in instances for entry in i.row.relates
+    ]
+    held = [(of, angle) for of, angle in turning if angle is not None]
+    return Stages(at.switches, instances, first, built, rebuilt, held)
 
 
 def notes(scenario: Any) -> tuple[str, ...]:

@@ -164,7 +164,9 @@ def node_products(s, B, pair):
                     total += B[p, d] * (
                         across[pair - start, 2] * B[o, c] + across[pair - start, 3] * B[o, d]
                     )
-                value[entry[pair]] += total
+                # a row that names two nodes of a beam meets itself twice
+                twice = o != p and s.slot_row[o] == s.slot_row[p]
+                value[entry[pair]] += 2.0 * total if twice else total
                 pair += 1
 
 

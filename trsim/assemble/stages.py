@@ -9,7 +9,7 @@ moves, where others would not.  `anew` then chooses others of the same stage (be
 is a part of the record of a run.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -49,11 +49,12 @@ class Stages:
         self, switches: Switches, instances: list[Instance], first: Choice,
         build: Callable[[list[Instance], Rows], Choice],
         rebuild: Callable[[list[Instance], Rows, Rows], Model],
-        turning: Mapping[tuple[str, str], JointCoordinate],
+        turning: Sequence[tuple[tuple[str, str], JointCoordinate]],
     ) -> None:  # fmt: skip
         """build: (instances, rows that are in force) -> a choice, its model without outputs;
         rebuild: (instances, rows to solve, rows to leave out) -> such a model;
-        turning: rigid drives and locks (section, name) of hinges in space, and of which angle."""
+        turning: rigid drives, locks and relations (section, name) of hinges in space, and of which
+        angle."""
         self.switches, self.instances, self.first = switches, instances, first.model
         self._build, self._rebuild, self._turning = build, rebuild, turning
         self._made = {(0,) * len(switches.names): first}
@@ -118,7 +119,8 @@ class Stages:
     def without_hinge(
         self, stage: NDArray[np.int64]
     ) -> list[tuple[tuple[str, str], JointCoordinate]]:
-        """Rigid drives and closed locks (section, name) whose hinge in space is apart; its angle.
+        """Rigid drives, closed locks and relations of angles (section, name) with a hinge in space
+        that is apart; its angle.
 
         What is seen of its angle is that of a line that leaves the plane of the hinge: there is
         nothing to turn, so they let go.
@@ -126,9 +128,9 @@ class Stages:
         at = dict(zip(self.switches.names, stage.tolist(), strict=True))
         return [
             (of, x)
-            for of, x in self._turning.items()
+            for of, x in self._turning
             if at.get(("joints", x.joint)) == LOOSE
-            and (at.get(of) != LOOSE if of[0] == "drives" else at.get(("locks", x.name)) == HELD)
+            and (at.get(("locks", x.name)) == HELD if of[0] == "events" else at.get(of) != LOOSE)
         ]
 
     def _found(self, stage: NDArray[np.int64]) -> Choice:

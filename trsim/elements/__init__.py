@@ -26,6 +26,10 @@ ELEMENTS = {
     "link": "joints",
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`
+    "gear": "joints",
+    "rack_and_pinion": "joints",
+    "worm": "joints",
+    "coupler": "joints",
     "drive": "drives",
     "actuator": "drives",
     "sensor": "sensors",

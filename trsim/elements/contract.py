@@ -207,6 +207,7 @@ class Row:
     piston: int = -1  # entry of z with the stroke of a piston that a supply moves
     slip: int = -1  # and with its rate less that of the prescribed motion
     length: float = 0.0  # m, as drawn, of the line it drives the ends of apart
+    relates: tuple[int, ...] = ()  # entries of S with the coordinates a joint relates
     named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
 
     def frames(self, index: int) -> tuple[int, ...]:
@@ -290,6 +291,7 @@ class Element:
     meets: bool = False  # its bodies meet at the point `at`
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else
+    bears: bool = True  # of a joint: its reaction is a force and a moment, and is recorded
     holds_twist: bool = True  # its rows hold how a flexible bar turns about itself
     picture: str = ""  # what it is drawn as in animations, see report/animation/drawing.py
     ideal: str = ""  # the element it is where it has no clearance
@@ -299,4 +301,4 @@ class Element:
 
     @property
     def reactions(self) -> tuple[Channel, ...]:
-        return REACTIONS if self.section == "joints" and self.rows else ()
+        return REACTIONS if self.section == "joints" and self.rows and self.bears else ()

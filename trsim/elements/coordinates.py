@@ -47,7 +47,8 @@ def named(
     ]
     if not fits:
         raise ScenarioError(
-            f"joint '{joint}' has a {which or ' and a '.join(there.values())}, not an {kind}",
+            f"joint '{joint}' has a {which or ' and a '.join(there.values())}, "
+            f"not {'an' if kind == 'angle' else 'a'} {kind}",
             "name a revolute joint" if kind == "angle" else "name a prismatic joint",
             path,
         )

@@ -98,7 +98,10 @@ class Unfolded(Tree):
         written, found = self.written(path), self.data
         inner = (*path[:2], *written[4:]) if tuple(path[:2]) in self.origins else written
         for key in inner:
-            found = found.get(key) if isinstance(found, dict) else None
+            if isinstance(found, list) and isinstance(key, int) and key < len(found):
+                found = found[key]
+            else:
+                found = found.get(key) if isinstance(found, dict) else None
         return found
 
     def meant(self, path: Iterable[str]) -> tuple[str, ...]:

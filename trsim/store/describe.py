@@ -108,9 +108,11 @@ def _mechanism(group: h5py.Group, scenario: Any, mechanism: Any) -> None:
 
 
 def flag(file: h5py.File, mechanism: Any) -> None:
-    """Mark the reactions that the motion does not determine."""
+    """Mark the reactions that the motion does not determine; of a relation all that it tells."""
+    relations = {i.name: [c.name for c in i.channels] for i in mechanism.instances if i.row.relates}
     for name in {row.split(".")[0] for row in mechanism.not_unique}:
-        for channel in (f"{name}.reaction", f"{name}.reaction_moment"):
+        for own in relations.get(name, ("reaction", "reaction_moment")):
+            channel = f"{name}.{own}"
             if channel in file:
                 rows = [row for row in mechanism.not_unique if row.split(".")[0] == name]
                 file[channel].attrs["not_unique"] = ", ".join(rows)

@@ -1,4 +1,7 @@
-"""Drives and locks that hold nothing: their hinge in space came apart (assemble/stages.py)."""
+"""Drives, locks and gears that hold nothing: a hinge of theirs in space came apart.
+
+See assemble/stages.py.
+"""
 
 from collections.abc import Iterator
 
@@ -10,7 +13,7 @@ def of_hinges(mechanism: Mechanism, r: Record) -> Iterator[str]:
     """Each of them as the run ended, and what to do."""
     for (section, name), angle in mechanism.stages.without_hinge(r.stage):
         joint = angle.joint
-        what = f"drives.{name}:" if section == "drives" else f"joints.{joint}: its lock"
+        what = f"joints.{joint}: its lock" if section == "events" else f"{section}.{name}:"
         yield (
             f"{what} holds nothing once an event has released the hinge '{joint}': apart, it has "
             "no angle in space; a `bushing` between the bodies keeps them from turning further"
