@@ -304,6 +304,12 @@ FIXED = {
                    "stretching_energy": "J",
                    **{f"node{k}.{name}": unit for k in range(5) for name, unit in
                       (("position", "m"), ("axial_force", "N"), ("bending_moment", "N*m"))}},
+    "constant_velocity": {"bend": "rad"},
+    "link": {"force": "N"},
+    "gear": {"torque_1": "N*m", "torque_2": "N*m"},
+    "worm": {"torque_1": "N*m", "torque_2": "N*m"},
+    "rack_and_pinion": {"torque_1": "N*m", "force_2": "N"},
+    "coupler": {"torque_1": "N*m", "force_2": "N"},
     "spring_damper": EXPECTED["spring"],
     "bushing": {"force": "N", "moment": "N*m", "displacement": "m", "rotation_vector": "rad"},
     "torsion_spring": EXPECTED["coil"],

@@ -87,13 +87,11 @@ ELEMENT = transmission(
     example="""
 bodies:
   crank: {mass: 1 kg, inertia: 0.002 kg*m^2, at: [0, 0]}
-  flap: {mass: 1 kg, inertia: 0.01 kg*m^2, at: [0.4, -0.1]}
   slider: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [0.8, 0]}
 joints:
   bearing: {type: revolute, bodies: [ground, crank], at: [0, 0]}
-  hinge: {type: revolute, bodies: [ground, flap], at: [0.4, 0]}
   guide: {type: prismatic, bodies: [ground, slider], axis: [0, 1]}
-  link: {type: coupler, joints: [bearing, hinge, guide], coefficients: [50 mm/rad, 0.1 m/rad, -1]}
+  cable: {type: coupler, joints: [bearing, guide], coefficients: [50 mm/rad, -1]}
 gravity: [0, -9.81, 0]
 solver: {end: 0.5 s}
 """,

@@ -166,7 +166,7 @@ def relation(coordinates: Any, coefficients: Any) -> Row:
     for k, (x, c, angle) in enumerate(zip(coordinates, coefficients, angles, strict=True)):
         where += [x.i, x.j, named.index(x.i), named.index(x.j), x.entry, int(angle)]
         terms += [c / unit, x.drawn, *x.s_i, *x.s_j, *x.axis_i]
-        channels.append(channel(k, "N*m" if angle else "N", f"joint {k + 1}, {x.name}"))
+        channels.append(channel(k, "N*m" if angle else "N"))
     first = coordinates[0]
     own = Own.packed(
         i=first.i, j=first.j, coordinate=-1, number=len(coordinates), where=where, terms=terms
@@ -175,10 +175,10 @@ def relation(coordinates: Any, coefficients: Any) -> Row:
     return Row(*own, channels=tuple(channels), turns=turns, relates=entries, named=(named,))
 
 
-def channel(k: int, unit: str, of: str) -> Channel:
+def channel(k: int, unit: str) -> Channel:
     """What the relation puts on the second body of the k-th joint."""
     word, way = ("torque", "about") if unit == "N*m" else ("force", "along")
-    return Channel(f"{word}_{k + 1}", unit, f"on the second body of {of}, {way} its axis")
+    return Channel(f"{word}_{k + 1}", unit, f"on the second body of joint {k + 1}, {way} its axis")
 
 
 @internal
@@ -271,7 +271,7 @@ def transmission(key: str, spec: type, pack: Any, units: tuple[str, ...], exampl
         pack=pack,
         rows=("relation",),
         bears=False,
-        channels=tuple(channel(k, unit, f"joint {k + 1}") for k, unit in enumerate(units)),
+        channels=tuple(channel(k, unit) for k, unit in enumerate(units)),
         reach=reach,
         kernels={"constraint": constraint, "measure": measure},
         example=example,
