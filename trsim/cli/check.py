@@ -86,10 +86,12 @@ def check_output(scenario: Any, mechanism: Any) -> None:
 def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
     """Bodies, joints and what the assembly found out about them."""
     from trsim.scenario.lint import lint
+    from trsim.scenario.weights import weights
 
     model = mechanism.model
     return {
         "bodies": list(scenario.bodies),
+        "weights": [weight._asdict() for weight in weights(scenario)],
         "joints": {name: spec.type for name, spec in scenario.joints.items()},
         "drives": list(scenario.drives),
         "forces": {name: spec.type for name, spec in scenario.forces.items()},
@@ -174,6 +176,7 @@ def lines(found: dict[str, Any]) -> list[str]:
     return [
         f"{found['file']}: {found['title']}" if found["title"] else found["file"],
         f"  bodies      {len(found['bodies'])}: {words(found['bodies'])}",
+        *weight_lines(found["weights"]),
         f"  joints      {len(found['joints'])}: {typed('joints')}",
         f"  drives      {words(found['drives'])}",
         f"  forces      {typed('forces')}",
@@ -192,6 +195,28 @@ def lines(found: dict[str, Any]) -> list[str]:
 
 def words(names: Any) -> str:
     return ", ".join(names) or "-"
+
+
+def weight_lines(found: list[dict[str, Any]]) -> list[str]:
+    """What all bodies weigh together, and what of each was not given."""
+    total = sum(one["mass"] for one in found)
+    if not total:
+        return []
+    centre = [sum(one["mass"] * one["centre"][c] for one in found) / total for c in range(3)]
+    return [
+        f"  mass        {total:.6g} kg, centre at {numbers(centre)} m as drawn",
+        *(
+            f"              {one['body']}: {one['mass']:.6g} kg at {numbers(one['centre'])} m, "
+            f"inertia {numbers(one['inertia'])} kg*m^2: {one['origin']}"
+            for one in found
+            if one["origin"] != "given"
+        ),
+    ]
+
+
+def numbers(of: Any) -> str:
+    """A list of numbers in brackets."""
+    return f"[{', '.join(f'{x:.6g}' for x in of)}]"
 
 
 def mobility_lines(found: dict[str, Any]) -> list[str]:

@@ -92,6 +92,11 @@ class AncfCable(Cable):
         """Unit vector from start to end."""
         return tuple((b - a) / self.length for a, b in zip(self.start, self.end, strict=True))
 
+    @property
+    def origin(self):
+        """Where its mass, centre and inertia come from."""
+        return "of its section"
+
     def bar(self, start, end):
         return self
 
@@ -103,7 +108,7 @@ class AncfCable(Cable):
             """An entry of the tensor of inertia."""
             return across * ((1.0 + SLENDER) * (a == b) - t[a] * t[b])
 
-        return RigidBody.model_construct(
+        return RigidBody(
             mass=self.whole_mass,
             inertia=(of(0, 0), of(1, 1), of(2, 2), of(0, 1), of(0, 2), of(1, 2)),
             at=tuple(0.5 * (a + b) for a, b in zip(self.start, self.end, strict=True)),

@@ -7,22 +7,25 @@ Its axes are at t = 0 those of the frame it is drawn in, the world's or its inst
 equations of motion hold the masses (assemble/equations.py).
 """
 
-from math import dist
+from math import cos, dist, sin
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Ge
-from pydantic import BeforeValidator
+import numpy as np
+from annotated_types import Ge, Gt, MinLen
+from pydantic import BeforeValidator, ConfigDict, model_validator
 
 from trsim import elements
 from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Memory, Row, measured
+from trsim.elements.inertia import INERTIA, tensor, written
+from trsim.elements.solid import Solid, bulk
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
 from trsim.kernels.columns import f8, i8
+from trsim.laws.solids import Bulk
 
-KG_M2 = Unit("kg*m^2")
-INERTIA = Annotated[float, Ge(0), KG_M2]
-PRODUCT = Annotated[float, KG_M2]
+NEEDED = {"mass": "mass (kg)", "inertia": "inertia (kg*m^2)"}  # unless there is a shape
+FOLLOW = {"mass": "mass", "at": "centre", "inertia": "inertia"}  # from a shape, in words
 ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
@@ -37,11 +40,13 @@ SWITCH = BeforeValidator(_switched_off, json_schema_input_type=Cable | Literal[F
 class RigidBody(Spec):
     """A rigid body and its centre of mass.
 
-    mass              its mass
+    mass              its mass; with a shape what all of it weighs, unless its densities tell
     inertia           about the centre of mass: one about z, for a planar scene; three principal
                       ones; or Ixx, Iyy, Izz, Ixy, Ixz, Iyz, products with the sign of the
-                      tensor's entries, in body axes
-    at                centre of mass, as drawn
+                      tensor's entries, in body axes; with a shape that of the shape unless given
+    at                centre of mass, as drawn; with a shape that of the shape unless given
+    shape             solids and holes it is made of, as drawn: mass, inertia and centre follow
+    density           of those solids that have none of their own
     angle             turns the body axes about z; those of an instance about the z of its frame
     velocity          of the centre of mass at the start; where any body has a velocity, clearance
                       joints start free, otherwise as ideal ones
@@ -51,26 +56,76 @@ class RigidBody(Spec):
                       inertia that of the bar; `false` in a file that extends makes it rigid again
     """
 
-    type: ClassVar[str] = "rigid_body"
-    mass: Annotated[float, Ge(0), Unit("kg")]
-    inertia: (
-        INERTIA
-        | tuple[INERTIA, INERTIA, INERTIA]
-        | tuple[INERTIA, INERTIA, INERTIA, PRODUCT, PRODUCT, PRODUCT]
+    model_config = ConfigDict(
+        json_schema_extra={"anyOf": [{"required": [*NEEDED]}, {"required": ["shape"]}]}
     )
-    at: point("m") = (0.0, 0.0, 0.0)
+    type: ClassVar[str] = "rigid_body"
+    mass: Annotated[float, Ge(0), Unit("kg")] | None = None
+    inertia: INERTIA | None = None
+    at: point("m") | None = None
+    shape: Annotated[tuple[Solid, ...], MinLen(1)] | None = None
+    density: Annotated[float, Gt(0), Unit("kg/m^3")] | None = None
     angle: Annotated[float, Unit("rad")] = 0.0
     velocity: vector("m/s") = (0.0, 0.0, 0.0)
     angular_velocity: vector("rad/s") = (0.0, 0.0, 0.0)
     flexible: Annotated[Cable | None, SWITCH] = None
 
+    @model_validator(mode="after")
+    def complete(self):
+        """Fill in what follows from the shape; without one mass and inertia are needed."""
+        origin = self.drawn_in.at if self.drawn_in else (0.0, 0.0, 0.0)
+        if self.shape is None:
+            if self.density is not None:
+                raise ScenarioError("a density needs a `shape`", "or give a `mass`", ("density",))
+            missing = [told for key, told in NEEDED.items() if getattr(self, key) is None]
+            if missing:
+                hint = "Or give the body a `shape` and a `density`."
+                raise ScenarioError(f"field required: {' and '.join(missing)}", hint)
+            self.__dict__["at"] = origin if self.at is None else self.at
+            return self
+        try:
+            whole = bulk(self.shape, self.density, self.mass)
+        except ScenarioError as error:
+            raise error.at("shape") from None
+        follows = {"mass": whole.mass, "at": tuple(whole.centre.tolist())}
+        follows["inertia"] = written(self.turned(whole.inertia, into_body=True))
+        self.__dict__.update({key: of for key, of in follows.items() if not self.says(key)})
+        return self
+
+    @property
+    def origin(self) -> str:
+        """Where its mass, centre and inertia come from."""
+        if self.shape is None:
+            return "given"
+        count = f"{len(self.shape)} solid{'s' if len(self.shape) > 1 else ''}"
+        given = [what for key, what in FOLLOW.items() if self.says(key)]
+        scaled = " scaled to its mass" if self.says("mass") else ""
+        told = f"of {count}{scaled}"
+        others = [what for what in given if what != "mass"]
+        return f"{told}; {' and '.join(others)} given" if others else told
+
+    def says(self, key: str) -> bool:
+        """Whether a key is written, so that it does not follow from the shape."""
+        return key in self.model_fields_set
+
+    def turned(self, tensor, into_body=False):
+        """A tensor (3, 3) in body axes, in world axes as drawn; or back."""
+        c, s = cos(self.angle), sin(self.angle)
+        R = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
+        if self.drawn_in is not None:
+            R = np.array((self.drawn_in.x, self.drawn_in.y, self.drawn_in.z)).T @ R
+        return R.T @ tensor @ R if into_body else R @ tensor @ R.T
+
+    @property
+    def bulk(self):
+        """Mass, centre and inertia in world axes as drawn."""
+        inertia = self.turned(np.reshape(self.tensor[0], (3, 3)))
+        return Bulk(self.mass, np.array(self.at), inertia)
+
     @property
     def tensor(self):
         """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
-        if isinstance(self.inertia, float):
-            return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self.inertia), False
-        xx, yy, zz, xy, xz, yz = (*self.inertia, 0.0, 0.0, 0.0)[:6]
-        return (xx, xy, xz, xy, yy, yz, xz, yz, zz), True
+        return tensor(self.inertia)
 
     def bar(self, start, end):
         if start == end:

@@ -24,6 +24,7 @@ from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.sections import PhasePortrait, PoincareSection
 from trsim.scenario.template import Instance, Template
 from trsim.scenario.text import Tree
+from trsim.scenario.totals import Total, remainders
 from trsim.scenario.unfolded import Entry, Unfolded
 from trsim.units import quantity
 
@@ -217,6 +218,7 @@ class Scenario(Spec):
     events           what happens where a sensor, or the time, crosses a value
     templates        parts of the mechanism described once, put in place by instances
     instances        templates put in place; entry `door` of instance `left` is left_door
+    totals           what several bodies weigh together, where one of them takes the rest
     limits           how many bodies, rows, nodes and entries there may be
     phases           kept for load steps; not used yet
     cases            named overrides, each a scenario of a sweep; not used by `run`
@@ -243,11 +245,18 @@ class Scenario(Spec):
     events: dict[str, Annotated[Event, BeforeValidator(_event)]] = EMPTY
     templates: dict[str, Template] = EMPTY
     instances: dict[str, Instance] = EMPTY
+    totals: dict[str, Total] = EMPTY
     limits: Limits = Limits()
     phases: Any = None
     cases: dict[str, Any] = EMPTY
     sweep: dict[str, Any] = EMPTY
     report: Annotated[dict[str, Any], AfterValidator(shown.report)] = EMPTY
+
+    @model_validator(mode="after")
+    def balanced(self) -> "Scenario":
+        """Give the bodies that take the rest of a total what they have then."""
+        self.bodies.update(remainders(self.totals, self.bodies))
+        return self
 
     _tree: Tree = PrivateAttr()
     _unfolded: Unfolded = PrivateAttr()

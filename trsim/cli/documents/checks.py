@@ -6,6 +6,7 @@ from typing_extensions import TypedDict  # pydantic wants this one before Python
 
 from trsim.assemble import release
 from trsim.cli.documents.common import Document, Number, Subject, of
+from trsim.scenario.weights import Weight
 from trsim.solve.diagnose.bar_scales import BarScale
 from trsim.solve.diagnose.mesh_error import MeshError
 from trsim.solve.diagnose.modes import Mode
@@ -66,6 +67,7 @@ class Checked(Subject):
 
     file               as given
     bodies             names
+    weights            mass, centre and inertia of each body, and where they come from
     joints             name -> type
     drives             names
     forces             name -> type
@@ -92,6 +94,7 @@ class Checked(Subject):
     """
 
     bodies: list[str]
+    weights: list[of(Weight)]
     joints: dict[str, str]
     drives: list[str]
     forces: dict[str, str]

@@ -1,0 +1,148 @@
+"""Solids: the shape of a rigid body, from which its mass, centre and inertia follow.
+
+    m, c, J      of boxes, cylinders, tubes, spheres, prisms, and of holes in them; laws/solids.py
+
+A solid has a density or a mass of its own, or the density of its body.
+"""
+
+from typing import Annotated, Any, ClassVar
+
+from annotated_types import Gt, MinLen
+from pydantic import model_validator
+
+from trsim.elements.joint import Z, triad
+from trsim.errors import ScenarioError
+from trsim.fields import Flag, Spec, Unit, point, vector
+from trsim.laws import solids
+
+Length = Annotated[float, Gt(0), Unit("m")]
+KINDS = ("box", "cylinder", "sphere", "polygon")
+THIN = 1e-12  # of the square of its extent: an outline of less area has none
+MOST_CORNERS = 1000
+
+
+class Solid(Spec):
+    """A box, a cylinder, a sphere or a plate of any outline; or a hole of this shape.
+
+    box       its edges along its x, y and z axis
+    cylinder  its diameter, about its z axis
+    sphere    its diameter
+    polygon   the corners [x, y] of an outline in its x-y plane, in order, seen from `at`
+    length    of a cylinder, or thickness of a polygon, along its z axis, half of it on either side
+    wall      thickness of the wall of a tube or of a hollow sphere
+    at        its middle, of a polygon the origin of the corners, as drawn
+    axis      its z axis, as drawn; of any length
+    x_axis    its x axis, as drawn, made perpendicular to `axis`
+    density   of its material; that of the body unless given
+    mass      its mass, instead of a density
+    hole      takes the shape away from the others
+    """
+
+    type: ClassVar[str] = "solid"
+    box: tuple[Length, Length, Length] | None = None
+    cylinder: Length | None = None
+    sphere: Length | None = None
+    polygon: Annotated[tuple[tuple[float, float], ...], MinLen(3), Unit("m")] | None = None
+    length: Length | None = None
+    wall: Length | None = None
+    at: point("m") = (0.0, 0.0, 0.0)
+    axis: vector("-") = Z
+    x_axis: vector("-") | None = None
+    density: Annotated[float, Gt(0), Unit("kg/m^3")] | None = None
+    mass: Annotated[float, Gt(0), Unit("kg")] | None = None
+    hole: Flag = False
+
+    @model_validator(mode="after")
+    def one_shape(self):
+        given = [kind for kind in KINDS if getattr(self, kind) is not None]
+        if len(given) != 1:
+            got = f"got {' and '.join(given)}" if given else "got none"
+            hint = "for example {box: [0.4, 0.3, 2 mm]} or {cylinder: 20 mm, length: 0.3}"
+            raise ScenarioError(f"give one of {', '.join(KINDS)}; {got}", hint)
+        long, hollow = given[0] in ("cylinder", "polygon"), self.cylinder or self.sphere
+        if long and self.length is None:
+            raise ScenarioError(f"a {given[0]} needs a `length`")
+        for key, has in (("length", long), ("wall", hollow)):
+            if getattr(self, key) is not None and not has:
+                raise ScenarioError(f"a {given[0]} has no {key}", "leave it out", (key,))
+        if self.wall is not None and 2.0 * self.wall > hollow:
+            what = "a wall is at most half of the diameter"
+            raise ScenarioError(what, "a full one has none", ("wall",))
+        if self.density is not None and self.mass is not None:
+            raise ScenarioError("give either `density` or `mass`", "leave one out", ("mass",))
+        if self.hole and self.mass is not None:
+            hint = "it takes away as much as fills it: leave `mass` out"
+            raise ScenarioError("a hole has no mass", hint, ("mass",))
+        if self.polygon is not None:
+            self.check_outline(self.polygon)
+        return self
+
+    def check_outline(self, corners):
+        if len(corners) > MOST_CORNERS:
+            raise ScenarioError(f"at most {MOST_CORNERS} corners", "", ("polygon",))
+        meeting = solids.crossed(corners)
+        if meeting is not None:
+            what = f"sides {meeting[0] + 1} and {meeting[1] + 1} of the outline meet"
+            raise ScenarioError(what, "give its corners in order, each once", ("polygon",))
+        extent = max(max(abs(a - b) for a, b in zip(p, corners[0], strict=True)) for p in corners)
+        if solids.area(corners) <= THIN * extent**2:
+            raise ScenarioError("the outline has no area", "", ("polygon",))
+
+    @property
+    def shape(self) -> solids.Bulk:
+        """Volume, centre and second moments, in its own axes."""
+        if self.box is not None:
+            return solids.box(*self.box)
+        length = self.length or 0.0
+        if self.polygon is not None:
+            return solids.prism(self.polygon, length)
+        outer = 0.5 * (self.cylinder or self.sphere or 0.0)
+        inner = outer - self.wall if self.wall else 0.0
+        if self.sphere is not None:
+            return solids.sphere(outer, inner)
+        return solids.cylinder(outer, inner, length)
+
+    def bulk(self, density: float | None) -> solids.Bulk:
+        """Mass, centre and inertia in world axes as drawn; of a hole negative ones.
+
+        density: kg/m^3, of a solid that has none of its own.  Raises ScenarioError without any.
+        """
+        shape, own = self.shape, self.own_density or density
+        if own is None:
+            hint = "give the body a `density` or a `mass`, or the solid one of them"
+            raise ScenarioError("a solid without a density", hint)
+        axes: Any = zip(*triad(self), strict=True)
+        return solids.placed(shape, -own if self.hole else own, self.at, tuple(axes))
+
+    @property
+    def own_density(self) -> float | None:
+        """Its own density; None where it has that of its body."""
+        return self.mass / self.shape.mass if self.mass is not None else self.density
+
+
+def bulk(parts: tuple[Solid, ...], density: float | None, mass: float | None) -> solids.Bulk:
+    """What solids are together, in world axes as drawn.
+
+    density: of those that have none of their own; mass: what all of them weigh, which their
+    densities are scaled to.  Raises ScenarioError with the place among the parts.
+    """
+    density = 1.0 if density is None and mass is not None and bare(parts) else density
+    found = []
+    for k, part in enumerate(parts):
+        try:
+            found.append(part.bulk(density))
+        except ScenarioError as error:
+            raise error.at(k) from None
+    if sum(one.mass for one in found) <= 0.0:
+        raise ScenarioError("its holes take away more than there is", "check their sizes")
+    whole = solids.together(found)
+    if not solids.possible(whole.inertia):
+        what = "no body has such an inertia: a hole lies outside of what it is taken from"
+        raise ScenarioError(what, "check `at` and the sizes of the holes")
+    scale = 1.0 if mass is None else mass / whole.mass
+    return solids.Bulk(scale * whole.mass, whole.centre, scale * whole.inertia)
+
+
+def bare(parts: tuple[Solid, ...]) -> bool:
+    """Whether no solid has a density of its own."""
+    return all(part.own_density is None for part in parts)
