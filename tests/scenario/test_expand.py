@@ -294,6 +294,38 @@ def test_place_of_a_set_value():
     assert tree.key_place(("joints", "B", "clearance")).show() == "--set"
 
 
+CASES = """
+bodies: {door: {mass: 1}}
+cases:
+  ultimate: {extends: limit, parameters: {factor: 1.5}}
+  limit: {extends: [closed, soft.yaml], parameters: {gust: 3}, sweep: {parameters.gust: [1, 2]}}
+  closed: {initial: {hinge: 0}, forces: {seal: null}}
+"""
+
+
+def test_cases_extend_cases_in_any_order(here):
+    files(here, soft="parameters: {gust: 1, k: 7}\ntitle: soft", top=CASES)
+    cases = data("top.yaml")["cases"]
+    closed = {"initial": {"hinge": 0}, "forces": {"seal": None}}
+    limit = {**closed, "parameters": {"gust": 3, "k": 7}, "title": "soft"}
+    assert cases["closed"] == closed
+    assert cases["limit"] == {**limit, "sweep": {"parameters.gust": [1, 2]}}
+    assert cases["ultimate"] == {**limit, "parameters": {"gust": 3, "k": 7, "factor": 1.5}}
+    assert cases["ultimate"]["initial"] is not cases["closed"]["initial"]  # --set changes one
+
+
+def test_a_case_that_extends_itself_is_refused_where_it_says_so(here):
+    files(here, top="cases:\n  a: {extends: b}\n  b: {extends: c}\n  c: {extends: a}")
+    with pytest.raises(ScenarioError) as caught:
+        data("top.yaml")
+    assert caught.value.what == "case 'a' extends itself"
+    assert caught.value.place.line in (2, 3, 4)
+    files(here, top="cases:\n  a: {extends: b}\n  c: {}")
+    with pytest.raises(ScenarioError) as caught:
+        data("top.yaml")
+    assert caught.value.place.line == 2
+
+
 @pytest.mark.parametrize("text", ["joints.B.clearance", "=1", "a..b=1", ".=1", ""])
 def test_set_that_is_no_assignment(text):
     with pytest.raises(UsageError):

@@ -8,12 +8,15 @@ may lie anywhere in the nearest such folder.  Links are followed before this is 
 
 Mappings are merged key by key.  Lists and scalars replace; so does a mapping whose `type` is
 another; `null` removes the key.  A CSV table is read where its file name stands, so that the
-tree is complete in itself.  A case of `cases:` may extend files as well; it holds them then.
+tree is complete in itself.  A case of `cases:` may extend files, and other cases by their names; it
+holds them then.
 """
 
 import hashlib
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from copy import deepcopy
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +34,7 @@ from trsim.scenario.table import rows
 from trsim.scenario.text import LARGEST, Tree, decoded, read
 from trsim.units import quantity
 
+SUFFIXES = (".yaml", ".yml")
 DEEPEST = 8  # levels of extends
 MOST = 40  # files
 MOST_OF_CASES, BYTES = 1000, 4_000_000  # files that cases extend, again and again; all together
@@ -65,6 +69,10 @@ def _finished(tree: Tree, files: "_Files", folder: Path | None, sets: Iterable[s
     files.inline_tables(tree, tree.data, folder, ())
     tree.files = files.digests
     return tree
+
+
+def _extends(case: Any) -> bool:
+    return isinstance(case, dict) and "extends" in case
 
 
 def _root(folder: Path) -> Path:
@@ -103,8 +111,17 @@ class _Files:
         self.folders[name] = real.parent
         return self.extended(tree, real.parent, (*above, real))
 
-    def extended(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> Tree:
-        """The tree merged over the files its key `extends` names, and so each of its cases."""
+    def extended(
+        self,
+        tree: Tree,
+        folder: Path | None,
+        above: tuple[Path, ...],
+        of_case: Callable[[Any], Tree | None] = lambda _: None,
+    ) -> Tree:
+        """The tree merged over what its key `extends` names, and so each of its cases.
+
+        of_case: the tree of the case of a name; None where it is the name of a file.
+        """
         self.cases(tree, folder, above)
         names = tree.data.pop("extends", None)
         if names is None:
@@ -115,31 +132,64 @@ class _Files:
             where = ("extends",) if single else ("extends", k)
             place: Any = tree.place(where)
             try:
-                real = self.inside(name, folder, (".yaml", ".yml"))
-                if any(os.path.samefile(real, other) for other in above):
-                    raise ScenarioError(f"{described(name)} extends itself")
-                if len(above) >= DEEPEST:
-                    raise ScenarioError(f"more than {DEEPEST} levels of extends")
-                shown = _beside(name, place)
-                content = self.content(real, shown)
+                whole: Any = of_case(name)
+                found = self.file(name, place, folder, above) if whole is None else None
             except (ScenarioError, FileError) as error:
+                if error.place is not None:
+                    raise
                 raise ScenarioError(error.what, error.hint, where, place) from None
-            merge(base, self.tree(real, shown, content, above))
+            merge(base, self.tree(*found, above) if found else whole)
         merge(base, tree)
         return base
 
+    def file(
+        self, name: Any, place: Any, folder: Path | None, above: tuple[Path, ...]
+    ) -> tuple[Path, str, bytes]:
+        """A file that is extended: where it is, what it is called, what is in it."""
+        real = self.inside(name, folder, SUFFIXES)
+        if any(os.path.samefile(real, other) for other in above):
+            raise ScenarioError(f"{described(name)} extends itself")
+        if len(above) >= DEEPEST:
+            raise ScenarioError(f"more than {DEEPEST} levels of extends")
+        shown = _beside(name, place)
+        return real, shown, self.content(real, shown)
+
     def cases(self, tree: Tree, folder: Path | None, above: tuple[Path, ...]) -> None:
         """Put what a case extends into the case, but for the cases and the sweep of that file."""
-        cases = mapping(tree.data, "cases")
-        for name, case in cases.items():
-            if isinstance(case, dict) and "extends" in case:
-                self.most = MOST_OF_CASES
+        cases, made = mapping(tree.data, "cases"), set[str]()
+
+        def whole(name: str, below: tuple[str, ...]) -> None:
+            """Complete a case; `below`: those that extend it."""
+            if name in made or not isinstance(cases[name], dict):
+                return
+            if name in below:
+                raise ScenarioError(f"case {described(name)} extends itself")
+            if "extends" in cases[name]:
                 inner = part(tree, ("cases", name))
                 own = {key: inner.data.pop(key) for key in SWEPT if key in inner.data}
-                graft(tree, ("cases", name), self.extended(inner, folder, above))
+                more = partial(base, below=(*below, name))
+                graft(tree, ("cases", name), self.extended(inner, folder, above, more))
                 for key in SWEPT:
                     cases[name].pop(key, None)
                 cases[name] |= own
+            made.add(name)
+
+        def base(name: Any, below: tuple[str, ...]) -> Tree | None:
+            """What a case that others extend is, without its sweep; None of a file."""
+            if not isinstance(name, str) or name.endswith(SUFFIXES):
+                return None
+            if name not in cases:
+                what = f"no case named {described(name)}"
+                raise ScenarioError(what, known(name, cases) or "a file ends in .yaml")
+            whole(name, below)
+            inner = part(tree, ("cases", name))
+            data = inner.data if isinstance(inner.data, dict) else {}
+            kept = {key: deepcopy(value) for key, value in data.items() if key not in SWEPT}
+            return Tree(kept, inner.marks, inner.keys, inner.files)
+
+        self.most = MOST_OF_CASES if any(map(_extends, cases.values())) else self.most
+        for name in cases:
+            whole(name, ())
 
     def inside(self, name: Any, folder: Path | None, suffixes: tuple[str, ...]) -> Path:
         """The regular file `name` says, refused outside the root."""
