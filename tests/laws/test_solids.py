@@ -99,14 +99,6 @@ def test_full_cylinder_and_sphere_in_closed_form():
     assert ball.inertia[0, 0] == pytest.approx(0.4 * ball.mass * 0.25, rel=1e-14)
 
 
-def test_sides_that_cross_or_fold_back_are_found():
-    assert solids.crossed(L_SHAPE) is None
-    assert solids.crossed(((0, 0), (1, 0), (0.5, 0.5))) is None
-    assert solids.crossed(((0, 0), (1, 1), (1, 0), (0, 1))) == (0, 2)  # a bow tie
-    assert solids.crossed(((0, 0), (2, 0), (1, 0), (1, 1))) is not None  # back along itself
-    assert solids.crossed(((0, 0), (2, 0), (2, 2), (1, 0), (0, 2))) is not None  # touches a side
-
-
 def test_what_no_body_can_have_is_told():
     assert solids.possible(np.diag((1.0, 1.0, 2.0)))  # a plate
     assert solids.possible(solids.cylinder(sqrt(2.0), 0.0, 1e-9).inertia)

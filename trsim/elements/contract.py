@@ -36,7 +36,6 @@ A spec of the section `bodies` says of itself
     origin            where its mass, centre and inertia come from, in words
     as_rigid()        a rigid body, with
     tensor            its inertia, row by row, and whether all of it is known
-    bulk              mass, centre and inertia in world axes as drawn
 
 and one of a force that pushes back from a limit, `pressed(joints)`: the two bodies it pushes apart,
 and the hinge about whose axis it does, or None.

@@ -7,10 +7,9 @@ Its axes are at t = 0 those of the frame it is drawn in, the world's or its inst
 equations of motion hold the masses (assemble/equations.py).
 """
 
-from math import cos, dist, sin
+from math import dist
 from typing import Annotated, Any, ClassVar, Literal
 
-import numpy as np
 from annotated_types import Ge, Gt, MinLen
 from pydantic import BeforeValidator, ConfigDict, model_validator
 
@@ -18,11 +17,10 @@ from trsim import elements
 from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Memory, Row, measured
 from trsim.elements.inertia import INERTIA, tensor, written
-from trsim.elements.solid import Solid, bulk
+from trsim.elements.solid import Solid
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
 from trsim.kernels.columns import f8, i8
-from trsim.laws.solids import Bulk
 
 NEEDED = {"mass": "mass (kg)", "inertia": "inertia (kg*m^2)"}  # unless there is a shape
 FOLLOW = {"mass": "mass", "at": "centre", "inertia": "inertia"}  # from a shape, in words
@@ -83,12 +81,14 @@ class RigidBody(Spec):
                 raise ScenarioError(f"field required: {' and '.join(missing)}", hint)
             self.__dict__["at"] = origin if self.at is None else self.at
             return self
+        from trsim.elements.weighing import of_solids, turned  # needs numpy
+
         try:
-            whole = bulk(self.shape, self.density, self.mass)
+            whole = of_solids(self.shape, self.density, self.mass)
         except ScenarioError as error:
             raise error.at("shape") from None
         follows = {"mass": whole.mass, "at": tuple(whole.centre.tolist())}
-        follows["inertia"] = written(self.turned(whole.inertia, into_body=True))
+        follows["inertia"] = written(turned(self, whole.inertia, into_body=True))
         self.__dict__.update({key: of for key, of in follows.items() if not self.says(key)})
         return self
 
@@ -107,20 +107,6 @@ class RigidBody(Spec):
     def says(self, key: str) -> bool:
         """Whether a key is written, so that it does not follow from the shape."""
         return key in self.model_fields_set
-
-    def turned(self, tensor, into_body=False):
-        """A tensor (3, 3) in body axes, in world axes as drawn; or back."""
-        c, s = cos(self.angle), sin(self.angle)
-        R = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
-        if self.drawn_in is not None:
-            R = np.array((self.drawn_in.x, self.drawn_in.y, self.drawn_in.z)).T @ R
-        return R.T @ tensor @ R if into_body else R @ tensor @ R.T
-
-    @property
-    def bulk(self):
-        """Mass, centre and inertia in world axes as drawn."""
-        inertia = self.turned(np.reshape(self.tensor[0], (3, 3)))
-        return Bulk(self.mass, np.array(self.at), inertia)
 
     @property
     def tensor(self):

@@ -5,15 +5,15 @@
 A solid has a density or a mass of its own, or the density of its body.
 """
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
 from annotated_types import Gt, MinLen
 from pydantic import model_validator
 
-from trsim.elements.joint import Z, triad
+from trsim.elements.joint import Z
 from trsim.errors import ScenarioError
 from trsim.fields import Flag, Spec, Unit, point, vector
-from trsim.laws import solids
+from trsim.laws.outline import area, crossed
 
 Length = Annotated[float, Gt(0), Unit("m")]
 KINDS = ("box", "cylinder", "sphere", "polygon")
@@ -80,69 +80,10 @@ class Solid(Spec):
     def check_outline(self, corners):
         if len(corners) > MOST_CORNERS:
             raise ScenarioError(f"at most {MOST_CORNERS} corners", "", ("polygon",))
-        meeting = solids.crossed(corners)
+        meeting = crossed(corners)
         if meeting is not None:
             what = f"sides {meeting[0] + 1} and {meeting[1] + 1} of the outline meet"
             raise ScenarioError(what, "give its corners in order, each once", ("polygon",))
         extent = max(max(abs(a - b) for a, b in zip(p, corners[0], strict=True)) for p in corners)
-        if solids.area(corners) <= THIN * extent**2:
+        if area(corners) <= THIN * extent**2:
             raise ScenarioError("the outline has no area", "", ("polygon",))
-
-    @property
-    def shape(self) -> solids.Bulk:
-        """Volume, centre and second moments, in its own axes."""
-        if self.box is not None:
-            return solids.box(*self.box)
-        length = self.length or 0.0
-        if self.polygon is not None:
-            return solids.prism(self.polygon, length)
-        outer = 0.5 * (self.cylinder or self.sphere or 0.0)
-        inner = outer - self.wall if self.wall else 0.0
-        if self.sphere is not None:
-            return solids.sphere(outer, inner)
-        return solids.cylinder(outer, inner, length)
-
-    def bulk(self, density: float | None) -> solids.Bulk:
-        """Mass, centre and inertia in world axes as drawn; of a hole negative ones.
-
-        density: kg/m^3, of a solid that has none of its own.  Raises ScenarioError without any.
-        """
-        shape, own = self.shape, self.own_density or density
-        if own is None:
-            hint = "give the body a `density` or a `mass`, or the solid one of them"
-            raise ScenarioError("a solid without a density", hint)
-        axes: Any = zip(*triad(self), strict=True)
-        return solids.placed(shape, -own if self.hole else own, self.at, tuple(axes))
-
-    @property
-    def own_density(self) -> float | None:
-        """Its own density; None where it has that of its body."""
-        return self.mass / self.shape.mass if self.mass is not None else self.density
-
-
-def bulk(parts: tuple[Solid, ...], density: float | None, mass: float | None) -> solids.Bulk:
-    """What solids are together, in world axes as drawn.
-
-    density: of those that have none of their own; mass: what all of them weigh, which their
-    densities are scaled to.  Raises ScenarioError with the place among the parts.
-    """
-    density = 1.0 if density is None and mass is not None and bare(parts) else density
-    found = []
-    for k, part in enumerate(parts):
-        try:
-            found.append(part.bulk(density))
-        except ScenarioError as error:
-            raise error.at(k) from None
-    if sum(one.mass for one in found) <= 0.0:
-        raise ScenarioError("its holes take away more than there is", "check their sizes")
-    whole = solids.together(found)
-    if not solids.possible(whole.inertia):
-        what = "no body has such an inertia: a hole lies outside of what it is taken from"
-        raise ScenarioError(what, "check `at` and the sizes of the holes")
-    scale = 1.0 if mass is None else mass / whole.mass
-    return solids.Bulk(scale * whole.mass, whole.centre, scale * whole.inertia)
-
-
-def bare(parts: tuple[Solid, ...]) -> bool:
-    """Whether no solid has a density of its own."""
-    return all(part.own_density is None for part in parts)

@@ -24,7 +24,7 @@ from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.sections import PhasePortrait, PoincareSection
 from trsim.scenario.template import Instance, Template
 from trsim.scenario.text import Tree
-from trsim.scenario.totals import Total, remainders
+from trsim.scenario.totals import Total
 from trsim.scenario.unfolded import Entry, Unfolded
 from trsim.units import quantity
 
@@ -255,7 +255,10 @@ class Scenario(Spec):
     @model_validator(mode="after")
     def balanced(self) -> "Scenario":
         """Give the bodies that take the rest of a total what they have then."""
-        self.bodies.update(remainders(self.totals, self.bodies))
+        if self.totals:
+            from trsim.scenario.remainder import remainders  # needs numpy
+
+            self.bodies.update(remainders(self.totals, self.bodies))
         return self
 
     _tree: Tree = PrivateAttr()

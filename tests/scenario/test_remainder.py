@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trsim.elements.weighing import of_body
 from trsim.errors import TrsimError
 from trsim.laws.solids import together
 from trsim.scenario.load import loads
@@ -38,7 +39,7 @@ def door(text=WANTED):
 
 def test_total_is_what_it_says():
     scenario = door()
-    whole = together(scenario.bodies[name].bulk for name in ("frame", "handle", "blade"))
+    whole = together(of_body(scenario.bodies[name]) for name in ("frame", "handle", "blade"))
     assert whole.mass == pytest.approx(30.0, rel=1e-15)
     np.testing.assert_allclose(whole.centre, (0.45, 0.02, 0.95), rtol=1e-14)
     wanted = [[5, 0.1, 0.05], [0.1, 4, -0.2], [0.05, -0.2, 3]]
