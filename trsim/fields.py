@@ -16,7 +16,7 @@ the world; `names`, {"door": "left_door"}, what references mean; `points`, {"tip
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -197,6 +197,15 @@ class FunctionSpec:
     of: str = "t"  # the variable of a table: t or a sensor
     ends: Literal["hold", "extrapolate", "refuse"] = "hold"
     units: tuple[str, str] = ("", "")  # of x and y as written; of a constant the second
+
+    def scaled(self, factor: float) -> "FunctionSpec":
+        """`factor` times it."""
+        if self.kind == "constant" or factor == 0.0:
+            value = factor * self.value if factor else 0.0
+            return FunctionSpec("constant", value, units=self.units)
+        if self.kind == "table":
+            return replace(self, y=tuple(factor * y for y in self.y))
+        return replace(self, node=("binary", "*", ("number", factor), self.node))
 
     @property
     def sensors(self) -> frozenset[str]:

@@ -236,7 +236,7 @@ solver: {end: 1}
             "    ^\n"
             "  Did you mean 'solver'?  Known: title, planar, gravity, parameters, points, bodies,"
             " joints, drives, sensors, forces, contact_laws, initial, solver, output"
-            " ... (12 more)",
+            " ... (14 more)",
         ),
     ],
 )

@@ -86,6 +86,7 @@ def check_output(scenario: Any, mechanism: Any) -> None:
 def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
     """Bodies, joints and what the assembly found out about them."""
     from trsim.scenario.lint import lint
+    from trsim.scenario.load_sets import told
     from trsim.scenario.weights import weights
 
     model = mechanism.model
@@ -95,6 +96,7 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "joints": {name: spec.type for name, spec in scenario.joints.items()},
         "drives": list(scenario.drives),
         "forces": {name: spec.type for name, spec in scenario.forces.items()},
+        "load_sets": told(scenario),
         "contacts": [mechanism.instances[e].name for e in model.contact],
         "events": {e.name: e.in_words() for e in mechanism.stages.switches.events},
         "unknowns": int(model.n_v),
@@ -180,6 +182,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         f"  joints      {len(found['joints'])}: {typed('joints')}",
         f"  drives      {words(found['drives'])}",
         f"  forces      {typed('forces')}",
+        *(f"  load set    {name} {told}" for name, told in found["load_sets"].items()),
         f"  contacts    {words(found['contacts'])}",
         *(f"  event       {name}: {told}" for name, told in found["events"].items()),
         f"  motion      {plane if found['planar'] else space}",

@@ -22,13 +22,14 @@ from trsim.elements.contract import (
     measured,
 )
 from trsim.elements.frames import arm, dot, push, scaled, spin, twist, velocity
-from trsim.fields import Function, Spec, direction, point, vector
+from trsim.elements.loads import Load
+from trsim.fields import Function, direction, point, vector
 from trsim.kernels.columns import V3, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
 
 
-class AppliedLoad(Spec):
+class AppliedLoad(Load):
     """A force at a point of a body or a torque on it: give one of the two.
 
     body       the body it acts on

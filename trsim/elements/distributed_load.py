@@ -21,13 +21,14 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
+from trsim.elements.loads import Load
 from trsim.errors import ScenarioError
-from trsim.fields import Function, Spec, direction, vector
+from trsim.fields import Function, direction, vector
 from trsim.kernels.columns import f8, i8
 from trsim.laws.cable_section import uniform_shares
 
 
-class DistributedLoad(Spec):
+class DistributedLoad(Load):
     """A uniform force per length along a flexible bar.
 
     body              the flexible bar

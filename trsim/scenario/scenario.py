@@ -20,6 +20,7 @@ from trsim.scenario.contact_law import ContactLaw
 from trsim.scenario.event import Event
 from trsim.scenario.initial import Initial, initial_of
 from trsim.scenario.limits import Limits
+from trsim.scenario.load_sets import Level, LoadSet, scaled
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.sections import PhasePortrait, PoincareSection
 from trsim.scenario.template import Instance, Template
@@ -218,6 +219,8 @@ class Scenario(Spec):
     events           what happens where a sensor, or the time, crosses a value
     templates        parts of the mechanism described once, put in place by instances
     instances        templates put in place; entry `door` of instance `left` is left_door
+    load_sets        loads that act together, with factors of limit and ultimate load
+    loads            which load sets act: `{gust: ultimate}`, limit, ultimate or a factor
     totals           what several bodies weigh together, where one of them takes the rest
     limits           how many bodies, rows, nodes and entries there may be
     phases           kept for load steps; not used yet
@@ -245,6 +248,8 @@ class Scenario(Spec):
     events: dict[str, Annotated[Event, BeforeValidator(_event)]] = EMPTY
     templates: dict[str, Template] = EMPTY
     instances: dict[str, Instance] = EMPTY
+    load_sets: dict[str, LoadSet] = EMPTY
+    loads: dict[str, Level] | None = None
     totals: dict[str, Total] = EMPTY
     limits: Limits = Limits()
     phases: Any = None
@@ -253,8 +258,9 @@ class Scenario(Spec):
     report: Annotated[dict[str, Any], AfterValidator(shown.report)] = EMPTY
 
     @model_validator(mode="after")
-    def balanced(self) -> "Scenario":
-        """Give the bodies that take the rest of a total what they have then."""
+    def complete(self) -> "Scenario":
+        """Loads as their sets act; bodies that take the rest of a total as they are then."""
+        self.forces.update(scaled(self.load_sets, self.loads, self.forces))
         if self.totals:
             from trsim.scenario.remainder import remainders  # needs numpy
 

@@ -71,6 +71,7 @@ class Checked(Subject):
     joints             name -> type
     drives             names
     forces             name -> type
+    load_sets          load set -> the factor it acts with and its loads, in words
     contacts           names of joints and stops
     events             user event -> when it happens and what it does, in words
     planar             whether the motion stays in a plane
@@ -98,6 +99,7 @@ class Checked(Subject):
     joints: dict[str, str]
     drives: list[str]
     forces: dict[str, str]
+    load_sets: dict[str, str]
     contacts: list[str]
     events: dict[str, str]
     planar: bool
