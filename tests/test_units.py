@@ -427,3 +427,77 @@ def test_an_export_is_a_table(every, tmp_path):
     assert "Did you mean 'mrad'?" in caught.value.hint
     assert caught.value.place.show().endswith("load.csv:1:10")
     assert isinstance(caught.value, TrsimError)
+
+
+# --- parameters ------------------------------------------------------------------------------
+
+SCENE = """
+parameters: {w: 3 rad/s, x: 20 mm, a: 90 deg, k: 3 N/m, plain: 2, twice: 2*a, same: x}
+bodies: {mass: {mass: 2, inertia: 0.01}}
+joints: {guide: {type: prismatic, bodies: [ground, mass], at: [0, 0], axis: [0, 1]}}
+sensors: {s: {joint: guide, at_start: 0}}
+drives: {d: {joint: guide, velocity: 1, compliance: {stiffness: 3, damping: 0}}}
+forces: {f: {type: applied_load, body: mass, direction: [0, 1], force: 3}}
+initial: {guide: 0}
+events: {e: {when: s, value: 1, do: {end: true}}}
+solver: {end: 0.1}
+"""
+
+
+@pytest.mark.parametrize(
+    "old, new, what",
+    [
+        ("mass: 2,", "mass: x,", "'mm' is a length; this number is a mass"),
+        ("mass: 2,", "mass: -x,", "'-x' is a parameter in mm"),
+        ("mass: 2,", "mass: same,", "'same' is a parameter in mm"),
+        ("at: [0, 0]", "at: [0, a]", "'deg' is an angle; this number is a length"),
+        ("at_start: 0", "at_start: a", "the joint slides"),
+        ("velocity: 1,", "velocity: w,", "wrong unit: 'rad/s'"),
+        ("velocity: 1,", "velocity: k,", "this number is a speed"),
+        ("stiffness: 3", "stiffness: w", "this number is a stiffness"),
+        ("force: 3", "force: k", "this number is a force"),
+        ("force: 3", "force: {table: [[0, x], [1, x]]}", "this number is a force"),
+        ("force: 3", "force: {table: [[0, 1], [1, x]], units: [s, kN]}", "so has its column"),
+        ("guide: 0", "guide: a", "this number is a length"),
+        ("guide: 0", "guide: 90 deg", "this number is a length"),
+        ("guide: 0", "guide.rate: w", "this number is a speed"),
+        ("value: 1", "value: a", "'s' is in m"),
+        ("end: 0.1", "end: x", "this number is a time"),
+    ],
+)
+def test_a_parameter_keeps_its_unit(old, new, what):
+    assert SCENE.count(old) == 1
+    with pytest.raises(TrsimError, match=what):
+        assemble(loads(SCENE.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    "old, new",
+    [
+        ("mass: 2,", "mass: plain,"),
+        ("mass: 2,", "mass: 100*x,"),  # an expression is of numbers in SI
+        ("at: [0, 0]", "at: [0, same]"),
+        ("at_start: 0", "at_start: x"),
+        ("force: 3", "force: {table: [[0, plain], [1, 3]], units: [s, kN]}"),
+        ("guide: 0", "guide: -x"),
+        ("value: 1", "value: plain"),
+        ("end: 0.1", "end: plain/10"),
+    ],
+)
+def test_parameters_without_a_unit_and_expressions_are_si(old, new):
+    assemble(loads(SCENE.replace(old, new)))
+
+
+def test_a_parameter_of_an_instance_keeps_its_unit():
+    text = """
+templates:
+  part:
+    parameters: {x: 20 mm}
+    bodies: {mass: {mass: 1, inertia: x}}
+instances: {one: {template: part}, two: {template: part, parameters: {x: 2 kg*m^2}}}
+solver: {end: 0.1}
+"""
+    with pytest.raises(TrsimError, match="'mm' is a length") as caught:
+        loads(text)
+    assert len(caught.value.problems) == 1
+    loads(text.replace("20 mm", "20 kg*m^2"))

@@ -34,7 +34,7 @@ from pydantic_core import core_schema
 from trsim import expressions
 from trsim.errors import ScenarioError, check_keys, described, known
 from trsim.frame import Frame
-from trsim.numbers import number
+from trsim.numbers import number, written
 from trsim.references import renamed
 from trsim.units import check_dimension, quantity, titled, unit, units_hint
 
@@ -230,7 +230,7 @@ class Column:
 
     def number(self, item: Any, parameters: dict) -> float:
         """The SI value of an entry.  Raises ScenarioError, also for a unit that does not fit."""
-        found = quantity(item, parameters) if isinstance(item, str) else None
+        found = written(item, parameters) if isinstance(item, str) else None
         if found and found[1]:
             if self.whole:
                 what = f"{described(item)} has a unit, and so has its column: {self.unit}"
@@ -262,7 +262,6 @@ class _FunctionUnit(Unit):
             node = expressions.substitute(expressions.parse(value), parameters)
             if node[0] != "number":
                 return FunctionSpec("expression", node=expressions.renamed(node, names))
-            value = node[1]
         if not isinstance(value, str | int | float):
             what = "must be a number, an expression or a table"
             raise ScenarioError(f"{what}, got {described(value)}")

@@ -1,13 +1,50 @@
 """A number as a user writes it: 3, 3e0, 3 N*m/rad, k/2."""
 
 import math
+import re
 from typing import Any
 
 from trsim import expressions
 from trsim.errors import ScenarioError, described, known
-from trsim.units import check_dimension, quantity, units_hint
+from trsim.units import check_dimension, quantity, unit, units_hint
 
 LARGEST = 1e50  # its fourth power is still a number
+
+_ALONE = re.compile(r"\s*([+-]?)\s*([A-Za-z_]\w*)\s*")
+
+
+class Measured(float):
+    """A parameter that was written with a unit; the unit is empty where it was computed of such
+    with an angle in their units: whether its number is one of a radian then nobody can see."""
+
+    unit: str
+
+    @classmethod
+    def of(cls, value: float, unit: str) -> "Measured":
+        """A value, SI, and the unit it was written with."""
+        made = cls(value)
+        made.unit = unit
+        return made
+
+
+def written(text: str, parameters: Any = None) -> tuple[float, str] | None:
+    """The SI value and the unit of `0.3 mm`, or of a parameter named alone, `gap` or `-gap`.
+
+    None where the text is neither: a number, or an expression.
+    """
+    parameters = parameters or {}
+    found, alone = quantity(text, parameters), _ALONE.fullmatch(text)
+    if found is None and alone and isinstance(one := parameters.get(alone[2]), Measured):
+        return (-float(one) if alone[1] == "-" else float(one)), one.unit
+    return found
+
+
+def angular(text: str, parameters: Any) -> bool:
+    """Whether an expression is made of parameters with an angle in their units, as 5 mm/turn."""
+    named = [parameters.get(name) for name in expressions.names(expressions.parse(text))]
+    return any(
+        isinstance(one, Measured) and (not one.unit or bool(unit(one.unit)[1][3])) for one in named
+    )
 
 
 def number(value: Any, units: tuple[str, ...] = ("-",), parameters: Any = None) -> float:
@@ -44,4 +81,11 @@ def _of_parameters(text: str, units: tuple[str, ...], parameters: Any) -> float:
                 raise ScenarioError("this number cannot depend on t", units_hint(units))
             hint = known(name, parameters) if parameters else units_hint(units)
             raise ScenarioError(f"no parameter named {described(name)}", hint)
+    alone = written(text, parameters)
+    if alone and alone[1]:
+        try:
+            check_dimension(alone[1], units)
+        except ScenarioError as error:
+            what = f"{error.what}; {described(text)} is a parameter in {alone[1]}"
+            raise ScenarioError(what, error.hint) from None
     return expressions.evaluate(node, parameters)

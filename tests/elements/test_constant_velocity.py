@@ -106,6 +106,48 @@ output: {every: 0.01}
     assert not said(little)
 
 
+FOLDING = """
+planar: false
+bodies: {rod: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0], angular_velocity: [0, 0.02, 4]}}
+joints: {joint: {type: constant_velocity, bodies: [ground, rod], at: [0, 0, 0], axis: [1, 0, 0]}}
+solver: {end: 3, method: METHOD}
+output: {every: 0.01}
+"""
+
+
+@pytest.mark.parametrize("method", ["auto", "radau", "rk4, step: 1e-3", "scipy:RK45"])
+def test_next_to_half_a_turn_a_run_fails(method):
+    """The rod swings across half a turn, where its turn about itself could be anything."""
+    r = run(FOLDING.replace("METHOD", method), fails=True)
+    assert "joint is bent by half a turn" in r.outcome.reason
+    assert r["joint.bend"].max() < 3.13 and r.outcome.time < 0.9
+    less = FOLDING.replace("METHOD", method).replace("end: 3", "end: 0.7")
+    assert run(less).outcome.status == "done"
+
+
+def test_in_a_plane_and_released_it_may_fold():
+    """Where its row is none any more, or is one that nothing could turn."""
+    r = run(FOLDING.replace("METHOD", "auto").replace("[0, 0.02, 4]", "[0, 0, 4]")
+            .replace("planar: false", "planar: true"))  # fmt: skip
+    assert r["rod.angular_velocity"][-1] == pytest.approx([0, 0, 4], abs=1e-9)
+    event = "events: {off: {when: t, value: 0.3, do: {release: [joint]}}}\n"
+    r = run(FOLDING.replace("METHOD", "auto") + event)
+    assert r["rod.angular_velocity"][-1] == pytest.approx(r["rod.angular_velocity"][40], abs=1e-6)
+
+
+def test_a_start_that_is_folded_is_refused():
+    text = (
+        FOLDING.replace("METHOD", "auto")
+        + """
+drives: {d: {joint: hinge, position: 3.13}}
+"""
+    )
+    hinge = "joints: {hinge: {type: revolute, bodies: [ground, rod], at: [0, 0, 0]}, "
+    text = text.replace("joints: {", hinge).replace("0.02, 4", "0, 0")
+    with pytest.raises(TrsimError, match=r"bent by half a turn.* before the run begins"):
+        run(text)
+
+
 PLANE = """
 planar: true
 bodies: {{rod: {{mass: 1, inertia: 0.1, at: [0.3, 0]}}}}

@@ -18,6 +18,7 @@ def nut(coefficients="[5 mm/rev, -1]", more=""):
     """A nut that falls on a tilted spindle, and turns with it."""
     return f"""
 planar: false
+parameters: {{p: 5 mm/turn}}
 bodies:
   nut: {{mass: 2, inertia: [1e-5, 1e-5, 1e-5], at: [0.1, 0.2, 0.3], angle: 2}}
 joints:
@@ -30,7 +31,7 @@ solver: {{end: 1, tolerance: 1e-9}}
 """
 
 
-@pytest.mark.parametrize("coefficients", ["[5 mm/rev, -1]", f"[-1, {1 / LEAD!r} rad/m]"])
+@pytest.mark.parametrize("coefficients", ["[5 mm/rev, -1]", "[p, -1]", f"[-1, {1 / LEAD!r} rad/m]"])
 def test_a_screw(coefficients):
     """(m + I/p^2) s'' = -m g, p the lead per radian; the thread pushes with m (s'' + g)."""
     r = run(nut(coefficients))
@@ -45,6 +46,7 @@ def test_a_screw(coefficients):
 
 
 TWO = """
+parameters: {h: 2 mm/turn, p: 3 rad/m, l: 1 mm}
 bodies:
   crank: {mass: 1, inertia: 0.5, at: [0, 0]}
   flap: {mass: 1, inertia: 0.2, at: [1, 0], angle: 3.5}
@@ -102,6 +104,9 @@ REFUSED = {
                                ("coefficients",), "make no sum"),
     "a unit of strokes alone": ("[a, b, c], coefficients: [2, -0.5, 0.8]",
                                 "[a, b], coefficients: [2 m/rad, 1]", ("coefficients", 0), "unit"),
+    "a parameter in rad/m": ("[2, -", "[p, -", ("coefficients", 0), "coefficient of an angle"),
+    "parameters that make no sum": ("[2, -0.5, 0.8]", "[h, 1, p]", ("coefficients",), "no sum"),
+    "a parameter that is a length": ("0.8", "l", ("coefficients", 2), "wrong unit: 'mm'"),
     "a length": ("0.8", "0.8 m", ("coefficients", 2), "wrong unit"),
 }  # fmt: skip
 

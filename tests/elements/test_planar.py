@@ -173,3 +173,25 @@ instances: {a: {template: desk, frame: {at: [1, 0], x_axis: [0, 1, 0], y_axis: [
 """)
     assert m.coordinates["a_top.x"].axis == pytest.approx((0, 1, 0))
     assert m.coordinates["a_bottom.y"].axis == pytest.approx((0, 0, 1))
+
+
+@pytest.mark.parametrize("planar", SPACES)
+def test_rates_at_the_start(planar):
+    """Of a joint at the end of a lever: its point has the rates along the axes of the ground."""
+    r = run(f"""
+planar: {planar}
+bodies: {{plate: {{mass: 2, inertia: [0.02, 0.02, 0.02], at: [1, 0]}}}}
+joints: {{plane: {{type: planar, bodies: [ground, plate], at: [0, 0]}}}}
+sensors: {{turn: {{joint: plane.angle}}, x: {{joint: plane.x}}, y: {{joint: plane.y}}}}
+initial: {{plane.x.rate: 2, plane.y.rate: -300 cm/s, plane.angle.rate: 30 rpm}}
+solver: {{end: 0.1}}
+""")
+    assert [r[f"{x}.rate"][0] for x in ("turn", "x", "y")] == pytest.approx([np.pi, 2, -3])
+    assert r["plate.velocity"][0] == pytest.approx([2, -3 + np.pi, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("key", ["plane.x", "plane.y", "plane.x.rate"])
+def test_units_of_values_at_the_start(key):
+    with pytest.raises(TrsimError, match="wrong unit: 'deg") as caught:
+        built(TILTED + f"initial: {{{key}: 90 deg{'/s' * key.endswith('rate')}}}\n")
+    assert caught.value.problems[0].path == ("initial", key)

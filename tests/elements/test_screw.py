@@ -79,12 +79,23 @@ def test_right_and_left_handed(sign, axis):
     assert r["angle"] - r["angle"][0] == pytest.approx(sign * r["stroke"] / H, abs=1e-5)
 
 
-@pytest.mark.parametrize("text", ["0.05", "50 mm", "5 cm", "50 mm/turn", "p", "q/2",
+@pytest.mark.parametrize("text", ["0.05", "50 mm", "5 cm", "50 mm/turn", "p", "q/2", "n", "h", "m",
                                   f"{1e3 * H!r} mm/rad", f"{PITCH / 360!r} m/deg"])  # fmt: skip
 def test_a_pitch_is_per_turn(text):
-    found = built(nut("parameters: {p: 50 mm, q: 0.1}", pitch=text))
+    parameters = f"p: 50 mm, q: 0.1, n: 50 mm/turn, h: {1e3 * H!r} mm/rad, m: h"
+    found = built(nut(f"parameters: {{{parameters}}}", pitch=text))
     [thread] = [i for i in found.instances if i.name == "thread"]
     assert Own.of(thread.row).advance == pytest.approx(H, rel=1e-14)
+
+
+@pytest.mark.parametrize("text", ["2*n", "6.28*h", "twice", "-twice", "n + 0.01"])
+def test_a_pitch_computed_of_advances_per_angle_is_refused(text):
+    """Whether 2*n is that of a turn or of a radian, its number does not tell."""
+    more = "parameters: {n: 50 mm/turn, h: 0.8 mm/rad, twice: 2*n}"
+    with pytest.raises(TrsimError, match="does not tell whether it is the advance of a turn") as e:
+        built(nut(more, pitch=text))
+    assert e.value.problems[0].path == ("joints", "thread", "pitch")
+    assert built(nut("parameters: {n: -50 mm/turn}", pitch="-n"))
 
 
 JACK = """

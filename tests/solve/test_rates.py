@@ -231,6 +231,9 @@ solver: {end: 1 ms}
     "initial, what, hint",
     [
         ("A.rate: 10 m/s", "wrong unit", "rad/s"),
+        ("A: 1, A.angle: 2", "the value of A is given twice", ""),
+        ("track: 30 deg", "wrong unit: 'deg'", ""),
+        ("A: 30 mm", "wrong unit: 'mm'", ""),
         ("track.rate: 3 rad/s", "wrong unit", "m/s"),
         ("A.stroke.rate: 3", "joint 'A' has no stroke", "A"),
         ("A.rat: 3", "joint 'A' has no rat", "Did you mean 'A.rate'?"),

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from . import ledger
-from .families import FAMILIES
+from .joints import FAMILIES
 
 
 def show(family: str, seed: int) -> None:

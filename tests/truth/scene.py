@@ -122,10 +122,32 @@ class Joint:
     second_axis: np.ndarray | None = None
     clearance: float | None = None
     law: str | None = None
+    x_axis: np.ndarray | None = None
+    pitch: float | None = None  # of a screw
+    points: tuple[np.ndarray, np.ndarray] | None = None  # ends of a link
 
     @property
     def slides(self) -> bool:
         return self.type == "prismatic"
+
+
+@dataclass
+class Gear:
+    """A relation of coordinates of joints."""
+
+    name: str
+    type: str
+    joints: tuple[str, ...]
+    teeth: tuple[int, int] | None = None
+    radii: tuple[float, float] | None = None
+    radius: float | None = None
+    ratio: float | None = None
+    coefficients: tuple[float, ...] | None = None
+    internal: bool = False
+    hand: str | None = None
+    # where both parts have one speed against their carrier, along `way`; not written
+    touch: np.ndarray | None = None
+    way: np.ndarray | None = None
 
 
 @dataclass
@@ -268,6 +290,7 @@ class Scene:
     rows: int = 24
     bodies: list[Body] = field(default_factory=list)
     joints: list[Joint] = field(default_factory=list)
+    gears: list[Gear] = field(default_factory=list)
     drives: list[Drive] = field(default_factory=list)
     sensors: list[Sensor] = field(default_factory=list)
     forces: list[Any] = field(default_factory=list)
@@ -300,8 +323,11 @@ class Scene:
         return float(np.prod([s**d for s, d in zip(self.scale, dims, strict=False)]))
 
     def of_joint(self, name: str) -> tuple[int, int, int]:
-        """Dimension of a joint's coordinate."""
-        return LENGTH if self.joint(name).slides else NONE
+        """Dimension of a joint's coordinate, by the name of the joint or its own."""
+        joint, _, own = name.partition(".")
+        if own:
+            return NONE if own == "angle" else LENGTH
+        return LENGTH if self.joint(joint).slides else NONE
 
     def of_sensor(self, name: str) -> tuple[int, int, int]:
         if name == "t":
@@ -359,6 +385,8 @@ class Writer:
         ):
             if members:
                 d[key] = {member.name: write(member) for member in members}
+        for gear in s.gears:
+            d["joints"][gear.name] = self.gear(gear)
         if s.initial:
             d["initial"] = {k: self.n(v, *s.of_joint(k)) for k, v in s.initial.items()}
         solver: dict[str, Any] = {"method": s.method, "end": self.n(s.end, 0, 0, 1)}
@@ -409,12 +437,40 @@ class Writer:
         return d
 
     def joint(self, j: Joint) -> dict[str, Any]:
-        d: dict[str, Any] = {"type": j.type, "bodies": [j.i, j.j], "at": self.point(j.at)}
-        for key in ("axis", "second_axis"):
+        d: dict[str, Any] = {"type": j.type, "bodies": [j.i, j.j]}
+        if j.points is not None:
+            return d | {"points": [self.point(p) for p in j.points]}
+        d["at"] = self.point(j.at)
+        if j.pitch is not None:
+            d["pitch"] = self.n(j.pitch, *LENGTH)
+        for key in ("axis", "second_axis", "x_axis"):
             if getattr(j, key) is not None:
                 d[key] = self.vector(getattr(j, key))
         if j.clearance is not None:
             d["clearance"], d["contact"] = self.n(j.clearance, *LENGTH), j.law
+        return d
+
+    def gear(self, g: Gear) -> dict[str, Any]:
+        d: dict[str, Any] = {"type": g.type, "joints": list(g.joints)}
+        slides = [self.s.of_joint(name) == LENGTH for name in g.joints]
+        if g.teeth is not None:
+            d["teeth"] = list(g.teeth)
+        if g.radii is not None:
+            d["radii"] = [self.n(r, *LENGTH) for r in g.radii]
+        if g.radius is not None:
+            d["radius"] = self.n(g.radius, *LENGTH)
+        if g.ratio is not None:
+            d["ratio"] = self.n(g.ratio, *(LENGTH if any(slides) else NONE))
+        if g.coefficients is not None:
+            # of an angle beside strokes: m/rad
+            d["coefficients"] = [
+                self.n(c, *(LENGTH if any(slides) and not one else NONE))
+                for c, one in zip(g.coefficients, slides, strict=True)
+            ]
+        if g.internal:
+            d["internal"] = True
+        if g.hand is not None:
+            d["hand"] = g.hand
         return d
 
     def drive(self, drive: Drive) -> dict[str, Any]:

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from .families import ENGINE, FAMILIES, INVALID, ONE, RIGID, TIGHT_RUN, Drawn
+from .families import ENGINE, INVALID, ONE, RIGID, TIGHT_RUN, Drawn
+from .joints import FAMILIES
 from .judge import (
     BROKEN,
     CRASH,

@@ -10,7 +10,7 @@ Locks are drives of velocity 0 that stand among the instances from the beginning
 left out while they are open.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -109,10 +109,11 @@ def check(name: str, there: Any, kind: str, path: tuple) -> None:
 
 def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switches:
     """The events of a scenario.  Raises ScenarioError for names and units that do not fit."""
-    limited = limits(instances)
+    method, limited = scenario.solver.method, limits(instances)
+    if not METHODS[method].marches:  # it looks itself at what makes a run fail
+        limited = tuple(event for event in limited if event.status != "failed")
     if not scenario.events and not limited:
         return Switches()
-    method = scenario.solver.method
     if not METHODS[method].marches:
         what = f"{method} knows no events: it keeps a state of its own"
         hint = f"take one of {', '.join(name for name in METHODS if METHODS[name].marches)}"
@@ -124,7 +125,7 @@ def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switche
     return Switches(tuple(of.names), motions, (*events, *limited), jumps)
 
 
-def limits(instances: list[Instance]) -> tuple[UserEvent, ...]:
+def limits(instances: Iterable[Instance]) -> tuple[UserEvent, ...]:
     """The limits of elements, as events that end the run."""
     return tuple(
         UserEvent(

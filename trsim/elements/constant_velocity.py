@@ -11,14 +11,15 @@ any motion
     (omega_j - omega_i) . (a_i + a_j)/2 = 0
 
 so two shafts in bearings that stand turn equally fast at every bend below half a turn, where
-nothing tells any more how one is turned against the other.  reaction acts on body j at the point,
-reaction_moment in the direction of a_i + a_j.
+nothing tells any more how one is turned against the other: both factors of Phi_4 vanish, and the
+motion could go on with the wrong one.  In space a run fails next to it (LARGEST).  reaction acts on
+body j at the point, reaction_moment in the direction of a_i + a_j.
 """
 
-from math import atan2, degrees, pi, sqrt
+from math import atan2, cos, degrees, pi, sqrt
 from typing import ClassVar
 
-from trsim.elements.contract import Channel, Reach, Row, measured
+from trsim.elements.contract import FIRST_ROW, Channel, Limit, Reach, Row, kernel, measured
 from trsim.elements.frames import (
     arm,
     cross,
@@ -40,6 +41,8 @@ from trsim.kernels.columns import V3
 from trsim.kernels.lazy import internal
 
 NEXT_TO_HALF = 0.2  # rad: a bend so near to half a turn is told
+LARGEST = pi - 0.02  # rad: a larger bend ends the run
+TWIST = FIRST_ROW + 3  # column of con with the row of the twist
 
 
 class ConstantVelocity(Joint):
@@ -85,7 +88,11 @@ def pack(name, spec, at):
     axes = held(i, j, u, w, a, at) | {
         "u_j": at.axes(j, bent(u, a, b)), "w_j": at.axes(j, bent(w, a, b)), "a_j": at.axes(j, b),
     }  # fmt: skip
-    return Row(*Own.packed(**points(at, i, j, spec.at, spec.at), **axes, drawn=0.0))
+    own = Own.packed(**points(at, i, j, spec.at, spec.at), **axes, drawn=0.0)
+    return Row(*own, limits=(Limit("folded", LARGEST, "rad", "failed", FOLDED),))
+
+
+FOLDED = "is bent by half a turn, where nothing tells how its shafts are turned against each other"
 
 
 @internal
@@ -104,6 +111,18 @@ def twist(scene, e, k):
     scene.phi_t[k] = 0.0
     scene.gamma[k] = -dot(n_dot, relative_spin(V, i, j))
     turn_lines(scene, k, n)
+
+
+@kernel
+def gap(t, scene, e):
+    """How far the cosine of the bend is beyond that of the largest; in a plane any bend will do."""
+    X, V, g, own = scene.X, scene.V, scene.gap, Own(scene, e)
+    if scene.con[e, TWIST] < 0:
+        g[e, 0], g[e, 1] = -1.0, 0.0
+        return
+    a_i, a_j = arm(X, own.i, own.a_i), arm(X, own.j, own.a_j)
+    g[e, 0] = cos(LARGEST) - dot(a_i, a_j)
+    g[e, 1] = -dot(cross(relative_spin(V, own.i, own.j), a_j), a_i)
 
 
 @measured
@@ -131,7 +150,7 @@ ELEMENT = joint(
     rows=(*POINT, JointRow("turn", "c", fill=twist)),
     pack=pack,
     channels=(Channel("bend", "rad", "angle between the shafts", least=0.0),),
-    kernels={"measure": measure},
+    kernels={"gaps": gap, "measure": measure},
     doubts=doubts,
     reach=lambda _: Reach(tilts=True),
     dear=True,

@@ -17,11 +17,12 @@ from trsim.elements.contract import Row
 from trsim.elements.frames import along_row, arm, cross, dot, points, relative_spin, spin
 from trsim.elements.joint import Joint, joint, of_triad
 from trsim.elements.rows import ACROSS, TILTS, Axes, JointRow
-from trsim.errors import ScenarioError
+from trsim.errors import ScenarioError, described
 from trsim.fields import Unit, vector
 from trsim.kernels.columns import f8
 from trsim.kernels.lazy import internal
-from trsim.units import quantity, unit
+from trsim.numbers import angular, written
+from trsim.units import unit
 
 PER_ANGLE = unit("m/rad")[1]
 
@@ -30,8 +31,19 @@ class Pitch(Unit):
     """Marks an advance per turn, which may be written as one per angle: 5 mm is 5 mm/turn."""
 
     def convert(self, value, context, words=()):
-        found = quantity(value, context.get("parameters") or {}) if isinstance(value, str) else None
+        parameters = context.get("parameters") or {}
+        found = written(value, parameters) if isinstance(value, str) else None
         number = super().convert(value, context, words)
+        if (
+            isinstance(value, str)
+            and (found is None or not found[1])
+            and angular(value, parameters)
+        ):
+            raise ScenarioError(
+                f"{described(value)} is computed of parameters with an angle in their units, so it "
+                "does not tell whether it is the advance of a turn or of a radian",
+                "name a parameter alone that has its unit: `parameters: {p: 5 mm/turn}`",
+            )
         per_angle = found and found[1] and unit(found[1])[1] == PER_ANGLE
         return 2.0 * pi * number if per_angle else number
 
@@ -41,7 +53,7 @@ class Screw(Joint):
 
     axis   along which the stroke grows, and the angle about it, as drawn; of any length
     pitch  advance in one turn; positive right-handed, negative left-handed.  A length, and so are
-           plain numbers and parameters, is that of a turn; `0.8 mm/rad` and `5 mm/turn` do too
+           plain numbers, is that of a turn; `0.8 mm/rad` and `5 mm/turn` do too
     """
 
     type: ClassVar[str] = "screw"

@@ -28,11 +28,10 @@ from trsim.errors import (
     known,
     unreadable,
 )
-from trsim.numbers import number
+from trsim.numbers import Measured, angular, number, written
 from trsim.scenario.merge import graft, mapping, merge, override, part
 from trsim.scenario.table import rows
 from trsim.scenario.text import LARGEST, Tree, decoded, read
-from trsim.units import quantity
 
 SUFFIXES = (".yaml", ".yml")
 DEEPEST = 8  # levels of extends
@@ -274,8 +273,12 @@ def numbers(
             if not isinstance(value, str | int | float):
                 raise ScenarioError(f"must be a number, got {described(value)}")
             there = others | values
-            found = quantity(value, there) if isinstance(value, str) else None
+            found = written(value, there) if isinstance(value, str) else None
             values[name] = number(found[0] if found else value, ("-",), there)
+            if found and found[1]:
+                values[name] = Measured.of(values[name], found[1])
+            elif isinstance(value, str) and found is None and angular(value, there):
+                values[name] = Measured.of(values[name], "")
         except ScenarioError as error:
             later = [other for other in given if f"'{other}'" in error.what and other != name]
             hint = f"{later[0]} is defined after {name}." if later else error.hint

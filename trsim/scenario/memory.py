@@ -38,7 +38,9 @@ class Memory:
         means = (scope.frame, *scope.names.items()) if scope else ()
         meant = scope.names if scope else {}
         named = [points.get(meant.get(name, name)) for name in names]
-        return section, text, means, *(parameters.get(name) for name in names), *named
+        values = [parameters.get(name) for name in names]
+        units = [getattr(one, "unit", None) for one in values]  # 1 m/rad is none per turn
+        return section, text, means, *values, *units, *named
 
     def merged(self, base: Any, over: Any) -> Any:
         """One piece of data overridden by another; the same piece for the same two."""

@@ -15,6 +15,7 @@ from trsim import elements
 from trsim.elements.placed import Placed
 from trsim.errors import Place, ScenarioError, closest, described, edits, known
 from trsim.fields import EMPTY, Flag, Spec, Unit, vector
+from trsim.numbers import written
 from trsim.scenario import shown
 from trsim.scenario.contact_law import ContactLaw
 from trsim.scenario.event import Event
@@ -27,7 +28,6 @@ from trsim.scenario.template import Instance, Template
 from trsim.scenario.text import Tree
 from trsim.scenario.totals import Total
 from trsim.scenario.unfolded import Entry, Unfolded
-from trsim.units import quantity
 
 Seconds = Annotated[float, Gt(0), Unit("s")]
 # s, of a run.  The solver takes what is below 1e-60 (m, m/s, J; NOTHING of solve/march/land.py) for
@@ -232,7 +232,7 @@ class Scenario(Spec):
     title: str = ""
     planar: Flag | None = None
     gravity: vector("m/s^2") = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
-    parameters: dict[str, float] = EMPTY
+    parameters: dict[str, Any] = EMPTY  # numbers, Measured where they were written with a unit
     points: dict[str, Annotated[Any, _Element("points")]] = EMPTY  # first: all others may name them
     bodies: dict[str, Annotated[Any, _Element("bodies")]] = EMPTY
     joints: dict[str, Annotated[Any, _Element("joints")]] = EMPTY
@@ -290,11 +290,12 @@ class Scenario(Spec):
         return f"{section}.{name}" + (f" ({place.show()})" if place else "")
 
     def quantity(self, *path: str) -> tuple[float, str] | None:
-        """The quantity written at the path of an entry, and its unit; None where none is."""
+        """The quantity at the path of an entry, a parameter's too, and its unit; None: no unit."""
         raw = self._unfolded.value(path)
         scope = self._unfolded.scope(path)
-        names = {"t", *(scope.parameters if scope else self.parameters)}  # 1/t is none per tonne
-        return quantity(raw, names) if isinstance(raw, str) else None
+        own = scope.parameters if scope else self.parameters
+        # 1/t is none per tonne
+        return written(raw, {"t": None, **own}) if isinstance(raw, str) else None
 
     def points_at(self, *path: str) -> tuple[Any, ...]:
         """The points named at the path of an entry, a place or a list of them; None for numbers."""

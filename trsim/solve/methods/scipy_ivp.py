@@ -57,7 +57,7 @@ from trsim.solve.outcome import (
     statistics,
     untrue,
 )
-from trsim.solve.start.consistent import start
+from trsim.solve.start.consistent import exceeded, start
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -125,6 +125,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     r.h = first_step(scenario, r)
     status: Ended = "done"
     reason = ""
+    limited = any(instance.row.limits for instance in mechanism.instances)
     limit, crawled = scenario.solver.max_steps or 2**62, 0
     finer = 1.0
     solver = restarted(scenario, s, r, b, setting, finer)
@@ -155,6 +156,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             break
         crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting.t_end else 0
         reason = CRAWLS if crawled > SLOWLY else runaway(mechanism, r)
+        reason = reason or (beyond(mechanism, r) if limited else "")
         if reason:
             status = "failed"
             break
@@ -185,6 +187,13 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     bends.look(float(r.t), r.y)
     return Outcome(status, reason, float(r.t), numbers, r.peak.T.copy(), r, begun,
                    bent=bends.states)  # fmt: skip
+
+
+def beyond(mechanism: Mechanism, r: Record) -> str:
+    """What a step has taken beyond what it can do; looked at where steps end."""
+    for event in exceeded(mechanism, float(r.t), r.y):
+        return f"{event.when} {event.said} ({event.value:g} {event.unit})"
+    return ""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what is not finite is told as such

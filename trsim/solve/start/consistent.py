@@ -17,7 +17,7 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian, largest_reaction
-from trsim.assemble.switches import LIMITS, hold
+from trsim.assemble.switches import LIMITS, UserEvent, hold, limits
 from trsim.elements.contract import (
     BRANCH,
     CONTACT,
@@ -163,18 +163,22 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
 
 def check_limits(mechanism: Mechanism, y: Array) -> None:
     """No element starts beyond what it can do: such a run would have ended before it began."""
-    limits = [e for e in mechanism.stages.switches.events if e.kind == "limit"]
-    if not limits:
-        return
+    for event in exceeded(mechanism, 0.0, y):
+        raise ModelError(
+            f"{event.said} before the run begins ({event.value:g} {event.unit})",
+            "is the limit meant, and does the start balance? see `initial: {equilibrium: ...}`",
+            (mechanism.instances[LIMITS - event.entry].section, event.when),
+        )
+
+
+def exceeded(mechanism: Mechanism, t: float, y: Array) -> list[UserEvent]:
+    """The limits of elements that a state is beyond."""
+    found = limits(mechanism.instances)
+    if not found:
+        return []
     w = posed(mechanism.model, y)
-    gaps(w, 0.0)
-    for event in limits:
-        if w.gap[LIMITS - event.entry, 0] >= 0.0:
-            raise ModelError(
-                f"{event.said} before the run begins ({event.value:g} {event.unit})",
-                "is the limit meant, and does the start balance? see `initial: {equilibrium: ...}`",
-                (mechanism.instances[LIMITS - event.entry].section, event.when),
-            )
+    gaps(w, t)
+    return [event for event in found if w.gap[LIMITS - event.entry, 0] >= 0.0]
 
 
 def positions(

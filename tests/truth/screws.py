@@ -1,0 +1,622 @@
+"""Chains and loops in the coordinates of their joints: products of exponentials of screws.
+
+A body is displaced from the drawing by
+
+    T = T_before exp(S_1 x_1) exp(S_2 x_2) ...        S = (w, p x w + h w), or (0, d) of a slide
+
+where T_before is the displacement of the body it hangs on and x are the coordinates of the joint,
+which so takes no constraint rows at all.  With the columns Ad S of all steps before a body and
+their rates,
+
+    M(x) x'' + h(x, x') = Q + A^T mu + G^T lambda,    A x = 0 of gears,  G x'' = gamma of loops
+
+A constant, so x = N y.  Only what closes a loop (a link, or a joint between bodies that hang on
+something already) has rows that are not linear.  Reactions are sums of what the bodies behind a
+joint need.  Nothing is shared with engine.py, and nothing of trsim is used.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numba import njit
+from scipy.integrate import solve_ivp
+from scipy.linalg import null_space
+
+from .reference import (
+    ACCELERATION,
+    APART,
+    RATE,
+    TURNING,
+    Channel,
+    Truth,
+    lightest,
+    scales,
+    size,
+)
+from .scene import FORCE, LENGTH, MOMENT, NONE, SPEED, Load, Scene, Spring, Torsion, plus
+
+# what a joint holds where it closes a loop: displacements along, turns about axes of its triad
+HELD = {
+    "spherical": ("uwa", ""), "revolute": ("uwa", "uw"), "prismatic": ("uw", "uwa"),
+    "cylindrical": ("uw", "uw"), "inline": ("uw", ""), "inplane": ("a", ""),
+    "planar": ("a", "uw"), "parallel": ("", "uw"), "fixed": ("uwa", "uwa"),
+}  # fmt: skip
+ACROSS = {"u": ("w", "a"), "w": ("u", "a"), "a": ("w", "u")}  # no turn about it: these stay so
+
+
+compiled = njit(cache=True, error_model="numpy", no_cfunc_wrapper=True)
+
+
+@compiled
+def cross(a, b):
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
+@compiled
+def hat(w):
+    return np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
+
+
+@compiled
+def ad(S, C):
+    """Lie bracket of two twists: the rate of C as it is carried by S."""
+    found = np.empty(6)
+    found[:3] = cross(S[:3], C[:3])
+    found[3:] = cross(S[:3], C[3:]) + cross(S[3:], C[:3])
+    return found
+
+
+@compiled
+def moved(step, q):
+    """Rotation and shift of drawn points by a screw: its twist, a point of it, how far it goes."""
+    w, p = step[:3], step[6:]
+    R = np.eye(3)
+    if not w.any():
+        return R, q * step[3:6]
+    K = hat(w)
+    R = R + np.sin(q) * K + (1.0 - np.cos(q)) * K @ K
+    advance = step[3:6] - cross(p, w)
+    return R, p - R @ p + q * advance
+
+
+@compiled
+def displaced(before, of_step, number, steps, offset, x, v):
+    """R, s, J, V, A of every body (State)."""
+    n = len(before)
+    R, s = np.zeros((n, 3, 3)), np.zeros((n, 3))
+    J, V, A = np.zeros((n, 6, len(x))), np.zeros((n, 6)), np.zeros((n, 6))
+    R[0] = np.eye(3)
+    for b in range(1, n):
+        o = before[b]
+        R[b], s[b], J[b], V[b], A[b] = R[o], s[o], J[o], V[o], A[o]
+        for c in range(len(of_step)):
+            if of_step[c] != b:
+                continue
+            C = np.empty(6)
+            C[:3] = R[b] @ steps[c, :3]
+            C[3:] = R[b] @ steps[c, 3:6] + cross(s[b], C[:3])
+            q, k = offset[c], number[c]
+            if k >= 0:
+                A[b] += ad(V[b], C) * v[k]
+                V[b] += C * v[k]
+                J[b, :, k] += C
+                q += x[k]
+            one, shift = moved(steps[c], q)
+            s[b] = R[b] @ shift + s[b]
+            R[b] = R[b] @ one
+    return R, s, J, V, A
+
+
+@compiled
+def needed(J, V, A, R, s, at, mass, inertia, gravity):
+    """M and h of rigid bodies, all but the ground."""
+    n = J.shape[2]
+    M, h = np.zeros((n, n)), np.zeros(n)
+    for b in range(1, len(J)):
+        r = R[b] @ at[b - 1] + s[b]
+        w = V[b, :3].copy()
+        turns = np.ascontiguousarray(J[b, :3])
+        goes = J[b, 3:] - hat(r) @ turns
+        u = V[b, 3:] + cross(w, r)
+        a = A[b, 3:] + cross(A[b, :3], r) + cross(w, u)
+        I = R[b] @ inertia[b - 1] @ np.ascontiguousarray(R[b].T)
+        M += mass[b - 1] * goes.T @ goes + turns.T @ I @ turns
+        h += goes.T @ (mass[b - 1] * (a - gravity))
+        h += turns.T @ (I @ A[b, :3] + cross(w, I @ w))
+    return M, h
+
+
+@dataclass
+class Step:
+    """One screw: about w through p with the advance h, or along d where w is zero."""
+
+    k: int  # its coordinate; -1: it stays as it is
+    w: np.ndarray
+    p: np.ndarray
+    d: np.ndarray  # of a slide, or h w
+    offset: float = 0.0
+    sign: float = 1.0
+
+    @property
+    def twist(self) -> np.ndarray:
+        return self.sign * np.concatenate([self.w, cross(self.p, self.w) + self.d])
+
+    def moved(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rotation and shift of drawn points."""
+        return moved(
+            np.array([*self.twist, *self.p]), self.offset + (x[self.k] if self.k >= 0 else 0)
+        )
+
+
+@dataclass
+class Held:
+    """How a body hangs on another."""
+
+    before: str
+    steps: list[Step]
+    joint: Any = None
+    forward: bool = True  # the body is the second of its joint
+
+
+@dataclass
+class State:
+    """Of one body: displacement, its columns, twist, and what acceleration has without x''."""
+
+    R: np.ndarray
+    s: np.ndarray
+    J: np.ndarray
+    V: np.ndarray
+    A: np.ndarray
+
+
+@dataclass
+class Row:
+    """What closes a loop: a value to keep, of two bodies."""
+
+    name: str
+    kind: str  # distance, along, across
+    i: str
+    j: str
+    p: np.ndarray
+    q: np.ndarray
+    a: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    b: np.ndarray = field(default_factory=lambda: np.zeros(3))
+
+
+def triad(joint: Any) -> dict[str, np.ndarray]:
+    """Axes of a joint as drawn; which ones across its axis does not matter but where told."""
+    a = np.asarray(joint.axis if joint.axis is not None else (0, 0, 1), float)
+    a = a / np.linalg.norm(a)
+    x = joint.x_axis
+    u = np.eye(3)[np.argmin(np.abs(a))] if x is None else np.asarray(x, float)
+    u = u - (u @ a) * a
+    u = u / np.linalg.norm(u)
+    return {"u": u, "w": cross(a, u), "a": a}
+
+
+class Tree:
+    """A scene in coordinates of its joints."""
+
+    def __init__(self, s: Scene) -> None:
+        self.s, self.n = s, 0
+        self.held: dict[str, Held] = {}
+        self.coordinate: dict[str, int] = {}  # `joint` or `joint.angle` -> its number
+        self.rows: list[Row] = []
+        self.linear: list[tuple[str, dict[int, float]]] = []  # relations by name
+        open_, there = [j for j in s.joints if j.type != "link"], {"ground"}
+        while len(there) <= len(s.bodies):
+            found = next((j for j in open_ if (j.i in there) != (j.j in there)), None)
+            if found is None:
+                name = next(b.name for b in s.bodies if b.name not in there)
+                self.held[name] = Held("ground", self.loose(s.body(name).at))
+                there.add(name)
+                continue
+            open_.remove(found)
+            forward = found.i in there
+            name, before = (found.j, found.i) if forward else (found.i, found.j)
+            steps = self.steps(found)
+            if not forward:
+                for step in steps:
+                    step.sign = -1.0
+                steps = steps[::-1]
+            self.held[name] = Held(before, steps, found, forward)
+            there.add(name)
+        for j in s.joints:
+            if j.type == "link":
+                p, q = j.points
+                self.rows.append(Row(j.name, "distance", j.i, j.j, p, q))
+            elif j in open_:
+                self.close(j)
+        for g in s.gears:
+            terms: dict[int, float] = {}
+            for name, c in self.terms(g):
+                terms[self.coordinate[name]] = c
+            self.linear.append((g.name, terms))
+        A = np.zeros((len(self.linear), self.n))
+        for k, (_, terms) in enumerate(self.linear):
+            for c, value in terms.items():
+                A[k, c] = value
+        self.numbers, self.names = self.packed(), ("ground", *self.held)
+        own = [s.body(name) for name in self.held]
+        self.masses = (
+            np.array([b.at for b in own]), np.array([b.mass for b in own]),
+            np.array([b.inertia for b in own]), np.asarray(s.gravity, float),
+        )  # fmt: skip
+        self.A, self.N = A, null_space(A) if len(A) else np.eye(self.n)
+        self.free = [self.value(row, self.states(np.zeros(self.n), np.zeros(self.n)))[0]
+                     for row in self.rows]  # fmt: skip
+
+    # --- what the scene says -----------------------------------------------------------------
+
+    def new(self, name: str = "") -> int:
+        self.n += 1
+        if name:
+            self.coordinate[name] = self.n - 1
+        return self.n - 1
+
+    def loose(self, p: np.ndarray) -> list[Step]:
+        """A body that nothing holds: three slides, three turns about its centre of mass."""
+        zero, axes = np.zeros(3), np.eye(3)
+        slides = [Step(self.new(), zero, zero, e) for e in axes]
+        return slides + [Step(self.new(), e, p, zero) for e in axes]
+
+    def steps(self, joint: Any) -> list[Step]:
+        """What a joint lets the second body do, seen from the first."""
+        zero, p, name, kind = np.zeros(3), np.asarray(joint.at, float), joint.name, joint.type
+        u, w, a = triad(joint).values()
+
+        def about(axis: np.ndarray, key: str = "") -> Step:
+            return Step(self.new(key), axis, p, zero)
+
+        def along(axis: np.ndarray, key: str = "") -> Step:
+            return Step(self.new(key), zero, p, axis)
+
+        ball = (u, w, a)
+        if kind == "fixed":
+            return []
+        if kind == "revolute":
+            return [about(a, name)]
+        if kind == "prismatic":
+            return [along(a, name)]
+        if kind == "cylindrical":
+            return [along(a, f"{name}.stroke"), about(a, f"{name}.angle")]
+        if kind == "screw":
+            step = Step(self.new(f"{name}.angle"), a, p, joint.pitch / (2 * np.pi) * a)
+            return [step]
+        if kind == "planar":
+            return [along(u, f"{name}.x"), along(w, f"{name}.y"), about(a, f"{name}.angle")]
+        if kind == "parallel":
+            return [*(along(e) for e in ball), about(a)]
+        if kind == "spherical":
+            return [about(e) for e in ball]
+        if kind == "inplane":
+            return [along(u), along(w), *(about(e) for e in ball)]
+        if kind == "inline":
+            return [along(a), *(about(e) for e in ball)]
+        if kind == "universal":
+            b = np.asarray(joint.second_axis, float)
+            return [about(a), about(b / np.linalg.norm(b))]
+        assert kind == "constant_velocity", kind
+        # the bend b, about an axis n that goes round: turn n by psi, bend, and turn it back
+        b = np.asarray(joint.second_axis, float)
+        n = cross(a, b / np.linalg.norm(b))
+        bend = float(np.arctan2(np.linalg.norm(n), a @ b / np.linalg.norm(b)))
+        n = n / np.linalg.norm(n)
+        first, second, third = about(a), about(n), about(a)
+        second.offset = bend
+        self.linear.append((f"{name} round", {first.k: 1.0, third.k: 1.0}))
+        return [first, second, third, Step(-1, n, p, zero, -bend)]
+
+    def close(self, j: Any) -> None:
+        axes, p = triad(j), np.asarray(j.at, float)
+        along, turns = HELD[j.type]
+        for x in along:
+            self.rows.append(Row(j.name, "along", j.i, j.j, p, p, axes[x]))
+        for x in turns:
+            of_i, of_j = ACROSS[x]
+            self.rows.append(Row(j.name, "across", j.i, j.j, p, p, axes[of_i], axes[of_j]))
+
+    def terms(self, g: Any) -> list[tuple[str, float]]:
+        """Coefficients of the coordinates that a gear relates, from how its parts touch."""
+        if g.coefficients is not None:
+            return list(zip(g.joints, g.coefficients, strict=True))
+        x, y = g.joints
+        if g.ratio is not None:
+            first, second = (1.0, -g.ratio) if g.type != "rack_and_pinion" else (-g.ratio, 1.0)
+            return [(x, first), (y, second)]
+        one, two = (self.s.joint(name.split(".")[0]) for name in (x, y))
+        (carrier,) = {one.i, one.j} & {two.i, two.j}
+        ways = [1.0 if k.i == carrier else -1.0 for k in (one, two)]
+        a, b = triad(one)["a"], triad(two)["a"]
+        if g.type == "worm":  # a thread of so many starts across the wheel, which sees it advance
+            right = -1.0 if g.hand == "left" else 1.0
+            rim = cross(b, g.touch - two.at) @ a
+            lead = float(np.linalg.norm(g.touch - two.at)) * g.teeth[0] / g.teeth[1]
+            return [(x, right * ways[0] * lead), (y, ways[1] * rim)]
+        touch = g.touch  # where both have one speed against the carrier, along g.way
+        speed = [ways[0] * cross(a, touch - one.at) @ g.way]
+        slides = two.type == "prismatic"
+        speed.append(ways[1] * (b @ g.way if slides else cross(b, touch - two.at) @ g.way))
+        return [(x, speed[0]), (y, -speed[1])]
+
+    # --- motion ------------------------------------------------------------------------------
+
+    def states(self, x: np.ndarray, v: np.ndarray) -> dict[str, State]:
+        """Of every body."""
+        R, s, J, V, A = displaced(*self.numbers, x, v)
+        return {name: State(R[k], s[k], J[k], V[k], A[k]) for k, name in enumerate(self.names)}
+
+    def packed(self) -> Any:
+        """The bodies in the order they hang, as numbers."""
+        names = ["ground", *self.held]
+        steps = [(k + 1, one) for k, h in enumerate(self.held.values()) for one in h.steps]
+        before = [-1, *(names.index(h.before) for h in self.held.values())]
+        return (
+            np.array(before), np.array([k for k, _ in steps], int),
+            np.array([one.k for _, one in steps], int),
+            np.array([[*one.twist, *one.p] for _, one in steps]).reshape(-1, 9),
+            np.array([one.offset for _, one in steps]),
+        )  # fmt: skip
+
+    @staticmethod
+    def at(state: State, p: np.ndarray) -> tuple[np.ndarray, ...]:
+        """A drawn point: its place, columns of its velocity, velocity, acceleration without x''."""
+        r = state.R @ p + state.s
+        J = state.J[3:] - hat(r) @ state.J[:3]
+        v = state.V[3:] + cross(state.V[:3], r)
+        a = state.A[3:] + cross(state.A[:3], r) + cross(state.V[:3], v)
+        return r, J, v, a
+
+    def value(self, row: Row, of: dict[str, State]) -> tuple[float, np.ndarray, float]:
+        """Value of a row, its columns, and its second rate without x''."""
+        i, j = of[row.i], of[row.j]
+        if row.kind == "across":
+            a, b = i.R @ row.a, j.R @ row.b
+            a1, b1 = cross(i.V[:3], a), cross(j.V[:3], b)
+            a2 = cross(i.A[:3], a) + cross(i.V[:3], a1)
+            b2 = cross(j.A[:3], b) + cross(j.V[:3], b1)
+            G = cross(a, b) @ i.J[:3] + cross(b, a) @ j.J[:3]
+            return a @ b, G, a2 @ b + 2 * a1 @ b1 + a @ b2
+        p, Jp, vp, ap = self.at(i, row.p)
+        q, Jq, vq, aq = self.at(j, row.q)
+        d, d1, d2 = q - p, vq - vp, aq - ap
+        if row.kind == "distance":
+            l = np.linalg.norm(d)
+            u = d / l
+            return l, u @ (Jq - Jp), u @ d2 + (d1 @ d1 - (u @ d1) ** 2) / l
+        a = i.R @ row.a
+        a1 = cross(i.V[:3], a)
+        a2 = cross(i.A[:3], a) + cross(i.V[:3], a1)
+        return a @ d, a @ (Jq - Jp) + cross(a, d) @ i.J[:3], a2 @ d + 2 * a1 @ d1 + a @ d2
+
+    def forces(self, t: float, x: Any, v: Any, of: dict[str, State]) -> Any:
+        """Forces on bodies, (body, place, force, moment), and on coordinates."""
+        pushes, Q = [], np.zeros(self.n)
+        for f in self.s.forces:
+            if isinstance(f, Load):
+                at = of[f.body]
+                d = np.asarray(f.direction, float) / np.linalg.norm(f.direction)
+                if f.frame != "world":
+                    d = of[f.frame].R @ d
+                size = f.fn.p[0] + (f.fn.p[1] * np.sin(f.fn.p[2] * t + f.fn.p[3])
+                                    if f.fn.kind == "sine" else 0.0)  # fmt: skip
+                point = f.at if f.at is not None else self.s.body(f.body).at
+                r = at.R @ point + at.s
+                none = np.zeros(3)
+                pushes.append((f.body, r, none if f.torque else size * d,
+                               size * d if f.torque else none))  # fmt: skip
+            elif isinstance(f, Spring):
+                p, _, vp, _ = self.at(of[f.i], f.p_i)
+                q, _, vq, _ = self.at(of[f.j], f.p_j)
+                l = np.linalg.norm(q - p)
+                u = (q - p) / l
+                free = np.linalg.norm(f.p_j - f.p_i) if f.free is None else f.free
+                F = -f.k * (l - free) - f.c * u @ (vq - vp) - f.preload
+                pushes += [(f.j, q, F * u, np.zeros(3)), (f.i, p, -F * u, np.zeros(3))]
+            else:
+                assert isinstance(f, Torsion)
+                k = self.coordinate[f.joint]
+                Q[k] += f.preload - f.k * x[k] - f.c * v[k]
+        return pushes, Q
+
+    def solved(self, t: float, x: np.ndarray, v: np.ndarray) -> Any:
+        """x'', multipliers of loops, forces of relations on the coordinates; states and forces."""
+        found = displaced(*self.numbers, x, v)
+        of = {name: State(*(one[k] for one in found)) for k, name in enumerate(self.names)}
+        R, s, J, V, A = found
+        M, h = needed(J, V, A, R, s, *self.masses)
+        pushes, Q = self.forces(t, x, v, of)
+        for name, r, f, m in pushes:
+            if name != "ground":
+                at = of[name]
+                Q += (at.J[3:] - hat(r) @ at.J[:3]).T @ f + at.J[:3].T @ m
+        N = self.N
+        rows = [self.value(row, of) for row in self.rows]
+        G = np.array([one[1] for one in rows]).reshape(-1, self.n)
+        gamma = np.array([one[2] for one in rows])
+        n, m = N.shape[1], len(G)
+        K = np.zeros((n + m, n + m))
+        K[:n, :n], K[:n, n:], K[n:, :n] = N.T @ M @ N, N.T @ G.T, G @ N
+        side = np.concatenate([N.T @ (Q - h), -gamma])
+        if m == 0:
+            full = np.linalg.solve(K, side)
+        else:
+            full = np.linalg.lstsq(K, side, rcond=1e-12)[0]
+        a, lam = N @ full[:n], -full[n:]
+        return a, lam, M @ a + h - Q - G.T @ lam, of, pushes
+
+    def rate(self, t: float, y: np.ndarray) -> np.ndarray:
+        x, v = y[: self.n], y[self.n :]
+        return np.concatenate([v, self.solved(t, x, v)[0]])
+
+    def run(self, y: np.ndarray, times: np.ndarray, rtol: float) -> np.ndarray:
+        made = solve_ivp(
+            self.rate, (0, times[-1]), y, "DOP853", times, rtol=rtol, atol=rtol, max_step=0.2
+        )
+        if made.y.shape[1] != len(times):
+            raise RuntimeError(made.message)
+        return made.y.T
+
+    def start(self, v: np.ndarray) -> np.ndarray:
+        """Rates next to some that gears and loops allow, as drawn."""
+        of = self.states(np.zeros(self.n), np.zeros(self.n))
+        G = np.array([self.value(row, of)[1] for row in self.rows]).reshape(-1, self.n)
+        G = np.vstack([G, self.A])
+        if len(G):
+            v = v - np.linalg.pinv(G, rcond=1e-10) @ (G @ v)
+        return np.concatenate([np.zeros(self.n), v])
+
+    def speeds(self, y: np.ndarray) -> None:
+        """Write the velocities at the start into the bodies of the scene."""
+        of = self.states(np.zeros(self.n), y[self.n :])
+        for b in self.s.bodies:
+            b.velocity = self.at(of[b.name], b.at)[2]
+            b.spin = of[b.name].V[:3].copy()
+
+    # --- what is told ------------------------------------------------------------------------
+
+    def told(self, times: np.ndarray, Y: np.ndarray, forces: bool) -> dict[str, Channel]:
+        """Channels of a run."""
+        s, n = self.s, len(times)
+        found: dict[str, Channel] = {}
+
+        def put(name: str, k: int, value: Any, dims: Any, vector: bool, kind: str) -> None:
+            value = np.atleast_1d(value)
+            if name not in found:
+                found[name] = Channel(np.zeros((n, len(value))), dims, vector, kind)
+            found[name].values[k] = value
+
+        for k, (t, y) in enumerate(zip(times, Y, strict=True)):
+            x, v = y[: self.n], y[self.n :]
+            a, lam, related, of, pushes = self.solved(t, x, v)
+            for b in s.bodies:
+                at = of[b.name]
+                r, J, u, gain = self.at(at, b.at)
+                twist = at.J[:3] @ a + at.A[:3]
+                put(f"{b.name}.position", k, r, LENGTH, True, "place")
+                put(f"{b.name}.velocity", k, u, SPEED, True, "speed")
+                put(f"{b.name}.angular_velocity", k, at.V[:3], RATE, True, "spin")
+                put(f"{b.name}.acceleration", k, J @ a + gain, ACCELERATION, True, "gain")
+                put(f"{b.name}.angular_acceleration", k, twist, TURNING, True, "twist")
+                put(f"{b.name}.rotation", k, at.R.reshape(9), NONE, False, "matrix")
+            for sensor in s.sensors:
+                name, dims = sensor.joint, s.of_joint(sensor.joint)
+                slides = dims == LENGTH
+                c, h = self.coordinate.get(name), 1.0
+                if c is None:  # of a screw, which advances as it turns
+                    c = self.coordinate[name.replace(".stroke", ".angle")]
+                    h = s.joint(name.split(".")[0]).pitch / (2 * np.pi)
+                value = sensor.sign * h * x[c] + sensor.at_start
+                put(sensor.name, k, value, dims, False, "place" if slides else "angle")
+                rate, kind = sensor.sign * h * v[c], "speed" if slides else "spin"
+                put(f"{sensor.name}.rate", k, rate, plus(dims, RATE), False, kind)
+            if forces:
+                self.told_forces(put, k, a, lam, related, of, pushes, (x, v))
+        return found
+
+    def told_forces(self, put: Any, k: int, a: Any, lam: Any, related: Any, of: Any,
+                    pushes: Any, now: Any) -> None:  # fmt: skip
+        s = self.s
+        mu = np.linalg.lstsq(self.A.T, related, rcond=None)[0] if len(self.A) else np.zeros(0)
+        names = {g.name for g in s.gears}
+        own = np.array([name in names for name, _ in self.linear], bool)
+        geared = self.A[own].T @ mu[own]  # what holds a joint in itself is its reaction
+        need = {}  # force, and moment about the origin, that a body needs from its joints
+        for b in s.bodies:
+            at = of[b.name]
+            r, J, _, gain = self.at(at, b.at)
+            w, I = at.V[:3], at.R @ b.inertia @ at.R.T
+            force = b.mass * (J @ a + gain - s.gravity)
+            moment = I @ (at.J[:3] @ a + at.A[:3]) + cross(w, I @ w) + cross(r, force)
+            need[b.name] = [force, moment]
+        need["ground"] = [np.zeros(3), np.zeros(3)]
+        for name, r, f, m in pushes:
+            need[name][0] = need[name][0] - f
+            need[name][1] = need[name][1] - cross(r, f) - m
+        told: dict[str, list[np.ndarray]] = {}
+        for row, l in zip(self.rows, lam, strict=True):
+            i, j = of[row.i], of[row.j]
+            p, q = i.R @ row.p + i.s, j.R @ row.q + j.s
+            if row.kind == "across":
+                f, m = np.zeros(3), l * cross(j.R @ row.b, i.R @ row.a)
+            else:
+                d = q - p
+                f = l * (d / np.linalg.norm(d) if row.kind == "distance" else i.R @ row.a)
+                m = np.zeros(3)
+            # on j at its point; the opposite, with the same line of action, on i
+            need[row.j][0] = need[row.j][0] - f
+            need[row.j][1] = need[row.j][1] - cross(q, f) - m
+            need[row.i][0] = need[row.i][0] + f
+            need[row.i][1] = need[row.i][1] + cross(q, f) + m
+            one = told.setdefault(row.name, [np.zeros(3), np.zeros(3)])
+            one[0], one[1] = one[0] + f, one[1] + m
+            if row.kind == "distance":
+                put(f"{row.name}.force", k, -l, FORCE, False, "force")
+        behind = list(self.held)
+        for name in behind[::-1]:
+            held = self.held[name]
+            f, m = need[name]
+            need[held.before][0] = need[held.before][0] + f
+            need[held.before][1] = need[held.before][1] + m
+            j = held.joint
+            if j is None:
+                continue
+            at, base = of[name], of[held.before]
+            second = at if held.forward else base
+            way = 1.0 if held.forward else -1.0
+            p = second.R @ np.asarray(j.at, float) + second.s
+            # what gears and springs put on it about and along its axes is not the joint's
+            Q = geared + self.forces(0.0, *now, of)[1]
+            R, shift = base.R, base.s
+            rest_f, rest_m = f.copy(), m.copy()
+            for step in held.steps:
+                w = R @ step.twist[:3]
+                C = np.concatenate([w, R @ step.twist[3:] + cross(shift, w)])
+                if step.k >= 0 and Q[step.k]:
+                    if w.any():
+                        rest_m = rest_m - Q[step.k] * C[:3]
+                    else:
+                        rest_f = rest_f - Q[step.k] * C[3:]
+                        rest_m = rest_m - cross(p, Q[step.k] * C[3:])
+                one, part = step.moved(now[0])
+                R, shift = R @ one, R @ part + shift
+            told[j.name] = [way * rest_f, way * (rest_m - cross(p, rest_f))]
+        for j in s.joints:
+            if j.name in told:
+                put(f"{j.name}.reaction", k, told[j.name][0], FORCE, True, "force")
+                if j.type not in ("spherical", "link", "inplane", "inline"):
+                    put(f"{j.name}.reaction_moment", k, told[j.name][1], MOMENT, True, "moment")
+        for (name, terms), l in zip(self.linear, mu, strict=True):
+            gear = next((g for g in s.gears if g.name == name), None)
+            if gear is None:
+                continue
+            for q, joint in enumerate(gear.joints):
+                value = l * terms[self.coordinate[joint]]
+                slides = s.of_joint(joint) == LENGTH
+                word, dims = ("force", FORCE) if slides else ("torque", MOMENT)
+                kind = "force" if slides else "moment"
+                put(f"{name}.{word}_{q + 1}", k, value, dims, False, kind)
+
+    def truth(self, y: np.ndarray, forces: bool) -> Truth:
+        """Of the scene from a start on."""
+        s = self.s
+        times = np.arange(s.rows + 1) * s.end / s.rows
+        made = self.told(times, self.run(y, times, 1e-11), forces)
+        t = Truth(times, made, [], [], size=size(s), mass=lightest(s), end=s.end)
+        t.gravity = max(float(np.linalg.norm(s.gravity)), 1e-9)
+        top = t.top = scales(t)
+        away, sure = np.zeros(len(times)), np.zeros(len(times))
+        other = y.copy()
+        other[self.n :] *= 1 + APART
+        for start, rtol, out, by in ((other, 1e-11, away, APART), (y, 1e-9, sure, 1.0)):
+            again = self.told(times, self.run(start, times, rtol), False)
+            for name, c in again.items():
+                if c.kind in ("place", "speed", "spin", "angle"):
+                    d = np.abs(c.values - made[name].values).max(axis=1) / top[c.kind] / by
+                    np.maximum(out, d, out=out)
+        # what is off at 1e-9 is off by some hundredth of that here
+        t.growth, t.sure = np.maximum.accumulate(away), np.maximum.accumulate(sure) * 0.1
+        return t
