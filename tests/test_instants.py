@@ -22,6 +22,10 @@ AROUND = (math.pi / 2 - math.acos(0.99), math.pi / 2 + math.acos(0.99))
         ("1000*(t>5)*(t<5.001)", [5.0, 5.001]),
         ("(2*t - 1 >= 3) + step(t, 1, 0, 1.5, 2)", [1.0, 1.5, 2.0]),
         ("smoothstep((t - 0.2)/0.1)", [0.2, 0.3]),
+        ("sign(t - 0.3)", [0.3]),
+        ("floor(0.4*t)", [2.5, 5.0, 7.5]),
+        ("floor(0.08*t*t)", [math.sqrt(k / 0.08) for k in range(1, 8)]),
+        ("acos(cos(t - 1))", [1.0, 1 + math.pi, 1 + 2 * math.pi]),
         ("-step5(3 - t, 0, 1, 1, 0)", [2.0, 3.0]),
         ("(x > t) + sin(t)", []),
         # whatever stands inside

@@ -276,6 +276,26 @@ def logarithm(a: Enclosure) -> Enclosure:
     return Enclosure(value, over(a.rate, a.value))
 
 
+def arcsine(a: Enclosure) -> Enclosure:
+    """Bounds of the rate too where the argument is surely between -1 and 1."""
+    inside = Interval(np.clip(a.value.low, -1.0, 1.0), np.clip(a.value.high, -1.0, 1.0))
+    square = minus(exactly(1.0, inside.low), power(inside, 2))
+    cosine = rising(np.sqrt, Interval(np.maximum(square.low, 0.0), np.maximum(square.high, 0.0)))
+    return Enclosure(rising(np.arcsin, inside), over(a.rate, cosine))
+
+
+def arccosine(a: Enclosure) -> Enclosure:
+    right = exactly(0.5 * math.pi, a.value.low)
+    return subtracted(Enclosure(right, exactly(0.0, a.value.low)), arcsine(a))
+
+
+def jumping(f: Callable[[Array], Array], a: Enclosure) -> Enclosure:
+    """What is constant between its jumps, and rises there."""
+    value = Interval(f(a.value.low), f(a.value.high))
+    still = value.low == value.high
+    return Enclosure(value, where(still, exactly(0.0, value.low), everything(value.low)))
+
+
 def clipped(a: Interval) -> Interval:
     return Interval(np.clip(a.low, 0.0, 1.0), np.clip(a.high, 0.0, 1.0))
 
@@ -316,6 +336,10 @@ FUNCTIONS: dict[str, Callable[..., Enclosure]] = {
     "exp": exponential,
     "log": logarithm,
     "smoothstep": smooth,
+    "asin": arcsine,
+    "acos": arccosine,
+    "floor": partial(jumping, np.floor),
+    "sign": partial(jumping, np.sign),
 }
 
 
@@ -323,6 +347,10 @@ FUNCTIONS: dict[str, Callable[..., Enclosure]] = {
 POINTS: dict[str, Callable[..., Any]] = {
     **{word: getattr(np, word) for word in ("abs", "sqrt", "sin", "cos", "tan", "exp", "log")},
     **OPERATORS,
+    "floor": np.floor,
+    "sign": np.sign,
+    "asin": np.arcsin,
+    "acos": np.arccos,
     "**": np.power,
     "atan2": np.arctan2,
 }

@@ -54,6 +54,10 @@ def _step5(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
     return h0 + (h1 - h0) * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
 
 
+def _sign(x: float) -> float:
+    return float((x > 0.0) - (x < 0.0))
+
+
 # word -> function, fewest arguments, most arguments
 FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
     "min": (min, 2, 50),
@@ -63,7 +67,11 @@ FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
     "sin": (math.sin, 1, 1),
     "cos": (math.cos, 1, 1),
     "tan": (math.tan, 1, 1),
+    "asin": (math.asin, 1, 1),
+    "acos": (math.acos, 1, 1),
     "atan2": (math.atan2, 2, 2),
+    "floor": (math.floor, 1, 1),
+    "sign": (_sign, 1, 1),
     "exp": (math.exp, 1, 1),
     "log": (math.log, 1, 1),
     "step": (_step, 5, 5),
@@ -240,6 +248,8 @@ def degree(node: Node) -> float:
             return 0 if max(degree(left), degree(right)) < math.inf else math.inf
         case ("call", "min" | "max" | "abs", arguments):
             return max(map(degree, arguments))
+        case ("call", "floor" | "sign", (x,)):
+            return 0 if degree(x) < math.inf else math.inf
         case ("call", "smoothstep", (x,)):
             return 3 * degree(x)
         case ("call", "step" | "step5" as word, (x, *ends)) if not any(map(degree, ends)):

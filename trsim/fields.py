@@ -208,17 +208,23 @@ class FunctionSpec:
         return replace(self, node=("binary", "*", ("number", factor), self.node))
 
     @property
-    def sensors(self) -> frozenset[str]:
-        """The sensors it depends on."""
+    def inputs(self) -> frozenset[str]:
+        """What it depends on beside t: sensors and their rates, `stroke` and `stroke.rate`."""
         found = {self.of} if self.kind == "table" else set()
         if self.kind == "expression":
             found = expressions.names(self.node)
         return frozenset(found - {"t", "pi"})
 
+    @property
+    def sensors(self) -> frozenset[str]:
+        """The sensors it depends on, by themselves or by their rates."""
+        return frozenset(name.removesuffix(RATE) for name in self.inputs)
+
 
 ENDS = ("hold", "extrapolate", "refuse")
 TABLE_KEYS = ("table", "of", "ends", "units")
-VARIABLES = ("s", "m", "rad")  # units of what a table may be a function of
+RATE = ".rate"  # behind the name of a sensor
+VARIABLES = ("s", "m", "rad", "m/s", "rad/s")  # units of what a table may be a function of
 
 
 class Column:
@@ -287,7 +293,8 @@ class _FunctionUnit(Unit):
             own = _at("table", _at, 0, _of_titles, head, own)
         columns = _at("table" if head else "units", self._own, own)
         x, y, units = _at("table", self._columns, rows, columns, parameters)
-        of = names.get(of, of)
+        first, dot, rest = of.partition(".")
+        of = names.get(first, first) + dot + rest
         return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units)
 
     def _own(self, units: Any) -> list[Column]:

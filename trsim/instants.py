@@ -3,7 +3,9 @@
     corner                          u(t)                 met where u is
     a < b  a <= b  a == b ...       a - b                0
     min(a, b)  max(a, b)            a - b                0
-    abs(a), atan2(a, b)             a                    0
+    abs(a), sign(a), atan2(a, b)    a                    0
+    floor(a)                        a                    a whole number
+    asin(a), acos(a)                a                    -1 and 1
     smoothstep(x), step, step5      x, (x-x0)/(x1-x0)    0 and 1
     exp(a)                          a                    EDGES of expressions.py
 
@@ -14,6 +16,7 @@ without crossing it is an instant too: a step more, and nothing missed.
 """
 
 from collections.abc import Iterator
+from math import pi
 
 import numpy as np
 
@@ -61,8 +64,12 @@ def of_call(word: str, a: tuple[Node, ...]) -> Iterator[tuple[Node, tuple[float,
         for k in range(1, len(a)):
             before = a[0] if k == 1 else ("call", word, a[:k])
             yield ("binary", "-", before, a[k]), (0.0,)
-    elif word in ("abs", "atan2"):
+    elif word in ("abs", "atan2", "sign"):
         yield a[0], (0.0,)
+    elif word in ("asin", "acos"):
+        yield a[0], (-1.0, 1.0)
+    elif word == "floor":  # whole numbers are the zeros of a sine
+        yield ("call", "sin", (("binary", "*", ("number", pi), a[0]),)), (0.0,)
     elif word == "smoothstep":
         yield a[0], (0.0, 1.0)
     elif word == "exp":

@@ -38,6 +38,8 @@ def stepped(core):
 
 
 WORDS = {name: getattr(math, name) for name in ("sqrt", "sin", "cos", "tan", "atan2", "exp", "log")}
+WORDS |= {"asin": math.asin, "acos": math.acos, "floor": lambda x: float(math.floor(x))}
+WORDS |= {"sign": lambda x: float((x > 0) - (x < 0))}
 WORDS |= {"min": min, "max": max, "abs": abs, "smoothstep": smoothstep, "pi": math.pi}
 WORDS |= {"step": stepped(smoothstep), "step5": stepped(quintic), "__builtins__": {}}
 
@@ -67,7 +69,8 @@ def trees(names):
 
     def grow(inner):
         signs = st.sampled_from(["+", "-", "*", "/", "**", "<", "<=", ">", ">=", "==", "!="])
-        words = st.sampled_from(["abs", "sqrt", "sin", "cos", "tan", "exp", "log", "smoothstep"])
+        words = st.sampled_from(["abs", "sqrt", "sin", "cos", "tan", "exp", "log", "smoothstep",
+                                 "asin", "acos", "floor", "sign"])  # fmt: skip
         pairs = st.sampled_from(["min", "max", "atan2"])
         steps = st.sampled_from(["step", "step5"])
         return st.one_of(
@@ -162,6 +165,10 @@ SMOOTH = [
     "step(t, -0.5, 1, 4, 7)",
     "step5(sin(t), -2, t, 3 + t, 7)",
     "t*(t > -100) + (t == 0)",
+    "asin(t/2)*t",
+    "acos(t*t/3 - 0.4)",
+    "floor(t + 5)*t*t",
+    "sign(t - 9)*t*t",
 ]
 
 

@@ -412,3 +412,42 @@ def test_swings_to_the_edge_of_a_well_and_back(method, u):
     assert r.outcome.statistics["energy_residual_relative"] < 1e-4
     assert abs(r.outcome.record.y[0] - start) <= w * math.sqrt(-u) * (1 + 1e-4)
     assert r.outcome.statistics["steps"] < 5000
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_floor_and_sign_of_t(method):
+    """A staircase of nine steps, and a push that turns round three times."""
+    accuracy = 1e-3 if "alpha" in method else 1e-9
+    r = run(PUSHED.format('"floor(t)"', 10, method))
+    assert speed(r) == pytest.approx(45 / 2, rel=accuracy)
+    r = run(PUSHED.format('"sign(sin(t)) + 3*floor(0.3*t - 1)"', 10, method))
+    push = (10 - 3 * math.pi) * -1 + math.pi  # + - + -
+    stairs = 3 * (-10 / 3 + (10 - 20 / 3))
+    assert speed(r) == pytest.approx((push + stairs) / 2, rel=accuracy)
+
+
+@pytest.mark.parametrize("method", METHODS[:3])
+def test_floor_and_sign_of_a_sensor(method):
+    """Work over a staircase of strokes, there and back, and a jump of the force at zero."""
+    text = PUSHED.replace("forces:", "sensors: {{x: {{joint: guide, at_start: -0.25}}}}\nforces:")
+    r = run(text.format('"10 - floor(4*x)"', 2, f"{method}, tolerance: 1e-8"))
+    # m v^2 / 2 = the work up to where it is: piece by piece
+    x, v = r.outcome.record.y[0] - 0.25, speed(r)
+    work = 11 * 0.25 + sum((10 - k) * 0.25 for k in range(math.floor(4 * x)))
+    work += (10 - math.floor(4 * x)) * (x - math.floor(4 * x) / 4)
+    assert x > 5
+    assert v * v == pytest.approx(work, rel=1e-7)
+    r = run(text.format('"-8*sign(x)"', 2, f"{method}, tolerance: 1e-8"))
+    period = 4 * math.sqrt(2 * 0.25 / 4)  # parabolas with 4 m/s^2
+    phase = 2 % period / period * 4
+    at = {0: -1 + phase**2, 1: 1 - (2 - phase) ** 2, 2: 1 - (phase - 2) ** 2,
+          3: (4 - phase) ** 2 - 1}[int(phase)]  # fmt: skip
+    assert r.outcome.record.y[0] - 0.25 == pytest.approx(0.25 * at, abs=1e-7)
+
+
+def test_an_arc_beyond_its_end_ends_the_run():
+    """x = t^2/4 m leaves [-1, 1] at t = 2 s; the speed then is that of the push until there."""
+    text = PUSHED.replace("forces:", "sensors: {{x: {{joint: guide}}}}\nforces:")
+    r = run(text.format('"1 + 0*asin(x)"', 10, "method: dop853"), fails=True)
+    assert "forces.kick" in r.outcome.reason and "asin or acos beyond 1" in r.outcome.reason
+    assert r.outcome.record.t == pytest.approx(2, abs=1e-4)

@@ -9,6 +9,7 @@ import numpy as np
 
 from trsim.assemble.cornered import Cornered, cornered
 from trsim.assemble.dense import product
+from trsim.assemble.instances import Named
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
@@ -17,6 +18,7 @@ from trsim.elements.joint import triad
 from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
+from trsim.fields import RATE
 from trsim.frame import Frame
 from trsim.laws import functions
 from trsim.scenario.load import unit_of
@@ -55,6 +57,7 @@ class Addresses:
     states: list[tuple[str | float, int]] = field(default_factory=list)  # scale, coordinate
     coordinates: dict[str, JointCoordinate] = field(default_factory=dict)
     sensors: dict[str, int] = field(default_factory=dict)
+    rates: dict[str, int] = field(default_factory=dict)  # of sensors that functions depend on
     n_s: int = 0
     timed: bool = False  # something depends on t explicitly
     sensed: bool = False  # or on a sensor, and may be short between two corners
@@ -63,6 +66,7 @@ class Addresses:
     switches: Any = None  # of user events, once all elements are packed
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
+    packed_functions: list[Named] = field(default_factory=list)
     waves: list[int] = field(default_factory=list)  # offsets of those that have sines
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
@@ -268,7 +272,7 @@ class Addresses:
             code = functions.table(spec.x, spec.y, variable, spec.ends)
         else:
             self.timed = self.timed or "t" in names(spec.node)
-            used = spec.sensors
+            used = spec.inputs
             # what is a polynomial between its corners has nothing short there
             self.sensed = self.sensed or (bool(used) and degree(spec.node) > LOW)
             indices = {name: self.known_sensor(name, time_only, path) for name in used}
@@ -281,19 +285,27 @@ class Addresses:
         if functions.waves(code):
             self.waves.append(offset)
         self.tab.extend(code)
+        self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))
         return offset
 
     def check_table(self, spec: Any, wanted: str, *path: str) -> None:
         """Refuse units of a table's columns that are not those of its variable and its values."""
         x, y = spec.units
         if x:
-            found = UNITS["time" if spec.of == "t" else self.sensor_kind(spec.of)]
+            found = self.unit_of_variable(spec.of)
             if not fits(x, found):
                 what = f"wrong unit: '{x}'; '{spec.of}' is in {found}"
                 raise ScenarioError(what, "", (*path, "table"))
         if wanted and not fits(y, wanted):
             what = f"wrong unit: '{y}'; this number is in {wanted}"
             raise ScenarioError(what, "", (*path, "table"))
+
+    def unit_of_variable(self, name: str) -> str:
+        """The unit of t, of a sensor or of its rate."""
+        if name == "t":
+            return UNITS["time"]
+        own = UNITS[self.sensor_kind(name.removesuffix(RATE))]
+        return f"{own}/s" if name.endswith(RATE) else own
 
     def check_unit(self, kind: str, angle: str, stroke: str, *path: str) -> None:
         """Refuse a written unit that does not fit a joint that turns, or one that slides."""
@@ -316,7 +328,9 @@ class Addresses:
             self.check_unit(kind, angle, stroke, *path, key)
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
-        if time_only and name not in self.scenario.sensors:
+        """Entry of S of a sensor, or of the rate of one."""
+        own = name.removesuffix(RATE)
+        if time_only and own not in self.scenario.sensors:
             raise ScenarioError(
                 f"no parameter named '{name}'", known(name, [*self.scenario.parameters, "t"]), path
             )
@@ -326,10 +340,23 @@ class Addresses:
                 "a load may depend on sensors",
                 path,
             )
-        if name not in self.scenario.sensors:
+        first, _, rest = own.partition(".")
+        if rest and first in self.scenario.sensors:
+            raise ScenarioError(
+                f"'{name}' cannot stand in a function",
+                f"of a sensor there are `{first}` and `{first}{RATE}`; what depends on an "
+                "acceleration is a mass, not a load",
+                path,
+            )
+        if own not in self.scenario.sensors:
             raise ScenarioError(
                 f"no parameter or sensor named '{name}'",
                 known(name, [*self.scenario.sensors, *self.scenario.parameters, "t"]),
                 path,
             )
-        return self.sensor(name)
+        if own == name:
+            return self.sensor(name)
+        if own not in self.rates:
+            self.sensor(own)
+            self.rates[own] = self.entry()
+        return self.rates[own]

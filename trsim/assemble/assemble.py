@@ -124,6 +124,7 @@ def assemble(
         beams=at.beams,
         notes=(*verdict.notes(), *notes(scenario), *at.notes),
         stages=stages(scenario, at, instances, Choice(model, kept, dropped(rows, found)), planar),
+        functions=tuple(at.packed_functions),
         sections=shown,
     )
 
@@ -212,7 +213,7 @@ def pack(  # type: ignore[no-untyped-def]
     at.end = None if drives is not None or stiff else scenario.solver.end
     instances = []
     for key, section, name, spec in wanted:
-        told = len(at.notes)
+        told, known = len(at.notes), len(at.packed_functions)
         try:
             instance = Instance(section, name, kinds[key], kinds[key].pack(name, spec, at))
         except ScenarioError as error:
@@ -223,6 +224,9 @@ def pack(  # type: ignore[no-untyped-def]
         at.instances[section, name] = instance
         place = scenario.place((section, name))
         line = f"{place.show()}: " if place else ""
+        at.packed_functions[known:] = [
+            f._replace(name=f"{section}.{name}.{f.name}") for f in at.packed_functions[known:]
+        ]
         at.notes[told:] = [f"{line}{section}.{name}.{note}" for note in at.notes[told:]]
     at.switches = switches(scenario, at, instances) if drives is None else Switches()
     if at.end is not None:
@@ -300,6 +304,7 @@ def build(
         tab=np.array(at.tab),
         n_s=at.n_s,
         n_mem=N_MEM + max((i.element.n_mem for i in instances), default=0),
+        rated=np.array([(k, at.sensors[n]) for n, k in at.rates.items()], np.int64).reshape(-1, 2),
         **turns(at, d),
         **kernels(instances),
         **lines([*frames, *(r.frames for r in redundant)]),

@@ -134,6 +134,8 @@ def poses(s, y):
     for k in range(s.n_s):
         S[k, 0] = branch[k]
     call_all(s, s.coordinate, 0.0)
+    for k in range(s.rated.shape[0]):
+        S[s.rated[k, 0], 0] = S[s.rated[k, 1], 1]
 
 
 @internal

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.jumps import NOBODY, driven
-from trsim.assemble.travel import of_instance
+from trsim.assemble.travel import of_instance, of_rate
 from trsim.elements.contract import SCENE, Pair, compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.kernels.calls import caller
@@ -64,7 +64,11 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
     entries = sorted({k for f in at.functions for k in f.sensed})
     sensors = [(i.row, e) for e, i in enumerate(instances) if i.section == "sensors"]
     owner = {Pair.of(row).coordinate: e for row, e in sensors}
-    sensed = [(k, *of_instance(instances, owner[k])[:2]) for k in entries]
+    rates = {k: owner[at.sensors[name]] for name, k in at.rates.items()}
+    sensed = [
+        (k, *(of_rate(instances, rates[k]) if k in rates else of_instance(instances, owner[k])[:2]))
+        for k in entries
+    ]
     return {
         "sensed": np.array(sensed, np.int64).reshape(-1, 3),
         "slots": max((f.slots for f in at.functions if f.sensed), default=0),

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from math import inf
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from trsim.elements.contract import Channel, Element, Row, Turning
 
@@ -34,6 +34,14 @@ class Section(NamedTuple):
     y: str
     x_unit: str
     y_unit: str
+
+
+class Named(NamedTuple):
+    """A function, and where it stands in the scenario."""
+
+    name: str  # forces.push.force
+    offset: int  # in tab
+    spec: Any  # its FunctionSpec
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.instances import Column, Instance, Section
+from trsim.assemble.instances import Column, Instance, Named, Section
 from trsim.assemble.members import Beam
 from trsim.assemble.stages import Stages
 from trsim.elements.scene import Model
@@ -40,6 +40,7 @@ class Mechanism:
     beams: Mapping[str, Beam]
     notes: tuple[str, ...]
     stages: Stages  # what user events make of it
+    functions: tuple[Named, ...] = ()  # of loads and motions
     sections: tuple[Section, ...] = ()  # in the order of model.section
     ahead: Mapping[int, float] = field(default_factory=dict)  # state -> how far from its coordinate
 

@@ -13,6 +13,7 @@ from trsim.assemble.switches import LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
 UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE = range(5)
+RATE_OF = 8  # added to a kind: the rate of such a quantity
 KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE}
 
 
@@ -41,3 +42,9 @@ def of_instance(instances: list[Instance], e: int) -> tuple[int, int, float]:
     """Kind, instance and kink of the gap or coordinate of an instance."""
     row = instances[e].row
     return KINDS[row.travel], e, row.kink
+
+
+def of_rate(instances: list[Instance], e: int) -> tuple[int, int]:
+    """Kind and instance of the rate of the coordinate of an instance."""
+    kind, _, _ = of_instance(instances, e)
+    return (RATE_OF + kind if kind != UNKNOWN else UNKNOWN), e

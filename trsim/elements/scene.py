@@ -114,6 +114,7 @@ class Model(Packed):
     feature: I2  # (n_features, 7) functions with corners                   assemble/features.py
     jump: A2  # (n_instants, 2) of the place and the rate of a motion there       jumps.py
     instant: A1  # when those are met that the time alone decides
+    rated: I2  # (n, 2) entries of S that hold the rate of another: own, of which
     wound: I1  # entries of S known up to full turns: angles not of bodies in the plane
     steep: i8  # how many motions of drives may be steep between their corners
     sensed: I2  # (n, 3) sensors that meet corners

@@ -7,8 +7,10 @@ and does not vary.
 Operations with corners or jumps have branches, on which they are smooth.  One may be HELD on a
 branch: it is then drawn on beyond its ends, as a step needs it that ends at the corner.
 
-    u        a - b: comparisons, min, max      a: abs, atan2 (a of atan2(a, b))    a: smooth steps
+    u        a - b: comparisons, min, max      a: abs, sign, atan2 (a of atan2(a, b)), floor
+                                               a: smooth steps
     branch   BELOW u < 0, ABOVE u > 0          of a smooth step BELOW u < 0, INSIDE, ABOVE u > 1
+             of floor the whole number k, counted from 1 where k >= 0, in k <= u < k + 1
     FREE     whatever a and b say
 
 A root or a broken power of what is never negative, as max(x, 0)**1.5 and sqrt(abs(x)), is DRAWN on
@@ -20,7 +22,7 @@ has corners too, though it is the same function on both sides: steps end at its 
 passed over by one that begins before it and ends behind.
 """
 
-from math import atan2, exp, inf, log, pi, sqrt, tan
+from math import acos, asin, atan2, exp, floor, inf, log, pi, sqrt, tan
 
 from trsim.expressions import NOTHING, SOME
 from trsim.kernels.lazy import internal
@@ -29,18 +31,47 @@ from trsim.laws.tables import quintic, quintic_rates, smoothstep, smoothstep_rat
 
 ADD, SUB, MUL, DIV, POW, MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE = range(14)
 NEG, ABS, SQRT, SIN, COS, TAN, EXP, LOG, SMOOTHSTEP, QUINTIC = range(14, 24)
+ASIN, ACOS, FLOOR, SIGN = range(24, 28)
 
 BINARY = {"+": ADD, "-": SUB, "*": MUL, "/": DIV, "**": POW}
 BINARY |= {"<": LT, "<=": LE, ">": GT, ">=": GE, "==": EQ, "!=": NE}
 UNARY = {"abs": ABS, "sqrt": SQRT, "sin": SIN, "cos": COS, "tan": TAN, "exp": EXP, "log": LOG}
-UNARY |= {"smoothstep": SMOOTHSTEP}
+UNARY |= {"smoothstep": SMOOTHSTEP, "asin": ASIN, "acos": ACOS, "floor": FLOOR, "sign": SIGN}
 
 MONOTONE = frozenset({ADD, MUL, DIV, MIN})  # of what is never negative they make nothing negative
-NEVER_NEGATIVE = frozenset({LT, LE, GT, GE, EQ, NE, ABS, SQRT, EXP, SMOOTHSTEP, QUINTIC})
+NEVER_NEGATIVE = frozenset({LT, LE, GT, GE, EQ, NE, ABS, SQRT, EXP, SMOOTHSTEP, QUINTIC, ACOS})
 CORNERED = frozenset({MIN, MAX, ATAN2, LT, LE, GT, GE, EQ, NE, ABS, EXP, SMOOTHSTEP, QUINTIC})
+CORNERED |= {FLOOR, SIGN}
 FREE, BELOW, INSIDE, ABOVE = 0.0, -1.0, 2.0, 1.0  # what such an operation is held on
+WHOLE_FROM = 4503599627370496.0  # 2^52: from there on numbers have no fractions
 DRAWN = 1.0  # the same of a root or a power
 RISING, LARGE = 3.0, 4.0  # exp between its second and third edge, and up to its fourth
+
+
+@internal
+def floored(x):
+    """The largest whole number that x is not below; x itself where numbers have no fractions."""
+    return float(floor(x)) if abs(x) < WHOLE_FROM else x
+
+
+@internal
+def step_number(k):
+    """What floor is held on between k and k + 1: k, but never FREE."""
+    return k + 1.0 if k >= 0.0 else k
+
+
+@internal
+def step_at(held):
+    """The opposite."""
+    return held - 1.0 if held > 0.0 else held
+
+
+@internal
+def sign(x):
+    """-1, 0 or 1."""
+    if x > 0.0:
+        return 1.0
+    return -1.0 if x < 0.0 else x
 
 
 @internal
@@ -54,6 +85,8 @@ def branch_at(code, u):
     """The branch of an operation at u; at an end of it the one above."""
     if code in (SMOOTHSTEP, QUINTIC):
         return BELOW if u < 0.0 else INSIDE if u < 1.0 else ABOVE
+    if code == FLOOR:
+        return step_number(floored(u))
     if code == EXP:
         if u < SOME:
             return BELOW if u < -NOTHING else INSIDE if u < -SOME else RISING
@@ -68,6 +101,8 @@ def branch_ends(code, held):
         return -inf, inf
     if code == EXP:
         return edges_of(held)
+    if code == FLOOR:
+        return step_at(held), step_at(held) + 1.0
     if held == INSIDE:
         return 0.0, 1.0
     if held == BELOW:
@@ -90,6 +125,8 @@ def edges_of(held):
 @internal
 def beside(code, held, above):
     """The branch next to one."""
+    if code == FLOOR:
+        return step_number(step_at(held) + (1.0 if above else -1.0))
     if code == EXP:
         if held == INSIDE:
             return RISING if above else BELOW
@@ -132,7 +169,12 @@ def held_angle(a, b, held):
 
 @internal
 def held_single(code, a, held):
-    """abs, exp, a smooth step or a root on a branch: value, first and second derivative in a."""
+    """abs, exp, floor, sign, a smooth step or a root on a branch: value, first and second
+    derivative in a."""
+    if code == FLOOR:
+        return step_at(held), 0.0, 0.0
+    if code == SIGN:
+        return held, 0.0, 0.0
     if code == ABS:
         return held * a, held, 0.0
     if code == EXP:
@@ -172,6 +214,14 @@ def single(code, a):
         return exp(a)
     if code == LOG:
         return log(a)
+    if code == ASIN:
+        return asin(a)
+    if code == ACOS:
+        return acos(a)
+    if code == FLOOR:
+        return floored(a)
+    if code == SIGN:
+        return sign(a)
     return quintic(a)
 
 
@@ -225,6 +275,12 @@ def single_rates(code, a):
         return f, f, f
     if code == LOG:
         return log(a), 1.0 / a, -1.0 / (a * a)
+    if code in (ASIN, ACOS):
+        way, inside = (1.0 if code == ASIN else -1.0), 1.0 - a * a
+        f_a = way / sqrt(inside)
+        return asin(a) if code == ASIN else acos(a), f_a, f_a * a / inside
+    if code in (FLOOR, SIGN):
+        return floored(a) if code == FLOOR else sign(a), 0.0, 0.0
     return quintic_rates(a)
 
 
@@ -327,6 +383,8 @@ def slope(code, f, a, a1, b, b1):
         return abs(f) * a1
     if code == LOG:
         return a1 / a
+    if code in (ASIN, ACOS):
+        return a1 / sqrt(1.0 - a * a)
     if code == ATAN2:
         return (b * a1 + a * b1) / (a * a + b * b)
     return 2.0 * a1 if code in (SMOOTHSTEP, QUINTIC) else 0.0

@@ -6,18 +6,21 @@ An operation with branches is taken on the one it is held on (operations.py); FR
 change, its rate is without bounds.  Every result is widened by rounding.            [Moore1966]
 """
 
-from math import ceil, cos, exp, floor, inf, isfinite, log, pi, sqrt
+from math import acos, asin, ceil, cos, exp, floor, inf, isfinite, log, pi, sqrt
 
 from trsim.kernels.lazy import internal
 from trsim.laws.operations import (
     ABOVE,
     ABS,
+    ACOS,
     ADD,
+    ASIN,
     ATAN2,
     BELOW,
     COS,
     DIV,
     EXP,
+    FLOOR,
     FREE,
     INSIDE,
     LOG,
@@ -27,14 +30,17 @@ from trsim.laws.operations import (
     NEG,
     POW,
     QUINTIC,
+    SIGN,
     SIN,
     SMOOTHSTEP,
     SQRT,
     SUB,
     TAN,
     compared,
+    floored,
     held_angle,
     held_single,
+    sign,
 )
 
 ROUNDING = 1e-15  # of each operation
@@ -185,12 +191,41 @@ def one(code, x, held):
     if code == SQRT:
         l, h = widened(sqrt(max(a, 0.0)), sqrt(max(b, 0.0)))
         return (max(l, 0.0), h), over(rate, (2.0 * l, 2.0 * h))
+    if code in (FLOOR, SIGN):
+        return stepped(code, a, b, held)
+    if code in (ASIN, ACOS):
+        return arc(code, x)
     if code == EXP:
         f = widened(exp(a), exp(b))
         return f, times(f, rate)
     if a <= 0.0:
         return ALL, ALL
     return widened(log(a), log(b)), over(rate, x[0])
+
+
+@internal
+def stepped(code, a, b, held):
+    """floor or sign of what lies between a and b."""
+    if held != FREE:
+        f, _, _ = held_single(code, a, held)
+        return (f, f), (0.0, 0.0)
+    l, h = (floored(a), floored(b)) if code == FLOOR else (sign(a), sign(b))
+    return (l, h), ((0.0, 0.0) if l == h else ALL)
+
+
+@internal
+def arc(code, x):
+    """asin or acos: without bounds where its argument may be beyond -1 or 1."""
+    (a, b), rate = x
+    if not (a >= -1.0 and b <= 1.0):
+        return ALL, ALL
+    # the root of 1 - a^2 is least where a is farthest from zero
+    far = max(abs(a), abs(b))
+    near = 0.0 if a <= 0.0 <= b else min(abs(a), abs(b))
+    slope = over(rate, widened(sqrt(1.0 - far * far), sqrt(1.0 - near * near)))
+    if code == ASIN:
+        return widened(asin(a), asin(b)), slope
+    return widened(acos(b), acos(a)), negative(slope)
 
 
 @internal

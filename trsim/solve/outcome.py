@@ -296,10 +296,23 @@ def leapt(mechanism: Mechanism, r: Record) -> str:
     )
 
 
+def slid(mechanism: Mechanism, r: Record) -> str:
+    """Which function would hold a rate where it jumps."""
+    name = next(f.name for f in mechanism.functions if f.offset == int(r.slid) - 1)
+    return (
+        f"{name}: at t = {float(r.t):.9g} s a rate reaches a value at which this jumps, and is "
+        "driven back to it from both sides: it would stay there with a force that no function "
+        "tells, as dry friction does.  Take a law of friction, or let the force pass through the "
+        "value in a band of rates, as `rate/sqrt(rate**2 + v0**2)` does"
+    )
+
+
 def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why what a run comes to is no motion of the mechanism, in words; empty where it is one."""
     if r.torn:
         return leapt(mechanism, r)
+    if r.slid:
+        return slid(mechanism, r)
     if r.opened:
         return opened(scenario, mechanism, r)
     return lost_its_way(scenario, mechanism, r) if r.lost else ""

@@ -211,7 +211,7 @@ def ending(
     if reason == rec.DONE:
         text = collapsed(scenario, mechanism, float(r.t), r.y)
         return ("failed", text) if text else ("done", "")
-    if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT):
+    if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT, rec.SLIDES):
         return "failed", untrue(scenario, mechanism, r)
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting.fixed_step > 0.0:
         reason = STEP_TOO_LARGE

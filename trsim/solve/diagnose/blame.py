@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 SHORT = 0.01  # of its length as drawn: an actuator that ends at nothing
 AHEAD = (1e-12, 1e-9, 1e-6, 1e-3)  # of the run: how far beyond a failure to look
 PLACES = ("F", "zd", "phi", "phi_t", "gamma")
-RANGE = "log or sqrt of something negative, 1/0, a table that ends"
+RANGE = "log or sqrt of something negative, asin or acos beyond 1, 1/0, a table that ends"
 
 
 def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | None:

@@ -16,7 +16,7 @@ from math import inf
 
 from trsim.assemble.equations import call_one
 from trsim.assemble.switches import LIMITS
-from trsim.assemble.travel import ANGLE
+from trsim.assemble.travel import ANGLE, RATE_OF
 from trsim.elements.contract import FLIGHT, UNLOCATED, Memory
 from trsim.kernels.lazy import internal
 from trsim.solve.march.corners import NONE, any_left, corner_root, show
@@ -122,8 +122,11 @@ def bracketed_root(s, r, b, c, low, high):
 
 @internal
 def hidden_depth(s, r, setting, kind):
-    """How far beyond its end something may go, in m or rad by its kind, that is not looked for."""
+    """How far beyond its end something may go that is not looked for, in m or rad by its kind, in
+    m/s or rad/s where it is a rate."""
     depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
+    if kind > RATE_OF:
+        depth, kind = max(HIDDEN * setting.step_error, ROUNDING) * r.speed, kind - RATE_OF
     return depth / s.reach if kind == ANGLE else depth
 
 

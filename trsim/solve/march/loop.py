@@ -67,6 +67,7 @@ from trsim.solve.march.record import (
     RECORD,
     REJECTED,
     SETTINGS,
+    SLIDES,
     STEP_TOO_SMALL,
     TO_ROW,
     TOO_FAST,
@@ -139,7 +140,7 @@ def march(s, r, b, setting, methods, most):
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
     Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN,
-    ADRIFT, CRAWL, LEAPT or WINDS.
+    ADRIFT, CRAWL, LEAPT, SLIDES or WINDS.
     """
     accepted = tried = 0
     while r.t < setting.t_end:
@@ -207,6 +208,8 @@ def march(s, r, b, setting, methods, most):
         blurred(r, h)
         if r.torn > 0:
             return LEAPT
+        if r.slid > 0:
+            return SLIDES
         if too_fast(s, r):
             return TOO_FAST
         if r.opened > 0:

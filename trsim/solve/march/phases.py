@@ -123,6 +123,8 @@ def latch(s, r):
 def evaluate_all(s, r, setting, t):
     """What the record holds besides the state, at its state: y', gaps, angles, branches of laws."""
     evaluate(s, t, r.y, r.yd)
+    for k in range(s.rated.shape[0]):
+        s.S[s.rated[k, 0], 1] = 0.0  # how rates change is known behind a step
     if s.feature.shape[0] > 0:
         call_hold(s.on_features[0], s, t, BY_TIME)
         call_hold(s.on_features[0], s, t, BY_SENSORS)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from trsim.assemble.travel import RATE_OF
 from trsim.elements.scene import N_STORED, Model
 from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, A2, C1, C2, F8, I1, I2, I8, T14, Packed, f8, i8
@@ -27,6 +28,7 @@ ADRIFT = 13  # without projection, where branches of the motion meet
 OPEN = 10  # a row that was dropped as redundant is not
 WINDS = 12  # a fixed step turns a joint by more than is sure to be counted, see turns.py
 LEAPT = 11  # the place of a rigid drive jumps, see TORN
+SLIDES = 14  # a load jumps where a rate passes a value, and drives it back from both sides
 ACT = 9  # a user event happened: the caller does what it says
 
 JOLTS_KEPT = 8
@@ -225,6 +227,7 @@ class Record(Packed):
     n_jolts: I8  # jumps of the rate of a rigid drive
     lost: I8  # 1: without projection, rows are open by as much as branches are apart  adrift.py
     torn: I8  # 1 + row of the rigid drive whose place has jumped: the run ends
+    slid: I8  # 1 + offset in tab of a function that holds a rate at a jump: the run ends
     unproved: I8  # searches for an event in a step that gave up
     degree: I8  # of the polynomials in `net`
     looked: I8  # steps when rounding was looked at last  rounding.py
@@ -280,7 +283,7 @@ class Buffers(Packed):
     corner_root: A1 = of("contact")  # and where it meets a corner
     branch1: A1 = of("angles")
     turning1: A1 = of("angles")
-    net: A2 = of(9, "watched")  # control points of q over a step that is searched  spread.py
+    net: A2 = of(9, "watched")  # control points of q, or of q and v, over a step  spread.py
     curve: T14 = of(9, 14)  # those of two frames on a part of it
     seen: A2 = of("seen", 4)  # ranges of sensors and of their rates, where they meet corners
     shown: A2 = of("sensed", 2)  # what they show at both ends of a part of a step
@@ -331,11 +334,18 @@ def fresh_buffers(
         "gaps": contacts + watched,
         "channels": model.n_out + len(model.vector),
         "angles": max(model.n_s, 1),
-        "watched": model.n_q if contacts + watched + len(model.sensed) else 0,
+        "watched": controlled(model),
         "seen": max(model.n_s, 1) if len(model.sensed) else 0,
     }
     out = np.zeros(max(model.n_out, 1))
     return Buffers(**zeros(Buffers, model, sizes), out=out, firm=np.ones(2), row_firm=np.ones(rows))
+
+
+def controlled(model: Model) -> int:
+    """How many entries of y have control points: q where a step is searched, v too for rates."""
+    if not len(model.contact) + len(model.watch) + len(model.sensed):
+        return 0
+    return model.n_q + (model.n_v if any(kind > RATE_OF for _, kind, _ in model.sensed) else 0)
 
 
 def zeros(record: type[Packed], model: Model, sizes: Mapping[str, int]) -> dict[str, Any]:

@@ -9,6 +9,8 @@ On a part of a step that begins and ends with S_0 and S_1 of a sensor, l seconds
 and interval arithmetic (laws/ranges.py) makes of them the range of u and of u' of every corner.
 A part on which u stays on its piece, or on which u' has one sign and u ends on its piece, is
 clear; one on which u' has one sign and u ends elsewhere has one root; every other one is halved.
+Of the rate of a sensor the same holds a derivative further (spread_rates.py); its own rate, which
+tells where a corner is left to, is the mean of the step.
 
 What is on a corner and at rest, or swings about one within the error allowed, is left free: the
 function is then evaluated as it is written, until it has gone away.
@@ -33,7 +35,7 @@ from trsim.assemble.features import (
     SENSED,
     hold_sensed,
 )
-from trsim.assemble.travel import ANGLE
+from trsim.assemble.travel import ANGLE, RATE_OF
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
@@ -60,12 +62,15 @@ from trsim.solve.march.features import keep, other_side
 from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread, spread_at_stages
+from trsim.solve.march.spread_rates import rate_at_stages, spread_of_rate
 
+BOTH = -1.0  # of spread.py: bounds that hold for S'' on either side
 UNCERTAIN = 3.0  # a step too long to be certain; NONE: no corner in it
 SEEN = 0.8  # of a step: a short event that fills less of it may lie between its stages
 BRIEF = 1e-9  # of a run: what is shorter is not looked for
 THETA, PLACE, NEXT = range(3)  # of b.met
 LAST, TIMES, FAR = range(3)  # of r.chatter
+AHEAD = 1e-3  # of the next step: how far u is looked at behind a corner
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
@@ -86,11 +91,17 @@ def corners_ahead(s, r, b, setting, method):
     if s.sensed.shape[0] == 0:
         return NONE
     for k in range(s.sensed.shape[0]):
-        b.shown[k, 0], b.shown[k, 1] = r.sight[k], s.S[s.sensed[k, ENTRY], 0]
+        entry = s.sensed[k, ENTRY]
+        b.shown[k, 0], b.shown[k, 1] = r.sight[k], s.S[entry, 0]
+        if s.sensed[k, KIND] > RATE_OF:  # its own rate: the mean of the step
+            s.S[entry, 1] = (b.shown[k, 1] - b.shown[k, 0]) / b.h
     if b.built == 0 and method[STAGES_AT] > 0:
         for k in range(s.sensed.shape[0]):
-            what = (s.sensed[k, KIND], s.sensed[k, INSTANCE])
-            L, M = spread_at_stages(s, r, b, what, 1.0)
+            kind, e = s.sensed[k, KIND], s.sensed[k, INSTANCE]
+            if kind > RATE_OF:
+                L, M = rate_at_stages(s, r, b, (kind, e))
+            else:
+                L, M = spread_at_stages(s, r, b, (kind, e), BOTH)
             see(s, b, k, L, M, b.h)
         if verdict(s, b, b.t, b.t + b.h) == CLEAR:
             return NONE
@@ -144,9 +155,12 @@ def first_corner(s, r, b, setting):
         length, short = (high - low) * h, high - low < FINEST
         hidden = True
         for k in range(s.sensed.shape[0]):
-            kind = s.sensed[k, KIND]
+            kind, e = s.sensed[k, KIND], s.sensed[k, INSTANCE]
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
-            L, M = spread(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
+            if kind > RATE_OF:
+                L, M = spread_of_rate(s, r, b, (kind, e), (low, high))
+            else:
+                L, M = spread(s, r, b, (kind, e), BOTH, (low, high))
             see(s, b, k, L, M, length)
             seen = b.seen[s.sensed[k, ENTRY]]
             hidden = hidden and seen[1] - seen[0] < hidden_depth(s, r, setting, kind)
@@ -268,6 +282,8 @@ def turn(s, r, b, setting, method, t1, changed):
         if s.feature[n, SENSED] > 0:
             turned += released(s, r, n, t1)
             if b.met[n, THETA] <= 1.0:
+                if s.rated.shape[0] > 0 and slides(s, r, b, n, t1):
+                    r.slid = 1 + s.feature[n, OFFSET]
                 s.tab[int(b.met[n, PLACE])] = b.met[n, NEXT]
                 chatters(s, r, b, setting, n, t1)
                 turned += 1
@@ -285,6 +301,35 @@ def turn(s, r, b, setting, method, t1, changed):
     if not explicit and (turned > 0 or changed > 0) and other_pieces(s, b):
         turned += ease(s, r, b, t1)
     return turned
+
+
+@internal
+def slides(s, r, b, n, t1):
+    """Whether the corner of feature n that was met drives u back from both of its sides.
+
+    Only u of a rate can be: what the load does at once is an acceleration.
+    """
+    place, before = int(b.met[n, PLACE]), s.tab[int(b.met[n, PLACE])]
+    near, ahead = corner_at(s, n, place, t1)[0], AHEAD * r.h
+    least, most = ends_of(s.tab, s.feature[n, OFFSET], place)
+    above = abs(near - most) < abs(near - least)
+    slope_before = slope_on(s, r, b, n, place, (before, t1, ahead)) - near
+    slope_next = slope_on(s, r, b, n, place, (b.met[n, NEXT], t1, ahead)) - near
+    s.tab[place] = before
+    evaluate(s, t1, r.y, r.yd)
+    poses(s, r.y)
+    return slope_before > 0.0 > slope_next if above else slope_before < 0.0 < slope_next
+
+
+@internal
+def slope_on(s, r, b, n, place, held):
+    """u a little ahead at the accelerations that a piece gives."""
+    s.tab[place], t1, ahead = held
+    evaluate(s, t1, r.y, b.K[1])
+    for c in range(r.y.size):
+        b.y2[c] = r.y[c] + ahead * b.K[1, c]
+    poses(s, b.y2)
+    return corner_at(s, n, place, t1 + ahead)[0]
 
 
 @internal
@@ -344,8 +389,10 @@ def chatters(s, r, b, setting, n, t1):
     _, rate, _ = corner_at(s, n, place, t1)
     fastest = 1e-300  # sensor
     for k in range(s.sensed.shape[0]):
-        own = abs(s.S[s.sensed[k, ENTRY], 1])
-        fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
+        own, kind = abs(s.S[s.sensed[k, ENTRY], 1]), s.sensed[k, KIND]
+        if kind > RATE_OF:
+            own, kind = own * r.length / r.speed, kind - RATE_OF
+        fastest = max(fastest, own * (s.reach if kind == ANGLE else 1.0))
     allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0

@@ -68,7 +68,8 @@ NODES, FROM_NODES = _to_bernstein(MOST)
 
 @internal
 def fill_net(s, r, b, method):
-    """b.net[k] = k-th control points of q over the step, less q at its beginning."""
+    """b.net[k] = k-th control points of q over the step, less q at its beginning; of v too where
+    rates are looked at (spread_rates.py)."""
     degree, net = method[DEGREE_AT], b.net
     n = degree + 1
     r.degree = degree
@@ -76,14 +77,14 @@ def fill_net(s, r, b, method):
         call_control(method[CONTROL_AT], b.P, net)
         return
     for k in range(n):
-        for c in range(s.n_q):
+        for c in range(net.shape[1]):
             net[k, c] = 0.0
     for m in range(n):
         node = NODES_CUBIC[m] if degree == CUBIC else NODES[m]
         call_interpolate(method[INTERPOLATE_AT], b.P, r.y, node, b.y2)
         for k in range(n):
             weight = FROM_CUBIC[k, m] if degree == CUBIC else FROM_NODES[k, m]
-            for c in range(s.n_q):
+            for c in range(net.shape[1]):
                 net[k, c] += weight * (b.y2[c] - r.y[c])
 
 
