@@ -293,6 +293,9 @@ EXPECTED = {
 FIXED = {
     "rigid_body": {**BODY, "rotation": "-"},
     "displacement": LENGTH,
+    "distance": LENGTH,
+    "point": LENGTH,
+    "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},
     "gravity": {},
     "actuator": {"force": "N", "reaction": "N", "stroke": "m", "stroke_rate": "m/s",

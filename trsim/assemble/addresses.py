@@ -139,6 +139,10 @@ class Addresses:
         self.points.append((i, s))
         return s
 
+    def looked_at(self, i: int, place: tuple[float, ...]) -> tuple[float, ...]:
+        """The same of what is only looked at: it does not belong to the size of a mechanism."""
+        return self.axes(i, tuple(p - c for p, c in zip(place, self.centre(i), strict=True)))
+
     def axes(self, i: int, direction: tuple[float, ...]) -> tuple[float, ...]:
         """A world direction as drawn, in the axes of a body."""
         return tuple(product(self.rotation[i].T, np.array(direction)))
@@ -208,6 +212,19 @@ class Addresses:
             self.coordinates[name] = JointCoordinate(
                 name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn, tuple(place)
             )
+        return self.coordinates[name]
+
+    def turn(
+        self, name: str, i: int, j: int, axis: tuple[float, ...], frame: Frame | None
+    ) -> JointCoordinate:
+        """An angle of body j against body i about a world axis that no joint has: it is counted
+        over turns like those of joints, under the name of what tells it."""
+        points = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        drawn = self.drawn_angle(i, j, axis, frame)
+        self.coordinates[name] = JointCoordinate(
+            name, "", self.entry(), "angle", i, j, *points, self.axes(i, axis), axis, drawn,
+            self.centre(j),
+        )  # fmt: skip
         return self.coordinates[name]
 
     def sensor(self, name: str) -> int:

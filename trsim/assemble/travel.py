@@ -12,8 +12,9 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.switches import LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE = range(5)
-KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE}
+# TWIST: an angle about axes that may lean apart
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST = range(6)
+KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE, "twist": TWIST}
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:

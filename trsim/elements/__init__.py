@@ -34,6 +34,9 @@ ELEMENTS = {
     "actuator": "drives",
     "sensor": "sensors",
     "displacement": "sensors",
+    "relative_angle": "sensors",
+    "distance": "sensors",
+    "point": "sensors",
     "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",

@@ -230,6 +230,7 @@ class Reach(NamedTuple):
     places: tuple = ()  # (frame, point, frames): where a force acts, and on which bodies
     tensors: tuple = ()  # (frame, three axes, three numbers, whether of turns): linear laws
     shown: tuple = ()  # directions of what is read
+    about: tuple = ()  # axes about which turns are read
     always: bool = False  # acts at any time and place, so that its forces can be seen at any
     tilts: bool = False  # lets bodies turn out of the plane, though its rows hold in it
 

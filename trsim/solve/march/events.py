@@ -16,7 +16,7 @@ from math import inf
 
 from trsim.assemble.equations import call_one
 from trsim.assemble.switches import LIMITS
-from trsim.assemble.travel import ANGLE
+from trsim.assemble.travel import ANGLE, TWIST
 from trsim.elements.contract import FLIGHT, UNLOCATED, Memory
 from trsim.kernels.lazy import internal
 from trsim.solve.march.corners import NONE, any_left, corner_root, show
@@ -124,7 +124,7 @@ def bracketed_root(s, r, b, c, low, high):
 def hidden_depth(s, r, setting, kind):
     """How far beyond its end something may go, in m or rad by its kind, that is not looked for."""
     depth = max(HIDDEN * setting.step_error * r.length, ROUNDING * s.size)
-    return depth / s.reach if kind == ANGLE else depth
+    return depth / s.reach if kind in (ANGLE, TWIST) else depth
 
 
 @internal

@@ -33,7 +33,7 @@ from trsim.assemble.features import (
     SENSED,
     hold_sensed,
 )
-from trsim.assemble.travel import ANGLE
+from trsim.assemble.travel import ANGLE, TWIST
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
@@ -61,6 +61,7 @@ from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 
+EITHER_WAY = -1.0  # sign of a spread whose M bounds |g''|: of a distance that is the larger one
 UNCERTAIN = 3.0  # a step too long to be certain; NONE: no corner in it
 SEEN = 0.8  # of a step: a short event that fills less of it may lie between its stages
 BRIEF = 1e-9  # of a run: what is shorter is not looked for
@@ -90,7 +91,7 @@ def corners_ahead(s, r, b, setting, method):
     if b.built == 0 and method[STAGES_AT] > 0:
         for k in range(s.sensed.shape[0]):
             what = (s.sensed[k, KIND], s.sensed[k, INSTANCE])
-            L, M = spread_at_stages(s, r, b, what, 1.0)
+            L, M = spread_at_stages(s, r, b, what, EITHER_WAY)
             see(s, b, k, L, M, b.h)
         if verdict(s, b, b.t, b.t + b.h) == CLEAR:
             return NONE
@@ -146,7 +147,7 @@ def first_corner(s, r, b, setting):
         for k in range(s.sensed.shape[0]):
             kind = s.sensed[k, KIND]
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
-            L, M = spread(s, r, b, (kind, s.sensed[k, INSTANCE]), 1.0, (low, high))
+            L, M = spread(s, r, b, (kind, s.sensed[k, INSTANCE]), EITHER_WAY, (low, high))
             see(s, b, k, L, M, length)
             seen = b.seen[s.sensed[k, ENTRY]]
             hidden = hidden and seen[1] - seen[0] < hidden_depth(s, r, setting, kind)
@@ -344,8 +345,8 @@ def chatters(s, r, b, setting, n, t1):
     _, rate, _ = corner_at(s, n, place, t1)
     fastest = 1e-300  # sensor
     for k in range(s.sensed.shape[0]):
-        own = abs(s.S[s.sensed[k, ENTRY], 1])
-        fastest = max(fastest, own * (s.reach if s.sensed[k, KIND] == ANGLE else 1.0))
+        own, kind = abs(s.S[s.sensed[k, ENTRY], 1]), s.sensed[k, KIND]
+        fastest = max(fastest, own * (s.reach if kind in (ANGLE, TWIST) else 1.0))
     allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0
