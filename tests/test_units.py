@@ -294,6 +294,7 @@ FIXED = {
     "rigid_body": {**BODY, "rotation": "-"},
     "displacement": LENGTH,
     "distance": LENGTH,
+    "section": {"force": "N", "moment": "N*m", "shear": "N", "bending": "N*m"},
     "point": LENGTH,
     "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},

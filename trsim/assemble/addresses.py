@@ -12,7 +12,7 @@ from trsim.assemble.dense import product
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
-from trsim.elements.coordinates import named
+from trsim.elements.coordinates import named, split
 from trsim.elements.joint import triad
 from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, known
@@ -238,6 +238,30 @@ class Addresses:
         self.n_s += 1
         return self.n_s - 1
 
+    def size_of(self, i: int) -> float:
+        """The largest arm of a body as drawn so far, or a metre, m."""
+        arms = [float(np.linalg.norm(s)) for f, s in self.points if f == i]
+        return max(arms, default=0.0) or 1.0
+
+    def acting_on(self, body: int) -> list[tuple[int, Any]]:
+        """The joints, drives, forces and locks packed so far that push or hold a body, by their
+        numbers."""
+        found = []
+        for e, instance in enumerate(self.instances.values()):
+            places = instance.element.acts_at
+            acted = (f for f, _ in places(instance.row)) if places else instance.named_by_rows
+            if instance.section not in ("", "bodies", "points", "sensors") and body in (*acted,):
+                found.append((e, instance))
+        return found
+
+    def joint_of(self, instance: Any) -> str:
+        """The joint along whose coordinate a drive, a force or a lock acts; of others none."""
+        name, joints = instance.name, self.scenario.joints
+        spec = getattr(self.scenario, instance.section, {}).get(name)
+        if instance.section == "events":  # a lock, by the coordinate it holds
+            return split(name.rpartition(".")[0], joints)[0]
+        return split(getattr(spec, "joint", None) or "", joints)[0]
+
     def packed(self, section: str, name: str, path: tuple[str | int, ...]) -> Any:
         """The instance of an element that is packed before the one that asks."""
         if (section, name) not in self.instances:
@@ -333,6 +357,7 @@ class Addresses:
             self.check_unit(kind, angle, stroke, *path, key)
 
     def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
+        """Index of a sensor in S, for a function."""
         if time_only and name not in self.scenario.sensors:
             raise ScenarioError(
                 f"no parameter named '{name}'", known(name, [*self.scenario.parameters, "t"]), path
@@ -349,4 +374,15 @@ class Addresses:
                 known(name, [*self.scenario.sensors, *self.scenario.parameters, "t"]),
                 path,
             )
+        self.check_early(name, path)
         return self.sensor(name)
+
+    def check_early(self, name: str, path: tuple[str | int, ...]) -> None:
+        """Refuse a sensor that shows no number of places and velocities."""
+        if "coordinate" not in self.elements["sensors", name].kernels:
+            key = self.elements["sensors", name].key
+            raise ScenarioError(
+                f"'{name}' ({key}) is known only once the accelerations are",
+                "take a sensor of places or velocities",
+                path,
+            )

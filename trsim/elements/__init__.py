@@ -46,6 +46,7 @@ ELEMENTS = {
     "torsion_spring": "forces",
     "limit_stop": "forces",
     "sync_shaft": "forces",
+    "section": "sensors",  # behind all that may act on a body
 }
 
 # word -> the key that makes it another element, and which

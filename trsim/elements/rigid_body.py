@@ -16,13 +16,11 @@ from pydantic import BeforeValidator
 from trsim import elements
 from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Memory, Row, measured
+from trsim.elements.inertia import Inertia, tensor_of
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
 from trsim.kernels.columns import f8, i8
 
-KG_M2 = Unit("kg*m^2")
-INERTIA = Annotated[float, Ge(0), KG_M2]
-PRODUCT = Annotated[float, KG_M2]
 ON_LINE = 1e-3  # of its length: how far the centre of mass of a bar may be from its middle
 
 
@@ -53,11 +51,7 @@ class RigidBody(Spec):
 
     type: ClassVar[str] = "rigid_body"
     mass: Annotated[float, Ge(0), Unit("kg")]
-    inertia: (
-        INERTIA
-        | tuple[INERTIA, INERTIA, INERTIA]
-        | tuple[INERTIA, INERTIA, INERTIA, PRODUCT, PRODUCT, PRODUCT]
-    )
+    inertia: Inertia
     at: point("m") = (0.0, 0.0, 0.0)
     angle: Annotated[float, Unit("rad")] = 0.0
     velocity: vector("m/s") = (0.0, 0.0, 0.0)
@@ -67,10 +61,7 @@ class RigidBody(Spec):
     @property
     def tensor(self):
         """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
-        if isinstance(self.inertia, float):
-            return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, self.inertia), False
-        xx, yy, zz, xy, xz, yz = (*self.inertia, 0.0, 0.0, 0.0)[:6]
-        return (xx, xy, xz, xy, yy, yz, xz, yz, zz), True
+        return tensor_of(self.inertia)
 
     def bar(self, start, end):
         if start == end:
