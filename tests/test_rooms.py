@@ -14,6 +14,9 @@ AT_HOME = ("trsim.elements", "trsim.studies")  # a study is run of what anybody 
 # keys of elements that are words of something else as well, where they stand alone in a string
 WORDS = {
     "drive": "an entry of `drives`, in messages",
+    "distance": "a kind of what is watched",
+    "point": "a key of what is given by one, in messages and in pictures",
+    "section": "of a scenario, and of a study; a Poincare section",
     "sensor": "an entry of `sensors`, in messages",
     "gravity": "a key of the scenario",
     "marker": "how a figure shows a point",

@@ -293,6 +293,10 @@ EXPECTED = {
 FIXED = {
     "rigid_body": {**BODY, "rotation": "-"},
     "displacement": LENGTH,
+    "distance": LENGTH,
+    "section": {"force": "N", "moment": "N*m", "shear": "N", "bending": "N*m"},
+    "point": LENGTH,
+    "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},
     "gravity": {},
     "actuator": {"force": "N", "reaction": "N", "stroke": "m", "stroke_rate": "m/s",

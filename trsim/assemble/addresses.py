@@ -13,7 +13,7 @@ from trsim.assemble.instances import Named
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
-from trsim.elements.coordinates import named
+from trsim.elements.coordinates import named, split
 from trsim.elements.joint import triad
 from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, known
@@ -143,6 +143,10 @@ class Addresses:
         self.points.append((i, s))
         return s
 
+    def looked_at(self, i: int, place: tuple[float, ...]) -> tuple[float, ...]:
+        """The same of what is only looked at: it does not belong to the size of a mechanism."""
+        return self.axes(i, tuple(p - c for p, c in zip(place, self.centre(i), strict=True)))
+
     def axes(self, i: int, direction: tuple[float, ...]) -> tuple[float, ...]:
         """A world direction as drawn, in the axes of a body."""
         return tuple(product(self.rotation[i].T, np.array(direction)))
@@ -214,6 +218,19 @@ class Addresses:
             )
         return self.coordinates[name]
 
+    def turn(
+        self, name: str, i: int, j: int, axis: tuple[float, ...], frame: Frame | None
+    ) -> JointCoordinate:
+        """An angle of body j against body i about a world axis that no joint has: it is counted
+        over turns like those of joints, under the name of what tells it."""
+        points = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+        drawn = self.drawn_angle(i, j, axis, frame)
+        self.coordinates[name] = JointCoordinate(
+            name, "", self.entry(), "angle", i, j, *points, self.axes(i, axis), axis, drawn,
+            self.centre(j),
+        )  # fmt: skip
+        return self.coordinates[name]
+
     def sensor(self, name: str) -> int:
         """Index of a sensor in S."""
         if name not in self.sensors:
@@ -224,6 +241,30 @@ class Addresses:
         """Index of a new entry of S."""
         self.n_s += 1
         return self.n_s - 1
+
+    def size_of(self, i: int) -> float:
+        """The largest arm of a body as drawn so far, or a metre, m."""
+        arms = [float(np.linalg.norm(s)) for f, s in self.points if f == i]
+        return max(arms, default=0.0) or 1.0
+
+    def acting_on(self, body: int) -> list[tuple[int, Any]]:
+        """The joints, drives, forces and locks packed so far that push or hold a body, by their
+        numbers."""
+        found = []
+        for e, instance in enumerate(self.instances.values()):
+            places = instance.element.acts_at
+            acted = (f for f, _ in places(instance.row)) if places else instance.named_by_rows
+            if instance.section not in ("", "bodies", "points", "sensors") and body in (*acted,):
+                found.append((e, instance))
+        return found
+
+    def joint_of(self, instance: Any) -> str:
+        """The joint along whose coordinate a drive, a force or a lock acts; of others none."""
+        name, joints = instance.name, self.scenario.joints
+        spec = getattr(self.scenario, instance.section, {}).get(name)
+        if instance.section == "events":  # a lock, by the coordinate it holds
+            return split(name.rpartition(".")[0], joints)[0]
+        return split(getattr(spec, "joint", None) or "", joints)[0]
 
     def packed(self, section: str, name: str, path: tuple[str | int, ...]) -> Any:
         """The instance of an element that is packed before the one that asks."""
@@ -354,9 +395,20 @@ class Addresses:
                 known(name, [*self.scenario.sensors, *self.scenario.parameters, "t"]),
                 path,
             )
+        self.check_early(own, path)
         if own == name:
             return self.sensor(name)
         if own not in self.rates:
             self.sensor(own)
             self.rates[own] = self.entry()
         return self.rates[own]
+
+    def check_early(self, name: str, path: tuple[str | int, ...]) -> None:
+        """Refuse a sensor that shows no number of places and velocities."""
+        if "coordinate" not in self.elements["sensors", name].kernels:
+            key = self.elements["sensors", name].key
+            raise ScenarioError(
+                f"'{name}' ({key}) is known only once the accelerations are",
+                "take a sensor of places or velocities",
+                path,
+            )

@@ -62,7 +62,8 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
         rows.append((*own_rows, drive.slip))
         held += f.held
     entries = sorted({k for f in at.functions for k in f.sensed})
-    sensors = [(i.row, e) for e, i in enumerate(instances) if i.section == "sensors"]
+    early = [i.section == "sensors" and "coordinate" in i.element.kernels for i in instances]
+    sensors = [(i.row, e) for e, i in enumerate(instances) if early[e]]
     owner = {Pair.of(row).coordinate: e for row, e in sensors}
     rates = {k: owner[at.sensors[name]] for name, k in at.rates.items()}
     sensed = [

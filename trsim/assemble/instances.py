@@ -61,6 +61,11 @@ class Instance:
         return tuple(channel._replace(unit=channel.unit_on(own)) for channel in found)
 
     @property
+    def named_by_rows(self) -> frozenset[int]:
+        """The frames that its constraint rows name."""
+        return frozenset().union(*(self.row.frames(k) for k in range(len(self.element.rows))))
+
+    @property
     def turning(self) -> Turning:
         """How it depends on the turns of its frames."""
         if self.element.turning:

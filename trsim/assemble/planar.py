@@ -208,6 +208,8 @@ def reaching(at: Addresses, reach: Any, size: float) -> Iterator[tuple[str, str]
             yield "has an axis of stiffness or damping at an angle to the plane", kind
     if any(not level(world(*way)) for way in reach.shown):
         yield "tells what happens out of the x-y plane", TELLS
+    if any(not upright(world(*axis)) for axis in reach.about):
+        yield "tells of turns about another axis than z", TELLS
     if reach.tilts:
         yield "lets bodies turn out of the x-y plane", TELLS
 

@@ -166,6 +166,7 @@ class _Packing:
         kind, path = "time", (SECTION, name, "when")
         if spec.when != "t":
             check(spec.when, [*self.scenario.sensors, "t"], "sensor", path)
+            self.at.check_early(spec.when, path)
             kind = self.at.sensor_kind(spec.when)
         self.check_value(name, spec.when, UNITS[kind])
         return (TIME if kind == "time" else self.at.sensor(spec.when)), kind

@@ -184,7 +184,7 @@ def turns(at: Addresses, d: int) -> dict[str, Any]:
     found = [
         (x, 1 if x.axis[2] > 0 else -1)
         for x in (at.coordinates.values() if d == 3 else ())
-        if x.kind == "angle" and not (at.is_node(x.i) or at.is_node(x.j))
+        if x.kind == "angle" and not (at.is_node(x.i) or at.is_node(x.j)) and abs(x.axis[2]) > 0.5
     ]
     rows = [(x.entry, x.i, x.j, sign) for x, sign in found]
     alike = at.about_z == at.angle

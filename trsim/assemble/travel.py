@@ -12,9 +12,11 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.switches import LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE = range(5)
+# TWIST: an angle about axes that may lean apart
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST = range(6)
 RATE_OF = 8  # added to a kind: the rate of such a quantity
-KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE}
+KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE, "twist": TWIST}
+UNBOUNDED = (UNKNOWN, TWIST)  # kinds whose rates have no bound
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:
@@ -47,4 +49,4 @@ def of_instance(instances: list[Instance], e: int) -> tuple[int, int, float]:
 def of_rate(instances: list[Instance], e: int) -> tuple[int, int]:
     """Kind and instance of the rate of the coordinate of an instance."""
     kind, _, _ = of_instance(instances, e)
-    return (RATE_OF + kind if kind != UNKNOWN else UNKNOWN), e
+    return (UNKNOWN if kind in UNBOUNDED else RATE_OF + kind), e

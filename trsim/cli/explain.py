@@ -51,7 +51,7 @@ def element(page: dict[str, Any]) -> Iterator[str]:
     yield from ("", page["law"], "", page["about"])
     yield from keys(page)
     if page["coordinates"]:
-        of = "joint " if page["section"] == "joints" else ""
+        of = {"joints": "joint "}.get(page["section"], "")
         yield from ("", f"{of}coordinate: {', '.join(page['coordinates'])}")
     if page["channels"]:
         yield from ("", "channels:")

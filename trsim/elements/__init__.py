@@ -34,6 +34,9 @@ ELEMENTS = {
     "actuator": "drives",
     "sensor": "sensors",
     "displacement": "sensors",
+    "relative_angle": "sensors",
+    "distance": "sensors",
+    "point": "sensors",
     "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
@@ -43,6 +46,7 @@ ELEMENTS = {
     "torsion_spring": "forces",
     "limit_stop": "forces",
     "sync_shaft": "forces",
+    "section": "sensors",  # behind all that may act on a body
 }
 
 # word -> the key that makes it another element, and which

@@ -31,7 +31,15 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import between_points, distance_row, line, points, push_apart, scaled
+from trsim.elements.frames import (
+    at_both,
+    between_points,
+    distance_row,
+    line,
+    points,
+    push_apart,
+    scaled,
+)
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit, point
@@ -277,6 +285,7 @@ ELEMENT = Element(
     section="drives",
     spec=Actuator,
     pack=pack,
+    acts_at=at_both,
     reach=reach,
     rows=("length",),
     channels=CHANNELS,

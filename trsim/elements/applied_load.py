@@ -124,6 +124,12 @@ def reach(row):
     return Reach(forces=way, places=((own.body, own.point, (own.body,)),))
 
 
+def acts_at(row):
+    """Of a torque without a point of its own nobody knows where."""
+    own = Own.of(row)
+    return () if own.turns and not any(own.point) else ((own.body, own.point),)
+
+
 def turning(row):
     own = Own.of(row)
     if own.turns:
@@ -137,6 +143,7 @@ ELEMENT = Element(
     section="forces",
     spec=AppliedLoad,
     pack=pack,
+    acts_at=acts_at,
     reach=reach,
     channels=(
         Channel("magnitude", "drive", "the force or torque along its direction"),

@@ -32,6 +32,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.frames import (
     TwoPoints,
+    at_both,
     carried,
     dot,
     minus,
@@ -236,6 +237,7 @@ ELEMENT = Element(
     section="forces",
     spec=Bushing,
     pack=pack,
+    acts_at=at_both,
     reach=reach,
     judged=turns_against,
     doubts=doubts,

@@ -36,6 +36,7 @@ from trsim.elements.contract import (
 )
 from trsim.elements.frames import (
     arm,
+    at_both,
     carried,
     cross,
     dot,
@@ -266,6 +267,7 @@ ELEMENT = Element(
     section="joints",
     spec=ClearanceJoint,
     pack=pack,
+    acts_at=at_both,
     reach=reach,
     rows=tuple(row.name for row in ROWS),
     holds=tuple(row.holds for row in ROWS),

@@ -231,6 +231,7 @@ class Reach(NamedTuple):
     places: tuple = ()  # (frame, point, frames): where a force acts, and on which bodies
     tensors: tuple = ()  # (frame, three axes, three numbers, whether of turns): linear laws
     shown: tuple = ()  # directions of what is read
+    about: tuple = ()  # axes about which turns are read
     always: bool = False  # acts at any time and place, so that its forces can be seen at any
     tilts: bool = False  # lets bodies turn out of the plane, though its rows hold in it
 
@@ -279,6 +280,9 @@ class Element:
     channels: tuple[Channel, ...] = ()
     loads: dict[str, str] = field(default_factory=dict)  # channels -> names in tables of loads
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
+    # (row) -> (frame, point in its axes from its centre) of all places where it pushes or holds a
+    # body, turns it included; None: not at places
+    acts_at: Callable[[Row], tuple] | None = None
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on
     # (row) -> whether its channels are measured in any run, recorded or not: something is judged

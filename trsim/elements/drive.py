@@ -26,6 +26,7 @@ from trsim.elements.contract import (
 from trsim.elements.frames import (
     along_row,
     arm,
+    at_both,
     carried,
     cross,
     dot,
@@ -201,6 +202,7 @@ ELEMENT = Element(
     section="drives",
     spec=Drive,
     pack=pack,
+    acts_at=at_both,
     rows=("motion",),
     channels=(
         Channel("force", "drive", "sign times the force or torque on the second body"),

@@ -46,6 +46,12 @@ def between_points(row):
     return Turning(points=((own.i, own.p_i), (own.j, own.p_j)))
 
 
+def at_both(row):
+    """The places where what is between two points acts on their bodies."""
+    own = TwoPoints.of(row)
+    return (own.i, own.p_i), (own.j, own.p_j)
+
+
 class Along(TwoPoints):
     """Of an element along an axis or about it, such as that of a joint."""
 

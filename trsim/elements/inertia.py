@@ -14,7 +14,7 @@ from trsim.fields import Unit
 KG_M2 = Unit("kg*m^2")
 MOMENT = Annotated[float, Ge(0), KG_M2]
 PRODUCT = Annotated[float, KG_M2]
-INERTIA = (
+Inertia = (
     MOMENT
     | tuple[MOMENT, MOMENT, MOMENT]
     | tuple[MOMENT, MOMENT, MOMENT, PRODUCT, PRODUCT, PRODUCT]
@@ -23,7 +23,7 @@ ENTRIES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 ROUNDED = 1e-14  # of the trace of a tensor
 
 
-def tensor(inertia: Any) -> tuple[tuple[float, ...], bool]:
+def tensor_of(inertia: Any) -> tuple[tuple[float, ...], bool]:
     """The 3 x 3 tensor, row by row, and whether it is known in all directions."""
     if isinstance(inertia, float):
         return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, inertia), False

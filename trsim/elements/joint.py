@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from trsim.elements.contract import Element, Reach, Row, Turning
-from trsim.elements.frames import between_points, points
+from trsim.elements.frames import at_both, between_points, points
 from trsim.elements.rows import COORDINATES, POINT, Axes, constraint_of, coordinate_of
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, direction, point
@@ -113,6 +113,7 @@ def joint(key, spec, rows, coordinates=(), pack=pack, **other):
         "welds": (places, turns) == (3, 3),
         "pin": (2, 3) if ball else (2,) if places == 3 and "angle" in coordinates else (),
         "holds_twist": not whole,
+        "acts_at": at_both,
         "turning": between_points if ball else on_line if whole else None,
         "picture": PICTURES.get((places, turns), ""),
     }

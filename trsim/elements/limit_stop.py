@@ -34,6 +34,7 @@ from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.frames import (
     Along,
     arm,
+    at_both,
     carried,
     dot,
     minus,
@@ -279,6 +280,7 @@ ELEMENT = Element(
     section="forces",
     spec=LimitStop,
     pack=pack,
+    acts_at=at_both,
     reach=reach,
     channels=(
         Channel("normal_force", "drive", "contact force or torque; never negative", least=0.0),

@@ -12,7 +12,7 @@ from typing import Annotated, ClassVar
 from annotated_types import Gt
 
 from trsim.elements.contract import Channel, Element, Row, kernel, measured
-from trsim.elements.frames import TwoPoints, between_points, distance_row, points
+from trsim.elements.frames import TwoPoints, at_both, between_points, distance_row, points
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import constraint_row, f8
@@ -72,6 +72,7 @@ ELEMENT = Element(
     section="joints",
     spec=Link,
     pack=pack,
+    acts_at=at_both,
     rows=("length",),
     channels=(Channel("force", "N", "axial force of the rod, positive in tension"),),
     loads={"force": "force"},

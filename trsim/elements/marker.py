@@ -41,12 +41,10 @@ class Own(Memory):
 
 def pack(name, spec, at):
     i, frame = at.body(spec.body, "body", near=spec.at), spec.frame
-    # not `at.local`: what is only looked at does not belong to the size of a mechanism
-    arm_as_drawn = tuple(p - c for p, c in zip(spec.at, at.centre(i), strict=True))
     axes = {"x": at.axes(i, frame.x), "y": at.axes(i, frame.y), "z": at.axes(i, frame.z)}
     # a flexible bar does not say how it turns about itself
     shown = CHANNELS[:3] if at.is_node(i) else CHANNELS
-    return Row(*Own.packed(body=i, point=at.axes(i, arm_as_drawn), **axes), channels=shown)
+    return Row(*Own.packed(body=i, point=at.looked_at(i, spec.at), **axes), channels=shown)
 
 
 @measured

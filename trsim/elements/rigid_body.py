@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, ConfigDict, model_validator
 from trsim import elements
 from trsim.elements.cable import Cable
 from trsim.elements.contract import Channel, Element, Memory, Row, measured
-from trsim.elements.inertia import INERTIA, tensor, written
+from trsim.elements.inertia import Inertia, tensor_of, written
 from trsim.elements.solid import Solid
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, point, vector
@@ -59,7 +59,7 @@ class RigidBody(Spec):
     )
     type: ClassVar[str] = "rigid_body"
     mass: Annotated[float, Ge(0), Unit("kg")] | None = None
-    inertia: INERTIA | None = None
+    inertia: Inertia | None = None
     at: point("m") | None = None
     shape: Annotated[tuple[Solid, ...], MinLen(1)] | None = None
     density: Annotated[float, Gt(0), Unit("kg/m^3")] | None = None
@@ -111,7 +111,7 @@ class RigidBody(Spec):
     @property
     def tensor(self):
         """The 3 x 3 inertia tensor, row by row, and whether it is known in all directions."""
-        return tensor(self.inertia)
+        return tensor_of(self.inertia)
 
     def bar(self, start, end):
         if start == end:

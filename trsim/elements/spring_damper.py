@@ -21,7 +21,15 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import TwoPoints, between_points, line, points, push_apart, scaled
+from trsim.elements.frames import (
+    TwoPoints,
+    at_both,
+    between_points,
+    line,
+    points,
+    push_apart,
+    scaled,
+)
 from trsim.fields import Spec, Unit, point
 from trsim.kernels.columns import f8
 
@@ -101,6 +109,7 @@ ELEMENT = Element(
     section="forces",
     spec=SpringDamper,
     pack=pack,
+    acts_at=at_both,
     reach=reach,
     channels=(
         Channel("force", "N", "tension"),

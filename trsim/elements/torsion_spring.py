@@ -18,7 +18,7 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import Along, arm, on_joint, scaled, twist_apart
+from trsim.elements.frames import Along, arm, at_both, on_joint, scaled, twist_apart
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8
 
@@ -83,6 +83,7 @@ ELEMENT = Element(
     section="forces",
     spec=TorsionSpring,
     pack=pack,
+    acts_at=at_both,
     channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
     loads={"torque": "torque"},
     kernels={"force": force, "energy": energy, "measure": measure},

@@ -252,6 +252,16 @@ def measure(t, scene, e, o):
         scene.out[o + q] = -scene.lam[k] * terms[TERM * q] if k >= 0 else 0.0
 
 
+def acts_at(row):
+    """Where its joints are."""
+    own, found = Own.of(row), []
+    for q in range(own.number):
+        points = own.terms[TERM * q + 2 : TERM * q + 8]
+        i, j = own.where[WHERE * q : WHERE * q + 2]
+        found += [(i, points[:3]), (j, points[3:])]
+    return tuple(found)
+
+
 def reach(row):
     """Its torques are about the axes of hinges, its forces along those of slides."""
     own, hinges, slides = Own.of(row), [], []
@@ -272,6 +282,7 @@ def transmission(key: str, spec: type, pack: Any, units: tuple[str, ...], exampl
         rows=("relation",),
         bears=False,
         channels=tuple(channel(k, unit) for k, unit in enumerate(units)),
+        acts_at=acts_at,
         reach=reach,
         kernels={"constraint": constraint, "measure": measure},
         example=example,

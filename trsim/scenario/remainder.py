@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from trsim.elements.inertia import tensor, written
+from trsim.elements.inertia import tensor_of, written
 from trsim.elements.weighing import of_body, turned
 from trsim.errors import ScenarioError, known
 from trsim.laws.solids import Bulk, moved, possible, together
@@ -73,7 +73,7 @@ def members(total: Total, bodies: dict[str, Any]) -> list[str]:
 
 def inertia_left(total: Total, remainder: Any, others: list[Any], about: Any) -> Any:
     """The inertia that is left for the remainder, in its own axes."""
-    wanted, whole = tensor(total.inertia)
+    wanted, whole = tensor_of(total.inertia)
     used = sum((moved(of_body(one), about) for one in others), np.zeros((3, 3)))
     empty = Bulk(remainder.mass, np.array(remainder.at), np.zeros((3, 3)))
     left = np.reshape(wanted, (3, 3)) - used - moved(empty, about)

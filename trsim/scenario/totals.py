@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar
 
 from annotated_types import Gt, MinLen
 
-from trsim.elements.inertia import INERTIA
+from trsim.elements.inertia import Inertia
 from trsim.fields import Spec, Unit, point
 
 
@@ -24,5 +24,5 @@ class Total(Spec):
     bodies: Annotated[tuple[str, ...], MinLen(2)] | None = None
     mass: Annotated[float, Gt(0), Unit("kg")]
     at: point("m") | None = None  # type: ignore[valid-type]
-    inertia: INERTIA | None = None
+    inertia: Inertia | None = None
     remainder: str

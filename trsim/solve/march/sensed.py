@@ -35,7 +35,7 @@ from trsim.assemble.features import (
     SENSED,
     hold_sensed,
 )
-from trsim.assemble.travel import ANGLE, RATE_OF
+from trsim.assemble.travel import ANGLE, RATE_OF, TWIST
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
@@ -64,7 +64,7 @@ from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 from trsim.solve.march.spread_rates import rate_at_stages, spread_of_rate
 
-BOTH = -1.0  # of spread.py: bounds that hold for S'' on either side
+EITHER_WAY = -1.0  # sign of a spread whose M bounds |g''|: of a distance that is the larger one
 UNCERTAIN = 3.0  # a step too long to be certain; NONE: no corner in it
 SEEN = 0.8  # of a step: a short event that fills less of it may lie between its stages
 BRIEF = 1e-9  # of a run: what is shorter is not looked for
@@ -101,7 +101,7 @@ def corners_ahead(s, r, b, setting, method):
             if kind > RATE_OF:
                 L, M = rate_at_stages(s, r, b, (kind, e))
             else:
-                L, M = spread_at_stages(s, r, b, (kind, e), BOTH)
+                L, M = spread_at_stages(s, r, b, (kind, e), EITHER_WAY)
             see(s, b, k, L, M, b.h)
         if verdict(s, b, b.t, b.t + b.h) == CLEAR:
             return NONE
@@ -160,7 +160,7 @@ def first_corner(s, r, b, setting):
             if kind > RATE_OF:
                 L, M = spread_of_rate(s, r, b, (kind, e), (low, high))
             else:
-                L, M = spread(s, r, b, (kind, e), BOTH, (low, high))
+                L, M = spread(s, r, b, (kind, e), EITHER_WAY, (low, high))
             see(s, b, k, L, M, length)
             seen = b.seen[s.sensed[k, ENTRY]]
             hidden = hidden and seen[1] - seen[0] < hidden_depth(s, r, setting, kind)
@@ -392,7 +392,7 @@ def chatters(s, r, b, setting, n, t1):
         own, kind = abs(s.S[s.sensed[k, ENTRY], 1]), s.sensed[k, KIND]
         if kind > RATE_OF:
             own, kind = own * r.length / r.speed, kind - RATE_OF
-        fastest = max(fastest, own * (s.reach if kind == ANGLE else 1.0))
+        fastest = max(fastest, own * (s.reach if kind in (ANGLE, TWIST) else 1.0))
     allowed = setting.step_error * r.length
     within = fastest * (t1 - chatter[LAST]) < allowed
     chatter[TIMES] = chatter[TIMES] + 1.0 if within else 0.0

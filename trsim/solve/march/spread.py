@@ -6,6 +6,9 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
     angle      |g'| <= omega_i + omega_j    |g''| <= alpha_i + alpha_j + omega_i (omega_i + omega_j)
     stroke     |g'| <= |u'|                 |g''| <= |u''|
     distance   |g'| <= |u'|                 -|u''| <= g'' <= |u''| + |u'|^2 / |u|
+    twist      |g'| <= k Omega              |g''| <= k (alpha_i + alpha_j + omega_i Omega)
+                                                     + k^2 (1 + k) Omega^2 / 2
+               Omega = omega_i + omega_j,  k = 1 / cos(tilt / 2) of its axes  relative_angle.py
 
     |u''| <= |d''| + 2 omega_i |d'| + (alpha_i + omega_i^2) |d|
     |d''| <= |r_j'' - r_i''| + (alpha_i + omega_i^2) |p_i| + (alpha_j + omega_j^2) |p_j|
@@ -19,12 +22,12 @@ bounds are taken from the derivatives at the stages of the step, of which it is 
 enlarged: accelerations twice.
 """
 
-from math import comb, cos, inf, pi, sqrt
+from math import acos, comb, cos, inf, pi, sqrt
 
 import numpy as np
 
 from trsim.assemble.dense import inverse
-from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, UNKNOWN
+from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, TWIST, UNKNOWN
 from trsim.elements.contract import Pair
 from trsim.elements.frames import (
     arm,
@@ -36,6 +39,7 @@ from trsim.elements.frames import (
     two_points,
     velocity,
 )
+from trsim.elements.rows import Axes
 from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import (
     CONTROL_AT,
@@ -47,6 +51,7 @@ from trsim.solve.march.calls import (
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
+MOST_LEAN = 1.5  # rad: half of what axes may lean apart by where their angle has bounds
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
 
@@ -207,6 +212,8 @@ def spread(s, r, b, what, sign, part):
     of_i, of_j = turning(s, r, b, i, 0, length), turning(s, r, b, j, first_j, length)
     if kind == ANGLE:
         return of_angle(of_i, of_j)
+    if kind == TWIST:
+        return of_twist(s, e, of_i, of_j, length)
     (spin_i, bend_i), (spin_j, bend_j) = of_i, of_j
     away = apart(s, b, n, i, j, first_j, length)
     _, p_i, _, p_j = two_points(s, e)
@@ -221,6 +228,20 @@ def of_angle(of_i, of_j):
     acceleration."""
     turn = of_i[0] + of_j[0]
     return turn, of_i[1] + of_j[1] + of_i[0] * turn
+
+
+@internal
+def of_twist(s, e, of_i, of_j, length):
+    """The same in `length` s of an angle about axes that lean apart, by no more than they lean at
+    the pose of the scene and turn against each other by from there."""
+    own = Axes(s, e)
+    turn, bend = of_angle(of_i, of_j)
+    share = dot(arm(s.X, own.i, own.a_i), arm(s.X, own.j, own.a_j))
+    half = 0.5 * (acos(min(max(share, -1.0), 1.0)) + turn * length)
+    if not half < MOST_LEAN:
+        return inf, inf
+    k = 1.0 / cos(half)
+    return k * turn, k * bend + 0.5 * k * k * (1.0 + k) * turn * turn
 
 
 @internal
@@ -369,4 +390,6 @@ def spread_at_stages(s, r, b, what, sign):
     of_i, of_j = at_stages(s, r, b, own.i), at_stages(s, r, b, own.j)
     if kind == ANGLE:
         return of_angle(of_i, of_j)
+    if kind == TWIST:
+        return of_twist(s, e, of_i, of_j, b.h)
     return from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)

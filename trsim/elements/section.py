@@ -1,0 +1,324 @@
+"""Section: the force and the moment in a rigid body at a station, without a joint there.
+
+    F = m (a_c - g) - sum F_k
+    M = I alpha + omega x I omega + (c - p) x m (a_c - g) - sum M_k       about the station p
+
+F and M are what the rest of the body puts on the part beyond the section: what a `fixed` joint
+between the two would show as its reaction and reaction_moment.  m, c and I are those of the part
+beyond, a_c is the acceleration of c; F_k and M_k are what joints, drives and forces put on that
+part, the moment about p.  Of a joint they are those of its constraint rows, -J^T lambda.
+
+Components are in axes that turn with the body: x and y in the section, z along its normal, which
+points to the part beyond.  In a planar scene forces along the z of the world and moments about
+other axes are zero, as those of joints are.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar
+
+import numpy as np
+from annotated_types import Ge
+from pydantic import model_validator
+
+from trsim.elements.contract import (
+    FIRST_ROW,
+    Channel,
+    Element,
+    Pair,
+    Row,
+    Turning,
+    call_kernel,
+    measured,
+)
+from trsim.elements.frames import (
+    arm,
+    centripetal,
+    cross,
+    dot,
+    minus,
+    plus,
+    scaled,
+    spin,
+    velocity,
+)
+from trsim.elements.inertia import Inertia, tensor_of
+from trsim.elements.joint import triad
+from trsim.elements.rotations import into
+from trsim.errors import ScenarioError, known
+from trsim.fields import Spec, Unit, point, vector
+from trsim.kernels.columns import V3, f8, i8, run
+from trsim.kernels.lazy import internal
+
+IN_PLANE = 1e-9  # of the size of a body: so near to the section nobody knows the side
+LEAST = -1e-9  # of its inertia: what rounding may leave of the rest of a body
+
+
+class BodySection(Spec):
+    """What a rigid body carries at a station: normal and shear force, torsion and bending.
+
+    body     the one that is cut; rigid
+    at       the station, as drawn
+    axis     normal of the section, as drawn; it points to the part beyond
+    x_axis   direction of the first components, as drawn; made perpendicular to the normal
+    mass     of the part beyond
+    centre   its centre of mass, as drawn
+    inertia  about its centre of mass, given like that of a body and in the same axes
+    beyond   joints, drives and forces that act on the part beyond; what acts along the coordinate
+             of a joint goes with it. Unless given: those that act on that side of the section
+    """
+
+    type: ClassVar[str] = "section"
+    body: str
+    at: point("m")
+    axis: vector("-")
+    x_axis: vector("-") | None = None
+    mass: Annotated[float, Ge(0), Unit("kg")]
+    centre: point("m") | None = None
+    inertia: Inertia | None = None
+    beyond: tuple[str, ...] | None = None
+
+    @model_validator(mode="after")
+    def whole(self):
+        if self.mass > 0.0 and (self.centre is None or self.inertia is None):
+            raise ValueError("a part with mass needs its `centre` and its `inertia`")
+        return self
+
+
+class Own(Pair):
+    """Of one instance."""
+
+    number: i8  # of what acts on the part beyond
+    pushes: i8  # 1: some of that are no constraint rows
+    members: run(i8)  # of each its instance and how many constraint rows it has
+    station: V3  # m, from the centre of mass, in the axes of the body
+    x: V3  # axes of the section, in those of the body
+    y: V3
+    z: V3
+    centre: V3  # m
+    weight: V3  # N, of the part beyond, world axes
+    mass: f8  # kg
+    inertia: run(f8, 9)
+
+
+def pack(name, spec, at):
+    if spec.body == "ground":
+        raise ScenarioError("the ground is no body that can be cut", "name a body", ("body",))
+    if at.bar(spec.body) is not None:
+        hint = "record `node3.bending_moment` of the bar and the like, or make it rigid"
+        raise ScenarioError(f"'{spec.body}' is flexible", hint, ("body",))
+    i = at.body(spec.body, "body")
+    u, w, a = triad(spec)
+    centre = spec.at if spec.centre is None else spec.centre
+    tensor = check_part(spec, at, i)
+    members = [m for e, instance in beyond(spec, at, i, a)
+               for m in (e, len(instance.element.rows))]  # fmt: skip
+    instances = [*at.instances.values()]
+    own = Own.packed(
+        i=i, j=i, coordinate=-1, number=len(members) // 2, members=members,
+        pushes=any("force" in instances[e].element.kernels for e in members[::2]),
+        station=at.looked_at(i, spec.at), x=at.axes(i, u), y=at.axes(i, w), z=at.axes(i, a),
+        centre=at.looked_at(i, centre), weight=[spec.mass * g for g in at.scenario.gravity],
+        mass=spec.mass, inertia=tensor,
+    )  # fmt: skip
+    return Row(*own)
+
+
+def check_part(spec, at, i):
+    """The inertia tensor of the part beyond, row by row.
+
+    Raises ScenarioError where it is no part of the body: what is left of that has a mass, and
+    moments of inertia about its own centre of mass, which are not negative.
+    """
+    body = at.members[spec.body]
+    if spec.mass > body.mass:
+        what = f"the part beyond has {spec.mass:g} kg, and the body {body.mass:g} kg"
+        raise ScenarioError(what, "give the mass beyond the section alone", ("mass",))
+    tensor, whole = tensor_of(0.0 if spec.inertia is None else spec.inertia)
+    total, known_whole = body.tensor
+    if known_whole and not whole and spec.inertia is not None:
+        what = "one moment of inertia is enough for a body in the plane only"
+        raise ScenarioError(what, "give three or six numbers, as of the body", ("inertia",))
+    if spec.mass == 0.0:
+        return tensor
+    I, part = np.array(total).reshape(3, 3), np.array(tensor).reshape(3, 3)
+    c, rest = np.array(at.looked_at(i, spec.centre)), body.mass - spec.mass
+    # both parts have their centres on a line through that of the body
+    share = spec.mass * body.mass / rest if rest > 0.0 else 0.0
+    left = I - part - share * (c @ c * np.eye(3) - np.outer(c, c))
+    if rest <= 0.0 and np.linalg.norm(c) > IN_PLANE * at.size_of(i):
+        raise ScenarioError(
+            "the part beyond has all the mass of the body, and its centre is elsewhere",
+            "give the mass and the centre beyond the section alone",
+            ("centre",),
+        )
+    left = left if known_whole else left[2:, 2:]
+    least, largest = np.linalg.eigvalsh(left).min(), np.abs(I).max()
+    if least < LEAST * largest:
+        raise ScenarioError(
+            f"beside the part beyond, the rest of '{spec.body}' would have a moment of inertia of "
+            f"{least:.3g} kg*m^2",
+            "give mass, centre and inertia of the part alone, the inertia about its own centre",
+            ("inertia",),
+        )
+    return tensor
+
+
+def beyond(spec, at, i, a):
+    """What acts on the part beyond, each with its number."""
+    acting = at.acting_on(i)
+    sides = {x.name: side_of(spec, at, i, a, x) for _, x in acting}
+    split = [name for name, side in sides.items() if side == {1, -1}]
+    if split:
+        what = f"'{split[0]}' acts on the body on both sides of the section"
+        raise ScenarioError(what, "cut the body elsewhere, or into two bodies", ("at",))
+    if spec.beyond is None:
+        unknown = [name for name, side in sides.items() if side not in ({1}, {-1})]
+        if unknown:
+            raise ScenarioError(
+                f"on which side of the section '{unknown[0]}' acts cannot be told from the drawing",
+                "list under `beyond` all that acts on the part beyond, `[]` if nothing does",
+            )
+        return [(e, x) for e, x in acting if sides[x.name] == {1}]
+    names = [x.name for _, x in acting if x.section != "events"]
+    for k, name in enumerate(spec.beyond):
+        if name not in names:
+            what = f"no joint, drive or force named '{name}' acts on '{spec.body}'"
+            raise ScenarioError(what, known(name, names), ("beyond", k))
+    return [(e, x) for e, x in acting if {x.name, at.joint_of(x)} & {*spec.beyond}]
+
+
+def side_of(spec, at, i, a, instance):
+    """On which sides of the section something acts on the body: 1 beyond, -1, 0 in its plane."""
+    element = instance.element
+    near, found = IN_PLANE * at.size_of(i), set()
+    station = at.looked_at(i, spec.at)
+    a = at.axes(i, a)
+    for frame, place in element.acts_at(instance.row) if element.acts_at else ():
+        if frame == i:
+            height = sum((p - s) * c for p, s, c in zip(place, station, a, strict=True))
+            found.add(0 if abs(height) <= near else 1 if height > 0.0 else -1)
+    return found
+
+
+@internal
+def body_wrench(scene, i, e, rows):
+    """What the constraint rows of instance e put on a body, about its centre of mass."""
+    con, lam, J, row_start = scene.con, scene.lam, scene.J, scene.row_start
+    f0 = f1 = f2 = m0 = m1 = m2 = 0.0
+    for r in range(FIRST_ROW, FIRST_ROW + rows):
+        row = con[e, r]
+        if row >= 0:
+            for l in range(row_start[row], row_start[row + 1]):
+                if scene.line_frame[l] == i:
+                    f0, f1, f2 = (
+                        f0 - lam[row] * J[l, 0],
+                        f1 - lam[row] * J[l, 1],
+                        f2 - lam[row] * J[l, 2],
+                    )
+                    m0, m1, m2 = (
+                        m0 - lam[row] * J[l, 3],
+                        m1 - lam[row] * J[l, 4],
+                        m2 - lam[row] * J[l, 5],
+                    )
+    return (f0, f1, f2), (m0, m1, m2)
+
+
+@internal
+def pushed(t, scene, e):
+    """What the forces among the members put on the body, about its centre of mass.
+
+    Their kernels are called alone; forces and rates of the last evaluation are put back.
+    """
+    own = Own(scene, e)
+    i, F, kept, zd, rates = own.i, scene.F, scene.moved, scene.zd, scene.aside[1]
+    for f in range(scene.n):
+        for c in range(6):
+            kept[f, c], F[f, c] = F[f, c], 0.0
+    for k in range(scene.n_z):
+        rates[k] = zd[k]
+    for k in range(own.number):
+        one = own.members[2 * k]
+        for n in range(scene.force.shape[0]):
+            if scene.force[n, 1] <= one < scene.force[n, 2]:
+                call_kernel(scene.force[n, 0], t, scene, one, one + 1)
+    found = (F[i, 0], F[i, 1], F[i, 2]), (F[i, 3], F[i, 4], F[i, 5])
+    for f in range(scene.n):
+        for c in range(6):
+            F[f, c] = kept[f, c]
+    for k in range(scene.n_z):
+        zd[k] = rates[k]
+    return found
+
+
+@internal
+def of_inertia(scene, e):
+    """I alpha + omega x I omega of the part beyond, world axes."""
+    X, own = scene.X, Own(scene, e)
+    i, I = own.i, own.inertia
+    R = (arm(X, i, (1.0, 0.0, 0.0)), arm(X, i, (0.0, 1.0, 0.0)), arm(X, i, (0.0, 0.0, 1.0)))
+    alpha, omega = into(R, spin(scene.A, i)), into(R, spin(scene.V, i))
+    rate, turning = times(I, alpha), times(I, omega)
+    return arm(X, i, plus(rate, cross(omega, turning)))
+
+
+@internal
+def times(I, v):
+    """A tensor, row by row, times a vector."""
+    return (
+        I[0] * v[0] + I[1] * v[1] + I[2] * v[2],
+        I[3] * v[0] + I[4] * v[1] + I[5] * v[2],
+        I[6] * v[0] + I[7] * v[1] + I[8] * v[2],
+    )
+
+
+@measured
+def measure(t, scene, e, o):
+    X, out, own = scene.X, scene.out, Own(scene, e)
+    i, p, c = own.i, arm(X, own.i, own.station), arm(X, own.i, own.centre)
+    a_c = plus(velocity(scene.A, i, c), centripetal(scene.V, i, c))
+    F = minus(scaled(own.mass, a_c), own.weight)
+    M = plus(of_inertia(scene, e), cross(minus(c, p), F))
+    for k in range(own.number):
+        f, m = body_wrench(scene, i, own.members[2 * k], own.members[2 * k + 1])
+        F, M = minus(F, f), minus(M, minus(m, cross(p, f)))
+    if own.pushes == 1:
+        f, m = pushed(t, scene, e)
+        F, M = minus(F, f), minus(M, minus(m, cross(p, f)))
+    if scene.d == 3:
+        F, M = (F[0], F[1], 0.0), (0.0, 0.0, M[2])
+    x, y, z = arm(X, i, own.x), arm(X, i, own.y), arm(X, i, own.z)
+    out[o], out[o + 1], out[o + 2] = dot(x, F), dot(y, F), dot(z, F)
+    out[o + 3], out[o + 4], out[o + 5] = dot(x, M), dot(y, M), dot(z, M)
+    out[o + 6] = sqrt(out[o] * out[o] + out[o + 1] * out[o + 1])
+    out[o + 7] = sqrt(out[o + 3] * out[o + 3] + out[o + 4] * out[o + 4])
+
+
+def turning(row):
+    return Turning(points=((Own.of(row).i, Own.of(row).station),))
+
+
+ELEMENT = Element(
+    key="section",
+    section="sensors",
+    spec=BodySection,
+    pack=pack,
+    channels=(
+        Channel("force", "N", "on the part beyond, axes of the section: z is normal", 3),
+        Channel("moment", "N*m", "the same about the station: z is torsion", 3),
+        Channel("shear", "N", "size of the force in the section", least=0.0),
+        Channel("bending", "N*m", "size of the moment in it", least=0.0),
+    ),
+    turning=turning,
+    kernels={"measure": measure},
+    example="""
+bodies:
+  arm: {mass: 2 kg, inertia: 0.17 kg*m^2, at: [0.5, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, arm], at: [0, 0]}
+sensors:
+  root: {type: section, body: arm, at: [0.2, 0], axis: [1, 0, 0], x_axis: [0, 1, 0],
+         mass: 1.6 kg, centre: [0.6, 0], inertia: 0.086 kg*m^2}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
+)
