@@ -13,7 +13,7 @@ from trsim.assemble.switches import LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
 UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE = range(5)
-KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE}
+KINDS = {"": UNKNOWN, "arc": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE}
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:
