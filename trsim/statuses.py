@@ -10,7 +10,7 @@ Status = Literal["running", Ended, "interrupted", "recovered"]
 STATUSES: dict[Status, str] = {
     "running": "goes on, or was killed: `trsim recover` copies what it left",
     "done": "reached its end, or an event of the scenario ended it",
-    "jammed": "a drive reached what it can do, or drives lost their synchronism",
+    "jammed": "a drive reached what it can do, drives lost their synchronism, or a curve ended",
     "failed": "the solver could not go on; the file holds what was computed until then",
     "interrupted": "ended by a signal; the file was closed and is named .part",
     "recovered": "copied out of a .part file",

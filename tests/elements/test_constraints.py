@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from trsim import elements
+from trsim.elements.rows import ARC
 
 from .bench import THIRD, TWO_BODIES, bench, check_action_is_reaction, now, put_right
 
@@ -29,6 +30,25 @@ KEYS = {
 }
 # where a joint must be drawn another way
 OTHERS = {"constant_velocity": {"second_axis": "[0.8, -0.1, 0.3]"}}
+# curves in a plane of the left body, at PLACE or beside it, and what is held on them
+PLANE = "x_axis: [0.6, -0.48, 0], y_axis: [0.1, 0.3, -0.4]"
+AROUND = f"at: [0.2, 0.1, 0], {PLANE}, closed: true, points: " + str(
+    [[0, 0], [0.9, 0.3], [1.3, 1.2], [0.4, 1.6], [-0.5, 0.8]]
+)
+EGG = (
+    f"at: [0.2, 0.1, 0], {PLANE}, closed: true, range: [0, 2*pi], "
+    "x: 0.9 - 0.9*cos(s), y: 0.5*sin(s) + 0.06*sin(2*s)"
+)
+BOW = f"at: [0.2, 0.1, 0], {PLANE}, range: [-0.8, 0.9], x: s + 0.2*s**2, y: 0.4*s**2 + 0.1*s**3"
+ROLLER = "radius: 0.1, at: [0.2, 0.1, 0]"
+CURVED = {
+    "point_on_curve": f"at: [0.2, 0.1, 0], curve: {{{AROUND}}}",
+    "point_on_curve, by a formula": f"at: [0.2, 0.1, 0], curve: {{{EGG}}}",
+    "point_on_curve, open": f"at: [0.2, 0.1, 0], curve: {{{BOW}}}",
+    "cam": f"{ROLLER}, curve: {{{AROUND.replace('[0.2, 0.1, 0]', '[0.3, 0, 0.1]')}}}",
+    "cam, inside": f"{ROLLER}, curve: {{{EGG.replace('[0.2, 0.1, 0]', '[0.1, 0.2, -0.1]')}}}",
+    "cam, face": f"face: [-0.6, 0.48, 0], at: [0.2, 0.1, 0], curve: {{{EGG}}}",
+}
 ALL = {word: elements.load(word) for word, of in elements.ELEMENTS.items() if of == "joints"}
 JOINTS = {word: joint for word, joint in ALL.items() if "bodies" in joint.spec.model_fields}
 LAW = """
@@ -63,15 +83,21 @@ MESH = {  # joints of which a transmission relates coordinates, what it is, axis
     "coupler": (HINGE, LINE, "coefficients: [0.4, -1.3]", None),
     "coupler, three": (SLEEVE, OTHER, "coefficients: [0.4, 0.7, -0.2]", SECOND),
 }
-CASES = {name: (name, "", "") for name in JOINTS} | {name: (name, "", "") for name in MESH}
+CASES = {name: (name, "", "") for name in JOINTS if name not in CURVED} | {
+    name: (name, "", "") for name in CURVED
+}
+CASES |= {name: (name, "", "") for name in MESH}
 CASES |= {
     f"{d} of {j}'s {x}": (j, d, x)
     for j, joint in JOINTS.items() if not joint.ideal for x in joint.coordinates for d in DRIVES
+    if x != ARC
 }  # fmt: skip
 
 
 def written(word):
     """A joint of a type, with the keys that it has."""
+    if word in CURVED:
+        return f"type: {word.split(',')[0]}, {CURVED[word]}"
     fields = JOINTS[word].spec.model_fields
     keys = KEYS | OTHERS.get(word, {})
     own = ", ".join(f"{key}: {value}" for key, value in keys.items() if key in fields)
@@ -103,12 +129,13 @@ def thrown(case, seed):
     if case in MESH:
         return meshing(case, rng)
     text = f"joints: {{joint: {{bodies: [left, right], {written(joint)}}}}}\n"
-    text += LAW if JOINTS[joint].ideal else ""
+    kind = joint.split(",")[0]
+    text += LAW if JOINTS[kind].ideal else ""
     of = f"joint.{coordinate}"
     text += f"drives: {{drive: {{joint: {of}, {DRIVES[drive]}}}}}\n" if drive else ""
     b = bench(text, rng)
-    assert b.mechanism.model.m == len(JOINTS[joint].rows) + bool(drive)
-    counted = "lead" in JOINTS[joint].rows
+    assert b.mechanism.model.m == len(JOINTS[kind].rows) + bool(drive)
+    counted = "lead" in JOINTS[kind].rows
     if coordinate == "angle" or counted:
         # an angle is one only while the axes are parallel, and its rate while they stay so
         put_right(b, PLACE, rng.uniform(-2, 2) * AXIS, np.zeros(3))

@@ -13,9 +13,9 @@ from trsim.assemble.instances import Named
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
-from trsim.elements.coordinates import named, split
+from trsim.elements.coordinates import ANY, named, split
 from trsim.elements.joint import triad
-from trsim.elements.rows import COORDINATES
+from trsim.elements.rows import ARC, COORDINATES
 from trsim.errors import ScenarioError, known
 from trsim.expressions import LOW, degree, names
 from trsim.fields import RATE
@@ -32,7 +32,7 @@ class JointCoordinate(NamedTuple):
     name: str  # what it is called
     joint: str
     entry: int  # in S
-    kind: str  # angle, stroke
+    kind: str  # angle, stroke, ARC, or WOUND: what else is known up to full turns
     i: int
     j: int
     s_i: tuple[float, ...]  # the joint's point in both bodies
@@ -41,9 +41,12 @@ class JointCoordinate(NamedTuple):
     axis: tuple[float, ...]  # and in world axes as drawn
     drawn: float  # value as drawn
     place: tuple[float, ...]  # the joint's point in world axes as drawn
+    curve: tuple[int, ...] = ()  # of an arc: offset in tab, entry of u
+    other_i: tuple[float, ...] = ()  # and the y axis of its plane, where axis_i is the x axis
 
 
-UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
+WOUND = "wound"
+UNITS = {"angle": "rad", "stroke": "m", "arc": "m", "time": "s"}
 
 
 @dataclass
@@ -205,8 +208,8 @@ class Addresses:
         kind: what it must be; path: where it is named.
         """
         name, joint, own = named(reference, self.scenario.joints, kind, path)
-        kind, letter = COORDINATES[own]
         if name not in self.coordinates:
+            kind, letter = COORDINATES[own]
             spec = self.scenario.joints[joint]
             i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
@@ -230,6 +233,27 @@ class Addresses:
             self.centre(j),
         )  # fmt: skip
         return self.coordinates[name]
+
+    def on_curve(
+        self, name: str, own: Any, drawn: tuple[float, float], stops: bool = True
+    ) -> tuple[int, int]:
+        """Entries of S with the place of a joint on its curve: its length, and u (laws/curves.py).
+
+        own: packed columns of the joint that say where; drawn: both as drawn; stops: whether what
+        pushes back along the curve acts on a point.
+        """
+        spec = self.scenario.joints[name]
+        entries = self.entry(), self.entry()
+        where = (own.i, own.j, own.p_i, own.p_j, own.u_i, (0.0, 0.0, 0.0))
+        curve = (own.curve, entries[1]) if stops else ()
+        for one, entry, kind, value in (
+            (name, entries[0], ARC, drawn[0]),
+            (f"{name} u", entries[1], WOUND, drawn[1]),  # no name a user can write
+        ):
+            self.coordinates[one] = JointCoordinate(
+                one, name, entry, kind, *where, value, tuple(spec.at), curve, own.w_i
+            )
+        return entries
 
     def sensor(self, name: str) -> int:
         """Index of a sensor in S."""
@@ -276,7 +300,7 @@ class Addresses:
     def sensor_kind(self, name: str) -> str:
         """What a sensor shows: an angle or a stroke, its own or that of its joint."""
         own = self.elements["sensors", name].coordinates
-        return own[0] if own else self.coordinate(self.scenario.sensors[name].joint).kind
+        return own[0] if own else self.coordinate(self.scenario.sensors[name].joint, ANY).kind
 
     def state(self, scale: str | float, follows: int = -1) -> int:
         """A state of an element's own in z: scale for the error norm ('angle', 'stroke', 'speed',

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.addresses import Addresses
+from trsim.assemble.addresses import WOUND, Addresses
 from trsim.assemble.dense import inverse, length, product
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.orientation import quaternion
@@ -180,7 +180,7 @@ def drawn(at: Addresses, d: int) -> Array:
 def turns(at: Addresses, d: int) -> dict[str, Any]:
     """Planar joint angles: (entry of S, i, j, sign of the axis), for their branch, and what each
     is when the axes of its bodies are parallel: not 0 between a body of an instance and others;
-    and the entries of all other angles, which are known up to full turns."""
+    and the entries of all other angles, and of what else is known up to full turns."""
     found = [
         (x, 1 if x.axis[2] > 0 else -1)
         for x in (at.coordinates.values() if d == 3 else ())
@@ -193,7 +193,7 @@ def turns(at: Addresses, d: int) -> dict[str, Any]:
         for x, sign in found
     ]
     unwrapped = {x.entry for x, _ in found}
-    wound = [x.entry for x in at.coordinates.values() if x.kind == "angle"]
+    wound = [x.entry for x in at.coordinates.values() if x.kind in ("angle", WOUND)]
     return {
         "turn": np.array(rows, np.int64).reshape(-1, 4),
         "parallel": np.array(parallel, float),
@@ -280,7 +280,7 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
     """What user events watch, and where their work is booked."""
     events = switches.events
     watch = [(e.entry, e.direction, e.most) for e in events]
-    scale = {"angle": 1.0, "stroke": size, "time": 0.0}
+    scale = {"angle": 1.0, "stroke": size, "arc": size, "time": 0.0}
     at = [
         # of a limit the gap is watched, which has the limit taken off already
         (0.0, BAND * e.value) if e.kind == "limit" else (e.value, BAND * scale[e.kind])

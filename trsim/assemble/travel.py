@@ -15,7 +15,14 @@ from trsim.assemble.switches import LIMITS, TIME, Switches
 # TWIST: an angle about axes that may lean apart
 UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST = range(6)
 RATE_OF = 8  # added to a kind: the rate of such a quantity
-KINDS = {"": UNKNOWN, "angle": ANGLE, "stroke": STROKE, "distance": DISTANCE, "twist": TWIST}
+KINDS = {
+    "": UNKNOWN,
+    "arc": UNKNOWN,
+    "angle": ANGLE,
+    "stroke": STROKE,
+    "distance": DISTANCE,
+    "twist": TWIST,
+}
 UNBOUNDED = (UNKNOWN, TWIST)  # kinds whose rates have no bound
 
 

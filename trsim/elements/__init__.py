@@ -24,6 +24,8 @@ ELEMENTS = {
     "screw": "joints",
     "constant_velocity": "joints",
     "link": "joints",
+    "point_on_curve": "joints",
+    "cam": "joints",
     "fixed": "joints",
     "clearance_joint": "joints",  # a revolute with the key `clearance`
     "gear": "joints",

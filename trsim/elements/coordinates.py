@@ -4,8 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from trsim import elements
-from trsim.elements.rows import COORDINATES
+from trsim.elements.rows import ARC, COORDINATES
 from trsim.errors import ScenarioError, known
+
+ANY = "any"  # kind of coordinate: also a length along a curve
 
 
 def split(reference: str, joints: Any) -> tuple[str, str]:
@@ -25,8 +27,8 @@ def named(
 ) -> tuple[str, str, str]:
     """What the coordinate is called that is meant, its joint and which of its coordinates it is.
 
-    kind: what it must be, angle or stroke.  Raises ScenarioError where it is none, or may be
-    several.
+    kind: what it must be, angle, stroke, or ANY; unless given one of the first two.  Raises
+    ScenarioError where it is none, or may be several.
     """
     joint, which = split(reference, joints)
     if joint not in joints:
@@ -40,10 +42,16 @@ def named(
         )
     if which and which not in there.values():
         raise ScenarioError(f"joint '{joint}' has no {which}", known(reference, there), path)
+    if kind != ANY and any(COORDINATES[own].kind == ARC for own in there.values()):
+        raise ScenarioError(
+            f"the place of '{joint}' on its curve is a length along it, and no angle or stroke",
+            "sensors, events and a `limit_stop` know it; drive or hold another joint",
+            path,
+        )
     fits = [
         (name, own)
         for name, own in there.items()
-        if which in ("", own) and kind in ("", COORDINATES[own].kind)
+        if which in ("", own) and kind in ("", ANY, COORDINATES[own].kind)
     ]
     if not fits:
         raise ScenarioError(
@@ -61,6 +69,6 @@ def named(
 def called(reference: str, joints: Mapping[str, Any]) -> str:
     """What the coordinate is called that is meant; the reference itself where it is none."""
     try:
-        return named(reference, joints)[0]
+        return named(reference, joints, ANY)[0]
     except ScenarioError:
         return reference

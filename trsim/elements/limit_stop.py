@@ -4,12 +4,14 @@
 
 Point on wall: d = -(p - w) . n with n the allowed side, fixed in the wall's body; F n acts at the
 point, -F n on the wall's body at the same place.  Joint: d = max(lower - x, x - upper), F acts
-along the axis of the joint.  The damping fades in over the ramp, so there is no jump at the touch
-and no memory of the impact speed; soft impacts are right, where Lankarani-Nikravesh is not.  In the
-phase of contact the spring is drawn on to d < 0, where no accepted step ever is.  The end of the
-ramp and the place from which the force would pull are corners, located like a touch.
+along the axis of the joint; of a place on a curve along its tangent, on the point.  The damping
+fades in over the ramp, so there is no jump at the touch and no memory of the impact speed; soft
+impacts are right, where Lankarani-Nikravesh is not.  In the phase of contact the spring is drawn on
+to d < 0, where no accepted step ever is.  The end of the ramp and the place from which the force
+would pull are corners, located like a touch.
 """
 
+from math import sqrt
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge, Gt
@@ -30,7 +32,7 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.coordinates import called, of_joint, split
+from trsim.elements.coordinates import ANY, called, of_joint, split
 from trsim.elements.frames import (
     Along,
     arm,
@@ -39,16 +41,18 @@ from trsim.elements.frames import (
     dot,
     minus,
     on_joint,
+    plus,
     points,
     push_apart,
     scaled,
+    separation,
     twist_apart,
 )
 from trsim.elements.frames import point as place
-from trsim.elements.rows import slides
+from trsim.elements.rows import ARC, slides
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
-from trsim.kernels.columns import f8, i8
+from trsim.kernels.columns import V3, f8, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.contact import (
     ramped_beyond,
@@ -57,6 +61,8 @@ from trsim.laws.contact import (
     ramped_neighbour,
     ramped_on_branch,
 )
+from trsim.laws.curves import dot2
+from trsim.laws.curves import place as curve_at
 
 
 class BodyPoint(Spec):
@@ -88,7 +94,7 @@ class LimitStop(Spec):
 
     point      what touches the wall
     wall       what it touches
-    joint      joint whose coordinate is limited
+    joint      joint whose coordinate is limited; the place of a point on a curve is one
     lower      least coordinate
     upper      largest coordinate
     stiffness  of the contact
@@ -132,14 +138,19 @@ class LimitStop(Spec):
 
 
 WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping")
-ON_WALL, ON_ANGLE, ON_STROKE = 0, 1, 2
+ON_WALL, ON_ANGLE, ON_STROKE, ON_ARC = 0, 1, 2, 3
+KINDS = {"angle": ON_ANGLE, "stroke": ON_STROKE, ARC: ON_ARC}
 UNBOUNDED = 1e300
 
 
 class Own(Along):
-    """Of one instance; its axis is the normal of the wall, or that of the joint."""
+    """Of one instance; its axis is the normal of the wall, or that of the joint; of a curve that of
+    its x, and the other is that of its y."""
 
-    kind: i8  # ON_WALL, ON_ANGLE or ON_STROKE
+    kind: i8  # ON_WALL, ON_ANGLE, ON_STROKE or ON_ARC
+    curve: i8  # in tab
+    parameter: i8  # entry of S with u, see laws/curves.py
+    other: V3
     stiffness: f8
     damping: f8
     ramp: f8
@@ -162,16 +173,45 @@ def pack(name, spec, at):
         j = at.body(spec.point.body, "point", "body", near=spec.point.at)
         n = at.axes(i, direction(spec.wall.normal))
         places = points(at, i, j, spec.wall.at, spec.point.at)
-        own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0)
+        own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0,
+                         **NO_CURVE)  # fmt: skip
         return Row(*own, contact, travel="stroke")
-    x = at.coordinate(spec.joint)
+    x = at.coordinate(spec.joint, ANY)
     at.check_units(x.kind, LimitStop, WITH_UNITS, "forces", name)
-    kind = ON_ANGLE if x.kind == "angle" else ON_STROKE
+    kind = KINDS[x.kind]
+    curve = NO_CURVE if kind != ON_ARC else along_curve(x)
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
-    own = Own.packed(spec, **on_joint(x), kind=kind, lower=low, upper=high)
+    own = Own.packed(spec, **on_joint(x), kind=kind, lower=low, upper=high, **curve)
     turns = kind == ON_ANGLE
     return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
+
+
+NO_CURVE = {"curve": -1, "parameter": -1, "other": (0.0, 0.0, 0.0)}
+
+
+def along_curve(x):
+    """The columns of a stop on a curve."""
+    if not x.curve:
+        raise ScenarioError(
+            f"'{x.joint}' has no point that stays on its curve, so nothing stops it there",
+            "stop one of its bodies, by the joint that guides it",
+            ("joint",),
+        )
+    curve, parameter = x.curve
+    return {"curve": curve, "parameter": parameter, "other": x.other_i}
+
+
+@internal
+def tangent(scene, own, n):
+    """What the length along a curve grows by with its point, world axes; n: its x axis."""
+    X, i, j = scene.X, own.i, own.j
+    c, c1, c2 = curve_at(scene.tab, own.curve, scene.S[own.parameter, 0])
+    w = arm(X, i, own.other)
+    d = separation(X, i, arm(X, i, own.p_i), j, arm(X, j, own.p_j))
+    fall = dot2(c1, c1) - dot2(c2, (dot(n, d) - c[0], dot(w, d) - c[1]))
+    size = sqrt(dot2(c1, c1)) / fall
+    return plus(scaled(size * c1[0], n), scaled(size * c1[1], w))
 
 
 @internal
@@ -179,6 +219,8 @@ def touch(scene, e):
     """Penetration, its rate, and the direction of the force on body j (world, or + - axis)."""
     S, own = scene.S, Own(scene, e)
     n = arm(scene.X, own.i, own.axis)
+    if own.kind == ON_ARC:
+        n = tangent(scene, own, n)
     if own.kind != ON_WALL:
         s = own.coordinate
         low, high = own.lower - S[s, 0], S[s, 0] - own.upper

@@ -19,6 +19,7 @@ there:
     angle          of the triad of body j against that of body i about a_i, unwrapped
     stroke         a_i . d
     x, y           u_i . d,  w_i . d
+    arc            length along a curve of body i, which its joint writes itself (on_curve.py)
 """
 
 from collections.abc import Callable
@@ -185,15 +186,17 @@ def write_along(letter):
 class Coordinate(NamedTuple):
     """A coordinate that a joint may have."""
 
-    kind: str  # angle or stroke
-    axis: str  # u, w or a, along which it is, or about which
+    kind: str  # angle, stroke, or ARC
+    axis: str  # u, w or a, along which it is, or about which; of a curve none
 
 
+ARC = "arc"  # a length along a curve: it is watched and stopped, and nothing drives or relates it
 COORDINATES = {
     "angle": Coordinate("angle", "a"),
     "stroke": Coordinate("stroke", "a"),
     "x": Coordinate("stroke", "u"),
     "y": Coordinate("stroke", "w"),
+    ARC: Coordinate(ARC, ""),
 }
 
 

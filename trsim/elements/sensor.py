@@ -2,12 +2,14 @@
 
     s = sign (x - x_drawn) + at_start          s' = sign x'
 
-Loads, expressions and plots use sensors; x is the angle or stroke of the joint.
+Loads, expressions and plots use sensors; x is the angle or stroke of the joint, or its place on a
+curve.
 """
 
 from typing import Annotated, ClassVar, Literal
 
 from trsim.elements.contract import Channel, Element, Row, kernel, measured
+from trsim.elements.coordinates import ANY
 from trsim.elements.frames import (
     Along,
     arm,
@@ -15,6 +17,7 @@ from trsim.elements.frames import (
     stroke_acceleration,
     turn_acceleration,
 )
+from trsim.elements.rows import ARC
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8, i8
 
@@ -33,23 +36,36 @@ class Sensor(Spec):
     at_start: Annotated[float, Unit("rad", "m")] = 0.0
 
 
+ALONG_CURVE = 2
+
+
 class Own(Along):
     """Of one instance."""
 
     source: i8  # coordinate of the joint in S
-    turns: i8  # 1: it is an angle
+    turns: i8  # 1: it is an angle; ALONG_CURVE
     sign: f8
     drawn: f8
     at_start: f8
 
 
 def pack(name, spec, at):
-    source = at.coordinate(spec.joint)
+    source = at.coordinate(spec.joint, ANY)
     at.check_unit(source.kind, "rad", "m", "sensors", name, "at_start")
     turns = source.kind == "angle"
+    kind = ALONG_CURVE if source.kind == ARC else int(turns)
     shown = on_joint(source) | {"coordinate": at.sensor(name)}
-    own = Own.packed(spec, **shown, source=source.entry, turns=turns, drawn=source.drawn)
-    return Row(*own, turns=turns, travel=source.kind)
+    own = Own.packed(spec, **shown, source=source.entry, turns=kind, drawn=source.drawn)
+    # along a curve an acceleration would take the third derivative of the curve
+    shown = CHANNELS[:2] if source.kind == ARC else None
+    return Row(*own, channels=shown, turns=turns, travel=source.kind)
+
+
+CHANNELS = (
+    Channel("", "coordinate", "coordinate of the joint"),
+    Channel("rate", "coordinate/s", "its rate"),
+    Channel("acceleration", "coordinate/s^2", "its acceleration; none along a curve"),
+)
 
 
 @kernel
@@ -66,6 +82,8 @@ def measure(t, scene, e, o):
     S, out = scene.S, scene.out
     own = Own(scene, e)
     out[o], out[o + 1] = S[own.coordinate, 0], S[own.coordinate, 1]
+    if own.turns == ALONG_CURVE:
+        return
     axis = arm(scene.X, own.i, own.axis)
     if own.turns == 1:
         out[o + 2] = own.sign * turn_acceleration(scene, e, axis)
@@ -78,11 +96,7 @@ ELEMENT = Element(
     section="sensors",
     spec=Sensor,
     pack=pack,
-    channels=(
-        Channel("", "coordinate", "coordinate of the joint"),
-        Channel("rate", "coordinate/s", "its rate"),
-        Channel("acceleration", "coordinate/s^2", "its acceleration"),
-    ),
+    channels=CHANNELS,
     kernels={"coordinate": coordinate, "measure": measure},
     example="""
 bodies:

@@ -1,0 +1,357 @@
+"""Cam: a roller, or a flat face, of body j stays in touch with a curve of body i.
+
+    roller   Phi = n . (p - c) - r = 0      n, c at the footpoint of its centre p, see on_curve.py
+    face     Phi = m . (q - c) = 0          c where c' . m = 0
+
+m is the normal of the face, fixed in body j, from the cam to the follower, and q a point of the
+face.  Of a face, with w the velocity of body j against body i where they touch, and omega that of
+their turns,
+
+    u'    = -c' . (omega x m) / (c'' . m)
+    J     : the force m on body j where they touch, -m on body i there
+    Phi'' = J V' + (omega_j x m) . w + m . (omega_j x a') - m . (omega_i x rho'),
+            a' = -w + omega_j x a + c' u',  rho' = omega_i x rho + c' u'
+
+with rho and a from the centres of body i and of body j to the touch.  The touch moves along c',
+across m, so u' is in none of J.  Contact holds both ways: normal_force is positive where the
+follower is pressed, and negative where it would lift off, which a run says at its end.  There is no
+friction; a roller turns freely, and reaction is that on its centre, or on q.
+"""
+
+from math import sqrt
+from typing import Annotated, ClassVar
+
+import numpy as np
+from annotated_types import Gt
+from pydantic import model_validator
+
+from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.curve import Curve, furthest, named, sampled, sharpest
+from trsim.elements.frames import (
+    arm,
+    cross,
+    dot,
+    lines,
+    minus,
+    plus,
+    point,
+    relative_spin,
+    scaled,
+    spin,
+    velocity,
+)
+from trsim.elements.joint import Joint
+from trsim.elements.on_curve import (
+    OFF,
+    distance_row,
+    drawn_at,
+    end_gap,
+    ends_of,
+    follow,
+    frames,
+    inside,
+    settled,
+    stored,
+    write_place,
+)
+from trsim.elements.rows import ARC, Axes, JointRow, constraint_of
+from trsim.errors import ScenarioError
+from trsim.fields import Unit, direction, vector
+from trsim.fields import point as of_place
+from trsim.kernels.columns import V3, constraint_row, f8, i8
+from trsim.kernels.lazy import internal
+from trsim.laws.curves import dot2, place, touch
+
+ROLLER, FACE = 0, 1
+FITS = 1e-3  # of its radius: what a roller may lack of room
+STRAIGHT = 1e-4  # of the largest curvature: a flat face would touch there along a line
+OUT = 1e-6  # of the normal of a face: what may point out of the plane of the curve
+LIFTS = 1e-6  # of the largest force: what is none
+
+
+class Cam(Joint):
+    """A roller or a flat face of the second body on a curve of the first, held both ways.
+
+    curve   of the cam, with which it moves
+    at      centre of the roller, or a point of the flat face, as drawn
+    radius  of the roller; it is on the side of the curve on which its centre is drawn
+    face    of a flat face instead: its normal, from the cam to the follower, as drawn
+    """
+
+    type: ClassVar[str] = "cam"
+    curve: Curve
+    at: of_place("m")
+    radius: Annotated[float, Gt(0), Unit("m")] | None = None
+    face: vector("-") | None = None
+
+    @model_validator(mode="after")
+    def one_follower(self):
+        if (self.radius is None) == (self.face is None):
+            what = "give the `radius` of a roller, or the normal of a flat `face`: one of them"
+            raise ScenarioError(what, "a pin without a radius is a `point_on_curve`")
+        return self
+
+
+class Own(Axes):
+    """Of one instance; its first point is the origin of the curve."""
+
+    contact: constraint_row
+    curve: i8  # in tab
+    parameter: i8  # entry of S with u
+    follower: i8  # ROLLER or FACE
+    side: f8  # 1: a roller left of the curve, -1: right of it
+    radius: f8
+    m_j: V3  # normal of a face, in the axes of body j
+
+
+def pack(name, spec, at):
+    curve = sampled(spec.curve)
+    own = roller(curve, spec) if spec.radius else face(curve, spec)
+    u, length, side = own
+    found = frames(spec, at) | {"curve": stored(curve, spec, at), "side": side}
+    found |= {"follower": ROLLER if spec.radius else FACE, "radius": spec.radius or 0.0}
+    found["m_j"] = at.axes(found["j"], direction(spec.face)) if spec.face else (0.0, 0.0, 0.0)
+    own = Own.of(Row(*Own.packed(parameter=-1, **found)))
+    _, parameter = at.on_curve(name, own, (length, u), stops=bool(spec.radius))
+    return Row(*Own.packed(parameter=parameter, **found), limits=ends_of(curve))
+
+
+# --- what a follower needs of a curve --------------------------------------------------------
+
+
+def roller(curve, spec):
+    """u, length and side of a roller as drawn."""
+    u, length, aside = drawn_at(curve, spec, spec.radius)
+    side = 1.0 if aside > 0.0 else -1.0
+    least, where = sharpest(curve, side)
+    if least <= spec.radius:
+        raise ScenarioError(
+            f"the curve turns with a radius of {least:.6g} m at {named(where)} of its coordinates, "
+            f"and a roller of radius {spec.radius:.6g} m does not come down to it (undercutting)",
+            "take a smaller roller, or a curve that turns less sharply there",
+            ("radius",),
+        )
+    check_room(curve, side, spec.radius)
+    return u, length, side
+
+
+def check_room(curve, side, radius):
+    """Refuse a roller that meets another piece of the curve."""
+    step = max(1, len(curve.u) // 1000)
+    places, tangents = curve.place[::step], curve.tangent[::step]
+    for where, t in zip(places, tangents, strict=True):
+        centre = where + side * radius * np.array([-t[1], t[0]])
+        away = np.linalg.norm(curve.place - centre, axis=1)
+        k = int(np.argmin(away))
+        if away[k] < (1.0 - FITS) * radius:
+            raise ScenarioError(
+                f"a roller of radius {radius:.6g} m that touches the curve at {named(where)} of "
+                f"its coordinates meets it again at {named(curve.place[k])} (undercutting)",
+                "take a smaller roller, or another curve",
+                ("radius",),
+            )
+
+
+def face(curve, spec):
+    """u and length where a flat face touches as drawn; its curve must bend one way."""
+    if not any(spec.face):
+        raise ScenarioError("a normal must not be zero", "for example [0, 1, 0]", ("face",))
+    plane = spec.curve.frame
+    m = plane.inside(direction(spec.face))
+    if abs(m[2]) > OUT:
+        raise ScenarioError(
+            "the normal of the face points out of the plane of the curve",
+            "draw the cam and its follower in one plane",
+            ("face",),
+        )
+    least, most = float(curve.bend.min()), float(curve.bend.max())
+    way = 1.0 if most > -least else -1.0
+    k = int(np.argmin(way * curve.bend))
+    if way * curve.bend[k] <= STRAIGHT * max(most, -least):
+        raise ScenarioError(
+            f"a flat face needs a curve that bends one way, and this one is straight or hollow at "
+            f"{named(curve.place[k])} of its coordinates",
+            "take a roller, or a convex curve",
+            ("curve",),
+        )
+    u = furthest(curve, m[:2])
+    u, length, c, _ = settled(curve, u, m[:2], 1)
+    if not curve.closed and not 0.0 < u < curve.u[-1]:
+        raise ScenarioError(
+            "as drawn the face touches the curve nowhere between its ends",
+            "turn the cam or the face, or make the curve longer",
+            ("face",),
+        )
+    q = inside(spec, spec.at)
+    off = abs(sum(a * (b - d) for a, b, d in zip(m, q, c, strict=False)))
+    if off > OFF * curve.size:
+        there = plane.moved((c[0], c[1], 0.0))
+        raise ScenarioError(
+            f"the face is drawn {off:.3g} m away from the curve",
+            f"it must go through [{', '.join(f'{a:.6g}' for a in there)}]",
+            ("at",),
+        )
+    return u, length, 1.0
+
+
+# --- kernels -----------------------------------------------------------------------------
+
+
+@internal
+def normal_of_face(scene, own):
+    """The normal of a face, world axes, and in those of the curve."""
+    X = scene.X
+    m = arm(X, own.j, own.m_j)
+    return m, (dot(arm(X, own.i, own.u_i), m), dot(arm(X, own.i, own.w_i), m))
+
+
+@internal
+def in_world(scene, own, v):
+    """A vector of the plane of the curve, in world axes."""
+    X = scene.X
+    return plus(scaled(v[0], arm(X, own.i, own.u_i)), scaled(v[1], arm(X, own.i, own.w_i)))
+
+
+@internal
+def rate_at(scene, own, m, c1, c2, flat):
+    """u' of the touch of a face; flat: its normal in the axes of the curve."""
+    turning = cross(relative_spin(scene.V, own.i, own.j), m)
+    return -dot(in_world(scene, own, c1), turning) / dot2(c2, flat)
+
+
+@internal
+def follow_face(scene, e):
+    """Where the face touches."""
+    own = Own(scene, e)
+    m, flat = normal_of_face(scene, own)
+    u = touch(scene.tab, own.curve, scene.S[own.parameter, 0], flat)
+    _, c1, c2 = place(scene.tab, own.curve, u)
+    write_place(scene, own, u, c1, rate_at(scene, own, m, c1, c2, flat))
+
+
+@internal
+def face_row(scene, e, k):
+    """m . (q - c) as row k."""
+    X, V, own = scene.X, scene.V, Own(scene, e)
+    i, j = own.i, own.j
+    m, flat = normal_of_face(scene, own)
+    c, c1, c2 = place(scene.tab, own.curve, scene.S[own.parameter, 0])
+    rho = plus(arm(X, i, own.p_i), in_world(scene, own, c))
+    there = point(X, i, rho)
+    a = minus(there, (X[j, 0], X[j, 1], X[j, 2]))
+    q = arm(X, j, own.p_j)
+    scene.phi[k], scene.phi_t[k] = dot(m, minus(q, a)), 0.0
+    lines(scene, k, m, cross(rho, m), cross(a, m))
+    o_i, o_j = spin(V, i), spin(V, j)
+    w = minus(velocity(V, j, a), velocity(V, i, rho))
+    slip = scaled(rate_at(scene, own, m, c1, c2, flat), in_world(scene, own, c1))
+    a_dot = plus(minus(cross(o_j, a), w), slip)
+    rho_dot = plus(cross(o_i, rho), slip)
+    scene.gamma[k] = dot(m, cross(o_i, rho_dot)) - dot(m, cross(o_j, a_dot)) - dot(cross(o_j, m), w)
+
+
+@internal
+def contact(scene, e, k):
+    own = Own(scene, e)
+    if own.follower == FACE:
+        face_row(scene, e, k)
+    else:
+        distance_row(scene, e, own, k, own.side, own.radius)
+
+
+@kernel
+def coordinate(t, scene, e):
+    own = Own(scene, e)
+    if own.follower == FACE:
+        follow_face(scene, e)
+    else:
+        follow(scene, e, own)
+
+
+@kernel
+def gap(t, scene, e):
+    own = Own(scene, e)
+    end_gap(scene, e, own, own.contact)
+
+
+@measured
+def measure(t, scene, e, o):
+    out, own = scene.out, Own(scene, e)
+    c, c1, c2 = place(scene.tab, own.curve, scene.S[own.parameter, 0])
+    out[o] = -scene.lam[own.contact] if own.contact >= 0 else 0.0
+    out[o + 1] = max(0.0, -out[o])
+    out[o + 2] = (c1[0] * c2[1] - c1[1] * c2[0]) / sqrt(dot2(c1, c1)) ** 3
+    there = point(scene.X, own.i, plus(arm(scene.X, own.i, own.p_i), in_world(scene, own, c)))
+    for k in range(3):
+        out[o + 3 + k] = there[k]
+
+
+def doubts(name, spec, largest):
+    """A follower that is held where it would lift off."""
+    pull, when = largest(f"{name}.pull")
+    pressed, _ = largest(f"{name}.normal_force")
+    if pull > LIFTS * abs(pressed):
+        yield (
+            f"joints.{name}: the follower is pulled by {pull:.4g} N at {when:.4g} s, where it "
+            "would lift off a cam that only presses: right for a cam that holds both ways, a "
+            "groove; else press it on by a spring or its weight, or go slower"
+        )
+
+
+def reach(row):
+    """The cam pushes in the plane of its curve."""
+    own = Own.of(row)
+    return Reach(slides=((own.i, own.u_i), (own.i, own.w_i)))
+
+
+def turning(row):
+    own = Own.of(row)
+    axes = ((own.i, own.u_i), (own.i, own.w_i), (own.j, own.m_j))
+    return Turning(points=((own.j, own.p_j),), axes=axes[: 2 + own.follower])
+
+
+ROWS = (JointRow("contact", "n", fill=contact),)
+ELEMENT = Element(
+    key="cam",
+    section="joints",
+    spec=Cam,
+    pack=pack,
+    rows=tuple(row.name for row in ROWS),
+    holds=tuple(row.holds for row in ROWS),
+    coordinates=(ARC,),
+    channels=(
+        Channel("normal_force", "N", "between cam and follower, positive where they press"),
+        Channel("pull", "N", "by which the follower is held where it would lift off", least=0.0),
+        Channel("curvature", "1/m", "of the curve where they touch, positive to its left"),
+        Channel("place", "m", "where they touch, world axes", 3),
+    ),
+    loads={"normal_force": "contact force"},
+    judged=lambda _: True,
+    doubts=doubts,
+    reach=reach,
+    turning=turning,
+    kernels={
+        "constraint": constraint_of(ROWS),
+        "coordinate": coordinate,
+        "gaps": gap,
+        "measure": measure,
+    },
+    example="""
+bodies:
+  wheel: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [0, 0]}
+  tappet: {mass: 0.5 kg, inertia: 0.001 kg*m^2, at: [0, 0.1]}
+joints:
+  shaft: {type: revolute, bodies: [ground, wheel], at: [0, 0]}
+  guide: {type: prismatic, bodies: [ground, tappet], axis: [0, 1]}
+  lobe:
+    type: cam
+    bodies: [wheel, tappet]
+    at: [0, 0.05]
+    radius: 10 mm
+    curve: {x: 0.04*cos(s), y: 0.03*sin(s) + 0.01, range: [0, 2*pi], closed: true}
+drives:
+  turning: {joint: shaft, velocity: 10 rad/s}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
+)

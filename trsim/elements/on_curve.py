@@ -1,0 +1,173 @@
+"""What joints on a curve share: where on it they are, and the distance of a point from it.
+
+p is the point of body j in the axes of the curve, which are fixed in body i, and v its rate there;
+c, c' the curve (laws/curves.py) at the footpoint u of p, n the normal there towards the point:
+
+    c' . (p - c) = 0                                 u, from the one at the last accepted point
+    u'  = c' . v / (c' . c' - c'' . (p - c))
+    Phi = n . (p - c) - r                            r: how far from the curve the point stays
+    J   : the force n on body j at p, -n on body i at the same place
+    Phi'' = n . p'' - (n . c'') (c' . v / |c'|)^2 / (c' . c' - c'' . (p - c))
+
+The rate of n is along c', across p - c, and so is that of c; thus J has no part of them, and the
+last term, with p'' as seen from body i, is all that the curvature adds.  A step is so short that
+the tangent turns by less than a right angle in it: solve/march/turns.py knows u as it knows angles.
+"""
+
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from trsim.elements.contract import Limit, compiled
+from trsim.elements.curve import Sampled, nearest
+from trsim.elements.frames import along_row, arm, carried, dot, plus, scaled
+from trsim.errors import ScenarioError
+from trsim.fields import direction
+from trsim.kernels.lazy import internal
+from trsim.kernels.signatures import A1, i8, void
+from trsim.laws.curves import dot2, footpoint, length, length_of, place, touch
+
+SIDE = 1e-3  # of the radius of a roller: a centre nearer to the curve is on no side
+OFF = 0.1  # of the size of a curve: how far beside it a point may be drawn
+
+
+# --- packing -----------------------------------------------------------------------------
+
+
+def frames(spec: Any, at: Any) -> dict[str, Any]:
+    """The columns of Axes of a joint on a curve: the axes of the curve in body i, its point in j;
+    and those of the second body that coincide with them as drawn."""
+    i, j = at.bodies(spec.bodies, spec.at)
+    own, points = spec.curve.frame, {}
+    points["p_i"], points["p_j"] = at.local(i, own.at), at.local(j, spec.at)
+    axes = {"u_i": at.axes(i, own.x), "w_i": at.axes(i, own.y), "a_i": at.axes(i, own.z)}
+    of_j = {"u_j": at.axes(j, own.x), "a_j": at.axes(j, own.z)}
+    return {"i": i, "j": j, "coordinate": -1, "drawn": 0.0} | points | axes | of_j
+
+
+def inside(spec: Any, p: Any) -> tuple[float, float]:
+    """A point of the drawing in the coordinates of the curve."""
+    own = spec.curve.frame
+    x, y, _ = own.inside(tuple(a - b for a, b in zip(p, own.at, strict=True)))
+    return x, y
+
+
+def stored(curve: Sampled, spec: Any, at: Any) -> int:
+    """Where in tab the numbers of a curve begin; its corners count for the size of a mechanism."""
+    offset = len(at.tab)
+    at.tab.extend(curve.numbers)
+    body = at.body(spec.bodies[0], "bodies", 0, near=spec.at)
+    for x, y in (curve.place.min(axis=0), curve.place.max(axis=0)):
+        at.local(body, spec.curve.frame.moved((float(x), float(y), 0.0)))
+    return offset
+
+
+def drawn_at(curve: Sampled, spec: Any, radius: float = 0.0) -> tuple[float, float, float]:
+    """u and length at the footpoint of a point as drawn, and how far left of the curve it is.
+
+    Raises ScenarioError for a point that is far from where it must be.
+    """
+    p = inside(spec, spec.at)
+    u, along, c, c1 = settled(curve, nearest(curve, p)[0], p, 0)
+    aside = (c1[0] * (p[1] - c[1]) - c1[1] * (p[0] - c[0])) / sqrt(c1[0] ** 2 + c1[1] ** 2)
+    if abs(aside) <= SIDE * radius and radius > 0.0:
+        what = "the centre of the roller is drawn on the curve, so nobody knows on which side it is"
+        raise ScenarioError(what, "draw it a radius away from the curve", ("at",))
+    off = abs(abs(aside) - radius)
+    if off > OFF * curve.size:
+        left = direction((-c1[1], c1[0])) if aside >= 0.0 else direction((c1[1], -c1[0]))
+        x, y = (a + radius * b for a, b in zip(c, left, strict=True))
+        there = spec.curve.frame.moved((x, y, 0.0))
+        raise ScenarioError(
+            f"is drawn {off:.3g} m away from where its curve holds it",
+            f"the nearest such place is [{', '.join(f'{a:.6g}' for a in there)}]",
+            ("at",),
+        )
+    return u, along, aside
+
+
+@compiled(void(A1, i8, A1))
+def write_settled(tab, line, out):
+    """out = u, length, c, c' near u = out[0] of a point, or of a line by its normal, out[1:3]."""
+    at = (out[1], out[2])
+    u = touch(tab, 0, out[0], at) if line == 1 else footpoint(tab, 0, out[0], at)
+    c, c1, _ = place(tab, 0, u)
+    out[0], out[1] = u, length(tab, 0, u)
+    out[2], out[3], out[4], out[5] = c[0], c[1], c1[0], c1[1]
+
+
+def settled(curve: Sampled, u: float, p: Any, line: int) -> tuple[float, float, Any, Any]:
+    """u near a given one, length, place and tangent, at the footpoint of a point or the touch of a
+    line of normal p."""
+    out = np.array([u, *p, 0.0, 0.0, 0.0])
+    write_settled(np.array(curve.numbers), line, out)
+    found = out.tolist()
+    return found[0], found[1], found[2:4], found[4:6]
+
+
+def ends_of(curve: Sampled) -> tuple[Limit, ...]:
+    """What ends a run at the ends of an open curve."""
+    if curve.closed:
+        return ()
+    return (Limit("end", curve.length, "m", "jammed", "came to an end of its curve, of length"),)
+
+
+# --- kernels -----------------------------------------------------------------------------
+
+
+@internal
+def seen(scene, e, own):
+    """The point of body j and its velocity, in the axes of the curve."""
+    _, _, d, v = carried(scene, e)
+    u, w = arm(scene.X, own.i, own.u_i), arm(scene.X, own.i, own.w_i)
+    return (dot(u, d), dot(w, d)), (dot(u, v), dot(w, v))
+
+
+@internal
+def write_place(scene, own, u, c1, rate):
+    """u and the length of the curve there, with their rates."""
+    S = scene.S
+    S[own.parameter, 0], S[own.parameter, 1] = u, rate
+    if own.coordinate >= 0:
+        S[own.coordinate, 0] = length(scene.tab, own.curve, u)
+        S[own.coordinate, 1] = sqrt(dot2(c1, c1)) * rate
+
+
+@internal
+def follow(scene, e, own):
+    """The footpoint of the point of body j."""
+    p, v = seen(scene, e, own)
+    u = footpoint(scene.tab, own.curve, scene.S[own.parameter, 0], p)
+    c, c1, c2 = place(scene.tab, own.curve, u)
+    fall = dot2(c1, c1) - dot2(c2, (p[0] - c[0], p[1] - c[1]))
+    write_place(scene, own, u, c1, dot2(c1, v) / fall)
+
+
+@internal
+def distance_row(scene, e, own, k, side, radius):
+    """n . (p - c) - r as row k; side: 1 where n points left of the curve, -1 to the right."""
+    u = scene.S[own.parameter, 0]
+    c, c1, c2 = place(scene.tab, own.curve, u)
+    p, v = seen(scene, e, own)
+    size = sqrt(dot2(c1, c1))
+    n = (-side * c1[1] / size, side * c1[0] / size)
+    x, y = arm(scene.X, own.i, own.u_i), arm(scene.X, own.i, own.w_i)
+    along_row(scene, e, plus(scaled(n[0], x), scaled(n[1], y)), k)
+    fall = dot2(c1, c1) - dot2(c2, (p[0] - c[0], p[1] - c[1]))
+    along = dot2(c1, v) / size
+    scene.phi[k] -= dot2(n, c) + radius
+    scene.gamma[k] += dot2(n, c2) * along * along / fall
+
+
+@internal
+def end_gap(scene, e, own, row):
+    """How far the place on an open curve is beyond its nearer end, m, and its rate."""
+    s, rate = scene.S[own.coordinate, 0], scene.S[own.coordinate, 1]
+    whole = length_of(scene.tab, own.curve)
+    if row < 0:  # it has come apart
+        scene.gap[e, 0], scene.gap[e, 1] = -whole, 0.0
+    elif s > 0.5 * whole:
+        scene.gap[e, 0], scene.gap[e, 1] = s - whole, rate
+    else:
+        scene.gap[e, 0], scene.gap[e, 1] = -s, -rate

@@ -1,0 +1,115 @@
+"""Point on curve: a point of body j stays on a curve of body i.
+
+    Phi_1 = n . (p - c) = 0          n, c at the footpoint of p, see on_curve.py
+    Phi_2 = a_i . d = 0              a the normal of the plane of the curve, d from its origin to p
+
+The coordinate is the length along the curve from its beginning, over any number of turns where it
+is closed.  reaction acts on body j at its point, across the curve: there is no friction.
+"""
+
+from typing import ClassVar
+
+from trsim.elements.contract import Element, Reach, Row, Turning, kernel
+from trsim.elements.curve import Curve, sampled
+from trsim.elements.joint import Joint
+from trsim.elements.on_curve import (
+    distance_row,
+    drawn_at,
+    end_gap,
+    ends_of,
+    follow,
+    frames,
+    stored,
+)
+from trsim.elements.rows import ARC, Axes, JointRow, along, constraint_of
+from trsim.fields import point
+from trsim.kernels.columns import constraint_row, i8
+from trsim.kernels.lazy import internal
+
+
+class PointOnCurve(Joint):
+    """A point of the second body on a plane curve of the first: a bead on a wire, a pin in a slot.
+
+    curve  of the first body, with which it moves; where an open one ends the run does, as `jammed`
+    at     the point of the second body, as drawn: on the curve, or so near that the start may move
+           it there
+    """
+
+    type: ClassVar[str] = "point_on_curve"
+    curve: Curve
+    at: point("m")
+
+
+class Own(Axes):
+    """Of one instance; its first point is the origin of the curve."""
+
+    normal: constraint_row
+    axial: constraint_row
+    curve: i8  # in tab
+    parameter: i8  # entry of S with u
+
+
+def pack(name, spec, at):
+    curve = sampled(spec.curve)
+    u, length, _ = drawn_at(curve, spec)
+    found = frames(spec, at) | {"curve": stored(curve, spec, at)}
+    own = Own.of(Row(*Own.packed(parameter=-1, **found)))
+    _, parameter = at.on_curve(name, own, (length, u))
+    return Row(*Own.packed(parameter=parameter, **found), limits=ends_of(curve))
+
+
+@internal
+def normal(scene, e, k):
+    distance_row(scene, e, Own(scene, e), k, 1.0, 0.0)
+
+
+@kernel
+def coordinate(t, scene, e):
+    follow(scene, e, Own(scene, e))
+
+
+@kernel
+def gap(t, scene, e):
+    own = Own(scene, e)
+    end_gap(scene, e, own, own.normal)
+
+
+def reach(row):
+    """The point goes wherever the plane of the curve does."""
+    own = Own.of(row)
+    return Reach(slides=((own.i, own.u_i), (own.i, own.w_i)))
+
+
+def turning(row):
+    own = Own.of(row)
+    return Turning(points=((own.j, own.p_j),), axes=((own.i, own.u_i), (own.i, own.w_i)))
+
+
+ROWS = (JointRow("normal", "n", fill=normal), along("a", "axial"))
+ELEMENT = Element(
+    key="point_on_curve",
+    section="joints",
+    spec=PointOnCurve,
+    pack=pack,
+    rows=tuple(row.name for row in ROWS),
+    holds=tuple(row.holds for row in ROWS),
+    coordinates=(ARC,),
+    reach=reach,
+    turning=turning,
+    picture="bead",
+    kernels={"constraint": constraint_of(ROWS), "coordinate": coordinate, "gaps": gap},
+    example="""
+bodies:
+  bead: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [-0.5, 0.25]}
+joints:
+  wire:
+    type: point_on_curve
+    bodies: [ground, bead]
+    at: [-0.5, 0.25]
+    curve: {x: s, y: s**2, range: [-1, 1]}
+sensors:
+  way: {joint: wire}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
+)
