@@ -82,6 +82,23 @@ def test_kitchen_door():
     assert both == pytest.approx(12 * (r["door.acceleration"] - g), abs=1e-6)
 
 
+@pytest.mark.parametrize("planar, redundant", [("true", 1), ("false", 7)])
+def test_yoke_on_three_links(planar, redundant):
+    sets = [f"planar={planar}", "output.channels=['*', '*.rotation']"]
+    r = run(load(VALIDATION / "yoke_on_three_links.yaml", sets))
+    assert (r.mechanism.mobility, len(r.mechanism.redundant)) == (0, redundant)
+    angle = 10 * r.t
+    circle = 0.06 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    wanted = [0.1, 0.02, 0] + circle
+    np.testing.assert_allclose(r["yoke.position"], wanted, atol=1e-9)
+    np.testing.assert_allclose(r["yoke.rotation"], np.tile(np.eye(3).ravel(), (len(angle), 1)),
+                               atol=1e-9)  # fmt: skip
+    together = r["a.reaction"] + r["b.reaction"] + r["c.reaction"]
+    np.testing.assert_allclose(together, 3 * ([0, 9.81, 0] - 100 * circle), atol=1e-6)
+    lifted = 0.06 * (3 + 3 * 0.5 * 0.5) * 9.81
+    np.testing.assert_allclose(r["motor.force"], lifted * np.cos(angle), atol=1e-6)
+
+
 @pytest.mark.parametrize("name, c", [("cardan_shaft", 1.0), ("cardan_shaft_phase_error", None)])
 def test_cardan_shaft(name, c):
     """tan(out) = c tan(in), by the phase of the forks."""

@@ -17,6 +17,7 @@ from trsim.assemble.hubs import hubs
 from trsim.assemble.instances import Column, Instance, RowName, Section
 from trsim.assemble.jumps import find_jumps, steep
 from trsim.assemble.layout import layout, no_outputs
+from trsim.assemble.least_norm import least_norm
 from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
@@ -310,6 +311,7 @@ def build(
         **lines([*frames, *(r.frames for r in redundant)]),
         **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **watched_rows(instances, rows, redundant, size),
+        shared_out=least_norm.address() if redundant and not at.beams else 0,
         **band_tables(list(at.beams.values()), frames, n),
         derivative=derivative.address(),
         beside=beside.address(),

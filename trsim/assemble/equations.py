@@ -57,6 +57,8 @@ def derivative(s, t, y, yd):
         constraints(s, t)
         refactorise(s)
         power = 0.0
+        for k in range(s.m, s.lam.size):  # what was measured last may have shared loads with them
+            s.lam[k] = 0.0
         for again in range(2):
             right_hand_side(s, s.stabilisation == BAUMGARTE)
             solve(s, s.x)
@@ -96,8 +98,8 @@ def without_feedback(s, t, y, yd):
         call_beams(s.on_beams[FREE], s, y, yd, 0)
     right_hand_side(s, False)
     solve(s, s.x)
-    for k in range(s.m):
-        s.lam[k] = s.x[k]
+    for k in range(s.lam.size):
+        s.lam[k] = s.x[k] if k < s.m else 0.0
     accelerations(s, y, yd)
 
 

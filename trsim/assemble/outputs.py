@@ -10,6 +10,7 @@ In a planar scene the out-of-plane components are those of the planar problem: z
 """
 
 from trsim.assemble.equations import call_all, call_derivative, kinetic, stored_energy
+from trsim.assemble.least_norm import call_least_norm
 from trsim.elements.contract import BOOK, N_BOOK, STORED
 from trsim.elements.frames import TwoPoints, arm
 from trsim.elements.scene import N_STORED
@@ -33,6 +34,8 @@ def measure(s, t, y, work_projection, energy_0):
     """Fill s.out; uses the last evaluation, which was at (t, y)."""
     if s.plain != 0:
         call_derivative(s.plain, s, t, y, s.aside[0])
+    if s.shared_out != 0:
+        call_least_norm(s.shared_out, s)
     call_all(s, s.measure, t)
     for k in range(s.joint_out.shape[0]):
         reaction(s, k)

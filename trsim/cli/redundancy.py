@@ -10,6 +10,7 @@ def redundancy(data: dict[str, Any]) -> str:
     more = "s" if len(rows) > 1 else ""
     return (
         f"{len(rows)} constraint row{more} dropped ({', '.join(rows)}), mobility "
-        f"{data['mobility']}; reactions of {', '.join(joints)} are not unique, those of dropped "
-        "rows are zero; `trsim check` says what to release"
+        f"{data['mobility']}; reactions of {', '.join(joints)} are not unique, of all that balance "
+        "the motion those of least norm are given (with flexible bars, rows that are dropped carry "
+        "none); `trsim check` says what to release"
     )

@@ -89,6 +89,7 @@ class Model(Packed):
     looped: I1  # rigid bodies in kinematic loops    assemble/loops.py
     judged: I2  # (n, 2) frames of what judges how far one is turned against the other: bushings
     tolerance: f8  # asked for, of the units of the error norm
+    shared_out: i8  # address of what shares loads between redundant rows, or 0     least_norm.py
     plain: i8  # address of what leaves Baumgarte's feedback out of what is measured, or 0
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
@@ -172,6 +173,8 @@ class Scene(Model):
     kept_factors: A2  # (4, places)
     kept_roots: A2  # (2, n_x) sigma of those two places
     own: A2  # (2, 6 n) what a row has of its own
+    stress: A2  # (n_d, n_x) self-stresses of the redundant rows             least_norm.py
+    gram: A2  # (n_d + 1, n_d) their products, and room
     moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: T6  # (n, 6) accelerations without constraints, axes of the solve
     gap: T2  # (N, 2) penetration and its rate
@@ -200,6 +203,7 @@ def scene(model: Model) -> Scene:
     rows = m + len(model.redundant)
     elements = int(np.sum(model.beam[:, 1] - 1))
     loops = 1 if model.near_rows > 0.0 else 0
+    shared = len(model.redundant) if model.shared_out else 0
     n_y = model.n_q + model.n_v + model.n_z
     shapes = (
         (("X",), (n, 12)),
@@ -225,6 +229,8 @@ def scene(model: Model) -> Scene:
         (("kept_factors",), (4 * loops, len(model.row))),
         (("kept_roots",), (2 * loops, n_x)),
         (("own",), (2 * loops, 6 * n)),
+        (("stress",), (shared, n_x)),
+        (("gram",), (shared + 1, shared)),
         (("E",), (N_STORED,)),
         (("out",), (max(model.n_out, 1),)),
     )

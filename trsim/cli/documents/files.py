@@ -104,7 +104,7 @@ class Show(Document, Result):
     summary         the run in a few numbers
     solver          its settings, and what it did
     warnings        what looked wrong: in the scenario, at the start, in the results
-    redundant       constraint rows dropped, "joint.axis"; their reactions are zero
+    redundant       constraint rows left out of the solve, "joint.axis"
     provenance      where the file comes from
     phase           names of phase portraits
     poincare        section -> number of points

@@ -71,7 +71,9 @@ def measure_in(s, r, b, step, at, theta):
     b.firm[0] = firmness(s)
     if s.redundant.shape[0] == 0 or theta == 0.0:
         return
-    least = min(PLAIN, (NOISE / s.tolerance) ** (2.0 / 3.0))
+    # of least norm they are as right as accelerations
+    power = 2.0 if s.shared_out != 0 else 2.0 / 3.0
+    least = min(PLAIN, (NOISE / s.tolerance) ** power)
     if not smallest_pivot(s) < least:
         return
     start, apart = step[2], NEAREST
