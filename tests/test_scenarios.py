@@ -89,7 +89,7 @@ def test_yoke_on_three_links(planar, redundant):
     assert (r.mechanism.mobility, len(r.mechanism.redundant)) == (0, redundant)
     angle = 10 * r.t
     circle = 0.06 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    wanted = [0.1, 0.02, 0] + circle
+    wanted = np.array([0.1, 0.02, 0]) + circle
     np.testing.assert_allclose(r["yoke.position"], wanted, atol=1e-9)
     np.testing.assert_allclose(r["yoke.rotation"], np.tile(np.eye(3).ravel(), (len(angle), 1)),
                                atol=1e-9)  # fmt: skip
