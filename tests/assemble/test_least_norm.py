@@ -85,6 +85,33 @@ solver: {end: 0.1 s}
     np.testing.assert_allclose(0.8 * pair + moment[:, 1], -0.4 * weight, rtol=1e-9)
 
 
+def test_a_flexible_bar_between_welds():
+    """A bar clamped at both ends in the plane, pulled across in its middle: its ends are alike.
+
+    Between a ground and a sledge two slides hold the sledge, so that rows at the bar are redundant.
+    """
+    text = """
+bodies:
+  sledge: {mass: 2 kg, inertia: 0.1, at: [1, 0]}
+  bar: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, section: {width: 20 mm},
+        youngs_modulus: 70 GPa, density: 2700 kg/m^3}
+joints:
+  left: {type: revolute, bodies: [ground, bar], at: [0, 0]}
+  right: {type: revolute, bodies: [sledge, bar], at: [1, 0]}
+  again: {type: revolute, bodies: [sledge, bar], at: [1, 0]}
+  low: {type: prismatic, bodies: [ground, sledge], at: [1, 0], axis: [1, 0, 0]}
+gravity: [0, -9.81]
+solver: {end: 5 ms, tolerance: 1e-6}
+"""
+    r = run(loads(text))
+    assert len(r.mechanism.redundant) == 2
+    np.testing.assert_allclose(r["right.reaction"], r["again.reaction"], atol=1e-7)
+    alone = run(loads(text.replace("  again:", "  # again:")))
+    together = r["right.reaction"] + r["again.reaction"]
+    np.testing.assert_allclose(together, alone["right.reaction"], atol=1e-3)
+    assert np.abs(together).max() > 1.0
+
+
 def test_kitchen_door_carries_the_same_by_other_rows():
     r = run(load(DOOR, ["output.channels=['*']", "solver.end=0.5"]))
     assert np.abs(r["bottom.reaction"]).max() < 500

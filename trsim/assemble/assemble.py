@@ -311,7 +311,7 @@ def build(
         **lines([*frames, *(r.frames for r in redundant)]),
         **(no_pattern(len(frames), n) if hubs is None else pattern(frames, n, spans(at), hubs)),
         **watched_rows(instances, rows, redundant, size),
-        shared_out=least_norm.address() if redundant and not at.beams else 0,
+        shared_out=least_norm.address() if redundant else 0,
         **band_tables(list(at.beams.values()), frames, n),
         derivative=derivative.address(),
         beside=beside.address(),

@@ -216,6 +216,29 @@ def gathered(s, u, x):
 
 
 @compiled(ON_BEAMS)
+def node_stress(s, x, out, row):
+    """x += J M^-1 J_row^T of all nodes, for a row that need not be one of the solve."""
+    J, B, G, u, width = s.J, s.B, s.G, s.moved, components(s)
+    for f in range(s.n_r, s.n):
+        for c in range(s.d_node):
+            u[f, c] = 0.0
+    for l in range(s.row_start[row], s.row_start[row + 1]):
+        f = s.line_frame[l]
+        if f < s.n_r:
+            continue
+        square = G[f, 0] * G[f, 0] + G[f, 1] * G[f, 1] + G[f, 2] * G[f, 2]
+        for c in range(width):
+            a, b = (c + 1) % 3, (c + 2) % 3
+            u[f, c] += J[l, c]
+            u[f, width + c] += (J[l, 3 + a] * G[f, b] - J[l, 3 + b] * G[f, a]) / square
+    divide_by_mass(s, u)
+    for f in range(s.n_r, s.n):
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for c in range(s.d_node):
+                x[s.slot_row[p]] += B[p, c] * u[f, c]
+
+
+@compiled(ON_BEAMS)
 def pull_nodes(s, x, out, k):
     """free -= M^-1 J^T x of all nodes."""
     u = s.moved

@@ -8,13 +8,12 @@ u_k makes a moment a force: 1 over the mechanism's size for rows that hold a tur
 of one compliance would share a load.  What the motion does determine stays as it is, and what it
 does not is as smooth as the motion, also where the rows of the solve come to depend on each other
 and those with the redundant ones do not.
-
-In mechanisms with flexible bars redundant rows keep no reaction.
 """
 
 from math import sqrt
 
 from trsim.assemble.linear import solve
+from trsim.assemble.on_beams import STRESS, call_beams
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
@@ -49,8 +48,10 @@ def self_stresses(s):
         row = s.m + d
         for l in range(s.row_start[row], s.row_start[row + 1]):
             f = s.line_frame[l]
-            if f > 0:
+            if 0 < f < s.n_r:
                 against(s, f, l, x)
+        if s.n_r < s.n:
+            call_beams(s.on_beams[STRESS], s, x, x, row)
         solve(s, x)
 
 

@@ -15,6 +15,7 @@ from trsim.assemble.beams import (
     node_rates,
     node_right_hand_side,
     node_rows,
+    node_stress,
     pull_nodes,
     slope_force,
 )
@@ -56,9 +57,9 @@ def work(s, before, after, k):
 
 ALL = (
     *(node_poses, node_accelerations, rows, node_plain_rows, node_right_hand_side, pull_nodes),
-    *(node_rates, node_kinetic, residual, work),
+    *(node_rates, node_kinetic, residual, work, node_stress),
 )
-POSES, FREE, ROWS, PLAIN, RIGHT, PULL, RATES, KINETIC, RESIDUAL, WORK = range(len(ALL))
+POSES, FREE, ROWS, PLAIN, RIGHT, PULL, RATES, KINETIC, RESIDUAL, WORK, STRESS = range(len(ALL))
 
 
 def addresses(beams):

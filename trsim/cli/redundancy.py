@@ -11,6 +11,5 @@ def redundancy(data: dict[str, Any]) -> str:
     return (
         f"{len(rows)} constraint row{more} dropped ({', '.join(rows)}), mobility "
         f"{data['mobility']}; reactions of {', '.join(joints)} are not unique, of all that balance "
-        "the motion those of least norm are given (with flexible bars, rows that are dropped carry "
-        "none); `trsim check` says what to release"
+        "the motion those of least norm are given; `trsim check` says what to release"
     )
