@@ -221,3 +221,25 @@ def test_a_four_bar_begun_by_one_rate():
     assert r["coupler.angular_velocity"][0, 2] == pytest.approx(0.0, abs=1e-9)
     assert r["rocker.angular_velocity"][0, 2] == pytest.approx(5.0, abs=1e-9)
     assert r["energy.kinetic"] == pytest.approx(81.25, rel=1e-6)
+
+
+def test_the_door_of_the_readme(tmp_path):
+    """What its text says: the strike holds until the bolt is out, the door opens, and shuts."""
+    text = (FOLDER.parent / "README.md").read_text()
+    block = text.split("```yaml")[2].split("```")[0]
+    assert block.startswith("\n# door.yaml")
+    (tmp_path / "door.yaml").write_text(block)
+    r = run(load(tmp_path / "door.yaml"))
+    assert r.mechanism.mobility == 1 and not r.mechanism.redundant
+    assert r["strike.reaction"][0] == pytest.approx([0, 2 / 0.82, 0], abs=1e-6)
+    assert np.abs(np.degrees(r["opening"][r.t < 0.19])).max() < 1e-3
+    out = r.t[np.argmax(r["drawn"] > 0.012)]
+    assert out == pytest.approx(0.2, abs=0.02)
+    assert np.all(r["strike.reaction"][r.t > out + 0.01] == 0)
+    assert np.degrees(r["opening"].max()) == pytest.approx(66, abs=0.5)
+    assert r.t[np.flatnonzero(r["opening"] > 0.01)[-1]] == pytest.approx(4, abs=0.1)
+    assert abs(r["opening"][-1]) < 1e-3
+    # the handle hangs a little: its weight against the spring
+    hangs = r["drawn"][-1] / 0.015
+    assert 2 * hangs == pytest.approx(0.3 * 9.81 * 0.06 * np.cos(hangs), rel=1e-4)
+    assert r.outcome.statistics["energy_residual_relative"] < 1e-5

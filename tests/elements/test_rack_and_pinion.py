@@ -143,6 +143,12 @@ REFUSED = {
     "at the centre of mass": ("at: [0.05, 0], ", "", ("radius",), "at 0.1 m beside"),
     "on the axis": ("at: [0.05, 0]", "at: [0, 1]", ("radius",), "at 0 m beside"),
     "not across": ("axis: [0, 1]", "axis: [0, 1, 1]", ("joints",), "is not across"),
+    "hinges": (
+        "[bearing, guide]",
+        "[bearing, bearing]",
+        ("joints", 1),
+        "has an angle, not a stroke",
+    ),
     "slide first": ("[bearing, guide]", "[guide, bearing]", ("joints", 0), "has a stroke, not an"),
     "two hinges": ("[bearing, guide]", "[bearing, bearing]", ("joints", 1), "not a stroke"),
     "no radius": (", radius: 5 cm", "", (), "got none"),

@@ -55,7 +55,7 @@ class Planarity(NamedTuple):
 
     def because(self) -> tuple[str, ...]:
         """Why the scene is spatial; nothing where the scenario says so."""
-        return () if self.planar else tuple(map(str, self.reasons))
+        return () if self.planar else tuple(dict.fromkeys(map(str, self.reasons)))
 
     def notes(self) -> tuple[str, ...]:
         """What the user of a planar scene should know before the run."""

@@ -54,9 +54,9 @@ def named(
         if which in ("", own) and kind in ("", ANY, COORDINATES[own].kind)
     ]
     if not fits:
+        own = " and ".join(map(article, [which] if which else there.values()))
         raise ScenarioError(
-            f"joint '{joint}' has a {which or ' and a '.join(there.values())}, "
-            f"not {'an' if kind == 'angle' else 'a'} {kind}",
+            f"joint '{joint}' has {own}, not {article(kind)}",
             "name a revolute joint" if kind == "angle" else "name a prismatic joint",
             path,
         )
@@ -64,6 +64,11 @@ def named(
         what = f"joint '{joint}' has several coordinates"
         raise ScenarioError(what, f"name one of them: {', '.join(there)}", path)
     return fits[0][0], joint, fits[0][1]
+
+
+def article(coordinate: str) -> str:
+    """A coordinate with its article."""
+    return f"{'an' if coordinate in ('angle', 'x') else 'a'} {coordinate}"
 
 
 def called(reference: str, joints: Mapping[str, Any]) -> str:

@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import model_validator
 
+from trsim.elements.coordinates import article
 from trsim.elements.transmission import Transmission, relation, transmission
 from trsim.errors import ScenarioError
 from trsim.fields import Unit
@@ -73,10 +74,6 @@ def check_units(name, found, at):
             what = "coefficients of angles in m/rad and of strokes in rad/m make no sum"
             raise ScenarioError(what, "write units for one kind, numbers for the other",
                                 ("coefficients",))  # fmt: skip
-
-
-def article(kind):
-    return "an angle" if kind == "angle" else "a stroke"
 
 
 ELEMENT = transmission(
