@@ -156,6 +156,26 @@ output: {every: 0.01, channels: ["*"]}
     assert r["line.tension"] == pytest.approx(link["line.force"], abs=1e-4)
 
 
+def test_on_a_flexible_bar():
+    from .test_point_on_curve import FLEXIBLE
+
+    link = "{type: link, bodies: [rod, ball], points: [[1, 0], [1, -0.3]]}"
+    rope = "{type: rope, through: [{body: rod, at: [1, 0]}, {body: ball, at: [1, -0.3]}]}"
+    for planar in ("true", "false"):
+        r, other = (run(FLEXIBLE % (joint, planar)) for joint in (rope, link))
+        assert r["ball.position"] == pytest.approx(other["ball.position"], abs=1e-9)
+        assert r["tie.tension"] == pytest.approx(other["tie.force"], abs=1e-4)
+
+
+@pytest.mark.parametrize("how", ["rail: 0.3", "rail.rate: 0.3"])
+def test_starts(how):
+    """The other mass goes along, twice as far and as fast."""
+    r = run(hoist(BLOCK, f"initial: {{{how}}}", end=0.1))
+    key = "s.rate" if "rate" in how else "s"
+    assert r[key][0] == pytest.approx(0.3, abs=1e-9)
+    assert r[key.replace("s", "w", 1)][0] == pytest.approx(-0.6, abs=1e-9)
+
+
 # --- over wheels -----------------------------------------------------------------------------
 
 THREE = """
