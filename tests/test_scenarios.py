@@ -243,3 +243,60 @@ def test_the_door_of_the_readme(tmp_path):
     hangs = r["drawn"][-1] / 0.015
     assert 2 * hangs == pytest.approx(0.3 * 9.81 * 0.06 * np.cos(hangs), rel=1e-4)
     assert r.outcome.statistics["energy_residual_relative"] < 1e-5
+
+
+def test_cam_with_a_roller():
+    r = run(
+        load(VALIDATION / "cam_roller.yaml", ["output.channels=['*']", "solver.tolerance=1e-9"])
+    )
+    a, r0, e = 0.04, 0.012, 0.015
+    height = e * np.sin(9 * r.t) + np.sqrt((a + r0) ** 2 - (e * np.cos(9 * r.t)) ** 2)
+    assert r["lift"] + np.sqrt((a + r0) ** 2 - e**2) == pytest.approx(height, abs=1e-9)
+    assert (height.min(), height.max()) == pytest.approx((0.037, 0.067), abs=1e-5)
+    assert r["turn"][-1] > 4 * np.pi
+
+
+def test_cam_with_a_flat_face():
+    r = run(load(VALIDATION / "cam_flat.yaml", ["output.channels=['*']", "solver.tolerance=1e-9"]))
+    a, b, t = 0.04, 0.03, 9 * r.t
+    p = np.sqrt((a * np.sin(t)) ** 2 + (b * np.cos(t)) ** 2)
+    slope = (a**2 - b**2) * np.sin(t) * np.cos(t) / p
+    assert r["lift"] + b == pytest.approx(p, abs=1e-9)
+    assert (p.min(), p.max()) == pytest.approx((b, a), abs=1e-5)
+    assert r["lobe.place"][:, 0] == pytest.approx(slope, abs=1e-7)
+    assert r["motor.force"] == pytest.approx(r["lobe.normal_force"] * slope, abs=1e-7)
+
+
+def test_geneva_drive():
+    r = run(load(VALIDATION / "geneva.yaml", ["output.channels=['*']", "solver.tolerance=1e-9"]))
+    a, c, x = 0.05, 0.05 * np.sqrt(2), 2 * r.t - 0.7
+    angle = np.arctan2(a * np.sin(x), c - a * np.cos(x))
+    assert r["turn"] == pytest.approx(x, abs=1e-9)
+    # the wheel turns the other way, from where it is drawn
+    assert r["wheel_turn"] == pytest.approx(angle[0] - angle, abs=1e-9)
+    assert abs(r["wheel_turn.rate"]).max() == pytest.approx(2 * a / (c - a), rel=1e-4)
+    assert a / (c - a) == pytest.approx(2.4142, abs=1e-4)
+
+
+def test_whitworth_quick_return():
+    r = run(load(VALIDATION / "whitworth.yaml", ["output.channels=['*']", "solver.tolerance=1e-9"]))
+    a, e, x = 0.1, 0.06, 5 * r.t
+    angle = np.unwrap(np.arctan2(a * np.sin(x) + e, a * np.cos(x)))
+    assert r["swing"] == pytest.approx(angle - angle[0], abs=1e-8)
+    assert r["swing"][-1] > 4 * np.pi
+    rate = r["swing.rate"] / 5
+    assert (rate.min(), rate.max()) == pytest.approx((a / (a + e), a / (a - e)), rel=1e-4)
+    end = np.hypot(0.3, 0.06)
+    turned = angle - angle[0] + np.arctan2(0.06, 0.3)
+    x, y = end * np.cos(turned), end * np.sin(turned) - e
+    place = x + np.sqrt(0.16 - y**2)
+    assert r["stroke"] == pytest.approx(place - place[0], abs=1e-7)
+
+
+def test_rope_hoist():
+    r = run(
+        load(VALIDATION / "rope_hoist.yaml", ["output.channels=['*']", "solver.tolerance=1e-9"])
+    )
+    assert r["lift"] == pytest.approx(0.5 * 9.81 / 11 * r.t**2, abs=1e-9)
+    assert 2 * r["lift"] + r["fall"] == pytest.approx(0.0, abs=1e-10)
+    assert r["line.tension"] == pytest.approx(16.053, abs=1e-3)

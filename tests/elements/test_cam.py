@@ -6,6 +6,7 @@ curve, a flat face of normal n stands at p(b), and a roller rolls on the curve p
 
 import numpy as np
 import pytest
+from scipy.special import ellipe
 
 from trsim.errors import TrsimError
 from trsim.solve.diagnose.doubts import doubts
@@ -217,6 +218,26 @@ def test_lifting_off_is_said():
     fast = run(tappet("face: [0, 1]", ELLIPSE, [0, B], speed="40"), "output.channels=['lift']")
     [said] = told(fast)
     assert "pulled by" in said and "lift off" in said
+
+
+def test_no_turn_is_lost_in_a_long_step():
+    """A disc about its axis."""
+    disc = f"x: {A}*cos(s), y: {A}*sin(s), range: [0, 2*pi], closed: true"
+    text = tappet(f"radius: {R}", disc, [0, A + R], "tolerance: 1e-3", end=40)
+    r = run(text.replace("every: 0.01", "every: 20"))
+    assert r["way"] == pytest.approx(-A * 9 * r.t, abs=1e-6)
+
+
+@pytest.mark.parametrize("turn", [2.0, 20.0])
+def test_it_starts_where_its_shaft_is_put(turn):
+    """Also turns away from the drawing, which the way round the cam counts."""
+    r = run(tappet("face: [0, 1]", ELLIPSE, [0, B], more=f"initial: {{shaft: {turn}}}", end=0.1))
+    t = r["turn"]
+    assert t[0] == pytest.approx(turn - 0.6, abs=1e-9)
+    p = np.sqrt((A * np.sin(t)) ** 2 + (B * np.cos(t)) ** 2)
+    assert r["lift"] == pytest.approx(p - B, abs=1e-9)
+    around = 4 * A * ellipe(1 - (B / A) ** 2)
+    assert r["way"][0] / around == pytest.approx(-t[0] / (2 * np.pi), abs=0.2)
 
 
 def test_an_open_cam_ends_the_run():

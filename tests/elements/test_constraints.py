@@ -82,11 +82,18 @@ MESH = {  # joints of which a transmission relates coordinates, what it is, axis
     "rack_and_pinion": (HINGE, LINE, "ratio: -0.3", None),
     "coupler": (HINGE, LINE, "coefficients: [0.4, -1.3]", None),
     "coupler, three": (SLEEVE, OTHER, "coefficients: [0.4, 0.7, -0.2]", SECOND),
+    "belt": (HINGE, PARALLEL, "radii: [0.1, 0.23]", AXIS),
+    "belt, crossed": (HINGE, PARALLEL, "radii: [0.1, 0.23], crossed: true", AXIS),
 }
+ROPES = {  # bodies, and a place on each; wheels are those of a plane: test_rope.py
+    "rope": ("left", "third", "right"),
+    "rope, to and fro": ("ground", "right", "left", "right", "ground"),
+}
+SPREAD_OUT = [[0.2, 0.1, 0], [-0.4, 0.3, 0.5], [0.9, -0.3, 0.2], [0.1, 0.8, -0.4], [1, 1, 1]]
 CASES = {name: (name, "", "") for name in JOINTS if name not in CURVED} | {
     name: (name, "", "") for name in CURVED
 }
-CASES |= {name: (name, "", "") for name in MESH}
+CASES |= {name: (name, "", "") for name in [*MESH, *ROPES]}
 CASES |= {
     f"{d} of {j}'s {x}": (j, d, x)
     for j, joint in JOINTS.items() if not joint.ideal for x in joint.coordinates for d in DRIVES
@@ -128,6 +135,11 @@ def thrown(case, seed):
     rng = np.random.default_rng(seed)
     if case in MESH:
         return meshing(case, rng)
+    if case in ROPES:
+        places = zip(ROPES[case], SPREAD_OUT, strict=False)
+        through = ", ".join(f"{{body: {body}, at: {at}}}" for body, at in places)
+        text = f"joints: {{line: {{type: rope, through: [{through}]}}}}"
+        return bench(text, rng, TWO_BODIES + THIRD[1:])
     text = f"joints: {{joint: {{bodies: [left, right], {written(joint)}}}}}\n"
     kind = joint.split(",")[0]
     text += LAW if JOINTS[kind].ideal else ""

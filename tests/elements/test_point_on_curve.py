@@ -204,6 +204,13 @@ def test_long_steps_stay_on_their_piece(solver):
     assert r["way"][-1] > 20 * 2.5
 
 
+def test_steps_are_bounded_by_what_the_tangent_turns():
+    """As by angles that are known up to full turns."""
+    m = built(bead(CIRCLE, [0, -R]))
+    entries = [x.entry for x in m.coordinates.values() if x.joint == "wire"]
+    assert len(m.model.wound) == 1 and {*m.model.wound} < {*entries}
+
+
 def test_both_ends_end_it():
     r = run(bead(CYCLOID, on_cycloid(0.2), velocity="[-9, 0]"))
     assert r.outcome.status == "jammed" and r["bead.position"][-1, 0] < -1
@@ -296,6 +303,69 @@ def test_the_start_moves_it_onto_the_curve():
     """To the nearest place, where nothing else holds it."""
     r = run(bead(CIRCLE, "[0.33, -0.31]", end=0.01))
     assert np.hypot(*r["bead.position"][0, :2]) == pytest.approx(R, abs=1e-12)
+
+
+FLEXIBLE = """
+bodies:
+  rod: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, section: {diameter: 12 mm},
+        youngs_modulus: 207 GPa, density: 7800}
+  ball: {mass: 1, inertia: [0.01, 0.01, 0.01], at: [1, -0.3]}
+joints:
+  clamp: {type: fixed, bodies: [ground, rod], at: [0, 0]}
+  tie: %s
+planar: %s
+gravity: [1, -9.81, 0]
+solver: {end: 0.1, tolerance: 1e-7}
+output: {channels: ["*"], every: 0.01}
+"""
+ARC = "curve: {at: [1, 0], x: 0.3*sin(s), y: -0.3*cos(s), range: [-2, 2]}"
+ON_BAR = f"{{type: point_on_curve, bodies: [rod, ball], at: [1, -0.3], {ARC}}}"
+
+
+def test_on_a_flexible_bar():
+    """A circle about its tip is a link, and its tip on a line an inline joint; in space a curve
+    would turn with the bar about itself."""
+    on_arc = run(FLEXIBLE % (ON_BAR, "true"))
+    link = "{type: link, bodies: [rod, ball], points: [[1, 0], [1, -0.3]]}"
+    assert on_arc["ball.position"] == pytest.approx(
+        run(FLEXIBLE % (link, "true"))["ball.position"], abs=1e-8
+    )
+    line = "curve: {points: [[1.1, -1], [1, 0], [0.9, 1]]}"
+    for planar in ("true", "false"):
+        tip = f"{{type: point_on_curve, bodies: [ground, rod], at: [1, 0], {line}}}"
+        rail = "{type: inline, bodies: [ground, rod], at: [1, 0], axis: [-0.1, 1]}"
+        one, other = (run(FLEXIBLE % (joint, planar)) for joint in (tip, rail))
+        assert one["rod.tip"] == pytest.approx(other["rod.tip"], abs=1e-9)
+    with pytest.raises(TrsimError, match="nobody knows how it turns about itself"):
+        built(FLEXIBLE % (ON_BAR, "false"))
+
+
+def test_twice_the_same():
+    """The second one holds nothing more, and is left out."""
+    at = on_cycloid(0.3)
+    same = f"same: {{type: point_on_curve, bodies: [ground, bead], at: {at}, curve: {{{CYCLOID}}}}}"
+    once = bead(CYCLOID, at)
+    twice = run(once.replace("joints:\n", f"joints:\n  {same}\n"))
+    assert len(twice.mechanism.redundant) == 1
+    assert twice["bead.position"] == pytest.approx(run(once)["bead.position"], abs=1e-9)
+
+
+def test_a_rod_on_two_wires_comes_to_rest():
+    """In equilibrium, on a parabola."""
+    wire = "{type: point_on_curve, bodies: [ground, rod], at: %s, curve: {%s}}"
+    parabola = "x: s, y: s**2, range: [-2, 2]"
+    text = f"""
+bodies: {{rod: {{mass: 2, inertia: 0.1, at: [0.1, 0.35]}}}}
+joints:
+  left: {wire % ("[-0.4, 0.16]", parabola)}
+  right: {wire % ("[0.6, 0.36]", parabola)}
+initial: {{equilibrium: all}}
+gravity: [0, -9.81, 0]
+solver: {{end: 0.1}}
+"""
+    r = run(text)
+    assert r["rod.position"][0, 0] == pytest.approx(r["rod.position"][-1, 0], abs=1e-6)
+    assert abs(r["rod.velocity"][-1]).max() < 1e-6
 
 
 def test_released():

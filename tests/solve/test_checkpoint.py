@@ -52,9 +52,9 @@ def named(sets):
     return " ".join(one.split("=")[1][:9] for one in sets) or "planar"
 
 
-def blocks(sets, checkpoint=None):
+def blocks(sets, checkpoint=None, text=small.SLIDER_CRANK):
     """Copies of all blocks from a checkpoint on, and the outcome."""
-    scenario = loads(small.SLIDER_CRANK, sets)
+    scenario = loads(text, sets)
     running, found = simulate(scenario, assemble(scenario), checkpoint), []
     while True:
         try:
@@ -85,6 +85,42 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     assert len(cut) > 5
     for k in range(0, len(cut) - 1, max(1, len(cut) // 5)):
         rest, end = blocks(sets, cut[k].state)
+        assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
+
+
+CURVES = """
+bodies:
+  wheel: {mass: 2, inertia: [0.1, 0.1, 0.1], at: [0, 0], angular_velocity: [0, 0, 5]}
+  bead: {mass: 0.3, inertia: [0.1, 0.1, 0.1], at: [0.2, 0], velocity: [0, 4]}
+  stone: {mass: 0.2, inertia: [0.1, 0.1, 0.1], at: [0.6, -0.05]}
+joints:
+  shaft: {type: revolute, bodies: [ground, wheel], at: [0, 0]}
+  ring: {type: point_on_curve, bodies: [wheel, bead], at: [0.2, 0], curve:
+         {x: 0.2*cos(s), y: 0.1*sin(s), range: [0, 2*pi], closed: true}}
+  line: {type: rope, through: [{body: wheel, at: [0, 0]}, {body: stone, at: [0.6, -0.05]}]}
+sensors: {way: {joint: ring}}
+poincare: {round: {when: way.rate, crosses: both, plot: [way, way.rate]}}
+events: {far: {when: way, value: -1, crosses: down, do: {record: true}}}
+gravity: [0, -9.81, 0]
+solver: {end: 3}
+"""
+DRUM = (CURVES.replace("{body: wheel, at: [0, 0]}", "{body: wheel, at: [0, 0], radius: 5 cm, "
+                       "turn: right}"),)  # fmt: skip
+
+
+@pytest.mark.parametrize("sets", [(), ("planar=false",), ("solver.method=radau",)], ids=named)
+@pytest.mark.parametrize("text", [CURVES, *DRUM], ids=["eye", "drum"])
+def test_places_on_curves_and_turns_of_drums(text, sets, monkeypatch):
+    if text != CURVES and sets == ("planar=false",):
+        pytest.skip("drums are those of a plane")
+    unbroken, outcome = blocks(sets, text=text)
+    assert outcome.status != "failed"
+    monkeypatch.setattr(module, "VISIT", 5)
+    cut, again = blocks(sets, text=text)
+    assert len(cut) > 5
+    assert_same(cut, again, unbroken, outcome)
+    for k in range(0, len(cut) - 1, max(1, len(cut) // 5)):
+        rest, end = blocks(sets, cut[k].state, text=text)
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
 

@@ -242,18 +242,25 @@ class Addresses:
         own: packed columns of the joint that say where; drawn: both as drawn; stops: whether what
         pushes back along the curve acts on a point.
         """
-        spec = self.scenario.joints[name]
-        entries = self.entry(), self.entry()
+        spec, s, u = self.scenario.joints[name], self.entry(), self.wound(f"{name} u", drawn[1])
         where = (own.i, own.j, own.p_i, own.p_j, own.u_i, (0.0, 0.0, 0.0))
-        curve = (own.curve, entries[1]) if stops else ()
-        for one, entry, kind, value in (
-            (name, entries[0], ARC, drawn[0]),
-            (f"{name} u", entries[1], WOUND, drawn[1]),  # no name a user can write
-        ):
-            self.coordinates[one] = JointCoordinate(
-                one, name, entry, kind, *where, value, tuple(spec.at), curve, own.w_i
-            )
-        return entries
+        curve = (own.curve, u) if stops else ()
+        self.coordinates[name] = JointCoordinate(
+            name, name, s, ARC, *where, drawn[0], tuple(spec.at), curve, own.w_i
+        )
+        return s, u
+
+    def wound(self, name: str, drawn: float) -> int:
+        """A new entry of S that is known up to full turns, as an angle is, and its value as drawn.
+
+        name: that of its element and something behind a blank: no name a user can write.
+        """
+        none, entry = (0.0, 0.0, 0.0), self.entry()
+        where = (0, 0, none, none, none, none)
+        self.coordinates[name] = JointCoordinate(
+            name, name.split()[0], entry, WOUND, *where, drawn, none
+        )
+        return entry
 
     def sensor(self, name: str) -> int:
         """Index of a sensor in S."""

@@ -129,7 +129,16 @@ def check_inertias(at: Addresses, planar: bool, because: str = "") -> None:
 
 
 def check_space(at: Addresses, instances: list[Instance]) -> None:
-    """What a flexible bar cannot do in space: it has no torsion and bends alike all around."""
+    """What cannot be in space: elements of the plane, and what a flexible bar cannot do, as it has
+    no torsion and bends alike all around."""
+    for instance in instances:
+        if instance.element.in_plane(instance.row):
+            raise ModelError(
+                f"a {instance.element.key} like this one is solved in the x-y plane only, and the "
+                "scene leaves it",
+                "draw the mechanism in the x-y plane; `trsim check` says what leaves it",
+                (instance.section, instance.name),
+            )
     for name, spec in at.members.items():
         if spec.flexible is not None and not spec.flexible.numbers[2]:
             raise ModelError(

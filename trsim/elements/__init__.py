@@ -32,6 +32,8 @@ ELEMENTS = {
     "rack_and_pinion": "joints",
     "worm": "joints",
     "coupler": "joints",
+    "belt": "joints",
+    "rope": "joints",
     "drive": "drives",
     "actuator": "drives",
     "sensor": "sensors",

@@ -40,9 +40,9 @@ from trsim.elements.frames import (
     spin,
     velocity,
 )
-from trsim.elements.joint import Joint
 from trsim.elements.on_curve import (
     OFF,
+    OnCurve,
     distance_row,
     drawn_at,
     end_gap,
@@ -69,7 +69,7 @@ OUT = 1e-6  # of the normal of a face: what may point out of the plane of the cu
 LIFTS = 1e-6  # of the largest force: what is none
 
 
-class Cam(Joint):
+class Cam(OnCurve):
     """A roller or a flat face of the second body on a curve of the first, held both ways.
 
     curve   of the cam, with which it moves
@@ -330,6 +330,7 @@ ELEMENT = Element(
     doubts=doubts,
     reach=reach,
     turning=turning,
+    holds_twist=False,
     kernels={
         "constraint": constraint_of(ROWS),
         "coordinate": coordinate,

@@ -297,6 +297,7 @@ class Element:
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else
     bears: bool = True  # of a joint: its reaction is a force and a moment, and is recorded
+    in_plane: Callable[[Row], bool] = lambda _: False  # whether it can be solved there alone
     holds_twist: bool = True  # its rows hold how a flexible bar turns about itself
     picture: str = ""  # what it is drawn as in animations, see report/animation/drawing.py
     ideal: str = ""  # the element it is where it has no clearance

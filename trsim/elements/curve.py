@@ -12,7 +12,7 @@ from math import inf
 from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import core_schema
 
 from trsim import expressions
@@ -78,7 +78,7 @@ class _Formula(Unit):
         return core_schema.with_info_plain_validator_function(convert)
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
-        return {"anyOf": [{"type": "number"}, {"type": "string"}]}
+        return {"anyOf": [{"type": "number"}, {"type": "string", "title": "expression of s"}]}
 
     def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
         if isinstance(value, tuple):  # read already
@@ -114,6 +114,7 @@ def _pair(value: Any) -> Any:
 
 
 Pair2 = tuple[float, float]
+Column2 = Annotated[str, Field(min_length=1)]
 
 
 class Curve(Placed):
@@ -123,7 +124,8 @@ class Curve(Placed):
     x_axis    direction of its x axis, as drawn
     y_axis    direction of its y axis, made perpendicular to x
     points    places [x, y] it goes through, in its own coordinates
-    table     the same in a CSV file of two columns, such as a recorded path
+    table     the same in a CSV file of two columns
+    columns   titles of x and y in a file of more columns, such as a recorded path of a point
     x         expression of s, instead of points
     y         the same of y
     range     first and last s
@@ -138,6 +140,7 @@ class Curve(Placed):
     y_axis: vector("-") = (0.0, 1.0, 0.0)
     points: Annotated[tuple[Pair2, ...], _Places("m")] | None = None
     table: Annotated[tuple[Pair2, ...], _Places("m")] | None = None
+    columns: tuple[Column2, Column2] | None = None
     x: Annotated[tuple, _Formula("m")] | None = None
     y: Annotated[tuple, _Formula("m")] | None = None
     range: Annotated[Pair2, Unit("-", "rad", "m")] | None = None
@@ -156,6 +159,8 @@ class Curve(Placed):
             if by_formula != (getattr(self, key) is not None):
                 what = f"{key} {'is missing' if by_formula else 'goes with an expression x'}"
                 raise ScenarioError(what, "x: 0.1*cos(s), y: 0.1*sin(s), range: [0, 2*pi]", (key,))
+        if self.columns and self.table is None:
+            raise ScenarioError("columns are those of a table", "table: path.csv", ("columns",))
         if self.range and not self.range[0] < self.range[1]:
             raise ScenarioError("the first s must be less than the last one", "", ("range",))
         if self.tangents and (self.closed or by_formula):

@@ -22,6 +22,7 @@ import numpy as np
 from trsim.elements.contract import Limit, compiled
 from trsim.elements.curve import Sampled, nearest
 from trsim.elements.frames import along_row, arm, carried, dot, plus, scaled
+from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
 from trsim.fields import direction
 from trsim.kernels.lazy import internal
@@ -32,13 +33,22 @@ SIDE = 1e-3  # of the radius of a roller: a centre nearer to the curve is on no 
 OFF = 0.1  # of the size of a curve: how far beside it a point may be drawn
 
 
+class OnCurve(Joint):
+    """A joint of the second body on a curve of the first."""
+
+    @property
+    def points(self) -> tuple[Any, Any]:
+        """Where it holds its bodies, as drawn: the origin of the curve, and the point on it."""
+        return self.curve.at, self.at  # type: ignore[attr-defined]
+
+
 # --- packing -----------------------------------------------------------------------------
 
 
 def frames(spec: Any, at: Any) -> dict[str, Any]:
     """The columns of Axes of a joint on a curve: the axes of the curve in body i, its point in j;
     and those of the second body that coincide with them as drawn."""
-    i, j = at.bodies(spec.bodies, spec.at)
+    i, j = at.bodies(spec.bodies, spec.curve.at, spec.at)
     own, points = spec.curve.frame, {}
     points["p_i"], points["p_j"] = at.local(i, own.at), at.local(j, spec.at)
     axes = {"u_i": at.axes(i, own.x), "w_i": at.axes(i, own.y), "a_i": at.axes(i, own.z)}
@@ -57,7 +67,7 @@ def stored(curve: Sampled, spec: Any, at: Any) -> int:
     """Where in tab the numbers of a curve begin; its corners count for the size of a mechanism."""
     offset = len(at.tab)
     at.tab.extend(curve.numbers)
-    body = at.body(spec.bodies[0], "bodies", 0, near=spec.at)
+    body = at.body(spec.bodies[0], "bodies", 0, near=spec.curve.at)
     for x, y in (curve.place.min(axis=0), curve.place.max(axis=0)):
         at.local(body, spec.curve.frame.moved((float(x), float(y), 0.0)))
     return offset

@@ -11,8 +11,8 @@ from typing import ClassVar
 
 from trsim.elements.contract import Element, Reach, Row, Turning, kernel
 from trsim.elements.curve import Curve, sampled
-from trsim.elements.joint import Joint
 from trsim.elements.on_curve import (
+    OnCurve,
     distance_row,
     drawn_at,
     end_gap,
@@ -27,7 +27,7 @@ from trsim.kernels.columns import constraint_row, i8
 from trsim.kernels.lazy import internal
 
 
-class PointOnCurve(Joint):
+class PointOnCurve(OnCurve):
     """A point of the second body on a plane curve of the first: a bead on a wire, a pin in a slot.
 
     curve  of the first body, with which it moves; where an open one ends the run does, as `jammed`
@@ -96,6 +96,7 @@ ELEMENT = Element(
     coordinates=(ARC,),
     reach=reach,
     turning=turning,
+    holds_twist=False,
     picture="bead",
     kernels={"constraint": constraint_of(ROWS), "coordinate": coordinate, "gaps": gap},
     example="""

@@ -233,7 +233,8 @@ class _Files:
                         value, self.folders.get(place.file, folder), (".csv", ".CSV")
                     )
                     shown = _beside(value, place)
-                    data[key], bare = rows(self.content(real, shown), shown)
+                    columns = data.get("columns") if isinstance(data, dict) else None
+                    data[key], bare = rows(self.content(real, shown), shown, columns)
                     if bare:
                         tree.bare[here] = f"{' and '.join(bare)} of {shown}"
                 except (ScenarioError, FileError) as error:

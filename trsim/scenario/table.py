@@ -12,7 +12,7 @@ import csv
 import re
 from typing import Any, NamedTuple
 
-from trsim.errors import Place, ScenarioError, described
+from trsim.errors import Place, ScenarioError, described, known
 from trsim.scenario.text import decoded
 from trsim.units import titled
 
@@ -76,12 +76,15 @@ def number(cell: str) -> float | None:
     return value if value is not None and abs(value) < 1e300 else None
 
 
-def rows(content: bytes, file: str) -> tuple[list[Any], list[str]]:
+def rows(content: bytes, file: str, columns: Any = None) -> tuple[list[Any], list[str]]:
     """Rows [x, y] of a file of two columns, and what has no unit, as `column 2 (force)`.
 
     Where a title has a unit the first row is that of the titles, as they stand in the file.
+    columns: titles of two of more columns.
     """
     table = lines(decoded(content, file), file)
+    if columns is not None:
+        table = chosen(table, columns)
     found: list[Any] = []
     for line in table.rows:
         numbers = [number(cell) for cell in line.cells]
@@ -101,6 +104,27 @@ def rows(content: bytes, file: str) -> tuple[list[Any], list[str]]:
     bare = [f"column {k + 1} ({names[k]})" for k in (0, 1) if not units[k]]
     head = [f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)]
     return ([head, *found] if any(units) else found), bare
+
+
+def chosen(table: Table, columns: Any) -> Table:
+    """The table with two of its columns alone."""
+    if not isinstance(columns, list) or [type(name) for name in columns] != [str, str]:
+        raise ScenarioError("columns must be two titles, [of x, of y]")
+    if table.titles is None:
+        what = f"{table.file} has no titles, and so no column '{columns[0]}'"
+        raise ScenarioError(what, "Its first line names the columns: `x [m], y [m]`.")
+    names = [table.title(k)[0] for k in range(len(table.titles.cells))]
+    places = []
+    for name in columns:
+        if name not in names:
+            raise ScenarioError(f"{table.file} has no column '{name}'", known(name, names))
+        places.append(names.index(name))
+
+    def of(line: Line) -> Line:
+        cells = [line.cells[k] if k < len(line.cells) else "" for k in places]
+        return line._replace(cells=cells)
+
+    return Table(table.file, of(table.titles), [of(line) for line in table.rows])
 
 
 def _wrong(table: Table, line: Line, what: str, hint: str) -> ScenarioError:
