@@ -10,6 +10,11 @@ from trsim.errors import ScenarioError
 from trsim.expressions import DEEPEST, degree, evaluate, names, parse, substitute
 
 
+def test_a_name_may_be_that_of_a_function():
+    """`floor` was a name of bodies and joints before it was a function."""
+    assert evaluate(parse("floor(floor + 0.75)*sign"), {"floor": 2.5, "sign": 2.0}) == 6.0
+
+
 def test_nodes():
     assert parse("2*stroke + B.angle") == (
         "binary",

@@ -315,6 +315,7 @@ FIXED = {
     "rack_and_pinion": {"torque_1": "N*m", "force_2": "N"},
     "coupler": {"torque_1": "N*m", "force_2": "N"},
     "spring_damper": EXPECTED["spring"],
+    "wrench": {"force": "N", "moment": "N*m"},
     "bushing": {"force": "N", "moment": "N*m", "displacement": "m", "rotation_vector": "rad"},
     "torsion_spring": EXPECTED["coil"],
     "clearance_joint": {"normal_force": "N", "friction_force": "N", "contact_force": "N",

@@ -79,6 +79,9 @@ FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
     "smoothstep": (_smoothstep, 1, 1),
 }
 
+# functions by whose words entries may be called all the same: one is a call, the other is not
+ALSO_NAMES = frozenset({"floor", "sign"})
+
 # sign -> what Python's grammar calls it, function
 _BINARY: dict[str, tuple[type, Callable[[float, float], float]]] = {
     "+": (ast.Add, operator.add),
@@ -194,7 +197,7 @@ def _name(tree: ast.AST) -> str:
     name = ".".join(reversed(parts))
     if any(part.startswith("__") for part in parts):
         raise ScenarioError(f"not a name: {described(name)}", ALLOWED)
-    if name in FUNCTIONS:
+    if name in FUNCTIONS and name not in ALSO_NAMES:
         raise ScenarioError(f"{name} is a function: write {name}(...)")
     return name
 

@@ -327,7 +327,9 @@ class Addresses:
                                 "contact_laws", ("contact",) if name else ())  # fmt: skip
         return laws[name]
 
-    def function(self, spec: Any, *path: str, time_only: bool = False, wanted: str = "") -> int:
+    def function(
+        self, spec: Any, *path: str | int, time_only: bool = False, wanted: str = ""
+    ) -> int:
         """Store a function of t or of sensors in tab; its offset.
 
         wanted: the unit of its values where the field allows several.
@@ -360,7 +362,7 @@ class Addresses:
         self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))
         return offset
 
-    def check_table(self, spec: Any, wanted: str, *path: str) -> None:
+    def check_table(self, spec: Any, wanted: str, *path: str | int) -> None:
         """Refuse units of a table's columns that are not those of its variable and its values."""
         x, y = spec.units
         if x:
@@ -399,7 +401,7 @@ class Addresses:
             stroke, angle = of.units
             self.check_unit(kind, angle, stroke, *path, key)
 
-    def known_sensor(self, name: str, time_only: bool, path: tuple[str, ...]) -> int:
+    def known_sensor(self, name: str, time_only: bool, path: tuple[str | int, ...]) -> int:
         """Entry of S of a sensor, or of the rate of one."""
         own = name.removesuffix(RATE)
         if time_only and own not in self.scenario.sensors:

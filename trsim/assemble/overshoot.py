@@ -8,7 +8,7 @@ from trsim.errors import ScenarioError
 from trsim.laws.tables import akima_coefficients
 
 
-def overshoot(spec: Any, path: tuple[str, ...]) -> list[str]:
+def overshoot(spec: Any, path: tuple[str | int, ...]) -> list[str]:
     """Refuse an Akima curve that leaves its data far behind; a note on one that leaves it."""
     x, y = np.array(spec.x), np.array(spec.y)
     span = float(np.ptp(y))
@@ -29,5 +29,5 @@ def overshoot(spec: Any, path: tuple[str, ...]) -> list[str]:
             (*path, "table"),
         )
     if worst > 0.05:
-        return [f"{'.'.join(path)}: {what}; more points at the corner keep it in"]
+        return [f"{'.'.join(map(str, path))}: {what}; more points at the corner keep it in"]
     return []

@@ -44,6 +44,7 @@ ELEMENTS = {
     "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
+    "wrench": "forces",
     "distributed_load": "forces",
     "spring_damper": "forces",
     "bushing": "forces",

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from trsim.errors import ScenarioError, described, known
-from trsim.expressions import FUNCTIONS
+from trsim.expressions import ALSO_NAMES, FUNCTIONS
 from trsim.scenario.merge import NAMED, keys_of, mapping
 from trsim.scenario.vary import sweep
 
@@ -15,7 +15,8 @@ IN_FILES = {
     *("time", "component", "steps", "events", "recorded", "peaks", "summary", "solver", "phase"),
     *("poincare", "impact", "orbit", "scenario", "mechanism", "provenance", "certificate"),
 }
-RESERVED = {"ground", "world", "t", "pi", "energy", *IN_FILES, *FUNCTIONS, *keyword.kwlist}
+RESERVED = {"ground", "world", "t", "pi", "energy", *IN_FILES, *keyword.kwlist}
+RESERVED |= FUNCTIONS.keys() - ALSO_NAMES
 NAME = r"[A-Za-z_][A-Za-z0-9_]*"
 OF_POINTS = r"[A-Za-z0-9_][A-Za-z0-9_ +-]*"  # of portraits and sections, which have their own
 LONGEST = 100  # letters of a name
