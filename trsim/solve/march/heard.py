@@ -17,6 +17,7 @@ from trsim.solve.march.record import SIDE, SLOPE, TIMES
 from trsim.solve.march.sampled import dip, parts_of, root, value, waves_of
 from trsim.solve.march.watch import ABOVE, AT, BELOW, DIRECTION, MOST, VALUE, band_of
 
+SOON = 5  # looks at the first part of a step that begins on the value, each four times as far
 BESIDE = 1e-4  # of a step: where the rate at a root is taken
 
 
@@ -35,6 +36,13 @@ def sound(s, r, b, method, k, end):
     c, want, what = s.contact.size + k, s.watch[k, DIRECTION], what_of(s, k)
     side, band = r.watch[k, SIDE], band_of(s, r, k)
     before, low = (-1.0, 0.0), (0.0, r.gap[c, 0])
+    if side == AT:  # it may leave the value and soon come back
+        for n in range(SOON, 0, -1):
+            theta = end / parts * 0.25**n
+            g = value(s, r, b, what, theta)
+            if abs(g) > band:
+                low, side = (theta, g), ABOVE if g > 0.0 else BELOW
+                break
     for j in range(1, parts + 1):
         theta = end * j / parts
         g = b.gap1[c, 0] if theta == 1.0 else value(s, r, b, what, theta)
