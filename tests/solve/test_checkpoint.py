@@ -26,6 +26,10 @@ SECTIONS = (
     "plot: [B.eccentricity_x, rod.velocity.y]}, touch: {at_onset: B, plot: [stroke, crank_angle]}, "
     "beat: {every: 7 us, after: 3 us, plot: [stroke, stroke.rate]}}",
 )
+HEARD = (
+    "events={pressed: {when: B.contact_force, value: 20, crosses: both, do: {record: true}}, "
+    "pulled: {when: O.reaction.x, crosses: both, do: {record: true}}}",
+)
 PULSES = (
     "forces={kick: {type: applied_load, body: slider, direction: [1, 0], "
     "force: 500*(sin(3e4*t) > 0.9)}}",
@@ -41,6 +45,7 @@ KINDS = [
     EVENTS,
     (*RK4, *EVENTS, "solver.end=1.2ms"),
     (*EVENTS, *SECTIONS),
+    HEARD,
     PULSES,
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")

@@ -436,9 +436,13 @@ class Addresses:
             self.rates[own] = self.entry()
         return self.rates[own]
 
+    def is_early(self, name: str) -> bool:
+        """Whether a sensor shows a number of places and velocities alone, an entry of S."""
+        return "coordinate" in self.elements["sensors", name].kernels
+
     def check_early(self, name: str, path: tuple[str | int, ...]) -> None:
         """Refuse a sensor that shows no number of places and velocities."""
-        if "coordinate" not in self.elements["sensors", name].kernels:
+        if not self.is_early(name):
             key = self.elements["sensors", name].key
             raise ScenarioError(
                 f"'{name}' ({key}) is known only once the accelerations are",

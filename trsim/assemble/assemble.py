@@ -98,7 +98,7 @@ def assemble(
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
-        model, columns = layout(scenario, model, instances)
+        model, columns = layout(scenario, model, instances, at.switches)
         model, shown = sections(scenario, model, instances, columns)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
@@ -123,7 +123,7 @@ def assemble(
         coordinates=at.coordinates,
         frames=at.frames,
         beams=at.beams,
-        notes=(*verdict.notes(), *notes(scenario), *at.notes),
+        notes=(*verdict.notes(), *notes(scenario), *at.notes, *sampled(at.switches)),
         stages=stages(scenario, at, instances, Choice(model, kept, dropped(rows, found)), planar),
         functions=tuple(at.packed_functions),
         sections=shown,
@@ -181,6 +181,11 @@ def notes(scenario: Any) -> tuple[str, ...]:
         for name, law in scenario.contact_laws.items()
         if law.friction.law == "coulomb"
     )
+
+
+def sampled(switches: Switches) -> tuple[str, ...]:
+    """The user events that are not certain to be found."""
+    return tuple(text for event in switches.events if (text := event.sampled()))
 
 
 def pack(  # type: ignore[no-untyped-def]

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.instances import Column, Instance
-from trsim.assemble.outputs import energy_columns
+from trsim.assemble.outputs import energy_columns, hear
 from trsim.assemble.sections import N_SECTION
+from trsim.assemble.switches import CHANNEL, Switches
 from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
@@ -29,6 +30,8 @@ def no_outputs(rows: int) -> dict[str, Any]:
         "n_out": 0,
         "section": none.reshape(0, N_SECTION),
         "section_at": np.zeros((0, 2)),
+        "hear": 0,
+        "heard": none,
         **dict.fromkeys(("vector", "sought", "kin", "shared"), none),
         **dict.fromkeys(("lever", "least"), np.zeros(0)),
     }
@@ -50,14 +53,18 @@ def all_names(instances: Iterable[Instance], jumps: int) -> list[str]:
 
 
 def points_of(scenario: Any) -> set[str]:
-    """The channels that sections and portraits of a scenario name, with and without a component."""
+    """The channels that sections, portraits and events of a scenario name, with and without a
+    component."""
     portraits = [(spec.x, spec.y) for spec in scenario.phase_portraits.values()]
     sections = [(spec.when or "", *spec.plot) for spec in scenario.poincare.values()]
     named = {channel for group in (*portraits, *sections) for channel in group}
+    named |= {spec.when for spec in scenario.events.values()}
     return named | {channel[:-2] for channel in named if channel[-2:] in COMPONENTS}
 
 
-def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Model, list[Column]]:
+def layout(
+    scenario: Any, model: Model, instances: list[Instance], switches: Switches
+) -> tuple[Model, list[Column]]:
     """The model with its output tables filled, and the columns."""
     patterns, shown = tuple(scenario.output.channels), points_of(scenario)
     columns: list[Column] = []
@@ -112,8 +119,22 @@ def layout(scenario: Any, model: Model, instances: list[Instance]) -> tuple[Mode
         column_energy=energy,
         n_out=width,
         **compared(columns, of_peaks(instances), model.size),
+        **watched(columns, switches),
     )
     return filled, columns
+
+
+def watched(columns: list[Column], switches: Switches) -> dict[str, Any]:
+    """The columns that user events watch."""
+    if all(event.kind != CHANNEL for event in switches.events):
+        return {}
+    there = {column.name: column.start for column in columns}
+    found = []
+    for event in switches.events:
+        stem = event.when if event.when in there else event.when[:-2]
+        place = COMPONENTS.get(event.when[len(stem) :], 0)
+        found.append(there[stem] + place if event.kind == CHANNEL else -1)
+    return {"heard": np.array(found, np.int64), "hear": hear.address()}
 
 
 def of_peaks(instances: Iterable[Instance]) -> set[str]:

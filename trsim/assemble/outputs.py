@@ -11,10 +11,15 @@ In a planar scene the out-of-plane components are those of the planar problem: z
 
 from trsim.assemble.equations import call_all, call_derivative, kinetic, stored_energy
 from trsim.assemble.least_norm import call_least_norm
-from trsim.elements.contract import BOOK, N_BOOK, STORED
+from trsim.elements.contract import BOOK, N_BOOK, SCENE, STORED, compiled
 from trsim.elements.frames import TwoPoints, arm
 from trsim.elements.scene import N_STORED
+from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
+from trsim.kernels.signatures import A1, f8, void
+
+HEAR = void(SCENE, f8, A1)
+call_hear = caller(HEAR)
 
 
 def energy_columns(jumps):
@@ -56,6 +61,12 @@ def measure(s, t, y, work_projection, energy_0):
         o += 1
     out[o] = work_projection
     out[o + 1] = total
+
+
+@compiled(HEAR)
+def hear(s, t, y):
+    """`measure` for events that watch channels; what is counted from the start is not theirs."""
+    measure(s, t, y, 0.0, 0.0)
 
 
 @internal

@@ -42,10 +42,12 @@ def sections(
         crosses = spec.crosses if spec.when else ""
         found.append(Section(name, spec.when or "", crosses, spec.every or 0.0, spec.at_onset or "",
                              spec.after, *spec.plot, *units))  # fmt: skip
+    heard = (c for c in columns for o in model.heard if c.start <= o < c.start + c.size)
+    swinging = any(not smooth(column, driven) for column in heard)
     section = np.array(rows, np.int64).reshape(-1, N_SECTION)
     filled = model.replaced(
         section=section,
-        wave=model.wave[: len(model.wave) if np.any(section[:, WAVES]) else 0].copy(),
+        wave=model.wave[: len(model.wave) if swinging or np.any(section[:, WAVES]) else 0].copy(),
         section_at=np.array(at, float).reshape(-1, 2),
     )
     return filled, tuple(found)

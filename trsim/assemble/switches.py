@@ -17,8 +17,10 @@ from typing import Any
 from trsim import elements
 from trsim.assemble.addresses import UNITS, Addresses
 from trsim.assemble.instances import Instance
+from trsim.assemble.outputs import energy_columns
 from trsim.elements.coordinates import called, named
 from trsim.elements.prescribed import AnyDrive
+from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
 from trsim.scenario.methods import METHODS
@@ -27,11 +29,13 @@ from trsim.units import fits
 
 BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to count again
 ALWAYS = 2**62
+OF_RUN = ("energy.residual", "energy.work.projection")
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
 # column of a model's `watch`: how often an event happens (tables.py, solve/march/watch.py)
 MOST = 2
 # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
 TIME, LIMITS = -1, -2
+CHANNEL = "channel"  # kind of what is watched: anything that is recorded, see solve/march/heard.py
 SECTION = "events"  # of the instances of locks
 
 
@@ -42,7 +46,7 @@ class UserEvent:
     name: str
     entry: int  # of S; TIME; LIMITS - e for what row e limits
     value: float
-    kind: str  # angle, stroke, time or limit
+    kind: str  # angle, stroke, time, limit or channel
     direction: int
     most: int
     turned: tuple[tuple[int, int], ...]  # switch, what it is put to
@@ -60,13 +64,24 @@ class UserEvent:
         own = UNITS.get(self.kind, self.unit)
         return f"{own}/s" if own != "s" else "-"
 
+    def sampled(self) -> str:
+        """That it is not certain to be found, and how it is looked for; of others nothing."""
+        if self.kind != CHANNEL:
+            return ""
+        return (
+            f"events.{self.name}: '{self.when}' is sampled, not bounded: every step is looked at "
+            "in 8 parts, and 8 more for each 0.5 rad that a body turns or 2 rad of a sine in a "
+            "load; what passes the value and comes back between two of them may be passed over"
+        )
+
     def in_words(self) -> str:
         """When it happens and what it does, in words."""
         if self.kind == "limit":
             return f"{self.when} {self.said} ({self.value:g} {self.unit}): the run is {self.status}"
         way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
         often = "" if self.most == ALWAYS else f", {self.most} times" if self.most > 1 else ", once"
-        return f"{self.when} {way} {self.value:g} {UNITS[self.kind]}{often}: {self.said}"
+        unit = UNITS.get(self.kind, self.unit)
+        return f"{self.when} {way} {self.value:g} {unit}{often}: {self.said}"
 
 
 @dataclass(frozen=True)
@@ -148,7 +163,7 @@ class _Packing:
         self.states: dict[str, int] = {}  # of drives that had none
 
     def event(self, name: str, spec: Event) -> UserEvent:
-        entry, kind = self.watched(name, spec)
+        entry, kind, unit = self.watched(name, spec)
         turned = [self.motion(name, drive, motion) for drive, motion in spec.do.set.items()]
         turned += [self.released(name, k, one) for k, one in enumerate(spec.do.release)]
         turned += [
@@ -158,18 +173,46 @@ class _Packing:
         return UserEvent(
             name, entry, spec.value, kind, DIRECTIONS[spec.crosses],
             spec.times or ALWAYS, tuple(turned), spec.do.record, spec.do.end, spec.do.said(),
-            spec.when, coordinate=self.coordinate(spec.when),
+            spec.when, unit=unit, coordinate=self.coordinate(spec.when),
         )  # fmt: skip
 
-    def watched(self, name: str, spec: Event) -> tuple[int, str]:
-        """Entry of S, and what kind of quantity it is."""
-        kind, path = "time", (SECTION, name, "when")
-        if spec.when != "t":
-            check(spec.when, [*self.scenario.sensors, "t"], "sensor", path)
-            self.at.check_early(spec.when, path)
+    def watched(self, name: str, spec: Event) -> tuple[int, str, str]:
+        """Entry of S, what kind of quantity it is, and its unit where that does not tell."""
+        kind, unit = "time", ""
+        if spec.when in self.scenario.sensors and self.at.is_early(spec.when):
             kind = self.at.sensor_kind(spec.when)
-        self.check_value(name, spec.when, UNITS[kind])
-        return (TIME if kind == "time" else self.at.sensor(spec.when)), kind
+        elif spec.when != "t":
+            kind, unit = CHANNEL, self.unit_of(spec.when, (SECTION, name, "when"))
+        if kind != CHANNEL or unit:
+            self.check_value(name, spec.when, UNITS.get(kind, unit))
+        entry = TIME if kind in ("time", CHANNEL) else self.at.sensor(spec.when)
+        return entry, kind, unit
+
+    def unit_of(self, channel: str, path: tuple) -> str:
+        """The unit of a channel.  Raises ScenarioError for what is none, or no single number.
+
+        Nobody looks at the channels of a start, where bars are stiff and joints may be ideal.
+        """
+        if self.at.end is None:
+            return ""
+        there = {
+            f"{i.name}.{c.name}" if c.name else i.name: (c.unit, c.size)
+            for i in self.instances.values()
+            for c in (*i.channels, *i.element.reactions)
+        }
+        there |= {f"energy.{name}": ("J", 1) for name in energy_columns(0)}
+        stem = channel[:-2] if channel not in there and channel[-2:] in COMPONENTS else channel
+        if stem not in there or (stem != channel and there[stem][1] != 3):
+            what = f"no sensor and no channel named '{channel}'"
+            raise ScenarioError(what, known(channel, [*self.scenario.sensors, "t", *there]), path)
+        unit, size = there[stem]
+        if stem == channel and size > 1:
+            what = f"'{channel}' has {size} components"
+            raise ScenarioError(what, f"Did you mean '{channel}.x'?", path)
+        if channel in OF_RUN:
+            what = f"'{channel}' is what a run is judged by, no quantity of the mechanism"
+            raise ScenarioError(what, "watch another energy", path)
+        return unit
 
     def coordinate(self, when: str) -> str:
         """The coordinate of a joint that a sensor is; empty for t, and for a displacement."""

@@ -11,7 +11,7 @@ from trsim.assemble.addresses import WOUND, Addresses
 from trsim.assemble.dense import inverse, length, product
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.orientation import quaternion
-from trsim.assemble.switches import BAND, Switches
+from trsim.assemble.switches import BAND, CHANNEL, Switches
 from trsim.elements import scene as scales
 from trsim.elements.contract import FIRST_ROW, KINDS, N_BOOK, ContactNumbers, Element
 from trsim.errors import ModelError
@@ -280,7 +280,8 @@ def watched(switches: Switches, size: float) -> dict[str, Any]:
     """What user events watch, and where their work is booked."""
     events = switches.events
     watch = [(e.entry, e.direction, e.most) for e in events]
-    scale = {"angle": 1.0, "stroke": size, "arc": size, "time": 0.0}
+    # of a channel: watch.py
+    scale = {"angle": 1.0, "stroke": size, "arc": size, "time": 0.0, CHANNEL: 0.0}
     at = [
         # of a limit the gap is watched, which has the limit taken off already
         (0.0, BAND * e.value) if e.kind == "limit" else (e.value, BAND * scale[e.kind])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.instances import Instance
-from trsim.assemble.switches import LIMITS, TIME, Switches
+from trsim.assemble.switches import CHANNEL, LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
 # TWIST: an angle about axes that may lean apart
@@ -35,7 +35,9 @@ def travels(instances: list[Instance], contacts: list[int], switches: Switches) 
     owner = {i.name: e for e, i in enumerate(instances) if i.section == "sensors"}
     found = [of_instance(instances, e) for e in contacts]
     for event in switches.events:
-        if event.entry == TIME:
+        if event.kind == CHANNEL:
+            found.append((UNKNOWN, -1, inf))
+        elif event.entry == TIME:
             found.append((CLOCK, -1, inf))
         elif event.entry <= LIMITS:
             found.append((UNKNOWN, LIMITS - event.entry, inf))

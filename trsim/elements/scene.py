@@ -112,6 +112,8 @@ class Model(Packed):
     watch: I2  # (n_w, 3) user events: entry of S or -1 for t, direction, how often   events.py
     # (n_w, 2) the value that is crossed; how far it must be left before it counts again
     watch_at: A2
+    heard: I1  # (n_w) output columns that user events watch, -1 of others; empty without any
+    hear: i8  # address of what measures them, or 0
     feature: I2  # (n_features, 7) functions with corners                   assemble/features.py
     jump: A2  # (n_instants, 2) of the place and the rate of a motion there       jumps.py
     instant: A1  # when those are met that the time alone decides

@@ -42,6 +42,8 @@ gravity: [0, -9.81, 0]
 solver: {end: 1 s}
 """
 
+# units of what may be watched
+WATCHED = ("rad", "m", "s", "rad/s", "m/s", "rad/s^2", "m/s^2", "N", "N*m", "J", "W", "N/m", "-")
 Crosses = Literal["up", "down", "both"]
 DIRECTIONS = {"up": 1, "down": -1, "both": 0}
 
@@ -106,7 +108,7 @@ class Actions(Spec):
 class Event(Spec):
     """What is done where a sensor, or the time, crosses a value.
 
-    when     sensor, or t
+    when     sensor, or t; or any channel, which is sampled, not bounded
     value    of it that is crossed
     crosses  the direction that counts
     times    how often it happens; whenever it is crossed unless given
@@ -115,7 +117,7 @@ class Event(Spec):
 
     type: ClassVar[str] = "event"
     when: str
-    value: Annotated[float, Unit("rad", "m", "s")] = 0.0
+    value: Annotated[float, Unit(*WATCHED)] = 0.0
     crosses: Crosses = "up"
     times: Annotated[int, Gt(0), Le(1_000_000_000)] | None = None
     do: Actions

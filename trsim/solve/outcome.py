@@ -164,6 +164,10 @@ def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
         from trsim.solve.march.search import search
 
         found["search"] = search.address()
+    if model.hear:
+        from trsim.solve.march.heard import sound
+
+        found["sound"] = sound.address()
     if model.feature[:, READS].any():
         from trsim.solve.march.sensed import beyond, corners_ahead, turn
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.projection import project_positions, project_velocities
-from trsim.assemble.switches import HELD, LOOSE, SECTION, UserEvent, lock_name
+from trsim.assemble.switches import CHANNEL, HELD, LOOSE, SECTION, UserEvent, lock_name
 from trsim.elements.contract import Memory, Row
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, carried
@@ -47,7 +47,8 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -
         if not r.watch[k, rec.JUST_NOW]:
             continue
         r.watch[k, rec.JUST_NOW] = 0.0
-        row, speed = len(mechanism.instances) + 1 + k, r.gap[len(work.contact) + k, 1]
+        row = len(mechanism.instances) + 1 + k
+        speed = r.watch[k, rec.SLOPE] if event.kind == CHANNEL else r.gap[len(work.contact) + k, 1]
         note_event.python(r, b, t, rec.USER, row, speed)
         if event.record:
             recorded.append(np.array([t, k, *b.out[: work.n_out]]))

@@ -53,6 +53,10 @@ LOOK = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, f8, i8)
 #                      scene  record  buffers  settings method
 SEARCH = types.float64(SCENE, RECORD, BUFFERS, SETTINGS, I1)
 
+# what finds one event that watches a channel, for runs that have such
+#                     scene  record  buffers  method event end of what is searched
+SOUND = types.float64(SCENE, RECORD, BUFFERS, I1, i8, f8)
+
 # a row of `methods`, made by `method_row`: what the march must know of a method and of a run, in
 # whole numbers; an address is 0 where nothing of that kind is to be done
 FIELDS = (
@@ -68,6 +72,7 @@ FIELDS = (
     "look",  # what looks at redundant rows
     "rounding",  # what looks at rounding
     "search",  # what finds events
+    "sound",  # and those that watch channels
     "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
     "sample", "finish",  # what keeps extremes, and what does where samples end
     "passes",  # what notes steps past places where branches of the motion may meet
@@ -77,8 +82,9 @@ FIELDS = (
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
-    DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, CORNERS_AT,
-    BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, RATE_AT, SOFTEN_AT, STIFF_AT,
+    DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, SOUND_AT,
+    CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, RATE_AT, SOFTEN_AT,
+    STIFF_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 
@@ -99,3 +105,4 @@ call_soften = caller(SOFTEN)
 call_sections = caller(SECTIONS)
 call_look = caller(LOOK)
 call_search = caller(SEARCH)
+call_sound = caller(SOUND)

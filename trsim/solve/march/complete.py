@@ -49,11 +49,11 @@ from trsim.solve.march.output_rows import at_end, due, rows_until
 from trsim.solve.march.passes import call_passes
 from trsim.solve.march.peaks import call_finish, call_sample
 from trsim.solve.march.phases import change_phases, latch
-from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS
+from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
 from trsim.solve.march.turns import too_far
-from trsim.solve.march.watch import take_sides
+from trsim.solve.march.watch import heard, take_sides
 from trsim.solve.march.works import exchanged
 
 # what `complete` made of a trial step
@@ -70,6 +70,7 @@ OF_LIMITS = 1e-10
 LEAK = 0.1  # times the tolerance, of the kinetic energy
 THROWN = 1e-3  # of the kinetic energy
 FROM_REST = 0.01  # of the kinetic energy at the end of a step
+SMALL = 1e-3  # of a step: how far a channel is brought nearer to its value
 EXACT = 5  # Newton steps to the end of a step that an event cuts
 PRECISE = 1e-6  # of the error allowed: what is left of a gap there
 NEARER = 0.5  # of the gap before: what a step of Newton's method leaves at most
@@ -298,6 +299,14 @@ def exact(s, r, b, setting, method, theta):
             h1 -= late
             continue
         gap, rate = b.gap1[gap_of, 0], b.gap1[gap_of, 1]
+        if gap_of >= s.contact.size and heard(s, gap_of - s.contact.size):
+            # a channel may be rough: one step of Newton's method, if it is a small one
+            rate = r.watch[gap_of - s.contact.size, SLOPE]
+            late = gap / rate if rate != 0.0 else 0.0
+            if k > 0 or not abs(late) <= SMALL * h1 or h1 - late > h:
+                return h1, 0.0, projected
+            h1 -= late
+            continue
         if abs(gap) <= close:
             return h1, 0.0, projected
         if rate == 0.0 or not abs(gap) < NEARER * before:

@@ -94,6 +94,8 @@ def inside(s, r, b, c, theta):
 def watched(s, t, k):
     """The k-th user event: what it looks at less its value, and the rate, at the scene's poses."""
     entry, value = s.watch[k, 0], s.watch_at[k, 0]
+    if s.hear != 0 and s.heard[k] >= 0:  # sampled: of its rate nothing is known
+        return s.out[s.heard[k]] - value, 0.0
     if entry <= LIMITS:
         call_one(s, s.gaps, t, LIMITS - entry)
         return s.gap[LIMITS - entry, 0], s.gap[LIMITS - entry, 1]

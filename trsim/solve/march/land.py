@@ -91,7 +91,7 @@ def land(s, r, b, t, y, yd, rest=0):
             r.worst_phi = max(r.worst_phi, abs(s.phi[k]))
             off = abs(velocity_residual(s, k))
             r.worst_phi_dot = max(r.worst_phi_dot, off)
-    see(s, t, b.gap1, b.branch1, b.turning1)
+    see(s, t, y, b.gap1, b.branch1, b.turning1)
     if s.contact.size > 0:
         corners(s, t)
         for c in range(s.contact.size):

@@ -276,7 +276,8 @@ def next_step(s, r, b, setting, method):
     most = min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
     if setting.fixed_step > 0.0:
         return left if left < setting.fixed_step * (1.0 + 1e-9) else setting.fixed_step
-    if s.wound.size + s.section.shape[0] + s.looped.size + s.judged.shape[0] > 0:
+    looked_at = s.section.shape[0] + s.heard.size
+    if s.wound.size + looked_at + s.looped.size + s.judged.shape[0] > 0:
         most = min(most, longest_turn(s, r))
     if method[STIFF_AT] > 0 and r.vibration > 0.0:
         most = min(most, longest_calm(r))

@@ -132,7 +132,7 @@ def evaluate_all(s, r, setting, t):
         for k in range(s.sensed.shape[0]):
             r.sight[k] = s.S[s.sensed[k, 0], 0]
         evaluate(s, t, r.y, r.yd)
-    see(s, t, r.gap, r.branch, r.turning)
+    see(s, t, r.y, r.gap, r.branch, r.turning)
     if setting.locate > 0:
         for c in range(s.contact.size):
             look(s, c)

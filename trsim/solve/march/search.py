@@ -6,11 +6,11 @@ Called by its address, which is 0 where nothing can happen: such a run compiles 
 from trsim.assemble.equations import evaluate, poses
 from trsim.elements.contract import compiled
 from trsim.kernels.lazy import internal
-from trsim.solve.march.calls import LAST_AT, SEARCH, STAGES_AT
+from trsim.solve.march.calls import LAST_AT, SEARCH, SOUND_AT, STAGES_AT, call_sound
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.events import NONE, SAME, any_change, first_change
 from trsim.solve.march.spread import fill_net
-from trsim.solve.march.watch import crossing, may_cross
+from trsim.solve.march.watch import crossing, heard, may_cross
 
 
 @compiled(SEARCH)
@@ -26,7 +26,7 @@ def search(s, r, b, setting, method):
     if b.built == 0:
         build(s, r, b, method)
     fill_net(s, r, b, method)
-    first = earliest(s, r, b, setting)
+    first = earliest(s, r, b, setting, method)
     if first > 1.0 or first == 1.0:
         if s.status[1] > evaluations:
             evaluate(s, b.t + b.h, b.y1, b.K[method[LAST_AT]])
@@ -45,13 +45,17 @@ def to_search(s, r, b, setting, stages):
 
 
 @internal
-def earliest(s, r, b, setting):
+def earliest(s, r, b, setting, method):
     """Fill b.root for contacts and user events; the first, corners of laws included."""
     for c in range(s.contact.size):
         b.root[c], b.corner_root[c] = NONE, NONE
     first = first_change(s, r, b, setting) if setting.locate > 0 else NONE
     for k in range(s.watch.shape[0]):
-        root = crossing(s, r, b, setting, k, min(first + SAME, 1.0))
+        end = min(first + SAME, 1.0)
+        if heard(s, k):
+            root = call_sound(method[SOUND_AT], s, r, b, method, k, end)
+        else:
+            root = crossing(s, r, b, setting, k, end)
         b.root[s.contact.size + k] = root
         first = min(first, root)
     return first

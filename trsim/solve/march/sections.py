@@ -5,12 +5,10 @@
     touch     the end of a step that a contact ends by touching
 
 A crossing lies between two neighbours of different sign among the ends of the step and points
-inside it: PARTS - 1, and as many again for every TURN that the fastest body turns by, or every WAVE
-of the fastest sine in a function (turns.py) where the channel may swing with it: a force, an
-acceleration, what a drive prescribes.  These are looked at where the sign changed, where bodies or
-waves turn so far, or where the cubic through values and rates of the channel at both ends comes
-near zero.  Where three neighbours of one sign dip towards zero the bottom is looked for too: so two
-crossings in one step are two points, however close.  Channels are of every kind, forces among them,
+inside it (sampled.py).  These are looked at where the sign changed, where bodies or waves turn far,
+or where the cubic through values and rates of the channel at both ends comes near zero.  Where
+three neighbours of one sign dip towards zero the bottom is looked for too: so two crossings in one
+step are two points, however close.  Channels are of every kind, forces among them,
 so this is sampled, not bounded as events are.
 The root is found to the resolution of the time.
 
@@ -46,7 +44,6 @@ from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import LAST_AT, SECTIONS
 from trsim.solve.march.dense_output import fill, measure_inside
 from trsim.solve.march.events import NONE, SAME
-from trsim.solve.march.illinois import between, narrowed
 from trsim.solve.march.land import evaluate_to_measure
 from trsim.solve.march.record import (
     DECADES,
@@ -64,16 +61,9 @@ from trsim.solve.march.record import (
     RATE,
     SWINGS,
 )
-from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
+from trsim.solve.march.sampled import NEAR, PARTS, dip, parts_of, root, value, waves_of
 
-PARTS = 8  # of a step that is looked at, for each TURN
-TURN, WAVE = 0.5, 2.0  # rad
-DIPS = 12  # looks at the bottom of a dip
-NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
 AHEAD = 1e-4  # of a step: how far the rate of a channel looks
-JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
-TRIALS = 100
-RESOLUTION = 2.3e-16
 AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and rounding is left
 
 
@@ -245,31 +235,14 @@ def may_cross(s, r, b, k, event, parts):
 
 
 @internal
-def parts_of(s, r, b, last):
-    """In how many parts a step is looked at."""
-    fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
-    return PARTS * (1 + int(min(fast * (b.t1 - b.t), 2.0 * WHOLE) / TURN))
-
-
-@internal
-def waves_of(s, r, b):
-    """In how many parts it is looked at where a channel swings with a function."""
-    if s.wave.size == 0:
-        return PARTS
-    length = b.t1 - b.t
-    w = swings(s, b.t, length, r.branch, r.turning, b.branch1, b.turning1)
-    return PARTS * (1 + int(min(w * length, 2.0 * MOST_WAVES) / WAVE))
-
-
-@internal
 def crossings(s, r, b, k, parts):
     """The points of all crossings in the step.  Places inside it are pairs: theta, value."""
-    when, reach = s.section[k, WHEN], (b.t1 - b.t) / b.h
+    what, reach = (s.section[k, WHEN], 0.0), (b.t1 - b.t) / b.h
     before = (-1.0, 0.0)  # the neighbour before the last, where both are on one side
     low, side = (0.0, r.section[k, LAST]), r.section[k, ON]
     for j in range(1, parts + 1):
         theta = reach * j / parts
-        high = (theta, value(s, r, b, k, theta) if j < parts else b.out[when])
+        high = (theta, value(s, r, b, what, theta) if j < parts else b.out[what[0]])
         if b.t == 0.0 and j == 1 and abs(low[1]) <= AT_START * abs(high[1]):
             side = 0.0
         new = side_of(high[1], side)
@@ -280,9 +253,9 @@ def crossings(s, r, b, k, parts):
             before = (-1.0, 0.0)
         else:
             if before[0] >= 0.0 and side * low[1] < min(side * before[1], side * high[1]):
-                theta = dip(s, r, b, k, side, (before, low, high))
+                theta = dip(s, r, b, what, side, (before, low, high))
                 if theta >= 0.0:
-                    bottom = (theta, value(s, r, b, k, theta))
+                    bottom = (theta, value(s, r, b, what, theta))
                     swung(r, k, before[1])
                     swung(r, k, bottom[1])
                     crossed(s, r, b, k, before, bottom, -side)
@@ -302,77 +275,12 @@ def swung(r, k, f):
 
 
 @internal
-def value(s, r, b, k, theta):
-    """What section k looks at, inside the step."""
-    measure_inside(s, r, b, b.t + theta * b.h, theta)
-    return s.out[s.section[k, WHEN]]
-
-
-@internal
 def crossed(s, r, b, k, low, high, to):
     """The point of a crossing to the side `to` between two places, if it is asked for."""
     want = s.section[k, DIRECTION]
     if want != 0 and want != to:
         return
-    theta = root(s, r, b, k, low, high)
-    if theta >= 0.0:
+    theta, jumps = root(s, r, b, (s.section[k, WHEN], 0.0), low, high)
+    if not jumps:
         measure_inside(s, r, b, b.t + theta * b.h, theta)
         point(s, r, b, k, min(b.t + theta * b.h, b.t1), s.out)
-
-
-@internal
-def dip(s, r, b, k, side, places):
-    """A place beyond zero at the bottom of three values of one side; -1 where it stays on it.
-
-    By parabolas through the three lowest, as far as these may reach zero.
-    """
-    (x0, f0), (x1, f1), (x2, f2) = places
-    for _ in range(DIPS):
-        a, c = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
-        bend = (c - a) / (x2 - x0)
-        if side * bend <= 0.0:
-            return -1.0
-        x = 0.5 * (x0 + x1) - 0.5 * a / bend
-        bottom = side * (f0 + (x - x0) * (a + bend * (x - x1)))
-        if bottom > NEAR * (max(side * f0, side * f2) - side * f1):
-            return -1.0
-        if abs(x - x1) < 1e-3 * (x2 - x0):  # the middle is the bottom: look beside it
-            x = x1 + 0.1 * (x2 - x1 if x2 - x1 > x1 - x0 else x0 - x1)
-        f = value(s, r, b, k, x)
-        if side * f < 0.0:
-            return x
-        if side * f < side * f1:
-            if x > x1:
-                x0, f0 = x1, f1
-            else:
-                x2, f2 = x1, f1
-            x1, f1 = x, f
-        elif x > x1:
-            x2, f2 = x, f
-        else:
-            x0, f0 = x, f
-    return -1.0
-
-
-@internal
-def root(s, r, b, k, low, high):
-    """Where what section k looks at is zero between two places, as theta; -1 where it jumps over
-    zero."""
-    if low[1] == 0.0:
-        return low[0]
-    rising, change = high[1] > 0.0, abs(high[1] - low[1])
-    finest = RESOLUTION * max(1.0, abs(b.t) / b.h)
-    bracket, f0, f1 = (low[0], low[1], high[0], high[1], 0.0), low[1], high[1]
-    for n in range(TRIALS):
-        if bracket[2] - bracket[0] <= finest:
-            break
-        middle = between(bracket, n)
-        f = value(s, r, b, k, middle)
-        if f == 0.0:
-            return middle
-        bracket = narrowed(bracket, middle, f, rising)
-        if (f > 0.0) == rising:
-            f1 = f
-        else:
-            f0 = f
-    return bracket[2] if abs(f1 - f0) <= JUMP * change else -1.0

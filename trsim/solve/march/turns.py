@@ -41,8 +41,8 @@ def longest_turn(s, r):
     """The longest step that turns no joint by more than is sure to be counted, s.
 
     Nor is a turn passed over that is judged, as that of a bushing.  Where points of sections are
-    looked for none turns a body by more than WHOLE.  In loops none moves a body further than
-    passes.py can follow what becomes of its rows.
+    looked for, or channels are watched, none turns a body by more than WHOLE.  In loops none moves
+    a body further than passes.py can follow what becomes of its rows.
     """
     longest = 1e300
     if s.section.shape[0] > 0:

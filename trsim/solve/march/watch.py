@@ -10,10 +10,11 @@ In the tables of gaps and of roots the watched sensors follow the contacts.
 """
 
 from trsim.assemble.equations import gaps
+from trsim.assemble.outputs import call_hear
 from trsim.assemble.travel import CLOCK
 from trsim.kernels.lazy import internal
 from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched
-from trsim.solve.march.record import JUST_NOW, SIDE, TIMES
+from trsim.solve.march.record import JUST_NOW, PEAK_MAX, PEAK_MIN, SIDE, TIMES
 from trsim.solve.march.spread import spread_at_stages
 
 BELOW, AT, ABOVE = -1.0, 0.0, 1.0
@@ -23,9 +24,11 @@ PASSED = 1000  # crossings in the other direction that one step may have
 
 
 @internal
-def see(s, t, gap, branch, turning):
-    """Gaps of contacts, what is watched, and angles, each with its rate, at the poses of the scene:
-    into a table of gaps, and into two of angles."""
+def see(s, t, y, gap, branch, turning):
+    """Gaps of contacts, what is watched, and angles, each with its rate, at y, which was evaluated
+    last: into a table of gaps, and into two of angles."""
+    if s.hear != 0:
+        call_hear(s.hear, s, t, y)
     if s.contact.size > 0:
         gaps(s, t)
     for c in range(s.contact.size):
@@ -37,12 +40,31 @@ def see(s, t, gap, branch, turning):
 
 
 @internal
+def heard(s, k):
+    """Whether event k watches a channel, see heard.py."""
+    return s.hear != 0 and s.heard[k] >= 0
+
+
+@internal
+def band_of(s, r, k):
+    """How far event k's value must be left to be on a side of it; of a channel the tolerance, of
+    the largest it has been."""
+    if not heard(s, k):
+        return s.watch_at[k, BAND]
+    column, size = s.heard[k], abs(s.watch_at[k, VALUE])
+    high, low = r.peak[PEAK_MAX, column], r.peak[PEAK_MIN, column]
+    if high >= low:
+        size = max(size, abs(high), abs(low))
+    return s.tolerance * size
+
+
+@internal
 def take_sides(s, r):
     """The state of what is watched, after an accepted step: the side it is on, or the one it had
     before while it lies within the band."""
     for k in range(s.watch.shape[0]):
         g = r.gap[s.contact.size + k, 0]
-        if not abs(g) <= s.watch_at[k, BAND]:
+        if not abs(g) <= band_of(s, r, k):
             r.watch[k, SIDE] = ABOVE if g > 0.0 else BELOW
 
 
@@ -60,6 +82,8 @@ def may_cross(s, r, b, k, stages):
     c = s.contact.size + k
     if r.watch[k, TIMES] >= s.watch[k, MOST]:
         return False
+    if heard(s, k):
+        return True
     side, band = starting_side(r, c, k), s.watch_at[k, BAND]
     f0, r0 = side * r.gap[c, 0], side * r.gap[c, 1]
     f1, r1 = side * b.gap1[c, 0], side * b.gap1[c, 1]

@@ -1,0 +1,102 @@
+"""Channels of any kind, looked at inside a step: in parts, since nothing bounds them.
+
+The step is looked at in PARTS, and as many again for every TURN that the fastest body turns by, or
+every WAVE of the fastest sine in a function (turns.py) where the channel may swing with it: a
+force, an acceleration, what a drive prescribes.  What is looked at is `what`: a column of the
+output rows, and the value taken off it.
+"""
+
+from trsim.kernels.lazy import internal
+from trsim.solve.march.dense_output import measure_inside
+from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
+
+PARTS = 8  # of a step that is looked at, for each TURN
+TURN, WAVE = 0.5, 2.0  # rad
+DIPS = 12  # looks at the bottom of a dip
+NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
+JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
+TRIALS = 100
+RESOLUTION = 2.3e-16
+
+
+@internal
+def value(s, r, b, what, theta):
+    """What is looked at, inside the step."""
+    column, at = what
+    measure_inside(s, r, b, b.t + theta * b.h, theta)
+    return s.out[column] - at
+
+
+@internal
+def parts_of(s, r, b, last):
+    """In how many parts a step is looked at."""
+    fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
+    return PARTS * (1 + int(min(fast * (b.t1 - b.t), 2.0 * WHOLE) / TURN))
+
+
+@internal
+def waves_of(s, r, b):
+    """In how many parts it is looked at where a channel swings with a function."""
+    if s.wave.size == 0:
+        return PARTS
+    length = b.t1 - b.t
+    w = swings(s, b.t, length, r.branch, r.turning, b.branch1, b.turning1)
+    return PARTS * (1 + int(min(w * length, 2.0 * MOST_WAVES) / WAVE))
+
+
+@internal
+def dip(s, r, b, what, side, places):
+    """A place beyond zero at the bottom of three values of one side; -1 where it stays on it.
+
+    By parabolas through the three lowest, as far as these may reach zero.
+    """
+    (x0, f0), (x1, f1), (x2, f2) = places
+    for _ in range(DIPS):
+        a, c = (f1 - f0) / (x1 - x0), (f2 - f1) / (x2 - x1)
+        bend = (c - a) / (x2 - x0)
+        if side * bend <= 0.0:
+            return -1.0
+        x = 0.5 * (x0 + x1) - 0.5 * a / bend
+        bottom = side * (f0 + (x - x0) * (a + bend * (x - x1)))
+        if bottom > NEAR * (max(side * f0, side * f2) - side * f1):
+            return -1.0
+        if abs(x - x1) < 1e-3 * (x2 - x0):  # the middle is the bottom: look beside it
+            x = x1 + 0.1 * (x2 - x1 if x2 - x1 > x1 - x0 else x0 - x1)
+        f = value(s, r, b, what, x)
+        if side * f < 0.0:
+            return x
+        if side * f < side * f1:
+            if x > x1:
+                x0, f0 = x1, f1
+            else:
+                x2, f2 = x1, f1
+            x1, f1 = x, f
+        elif x > x1:
+            x2, f2 = x, f
+        else:
+            x0, f0 = x, f
+    return -1.0
+
+
+@internal
+def root(s, r, b, what, low, high):
+    """Where what is looked at is zero between two places, as theta, and whether it jumps there."""
+    if low[1] == 0.0:
+        return low[0], False
+    rising, change = high[1] > 0.0, abs(high[1] - low[1])
+    finest = RESOLUTION * max(1.0, abs(b.t) / b.h)
+    bracket, f0, f1 = (low[0], low[1], high[0], high[1], 0.0), low[1], high[1]
+    for n in range(TRIALS):
+        if bracket[2] - bracket[0] <= finest:
+            break
+        middle = between(bracket, n)
+        f = value(s, r, b, what, middle)
+        if f == 0.0:
+            return middle, False
+        bracket = narrowed(bracket, middle, f, rising)
+        if (f > 0.0) == rising:
+            f1 = f
+        else:
+            f0 = f
+    return bracket[2], abs(f1 - f0) > JUMP * change
