@@ -123,6 +123,7 @@ def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
 
 def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     """The start of a run, and its time scales; its own errors are those of the scenario."""
+    from trsim.scenario.methods import METHODS
     from trsim.solve.diagnose import doubts
     from trsim.solve.diagnose.bar_scales import bar_scales
     from trsim.solve.diagnose.mesh_error import mesh_errors
@@ -130,12 +131,15 @@ def begun(scenario: Any, mechanism: Any, shapes: bool) -> dict[str, Any]:
     from trsim.solve.diagnose.scales import scales
     from trsim.solve.simulate import check_step
     from trsim.solve.start.consistent import start
+    from trsim.solve.start.driven import check_driven
     from trsim.solve.start.projected import projected
 
     end = scenario.solver.end
     if end is None:  # a scale of time is needed, not how long it would run
         solver = scenario.solver.model_copy(update={"end": 1.0})
         scenario = scenario.model_copy(update={"solver": solver})
+    if METHODS[scenario.solver.method].driven:
+        check_driven(scenario, mechanism)
     at = start(scenario, mechanism, located=True)
     of_start = scales(scenario, mechanism, at)
     check_step(scenario, of_start)
@@ -234,6 +238,11 @@ def mobility_lines(found: dict[str, Any]) -> list[str]:
         told.append(
             f"              they differ because {len(redundant)} rows repeat what others say: "
             "counting takes every row for a freedom"
+        )
+    if rank == 0 and found["drives"]:
+        told.append(
+            "              driven in all freedoms: `method: kinematic` finds places, forces and "
+            "torques row by row, without integrating"
         )
     if singular:
         told.append(

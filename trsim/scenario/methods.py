@@ -12,7 +12,8 @@ GGL = "ggl"  # the stabilised index 2 of Gear, Gupta and Leimkuhler
 class Method(NamedTuple):
     """What the rest of trsim knows of a method.
 
-    order     of its steps, the highest: errors fall with step^order
+    order     of its steps, the highest: errors fall with step^order; of one that integrates no
+              motion that of the energy book
     files     formulation -> modules of solve/methods, the explicit one first.  Without any an
               integrator of scipy makes the steps (`marches` is False), with a state of its own: no
               checkpoints, no user events, and nobody looks at its trial steps
@@ -21,6 +22,8 @@ class Method(NamedTuple):
     explicit  begins with explicit steps: no Jacobian, and where it chooses them they are held to
               what the feedback of Baumgarte's stabilisation allows
     twin      the method that a run is certified by: another family, other errors
+    driven    only where drives and joints leave nothing free: places are found, not integrated, at
+              every output row
     """
 
     order: int
@@ -28,6 +31,7 @@ class Method(NamedTuple):
     adaptive: bool = True
     explicit: bool = False
     twin: str = "auto"
+    driven: bool = False
 
     @property
     def control(self) -> str:
@@ -53,6 +57,7 @@ METHODS = {
     "radau": Method(5, {INDEX_1: ("radau",), GGL: ("radau_ggl",)}, twin="dop853"),
     "generalized_alpha": Method(2, {INDEX_1: ("generalized_alpha",)}),
     "rk4": Method(4, {INDEX_1: ("rk4",)}, adaptive=False, explicit=True),
+    "kinematic": Method(4, {INDEX_1: ("kinematic",)}, explicit=True, driven=True),
     "scipy:BDF": Method(5, {}),
     "scipy:Radau": Method(5, {}),
     "scipy:RK45": Method(5, {}, explicit=True),

@@ -116,8 +116,8 @@ class SolverSpec(Spec):
     """How, how far and how exactly the motion is integrated.
 
     method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
-                   two or three digits of stiff motion; rk4 has fixed steps; scipy's are
-                   independent checks
+                   two or three digits of stiff motion; rk4 has fixed steps; kinematic is
+                   for mechanisms driven in all their freedoms; scipy's are independent checks
     formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
                    stabilised index 2 with sparse matrices; found out unless given
     end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
@@ -159,6 +159,10 @@ class SolverSpec(Spec):
         if not METHODS[self.method].adaptive and self.step is None:
             hint = "Write for example `step: 1e-5`."
             raise ScenarioError(f"method {self.method} needs a step", hint)
+        if METHODS[self.method].driven and self.stabilisation != "projection":
+            what = f"method {self.method} finds places that close all joints"
+            hint = "There is nothing to stabilise: leave `stabilisation` out."
+            raise ScenarioError(what, hint, ("stabilisation",))
         if self.baumgarte is not None and self.stabilisation != "baumgarte":
             hint = "Write `stabilisation: baumgarte` as well."
             raise ScenarioError("baumgarte is not the stabilisation", hint, ("baumgarte",))

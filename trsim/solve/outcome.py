@@ -126,6 +126,7 @@ def settings(scenario: Any, mechanism: Mechanism) -> Settings:
         missed=MISSED * solver.tolerance,
         held_to=held_to(solver.tolerance),
         tolerance=solver.tolerance,
+        at_rows=int(method.driven),
     )
 
 

@@ -121,7 +121,11 @@ def compiled(
 ) -> Generator[Block, None, Outcome]:
     """The march of march.py with a compiled method, or an explicit and an implicit one."""
     setting = settings(scenario, mechanism)
-    located = setting.locate > 0
+    located, driven = setting.locate > 0, METHODS[scenario.solver.method].driven
+    if driven:
+        from trsim.solve.start.driven import check_driven
+
+        check_driven(scenario, mechanism)
     if checkpoint:
         begun = begun_at(checkpoint, mechanism, scene(mechanism.model))
     else:
@@ -142,6 +146,10 @@ def compiled(
     r = new_record(work, begun, left_out, rows, past_rows, len(switches.names))
     room = most_points(mechanism, setting)
     b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned, room)
+    if driven:
+        from trsim.solve.march.sides import keep_side, with_square
+
+        b = with_square(b, work)
     if sparse:
         r = sparse.record(r, mechanism, dense_rows)
         b = sparse.buffers(b, mechanism, work)
@@ -161,6 +169,10 @@ def compiled(
     else:
         begin(work, r, b, setting)
         r.h = first_step(scenario, r)
+    if driven and not keep_side(work, r, b):
+        from trsim.solve.diagnose.singular import singular_start
+
+        raise singular_start(mechanism, r)
     limit = scenario.solver.max_steps or 2**62
     visit = max(1, VISIT * LIGHT // max(LIGHT, mechanism.model.n_v))
     visit = min(visit, BARS) if mechanism.beams else visit
@@ -178,6 +190,8 @@ def compiled(
                 r.h = min(r.h, first_step(scenario, r))
             if r.weak and ended is None:
                 work = anew(mechanism, work, r, b, setting, acted=work is not before)
+                if driven:
+                    keep_side(work, r, b)
                 reason = STUCK if stuck(r, setting) else reason
             if work is not before:
                 b = sparse.buffers(b, mechanism, work) if sparse else b

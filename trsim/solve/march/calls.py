@@ -11,6 +11,8 @@ INTERPOLATE y <- solution at t + theta h
 RATE        rate <- y' of what is slow, theta of a step h: that of its dense output P, or at the end
             of the step just made (AT_END of settle.py) that of its stages
 SOFTEN      c <- (mu - J)^-1 c with what the last step was solved with; returns mu, 0: none is there
+BOOK        z of b.y1 <- works of the step of length h whose end was just brought to the rows, for
+            methods that know its power only then
 CONTROL     net <- control points of the solution less y, in Bernstein's basis; where a method has
             none they are taken from values                                   spread.py
 """
@@ -40,6 +42,8 @@ INTERPOLATE = types.void(A2, A1, f8, A1)
 RATE = types.void(A2, A2, f8, f8, A1)
 #                      scene  record  buffers  c
 SOFTEN = types.float64(SCENE, RECORD, BUFFERS, A1)
+#                 scene  record  buffers  h
+BOOK = types.void(SCENE, RECORD, BUFFERS, f8)
 #                    P   net
 CONTROL = types.void(A2, A2)
 # what locates points of sections, for runs that have some
@@ -78,12 +82,14 @@ FIELDS = (
     "passes",  # what notes steps past places where branches of the motion may meet
     "inside",  # what tells the error of accelerations inside a step, as `step` does that of its end
     "rate", "soften",  # what brings to rest what is stiff in a state             settle.py
+    "book",  # what books works at the end of a step
     "stiff",  # what looks at how stiff the mechanism is, for methods that ask     stiffness.py
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, SOUND_AT,
     CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, RATE_AT, SOFTEN_AT,
+    BOOK_AT,
     STIFF_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
@@ -100,6 +106,7 @@ call_step = caller(STEP)
 call_dense = caller(DENSE)
 call_interpolate = caller(INTERPOLATE)
 call_control = caller(CONTROL)
+call_book = caller(BOOK)
 call_rate = caller(RATE)
 call_soften = caller(SOFTEN)
 call_sections = caller(SECTIONS)

@@ -16,6 +16,7 @@ from trsim.kernels.vectors import all_finite, copy_table, copy_to
 from trsim.solve.march.accelerations import held
 from trsim.solve.march.calls import (
     BEYOND_AT,
+    BOOK_AT,
     CORNERS_AT,
     FINISH_AT,
     IMPLICIT_AT,
@@ -33,6 +34,7 @@ from trsim.solve.march.calls import (
     SOFTEN_AT,
     STEP_AT,
     TURN_AT,
+    call_book,
     call_interpolate,
     call_look,
     call_search,
@@ -98,7 +100,7 @@ def complete(s, r, b, setting, method):
     b.rate, b.soften, b.restless = method[RATE_AT], method[SOFTEN_AT], 0
     b.t1 = reached(setting, b.t + h)
     worst, worst_rate = r.worst_phi, r.worst_phi_dot
-    b.projected = land(s, r, b, b.t1, b.y1, b.K[last], b.rate)
+    b.projected = landed(s, r, b, method, b.t1, h)
     if not all_finite(b.y1) or not all_finite(b.K[last]):
         return WORTHLESS
     if restless(b, setting, h):
@@ -185,6 +187,15 @@ def complete(s, r, b, setting, method):
             turned = call_turn(method[TURN_AT], s, r, b, setting, method, t1, met + int(event))
             outcome = WITH_CORNER if turned > 0 and not event else outcome
     return outcome
+
+
+@internal
+def landed(s, r, b, method, t, h):
+    """`land` of the end of a step of length h that was just made."""
+    done = land(s, r, b, t, b.y1, b.K[method[LAST_AT]], b.rate)
+    if method[BOOK_AT] > 0:
+        call_book(method[BOOK_AT], s, r, b, h)
+    return done
 
 
 @internal
@@ -287,7 +298,7 @@ def exact(s, r, b, setting, method, theta):
             return -1.0, 0.0, 0.0
         if not error < NO_STEP:
             return 0.0, 0.0, 0.0
-        projected = land(s, r, b, t + h1, b.y1, b.K[last], b.rate)
+        projected = landed(s, r, b, method, t + h1, h1)
         if restless(b, setting, h1):
             return -1.0, 0.0, 0.0
         if gap_of < 0:

@@ -124,6 +124,10 @@ def evaluate_inside(s, r, t, y, rough):
     rough: y', room for y, and y' as it was before.  Returns whether y was brought there.
     """
     yd, kept = rough[0], rough[1]
+    if r.driven > 0:  # interpolation knows no better than rows
+        put_on_rows(s, t, y)
+        evaluate_to_measure(s, t, y, yd)
+        return False
     evaluate(s, t, y, yd)
     if s.m == 0 or s.stabilisation == NONE:
         return False

@@ -112,6 +112,8 @@ def method_table(method, **called):
         called["control"] = method.control.address()
     if hasattr(method, "soften"):
         called["rate"], called["soften"] = method.rate.address(), method.soften.address()
+    if hasattr(method, "book"):
+        called["book"] = method.book.address()
     if hasattr(method, "inside"):
         called["inside"] = method.inside.address()
         called["stiff"] = look_stiff.address()
@@ -268,11 +270,14 @@ def next_step(s, r, b, setting, method):
     """The step to try: as controlled, not beyond the end, the last two evened out.
 
     It never spans more output times than the buffer has room for, and ends where the time meets a
-    corner of a function.  Of an explicit method it stays where what is stiff dies out.
+    corner of a function, or at an output row where steps do.  Of an explicit method it stays where
+    what is stiff dies out.
     """
     if r.after_rejection == TO_ROW:
         return r.h
     left = next_instant(s, r.t, setting.t_end) - r.t
+    if setting.at_rows > 0:
+        left = min(left, setting.every * r.next_row - r.t)
     most = min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
     if setting.fixed_step > 0.0:
         return left if left < setting.fixed_step * (1.0 + 1e-9) else setting.fixed_step

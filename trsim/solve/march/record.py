@@ -91,6 +91,7 @@ class Settings(Packed):
     missed: f8  # what may be missed of an extreme, as a part of the range of its channel  peaks.py
     held_to: f8  # of the mechanism's size or rad: what redundant rows may be open by  openings.py
     tolerance: f8  # as it is written
+    at_rows: i8  # 1: steps end at output rows
 
 
 class Record(Packed):
@@ -196,6 +197,7 @@ class Record(Packed):
     vibration: F8  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known  stiffness.py
     decay: F8  # 1/s, of the fastest decay
     step_turn: F8  # rad, the most a body turned by in a fixed step  rk4.py
+    side: F8  # sign of det J where rows alone tell places  kinematic.py
     count: I1  # and the whole ones
     steps: I8
     rejected: I8
@@ -245,6 +247,7 @@ class Record(Packed):
     freed: I8  # 1: the step ended where the last closed contact opened
     earlier_built: I8  # 1: `stages` holds the dense output of the earlier step, not its stages
     chosen: I8  # how often rows were chosen anew with next to no time between
+    driven: I8  # 1: rows alone tell where everything is, and how fast
 
 
 class Buffers(Packed):
@@ -279,6 +282,8 @@ class Buffers(Packed):
     part: A2 = of(2, "n_y")  # both ends of a part of a step  passes.py
     mean: A2 = of(2, "n_out")  # channels where rows of the solve depend on each other
     unmoved: A2 = of(3, "n_y")  # its end and y' there before that, and scratch
+    square: A2 = of(0, 0)  # J, and rows swapped in it, where it is square  kinematic.py
+    swaps: I1 = of(0)
     root: A1 = of("gaps")  # where in the step its phase changes, 2 for nowhere
     corner_root: A1 = of("contact")  # and where it meets a corner
     branch1: A1 = of("angles")
