@@ -56,6 +56,8 @@ def derivative(s, t, y, yd):
     if s.m > 0:
         constraints(s, t)
         refactorise(s)
+        if s.rubbed_at != 0:
+            call_derivative(s.rubbed_at, s, t, y, yd)
         power = 0.0
         for again in range(2):
             right_hand_side(s, s.stabilisation == BAUMGARTE)

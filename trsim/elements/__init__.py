@@ -42,6 +42,7 @@ ELEMENTS = {
     "bushing": "forces",
     "torsion_spring": "forces",
     "limit_stop": "forces",
+    "joint_friction": "forces",
     "sync_shaft": "forces",
 }
 
