@@ -99,9 +99,11 @@ def test_initial():
     text = "joints: {A: {type: revolute, bodies: [a, b], at: [0, 0]}}\nparameters: {p: 2}\n"
     assert loads(text + "initial: {A: 90 deg}").initial.values["A"] == pytest.approx(1.5707963)
     assert loads(text + "initial: {A: p/4}").initial == Initial((), {"A": 0.5})
-    assert loads(text + "initial: {A: 5 mm, equilibrium: [A]}").initial == Initial(
+    assert loads(text + "initial: {A: 5 mrad, equilibrium: [A]}").initial == Initial(
         ("A",), {"A": 0.005}
     )
+    with pytest.raises(ScenarioError, match="this number is an angle"):
+        loads(text + "initial: {A: 5 mm}")
 
 
 # --- what the user sees ----------------------------------------------------------------------

@@ -31,16 +31,14 @@ from trsim.elements.contract import Channel, Element, Reach, Row, kernel, measur
 from trsim.elements.coordinates import named
 from trsim.elements.frames import (
     Along,
+    act_along,
     arm,
-    carried,
     cross,
     dot,
     minus,
     on_joint,
     plus,
-    push_apart,
     scaled,
-    twist_apart,
 )
 from trsim.elements.friction_law import Friction
 from trsim.elements.rows import COORDINATES
@@ -262,10 +260,9 @@ def rub(t, scene, e):
     own, F = Own(scene, e), scene.rubbed[e]
     a = arm(scene.X, own.i, own.axis)
     if own.about != 0.0:
-        twist_apart(scene.F, own.i, own.j, scaled(F * own.about, a))
+        act_along(scene, e, scaled(F * own.about, a), 1)
     if own.along != 0.0:
-        r_i, p_j, _, _ = carried(scene, e)
-        push_apart(scene.F, own.i, r_i, own.j, p_j, scaled(F * own.along, a))
+        act_along(scene, e, scaled(F * own.along, a), 0)
 
 
 @measured

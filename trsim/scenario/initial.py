@@ -3,11 +3,13 @@
 from typing import Any, NamedTuple
 
 from trsim.elements.coordinates import named, of_joint, split
+from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, described, known
 from trsim.numbers import number
 
 ALL = "all"  # the joints
 RATE = ".rate"  # behind a coordinate: how fast it changes at the start
+PLACES = {"angle": "rad", "stroke": "m"}
 UNITS = {"angle": "rad/s", "stroke": "m/s"}
 
 
@@ -63,9 +65,12 @@ def initial_of(data: Any, info: Any) -> Initial:
         if which and has_one and which not in has_one.values():
             hint = known(key, [*has_one, *(f"{one}{RATE}" for one in has_one)])
             raise ScenarioError(f"joint '{joint}' has no {which}", hint, (key,))
-        own = named(key, of, path=(key,))[0] if has_one else key
+        own, units = key, tuple(PLACES.values())
+        if has_one:
+            own, _, which = named(key, of, path=(key,))
+            units = (PLACES[COORDINATES[which].kind],)
         try:
-            values[own] = number(value, ("rad", "m"), parameters)
+            values[own] = number(value, units, parameters)
         except ScenarioError as error:
             raise error.at(key) from None
     return Initial(tuple(names), values, whole, rates)
@@ -73,10 +78,10 @@ def initial_of(data: Any, info: Any) -> Initial:
 
 def _rate(key: str, value: Any, joints: Any, parameters: Any, others: Any) -> dict[str, float]:
     """A rate under the name of its coordinate."""
-    own, _, kind = named(key.removesuffix(RATE), joints, path=(key,))
+    own, _, which = named(key.removesuffix(RATE), joints, path=(key,))
     if own in others:
         raise ScenarioError(f"the rate of {own} is given twice", "Keep one of them.", (key,))
     try:
-        return {own: number(value, (UNITS[kind],), parameters)}
+        return {own: number(value, (UNITS[COORDINATES[which].kind],), parameters)}
     except ScenarioError as error:
         raise error.at(key) from None
