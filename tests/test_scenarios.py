@@ -66,6 +66,25 @@ def test_screw_jack():
     assert r["crank.force"][-1] == pytest.approx(0.9368, abs=1e-4)
 
 
+def test_stick_and_slip():
+    """Between slips the spring force goes evenly from 2 mu_k - mu_s to mu_s, times the weight."""
+    r = run(load(VALIDATION / "stick_slip.yaml", ["output.every=1e-3"]))
+    low, high = (2 * 0.3 - 0.4) * 9.81, 0.4 * 9.81
+    late = r.t > 3
+    assert r["pull.force"][late].min() == pytest.approx(low, rel=0.02)
+    assert r["pull.force"][late].max() == pytest.approx(high, rel=0.01)
+    deep, speed, rate = 0.1 * 9.81 / 100, 0.02, 10.0
+    slip = 2 * (np.pi - np.arctan(rate * deep / speed)) / rate
+    period = slip + 2 * deep / speed
+    assert (slip, period) == pytest.approx((0.3544, 1.3354), abs=1e-4)
+    fast = r["place.rate"] > 1e-3
+    begins = r.t[1:][fast[1:] & ~fast[:-1]]
+    assert np.diff(begins) == pytest.approx(period, rel=0.01)
+    assert np.mean(fast[(r.t > begins[0]) & (r.t < begins[-1])]) * period == pytest.approx(
+        slip, rel=0.03
+    )
+
+
 def test_kitchen_door():
     r = run(load(VALIDATION / "kitchen_door.yaml", ["output.channels=['*']"]))
     m = r.mechanism

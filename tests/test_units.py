@@ -257,6 +257,10 @@ forces:
   spring: {type: spring_damper, bodies: [ground, block], points: [[-0.2, 1, 0], [0, 1, 0]],
            stiffness: 5}
   coil: {type: torsion_spring, joint: hinge, stiffness: 1}
+  rubs_turning: {type: joint_friction, joint: driven_hinge, radius: 10 mm, constant: 3 N*m,
+                 friction: {law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1 mm/s}}
+  rubs_sliding: {type: joint_friction, joint: driven_slide, constant: 3 N,
+                 friction: {law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1 mm/s}}
 events:
   held: {when: t, value: 0.09 s, do: {lock: [hinge, slide], record: true}}
 solver: {end: 0.1 s, tolerance: 1e-5}
@@ -286,6 +290,8 @@ EXPECTED = {
     "on_wall": STOP,
     "spring": {"force": "N", "length": "m"},
     "coil": {"torque": "N*m"},
+    "rubs_turning": {"force": "N*m", "normal_force": "N", "sliding_speed": "m/s"},
+    "rubs_sliding": {"force": "N", "normal_force": "N", "sliding_speed": "m/s"},
     "hinge.lock": TORQUE,
     "slide.lock": FORCE,
 }
@@ -324,7 +330,13 @@ FIXED = {
                         "eccentricity_x_rate": "m/s", "eccentricity_y_rate": "m/s",
                         "force": "N"},
 }  # fmt: skip
-DEPENDS = {"drive", "sensor", "applied_load", "limit_stop"}  # seen in the scene above
+DEPENDS = {
+    "drive",
+    "sensor",
+    "applied_load",
+    "limit_stop",
+    "joint_friction",
+}  # seen in the scene above
 
 
 def test_units_of_the_elements():

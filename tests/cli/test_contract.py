@@ -324,6 +324,17 @@ drives: {jack: {type: actuator, bodies: [ground, block], points: [[-0.5, 0], [0,
 solver: {end: 20 ms}
 """
 
+# a rod that turns, while it slides along a rough line, to where no friction goes with its reaction
+LEAPS = """
+bodies: {rod: {mass: 1, inertia: 0.3333, at: [0.0871557, 0.9961947],
+               velocity: [9.9923894, -0.1743115], angular_velocity: [0, 0, -2]}}
+joints: {line: {type: inline, bodies: [ground, rod], at: [0, 0], axis: [1, 0, 0]}}
+forces: {rub: {type: joint_friction, joint: line,
+               friction: {law: modified_coulomb, coefficient: 2, v0: 0, v1: 1e-3}}}
+gravity: [0, -9.81]
+solver: {end: 1}
+"""
+
 
 def of_every_status(folder, monkeypatch):
     """Result files with every status there is; the one of a run that goes on is copied."""
@@ -343,9 +354,11 @@ def of_every_status(folder, monkeypatch):
         write(folder / "y.h5", scenario, mechanism, blocks(True))
     small.run(folder / "failed.h5", text=small.SLIDER_CRANK.replace(*WRONG[5]))
     small.run(folder / "jammed.h5", text=JAMS)
+    small.run(folder / "leaps.h5", text=LEAPS)
     return {
         "done": "x.h5",
         "jammed": "jammed.h5",
+        "painleve": "leaps.h5",
         "failed": "failed.h5",
         "interrupted": "y.h5.part",
         "running": "running.h5.part",
@@ -359,6 +372,13 @@ def test_every_status_is_shown(folder, document, monkeypatch):
     assert set(files) == set(STATUSES) == set(get_args(Status))
     for status, file in files.items():
         assert document("show", file)["status"] == status
+
+
+def test_a_run_whose_friction_has_no_solution_fails(folder, document):
+    (folder / "rod.yaml").write_text(LEAPS)
+    told = document("run", "rod.yaml", "-o", "rod.h5", code=5)
+    assert told["runs"][0]["status"] == "painleve" and told["runs"][0]["time"] < 0.1
+    assert "forces.rub (rod.yaml:" in told["errors"][0]["what"]
 
 
 # --- paths in errors -------------------------------------------------------------------------

@@ -86,8 +86,8 @@ def test_meanings_of_docstrings():
 @pytest.mark.parametrize(
     "word, told",
     [
-        ("torsion_spring", ["tau = T_0", "stiffness: number >= 0, N*m/rad, required",
-                            "preload: number, N*m, default 0", "NAME.torque  [N*m]"]),
+        ("torsion_spring", ["tau = T_0", "stiffness: number >= 0, N/m or N*m/rad",
+                            "preload: number, N or N*m, default", "NAME.torque  [N*m]"]),
         ("clearance_joint", ["type: clearance_joint | revolute, required", "NAME.reaction  [N, 3",
                              "joint coordinate: angle", "axis: [x, y] or [x, y, z] or axis of a "]),
         ("gravity", ["E = -m g . r", "a section: [x, y] or [x, y, z], m/s^2"]),

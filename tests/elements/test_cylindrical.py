@@ -187,8 +187,8 @@ SENSOR = ("sensors", "angle", "joint")
         ("joint: shaft.angle", "joint: shaft.angel", SENSOR, "has no angel"),
         ("joint: shaft.angle", "joint: shaf.angle", SENSOR, "no joint named"),
         ("gravity:", "initial: {shaft: 1}\ngravity:", ("initial", "shaft"), "several coordinates"),
-        ("gravity:", "forces: {coil: {type: torsion_spring, joint: shaft.stroke, stiffness: 1}}\n"
-         "gravity:", ("forces", "coil", "joint"), "has a stroke, not an angle"),
+        ("gravity:", "forces: {coil: {type: torsion_spring, joint: shaft.stroke,\n"
+         " stiffness: 1 N*m/rad}}\ngravity:", ("forces", "coil", "stiffness"), "the joint slides"),
         ("gravity:", "events: {e: {when: t, value: 1, do: {lock: [shaft]}}}\ngravity:",
          ("events", "e", "do", "lock", 0), "several coordinates"),
     ],

@@ -27,12 +27,15 @@ from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
+    check_rubbing,
     check_shaky,
     check_space,
     choose_rows,
     dropped,
     reactions,
 )
+from trsim.assemble.rubbing import rubbing, rubs_with
+from trsim.assemble.rubbing import table as rubbing_table
 from trsim.assemble.sections import sections
 from trsim.assemble.stages import Choice, Stages
 from trsim.assemble.switches import SECTION, Switches, locks, switches
@@ -102,6 +105,8 @@ def assemble(
         model, shown = sections(scenario, model, instances, columns)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
+    if drives is None and not ideal:
+        check_rubbing(instances, rows, not_unique, found)
     return Mechanism(
         model=model,
         y0=y0,
@@ -154,6 +159,7 @@ def stages(
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
         full, y6 = as_drawn(scenario, at, instances, rows)
         kept, found = choose_rows(full, y6, instances, planar, rows)
+        check_rubbing(instances, rows, reactions(full, y6, planar)[1], found)
         own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
         return Choice(build(scenario, at, instances, kept, d, own, left), kept, left)
 
@@ -285,6 +291,7 @@ def build(
     arms = levers(at, lone(at, size, mass, inertia))
     scale_kind, scale = norm(at, d, size, arms)
     contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
+    rubs = rubbing_table(instances)
     stabilisation = {"none": NONE, "baumgarte": BAUMGARTE, "projection": PROJECTION}
     baumgarte = solver.baumgarte
     return Model(
@@ -343,6 +350,9 @@ def build(
         **watched(at.switches, size),
         **features(at, instances),
         steep=steep(at, instances),
+        rubbing=np.array(rubs, np.int64).reshape(-1, 4),
+        rubbed_at=rubbing.address() if rubs else 0,
+        rubs_with=rubs_with.address() if rubs else 0,
         **travels(instances, contacts, at.switches),
         wave=np.array(at.waves, np.int64),
         size=size,

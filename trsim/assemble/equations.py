@@ -56,6 +56,8 @@ def derivative(s, t, y, yd):
     if s.m > 0:
         constraints(s, t)
         refactorise(s)
+        if s.rubbed_at != 0:
+            call_derivative(s.rubbed_at, s, t, y, yd)
         power = 0.0
         for k in range(s.m, s.lam.size):  # what was measured last may have shared loads with them
             s.lam[k] = 0.0

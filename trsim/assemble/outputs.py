@@ -2,17 +2,13 @@
 
     [ channels of the elements | reaction, reaction_moment of the joints | energy book ]
 
-The reaction of a joint is what its rows put on body j, as force and moment about the joint:
-
-    f = -sum_k lam_k J_k[r_j],    m = -sum_k lam_k J_k[omega_j] - p_j x f
-
-In a planar scene the out-of-plane components are those of the planar problem: zero.
+The reaction of a joint (reaction.py) is what its rows put on body j.
 """
 
 from trsim.assemble.equations import call_all, call_derivative, kinetic, stored_energy
 from trsim.assemble.least_norm import call_least_norm
+from trsim.assemble.reaction import reaction_of
 from trsim.elements.contract import BOOK, N_BOOK, SCENE, STORED, compiled
-from trsim.elements.frames import TwoPoints, arm
 from trsim.elements.scene import N_STORED
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
@@ -72,20 +68,5 @@ def hear(s, t, y):
 @internal
 def reaction(s, k):
     """Force and moment of one joint on its body j, at the joint."""
-    out, lam, J, row_start = s.out, s.lam, s.J, s.row_start
     e, first, number, o = s.joint_out[k, 0], s.joint_out[k, 1], s.joint_out[k, 2], s.joint_out[k, 3]
-    own = TwoPoints(s, e)
-    for c in range(6):
-        out[o + c] = 0.0
-    for r in range(first, first + number):
-        row = s.con[e, r]
-        if row >= 0:
-            for l in range(row_start[row], row_start[row + 1]):
-                if s.line_frame[l] == own.j:
-                    for c in range(6):
-                        out[o + c] -= lam[row] * J[l, c]
-    p = arm(s.X, own.j, own.p_j)
-    f0, f1, f2 = out[o], out[o + 1], out[o + 2]
-    out[o + 3] -= p[1] * f2 - p[2] * f1
-    out[o + 4] -= p[2] * f0 - p[0] * f2
-    out[o + 5] -= p[0] * f1 - p[1] * f0
+    reaction_of(s, (e, first, number), s.lam, s.out, o)

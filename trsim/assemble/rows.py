@@ -109,6 +109,28 @@ def check_shaky(
     )
 
 
+def check_rubbing(
+    instances: list[Instance], rows: list[RowName], not_unique: list[int], found: list[Dependence]
+) -> None:
+    """Friction of a joint whose reaction the motion does not determine.
+
+    not_unique: rows whose reaction it does not; found: rows that depend on others.
+    """
+    several = [rows[k] for k in not_unique] if any(f.everywhere for f in found) else []
+    for instance in instances:
+        own = [row for row in several if row.element == instance.row.rubs]
+        if own:
+            others = dict.fromkeys(r.element for r in several if r.element != instance.row.rubs)
+            raise ModelError(
+                f"the reaction of '{instance.row.rubs}', which makes this friction, is not unique: "
+                f"{', '.join(row.axis for row in own)} may be shared"
+                + (f" with {', '.join(others)}" if others else " among its own rows"),
+                "replace a joint by one that holds less, as `trsim check` proposes, so that the "
+                "mechanism has no redundant rows there",
+                (instance.section, instance.name),
+            )
+
+
 def dropped(rows: list[RowName], found: list[Dependence]) -> list[RowName]:
     """The rows that are not solved, as others hold what they do."""
     return [rows[f.row] for f in found if f.everywhere]

@@ -11,6 +11,7 @@ from trsim.cli.resume import Seconds
 from trsim.cli.running import Wanted, placed, ran
 from trsim.cli.source import loaded, same, stem
 from trsim.errors import ScenarioError, SolverError, TrsimError, UsageError
+from trsim.statuses import ILL
 from trsim.store.target import RESULT, replaceable
 
 
@@ -58,7 +59,7 @@ def command(
             continue
         answer.data["runs"].append(summary)
         answer.put(summary["file"])
-        if summary["status"] == "failed":
+        if summary["status"] in ILL:
             at = f"{source}: the solver failed at t = {summary['time']:.6g} s"
             kept = f"What was computed is in {summary['file']}."
             answer.fail(SolverError(f"{at}: {summary['reason']}", kept), about=source)

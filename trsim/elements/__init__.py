@@ -50,6 +50,7 @@ ELEMENTS = {
     "bushing": "forces",
     "torsion_spring": "forces",
     "limit_stop": "forces",
+    "joint_friction": "forces",
     "sync_shaft": "forces",
     "section": "sensors",  # behind all that may act on a body
 }

@@ -27,6 +27,9 @@ joint coordinates and sensors (S, angles unwrapped), the states z, and writes wh
     stiffness   tangent, viscous: minus the derivatives of the forces of each element of a beam
     measure     (t, scene, e, o): out[o + c] = channel c, where somebody asked.  May also read the
                 accelerations A = V' and the multipliers lam
+    load        of what rubs in a joint, loads[e] = Load: how its reaction, pressed[e], presses,
+                and what friction is made of it; zd of its states      assemble/rubbing.py
+    rub         F[i] += the wrenches of the friction force rubbed[e]
 
 A spec of the section `bodies` says of itself
 
@@ -52,13 +55,16 @@ from typing import Any, NamedTuple
 
 from trsim.elements.scene import Scene
 from trsim.kernels.calls import caller
-from trsim.kernels.columns import Columns, f8, i8, memory
+from trsim.kernels.columns import V3, Columns, f8, i8, memory
 from trsim.kernels.lazy import internal
 from trsim.kernels.machine import Compiled
 from trsim.kernels.signatures import Signature, void
 from trsim.statuses import Ended
 
-KINDS = ("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure")
+KINDS = (
+    *("force", "constraint", "coordinate", "gaps", "corners", "energy", "stiffness", "measure"),
+    *("load", "rub"),
+)
 
 
 class Memory(Columns):
@@ -178,6 +184,20 @@ class ContactNumbers(Columns, par="contact_par"):
     damping: f8
 
 
+class Load(Columns, par="loads"):
+    """How the reaction of a joint presses surfaces together, and what friction that makes.
+
+    The friction force is (normal + preload) times per_load.
+    """
+
+    normal: f8  # N, the load that the reaction makes: a norm of it
+    preload: f8  # N, what there is without it
+    per_load: f8  # friction along the sliding speed, of a load of 1
+    slip: f8  # m/s, sliding speed
+    by_force: V3  # derivatives of the load against the force of the reaction
+    by_moment: V3  # and against its moment, 1/m
+
+
 class Limit(NamedTuple):
     """What ends a run where the gap of an element rises through zero; located like an event."""
 
@@ -210,6 +230,7 @@ class Row:
     length: float = 0.0  # m, as drawn, of the line it drives the ends of apart
     relates: tuple[int, ...] = ()  # entries of S with the coordinates a joint relates
     named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
+    rubs: str = ""  # the joint whose reaction makes its friction
 
     def frames(self, index: int) -> tuple[int, ...]:
         """The frames that a constraint row of it names, each once, in the order of its lines of J:

@@ -24,19 +24,17 @@ from trsim.elements.contract import (
     measured,
 )
 from trsim.elements.frames import (
+    act_along,
     along_row,
     arm,
     at_both,
-    carried,
     cross,
     dot,
     on_joint,
-    push_apart,
     relative_spin,
     scaled,
     spin,
     turn_lines,
-    twist_apart,
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
 from trsim.fields import Function, Spec, Unit
@@ -165,12 +163,7 @@ def force(t, scene, e):
 def act(scene, e, pull):
     """Apply the drive's force or torque to both bodies."""
     own = AnyDrive(scene, e)
-    f = scaled(pull, arm(scene.X, own.i, own.axis))
-    if own.rotates == 1:
-        twist_apart(scene.F, own.i, own.j, f)
-    else:
-        r_i, p_j, _, _ = carried(scene, e)
-        push_apart(scene.F, own.i, r_i, own.j, p_j, f)
+    act_along(scene, e, scaled(pull, arm(scene.X, own.i, own.axis)), own.rotates)
 
 
 @kernel

@@ -221,6 +221,18 @@ def carried(scene, e):
 
 
 @internal
+def act_along(scene, e, f, turns):
+    """Apply f to body j of instance e and -f to body i: a moment where the coordinate that it acts
+    along turns, else a force at the point of body j."""
+    own = Pair(scene, e)
+    if turns == 1:
+        twist_apart(scene.F, own.i, own.j, f)
+    else:
+        r_i, p_j, _, _ = carried(scene, e)
+        push_apart(scene.F, own.i, r_i, own.j, p_j, f)
+
+
+@internal
 def relative_spin(V, i, j):
     """Angular velocity of body j against body i."""
     return minus(spin(V, j), spin(V, i))

@@ -69,6 +69,8 @@ class Model(Packed):
     energy: I2
     stiffness: I2
     measure: I2
+    load: I2
+    rub: I2
     row_start: I1  # (m+n_d+1) lines of J of a row: one per frame it names  assemble/pattern.py
     line_row: I1  # (lines) whose they are
     line_frame: I1  # (lines) their frames, the ground too
@@ -123,6 +125,11 @@ class Model(Packed):
     sensed: I2  # (n, 3) sensors that meet corners
     slots: i8  # the most that a function has whose corners they meet
     held: I1  # (corners) where in tab it stands what each is held on
+    # (n, 4) what rubs in joints: its row, that of the joint, where rows of that begin in con, how
+    # many
+    rubbing: I2
+    rubbed_at: i8  # address of what finds their friction forces; 0 where nothing rubs   rubbing.py
+    rubs_with: i8  # and of those that go with given multipliers
     on_features: I1  # address of what holds functions on their pieces; 0 without such functions
     travel: I2  # (n_contacts + n_w, 2) kind of each gap, the instance it lies at   travel.py
     kink: A1  # (n_contacts + n_w) |gap| from which on it may be on another branch
@@ -177,6 +184,14 @@ class Scene(Model):
     own: A2  # (2, 6 n) what a row has of its own
     stress: A2  # (n_d, n_x) self-stresses of the redundant rows             least_norm.py
     gram: A2  # (n_d + 1, n_d) their products, and room
+    # where something rubs, else without rows
+    pressed: T6  # (N, 6) reaction of its joint: force, and moment about the joint, world axes
+    unpressed: T6  # (N, 6) the same without friction
+    loads: A2  # (N, 10) Load of contract.py
+    rubbed: A1  # (N) friction force along the sliding speed
+    by_rubbing: A2  # (n, 6 n) derivatives of the reactions against the friction forces
+    rub_room: A2  # (n + 4, n or 6) a small system
+    before_rubbing: T6  # (n, 6) F of all other forces
     moved: T6  # (n, 6) what multipliers do to the bodies, axes of the solve
     free: T6  # (n, 6) accelerations without constraints, axes of the solve
     gap: T2  # (N, 2) penetration and its rate
@@ -188,7 +203,8 @@ class Scene(Model):
     # [3] evaluations with contradictory constraints since the last accepted step,
     # [4] evaluations of the step at hand that took a limit where branches meet,
     # [5] 1: what is evaluated lies inside a step, and will be measured,
-    # [6] factorisations of the step at hand with a small pivot
+    # [6] factorisations of the step at hand with a small pivot,
+    # [7] 1 + the row of what rubs, where the last evaluation found no friction, or several
     status: I1
 
 
@@ -206,6 +222,8 @@ def scene(model: Model) -> Scene:
     elements = int(np.sum(model.beam[:, 1] - 1))
     loops = 1 if model.near_rows > 0.0 else 0
     shared = len(model.redundant) if model.shared_out else 0
+    rubs = len(model.rubbing)
+    whose = len(model.con) if rubs else 0
     n_y = model.n_q + model.n_v + model.n_z
     shapes = (
         (("X",), (n, 12)),
@@ -233,6 +251,12 @@ def scene(model: Model) -> Scene:
         (("own",), (2 * loops, 6 * n)),
         (("stress",), (shared, n_x)),
         (("gram",), (shared + 1, shared)),
+        (("pressed", "unpressed"), (whose, 6)),
+        (("loads",), (whose, 10)),
+        (("rubbed",), (whose,)),
+        (("by_rubbing",), (rubs, 6 * rubs)),
+        (("rub_room",), (rubs + 4, max(rubs, 6) if rubs else 0)),
+        (("before_rubbing",), (n if rubs else 0, 6)),
         (("E",), (N_STORED,)),
         (("out",), (max(model.n_out, 1),)),
     )
@@ -240,7 +264,7 @@ def scene(model: Model) -> Scene:
         model,
         {name: shape for names, shape in shapes for name in names},
         tab=model.tab.copy(),  # scratch, and what functions are held on
-        status=np.zeros(7, np.int64),
+        status=np.zeros(8, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
     made.X[:, 2] = model.depth

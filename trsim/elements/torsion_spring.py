@@ -1,8 +1,8 @@
-"""Torsion spring: a preloaded linear spring and damper about the axis of a joint.
+"""Torsion spring: a preloaded linear spring and damper about the axis of a joint, or along it.
 
     tau = T_0 - k (phi - phi_0) - c phi'        on body j about the axis, -tau on body i
 
-phi is the joint angle, phi_0 its value as drawn.
+phi is the joint angle, phi_0 its value as drawn.  Of a stroke the same is a force along the axis.
 """
 
 from typing import Annotated, ClassVar
@@ -18,25 +18,27 @@ from trsim.elements.contract import (
     kernel,
     measured,
 )
-from trsim.elements.frames import Along, arm, at_both, on_joint, scaled, twist_apart
+from trsim.elements.coordinates import of_joint
+from trsim.elements.frames import Along, act_along, arm, at_both, on_joint, scaled
 from trsim.fields import Spec, Unit
-from trsim.kernels.columns import f8
+from trsim.kernels.columns import f8, i8
 
 
 class TorsionSpring(Spec):
-    """A torsion spring about the axis of a joint.
+    """A spring and a damper about the axis of a joint, or along it.
 
-    joint      revolute joint whose bodies it turns
+    joint      joint along whose coordinate it acts: an angle, or a stroke; of several the angle,
+               unless one is named
     stiffness  of the spring
-    preload    torque on the second body, as drawn
+    preload    torque or force on the second body, as drawn
     damping    of the damper
     """
 
     type: ClassVar[str] = "torsion_spring"
     joint: str
-    stiffness: Annotated[float, Ge(0), Unit("N*m/rad")]
-    preload: Annotated[float, Unit("N*m")] = 0.0
-    damping: Annotated[float, Ge(0), Unit("N*m*s/rad")] = 0.0
+    stiffness: Annotated[float, Ge(0), Unit("N/m", "N*m/rad")]
+    preload: Annotated[float, Unit("N", "N*m")] = 0.0
+    damping: Annotated[float, Ge(0), Unit("N*s/m", "N*m*s/rad")] = 0.0
 
 
 class Own(Along):
@@ -45,12 +47,22 @@ class Own(Along):
     preload: f8
     stiffness: f8
     damping: f8
-    drawn: f8  # rad
+    drawn: f8  # rad, m
+    turns: i8  # 1: about the axis
+
+
+WITH_UNITS = ("stiffness", "preload", "damping")
+FORCE = Channel("force", "N", "on the second body of the joint, along its coordinate")
 
 
 def pack(name, spec, at):
-    x = at.coordinate(spec.joint, "angle")
-    return Row(*Own.packed(spec, **on_joint(x), drawn=x.drawn))
+    # of a joint with several coordinates the angle is meant where none is named
+    several = len(of_joint(spec.joint, at.scenario.joints)) > 1
+    x = at.coordinate(spec.joint, "angle" if several else "")
+    at.check_units(x.kind, TorsionSpring, WITH_UNITS, "forces", name)
+    turns = x.kind == "angle"
+    own = Own.packed(spec, **on_joint(x), drawn=x.drawn, turns=turns)
+    return Row(*own, turns=turns, channels=None if turns else (FORCE,))
 
 
 @kernel
@@ -59,7 +71,7 @@ def force(t, scene, e):
     s, axis = own.coordinate, arm(scene.X, own.i, own.axis)
     damping = -own.damping * S[s, 1]
     tau = own.preload - own.stiffness * (S[s, 0] - own.drawn) + damping
-    twist_apart(scene.F, own.i, own.j, scaled(tau, axis))
+    act_along(scene, e, scaled(tau, axis), own.turns)
     scene.zd[DAMPERS] += damping * S[s, 1]
 
 
@@ -85,7 +97,7 @@ ELEMENT = Element(
     pack=pack,
     acts_at=at_both,
     channels=(Channel("torque", "N*m", "on the second body of the joint, about its axis"),),
-    loads={"torque": "torque"},
+    loads={"torque": "torque", "force": "force"},
     kernels={"force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

@@ -8,28 +8,19 @@ stiffness: internal    Hertz, journal in bearing    K = 4/(3 (s_i + s_j)) sqrt(R
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from annotated_types import Ge, Gt, Interval
+from annotated_types import Gt, Interval
 from pydantic import model_validator
 
+from trsim.elements.friction_law import Friction
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
 from trsim.laws.contact import cylinder_stiffness, damping_factor, hertz_stiffness
-from trsim.laws.friction import CODES, N_PARAMETERS
 
 Modulus = Annotated[float, Gt(0), Unit("Pa")]
 Poisson = Annotated[float, Interval(gt=-1, le=0.5), Unit("-")]
 Length = Annotated[float, Gt(0), Unit("m")]
 Speed = Annotated[float, Gt(0), Unit("m/s")]
-Coefficient = Annotated[float, Ge(0), Unit("-")]
 
-# the parameters of a law, in the order it takes them (laws/friction.py)
-STATIC = "static_coefficient"  # the coefficient unless given
-FRICTION_KEYS = {
-    "none": (),
-    "coulomb": ("coefficient",),
-    "modified_coulomb": ("coefficient", "v0", "v1"),
-    "sticking": (STATIC, "coefficient", "stribeck_speed", "bristle_stiffness", "bristle_damping"),
-}
 # what a word cannot do without
 STIFFNESS_NEEDS = {
     "internal": ("bearing_radius", "youngs_modulus", "poisson"),
@@ -42,48 +33,6 @@ def _needs(spec: Any, what: str, keys: tuple[str, ...]) -> None:
     missing = [key for key in keys if getattr(spec, key) is None]
     if missing:
         raise ScenarioError(f"{what} needs {', '.join(missing)}")
-
-
-class Friction(Spec):
-    """Friction in a contact.
-
-    law                 none; coulomb: constant; modified_coulomb: none below v0, full from v1 on;
-                        sticking: bristles that hold at rest
-    coefficient         of sliding friction
-    v0                  sliding speed below which there is none
-    v1                  sliding speed from which it is full
-    static_coefficient  of sticking; the coefficient unless given
-    stribeck_speed      sliding speed at which sticking turns into sliding
-    bristle_stiffness   of the bristles, per unit of normal force
-    bristle_damping     of the bristles, per unit of normal force
-    """
-
-    type: ClassVar[str] = "friction"
-    law: Literal["none", "coulomb", "modified_coulomb", "sticking"] = "none"
-    coefficient: Coefficient | None = None
-    v0: Annotated[float, Ge(0), Unit("m/s")] | None = None
-    v1: Speed | None = None
-    static_coefficient: Coefficient | None = None
-    stribeck_speed: Speed | None = None
-    bristle_stiffness: Annotated[float, Gt(0), Unit("1/m")] | None = None
-    bristle_damping: Annotated[float, Ge(0), Unit("s/m")] = 0.0
-
-    @model_validator(mode="after")
-    def complete(self) -> "Friction":
-        keys = tuple(key for key in FRICTION_KEYS[self.law] if key != STATIC)
-        _needs(self, f"friction law {self.law}", keys)
-        if self.law == "sticking" and self.coefficient == 0.0:
-            raise ScenarioError("friction law sticking needs a coefficient > 0")
-        if self.v0 is not None and self.v1 is not None and self.v0 >= self.v1:
-            raise ScenarioError(f"v0 must be < v1, got {self.v0:g} and {self.v1:g} m/s")
-        return self
-
-    @property
-    def numbers(self) -> tuple[int, tuple[float, ...]]:
-        """Code of the law and its N_PARAMETERS numbers."""
-        given = {**dict(self), STATIC: self.static_coefficient or self.coefficient}
-        numbers = [float(given[key]) for key in FRICTION_KEYS[self.law]]
-        return CODES[self.law], (*numbers, *[0.0] * (N_PARAMETERS - len(numbers)))
 
 
 class ContactLaw(Spec):

@@ -12,7 +12,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
-from trsim.solve.diagnose.blame import why
+from trsim.solve.diagnose.blame import undecided, why
 from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.diagnose.strained import collapsed
@@ -227,6 +227,10 @@ def ending(
         return ("failed", text) if text else ("done", "")
     if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT, rec.SLIDES):
         return "failed", untrue(scenario, mechanism, r)
+    whose, text = undecided(mechanism, work)
+    if whose is not None and reason != NO_STEPS_LEFT:
+        entry = scenario.entry(whose.section, whose.name)
+        return "painleve", f"{entry}: from t = {r.t:.6g} s on {text}"
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting.fixed_step > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:

@@ -15,11 +15,12 @@ from typing import Any, NamedTuple
 
 from trsim import system
 from trsim.errors import FileError
+from trsim.statuses import ILL
 
 DIGEST = "case_sha256"  # attribute of /provenance in a result file
 AGAIN = ("crashed", "over time", "over memory", "no file")  # chance or limits: tried again
 REFUSED = "refused"  # no scenario, or no mechanism: there is no result file
-FAILED = (*AGAIN, REFUSED, "failed")
+FAILED = (*AGAIN, REFUSED, *ILL)
 LARGEST = 2**62  # of a number in a line
 WORD = str | int | float | None  # of the summary in a line
 

@@ -54,6 +54,17 @@ def refuse_no_number(mechanism: Mechanism, y: Array, mem: Array) -> None:
     )
 
 
+def undecided(mechanism: Mechanism, w: Any) -> tuple[Instance | None, str]:
+    """Whose friction had no solution in the last evaluation, or several, and that in words."""
+    if not w.status[7]:
+        return None, ""
+    instance = mechanism.instances[int(w.status[7]) - 1]
+    return instance, (
+        f"no friction, or more than one, goes with the reaction of '{instance.row.rubs}' that it "
+        "makes (Painleve): the mechanism jams or leaps, and rigid bodies do not tell which"
+    )
+
+
 def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     """Why a run cannot go on, where the law of an element ends just ahead; else empty."""
     if not np.all(np.isfinite(r.y)):

@@ -5,10 +5,17 @@
 
 index 2, with positions and velocities on their constraints at every stage of a method; mu is zero
 but for the error of the method.  x are displacements, B the rows of J in the axes of the solve.
+Friction made by reactions is that of lam as it stands: f depends on lam too.
 """
 
 from trsim.assemble.beams import divide_by_mass, slope_force, times_mass
-from trsim.assemble.equations import constraints, forces, free_accelerations, poses
+from trsim.assemble.equations import (
+    call_derivative,
+    constraints,
+    forces,
+    free_accelerations,
+    poses,
+)
 from trsim.assemble.schur import rows
 from trsim.elements.contract import DRIVES, N_BOOK
 from trsim.kernels.lazy import internal
@@ -26,6 +33,9 @@ def pull(s, t, y, lam, out):
     forces(s, t)
     free_accelerations(s)
     constraints(s, t)
+    if s.rubs_with != 0:
+        call_derivative(s.rubs_with, s, t, lam, lam)
+        free_accelerations(s)
     for f in range(s.n_r, s.n):
         v, width = first_of(s, f), s.d_node // 2
         for c in range(width):

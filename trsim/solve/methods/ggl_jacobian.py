@@ -9,6 +9,7 @@ from math import sqrt
 from trsim.assemble.equations import evaluate, poses, stiffnesses
 from trsim.assemble.linear import substitute
 from trsim.assemble.schur import velocity_residual
+from trsim.elements.contract import Pair
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear, copy_to
 from trsim.solve.march.norm import weight_of
@@ -36,7 +37,7 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
     pull(s, t, r.y, lam, b.pull0)
     for p in range(s.slot_row.size):
         for c in range(6):
-            r.at_rows[p, c] = s.B[p, c]
+            r.at_rows[p, c] = r.at_push[p, c] = s.B[p, c]
     for j in range(s.m):
         b.rate0[j] = velocity_residual(s, j)
     for k in range(b.state_row.shape[0]):
@@ -65,6 +66,8 @@ def sparse_jacobian(s, r, b, setting, t, trial, lam):
                 if b.state_row[e, 1] == k:
                     change = r.at_state[e] + s.phi[b.state_row[e, 0]]
                     r.at_state[e] = change / (trial[i] - r.y[i])
+    for k in range(s.rubbing.shape[0]):
+        rubbing(s, r, b, t, lam, k)
     if s.n_r < s.n:
         elastic(s, r, b, t)
     r.jacobian = FRESH
@@ -87,6 +90,31 @@ def elastic(s, r, b, t):
                 if e >= 0:
                     r.at_place[e] -= s.tangent[12 * n + i, j]
                     r.at_rate[e] -= s.viscous[12 * n + i, j]
+
+
+@internal
+def rubbing(s, r, b, t, lam, k):
+    """What the k-th friction takes from B^T, by differences: it goes with lam of its joint."""
+    first, end = s.rubbing[k, 2], s.rubbing[k, 2] + s.rubbing[k, 3]
+    own = Pair(s, s.rubbing[k, 0])
+    size = 0.0
+    for c in range(first, end):
+        j = s.con[s.rubbing[k, 1], c]
+        size = max(size, abs(lam[j]) if j >= 0 else 0.0)
+    step = PART * size if size > 0.0 else PART
+    for c in range(first, end):
+        j = s.con[s.rubbing[k, 1], c]
+        if j < 0:
+            continue
+        before = lam[j]
+        lam[j] += step
+        pull(s, t, r.y, lam, b.pull)
+        lam[j] = before
+        for f in (own.i, own.j):
+            for p in range(s.frame_start[f], s.frame_start[f + 1]):
+                for a in range(width_of(s, f) if s.slot_row[p] == j and f > 0 else 0):
+                    v = first_of(s, f) + a
+                    r.at_push[p, a] = (b.pull0[v] - b.pull[v]) / step
 
 
 @internal

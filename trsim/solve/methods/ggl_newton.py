@@ -14,7 +14,8 @@ C, which leaves a constrained system for (dx, dz) and dlam,
     [ B                       Phi_z    0    ]
 
 as sparse as the mechanism, and then with C: what that changes in the row of v is M c M^-1 B^T dmu,
-taken into dlam, and damping of dmu, left to the next iteration.  f_x holds the change of B^T lam;
+taken into dlam, and damping of dmu, left to the next iteration.  Where friction is made by lam the
+B^T of the first row, not that of mu, is less by what it changes.  f_x holds the change of B^T lam;
 all derivatives are differences, many columns at a time [CurtisPowellReid1974].
 """
 
@@ -105,7 +106,8 @@ def assembled(s, r, b, mu):
     for f in range(1, s.n):
         for p in range(s.frame_start[f], s.frame_start[f + 1]):
             for k in range(width_of(s, f)):
-                b.value[b.entry_row[p, k]] = b.value[b.entry_across[p, k]] = r.at_rows[p, k]
+                b.value[b.entry_row[p, k]] = r.at_rows[p, k]
+                b.value[b.entry_across[p, k]] = r.at_push[p, k]
     for k in range(b.entry_state.size):
         b.value[b.entry_state[k]] = r.at_state[k]
 

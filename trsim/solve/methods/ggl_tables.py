@@ -25,6 +25,7 @@ class SparseRecord(Record):
     at_place: A1 = of("entries")
     at_rate: A1 = of("entries")
     at_rows: A2 = of("lines", 6)  # B
+    at_push: A2 = of("lines", 6)  # minus the derivative of loads against lam: B, but for friction
     at_turn: A2 = of("lines", 6)  # derivative of B v + Phi_t against displacements
     at_state: A1 = of("instances")  # Phi against that state
     moved_off: A1 = of(1)  # error of the motion in the last step that kept to its bound

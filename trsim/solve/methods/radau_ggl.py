@@ -15,7 +15,7 @@ from math import isfinite, sqrt
 import numpy as np
 
 from trsim.assemble.equations import evaluate
-from trsim.elements.contract import DRIVES, SCENE, compiled
+from trsim.elements.contract import DRIVES, FRICTION, SCENE, compiled
 from trsim.kernels.lazy import internal
 from trsim.kernels.packed import A1, f8
 from trsim.kernels.signatures import float64
@@ -119,8 +119,8 @@ def step(s, r, b, setting, t, h):
             return np.inf
     else:
         return HALVE
-    if stabilised and driven(s):
-        work_of_drives(s, r, b, t, h)
+    if stabilised and (s.rubs_with != 0 or driven(s)):
+        works_of_multipliers(s, r, b, t, h)
     at_stage(r, b, 2)
     error = estimate(s, r, b, setting, t, h)
     quick = QUICK if b.turns > 0 else QUICK_FIXED
@@ -138,20 +138,29 @@ def driven(s):
 
 
 @internal
-def work_of_drives(s, r, b, t, h):
-    """The work of rigid drives again, with the multipliers that go with each stage's state.
+def works_of_multipliers(s, r, b, t, h):
+    """The work of rigid drives and of friction in joints again, with the multipliers that go with
+    each stage's state.
 
     Those of the stages are of order 3, which would be all that the energy book shows.
     """
-    K, entry = b.K, s.n_q + s.n_v + DRIVES
+    K, first = b.K, s.n_q + s.n_v
     for i in range(3):
         at_stage(r, b, i)
         evaluate(s, t + C[i] * h, b.y1, K[F + i])
     for i in range(3):
-        total = 0.0
-        for j in range(3):
-            total += A[i, j] * K[F + j, entry]
-        K[Z + i, entry] = h * total
+        again(K, i, h, first + DRIVES)
+        if s.rubs_with != 0:
+            again(K, i, h, first + FRICTION)
+
+
+@internal
+def again(K, i, h, entry):
+    """One work at stage i, from its powers at all of them."""
+    total = 0.0
+    for j in range(3):
+        total += A[i, j] * K[F + j, entry]
+    K[Z + i, entry] = h * total
 
 
 @internal

@@ -20,7 +20,7 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import Scene
 from trsim.kernels.vectors import clear, copy_to
 from trsim.scenario.methods import METHODS
-from trsim.solve.diagnose.blame import why
+from trsim.solve.diagnose.blame import undecided, why
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.march import record as rec
 from trsim.solve.march.accelerations import (
@@ -182,7 +182,12 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     numbers = statistics(r, s, begun, cpu)
     if status == "failed":
         at = mechanism.in_stage(r.stage, r.left_out)
-        reason = untrue(scenario, mechanism, r) or why(scenario, at, r) or reason
+        whose, text = undecided(mechanism, s)
+        if whose is not None:
+            entry = scenario.entry(whose.section, whose.name)
+            status, reason = "painleve", f"{entry}: from t = {r.t:.6g} s on {text}"
+        else:
+            reason = untrue(scenario, mechanism, r) or why(scenario, at, r) or reason
     bends = Bends(mechanism)
     bends.look(float(r.t), r.y)
     return Outcome(status, reason, float(r.t), numbers, r.peak.T.copy(), r, begun,

@@ -32,7 +32,7 @@ from trsim.elements.contract import (
 from trsim.elements.coordinates import called, of_joint, split
 from trsim.elements.scene import Model, workspace
 from trsim.errors import ModelError
-from trsim.solve.diagnose.blame import refuse_no_number
+from trsim.solve.diagnose.blame import refuse_no_number, undecided
 from trsim.solve.march.openings import check_closed
 from trsim.solve.start.angles import (
     as_of,
@@ -151,6 +151,14 @@ def check_finite(mechanism: Mechanism, y: Array, mem: Array) -> None:
     derivative(w, 0.0, y, yd)
     if np.all(np.isfinite(yd)):
         return
+    whose, text = undecided(mechanism, w)
+    if whose is not None:
+        raise ModelError(
+            f"at t = 0 {text}",
+            "is the coefficient meant, and the direction of the motion? what gives way between the "
+            "bodies, a spring or a clearance, makes an answer",
+            (whose.section, whose.name),
+        )
     refuse_no_number(mechanism, y, mem)
     if w.status[3]:
         raise ModelError(
