@@ -69,11 +69,15 @@ def test_moments_that_are_rounding_next_to_such_a_place_are_told():
         assert of["reaction_moment"] < zero or any("reaction_moment" in text for text in told(r))
 
 
-def test_redundant_rows_that_share_a_force_by_chance():
-    """Two welds: rows of one and the other hold the body, and at an instant they cannot."""
-    text = made("redundant", 57).scene.text()
-    (said,) = told(run(text))
-    assert "again.reaction" in said
+def test_redundant_rows_share_a_force_by_no_chance():
+    """Two welds: rows of one and the other hold the body, and at an instant they cannot.
+
+    What each carries is of least norm, as long as all of them together hold it.
+    """
+    r = run(made("redundant", 57).scene.text())
+    assert told(r) == []
+    first = r.place["again.reaction"][0]
+    assert np.abs(r.outcome.peaks[first : first + 3, [0, 2]]).max() < 20
 
 
 def test_unequal_masses_are_no_such_place():

@@ -18,6 +18,7 @@ from trsim.assemble.instances import Column, Instance, RowName, Section
 from trsim.assemble.jumps import find_jumps, steep
 from trsim.assemble.layout import layout, no_outputs
 from trsim.assemble.least_norm import least_norm
+from trsim.assemble.light import lightened, unfit
 from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
@@ -280,7 +281,8 @@ def build(
     """
     n = len(at.frames)
     con, par = tables(instances, [*rows, *redundant])
-    mass, inertia, mass_inverse, inertia_inverse = masses(at, d)
+    of = masses(at, d)
+    mass, inertia = of.mass, of.inertia
     solver = scenario.solver
     size = extent(at)
     n_z = N_BOOK + len(at.states)
@@ -292,6 +294,8 @@ def build(
     scale_kind, scale = norm(at, d, size, arms)
     contacts = [e for e, i in enumerate(instances) if i.row.contact is not None]
     rubs = rubbing_table(instances)
+    if len(of.light):
+        unfit([at.owners[f] for f in of.light], of.light, [i.row for i in instances], bool(rubs))
     stabilisation = {"none": NONE, "baumgarte": BAUMGARTE, "projection": PROJECTION}
     baumgarte = solver.baumgarte
     return Model(
@@ -308,8 +312,11 @@ def build(
         unequal=int(unequal(at, mass, inertia, d)),
         mass=mass,
         inertia=inertia,
-        mass_inverse=mass_inverse,
-        inertia_inverse=inertia_inverse,
+        mass_inverse=of.mass_inverse,
+        inertia_inverse=of.inertia_inverse,
+        light=of.light,
+        lacking=of.lacking,
+        lightened=lightened.address() if len(of.light) else 0,
         axes=at.rotation.reshape(n, 9).copy(),
         depth=at.at_start[:, 2].copy(),
         con=con,
@@ -328,8 +335,8 @@ def build(
         derivative=derivative.address(),
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
-        near=near(solver, rows, spans(at)),
-        near_rows=near_rows(solver, rows, spans(at)),
+        near=0.0 if len(of.light) else near(solver, rows, spans(at)),
+        near_rows=0.0 if len(of.light) else near_rows(solver, rows, spans(at)),
         looped=looped(instances, rows, spans(at)),
         judged=judged(instances),
         tolerance=solver.tolerance,

@@ -79,6 +79,8 @@ def derivative(s, t, y, yd):
             for f in range(1, s.n_r):
                 pull(s, f, s.x)
         s.zd[DRIVES] += power
+        if s.lightened != 0:
+            call_derivative(s.lightened, s, t, y, yd)
     accelerations(s, y, yd)
     near = s.near > 0.0 or s.status[5] > 0
     if s.m > 0 and (s.status[0] == SINGULAR or (s.status[0] == POOR and near)):
@@ -349,6 +351,16 @@ def kinetic(s, y):
             for a in range(3):
                 for b in range(3):
                     T += 0.5 * y[v + 3 + a] * s.inertia[f, 3 * a + b] * y[v + 3 + b]
+    for q in range(s.light.shape[0]):  # these are solved with more than they have
+        v, E = s.n_q + s.d * (s.light[q] - 1), s.lacking[q]
+        if s.d == 3:
+            T -= 0.5 * E[0] * (y[v] * y[v] + y[v + 1] * y[v + 1])
+            T -= 0.5 * E[9] * y[v + 2] * y[v + 2]
+        else:
+            T -= 0.5 * E[0] * (y[v] ** 2 + y[v + 1] ** 2 + y[v + 2] ** 2)
+            for a in range(3):
+                for b in range(3):
+                    T -= 0.5 * y[v + 3 + a] * E[1 + 3 * a + b] * y[v + 3 + b]
     return T
 
 

@@ -12,7 +12,7 @@ and those with the redundant ones do not.
 
 from math import sqrt
 
-from trsim.assemble.linear import solve
+from trsim.assemble.linear import SINGULAR, solve
 from trsim.assemble.on_beams import STRESS, call_beams
 from trsim.elements.contract import SCENE, compiled
 from trsim.kernels.calls import caller
@@ -29,14 +29,32 @@ call_least_norm = caller(LEAST)
 
 @compiled(LEAST)
 def least_norm(s):
-    """lam of all rows of least norm, with J, its factors and lam of the last evaluation."""
-    self_stresses(s)
+    """lam of all rows of least norm, with J, its factors and lam of the last evaluation.
+
+    Where rows of the solve depend on each other, multipliers that are limits (beside.py) stay.
+    """
     number = s.redundant.shape[0]
+    s.gram[number + 1, 0] = 1.0
+    if s.status[0] == SINGULAR:
+        return
+    self_stresses(s)
     products(s, number)
     if not decompose(s, number):
         return
     for _ in range(TWICE):
         share(s, number)
+
+
+@internal
+def firmness_of_all(s, pivot):
+    """The pivot that rows have with the redundant ones, of the least pivot of those of the solve.
+
+    Where these alone depend on each other nearly, delta from it, their pivot is delta^2, and a
+    self-stress is 1/delta long; where all rows do it stays as it is.
+    """
+    if s.shared_out == 0:
+        return pivot
+    return min(1.0, pivot * s.gram[s.redundant.shape[0] + 1, 0])
 
 
 @internal
@@ -90,12 +108,15 @@ def square(s, k):
 @internal
 def products(s, number):
     """s.gram <- the products of the self-stresses."""
+    largest = 1.0
     for d in range(number):
         for e in range(d + 1):
             total = square(s, s.m + d) if d == e else 0.0
             for k in range(s.m):
                 total += square(s, k) * s.stress[d, k] * s.stress[e, k]
             s.gram[d, e] = total
+        largest = max(largest, s.gram[d, d] / square(s, s.m + d))
+    s.gram[number + 1, 0] = largest
 
 
 @internal

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from math import sqrt
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from trsim.assemble.addresses import WOUND, Addresses
 from trsim.assemble.dense import inverse, length, product
 from trsim.assemble.instances import Instance, RowName
+from trsim.assemble.light import lacking
 from trsim.assemble.orientation import quaternion
 from trsim.assemble.switches import BAND, CHANNEL, Switches
 from trsim.elements import scene as scales
@@ -79,12 +80,26 @@ def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
     return {kind: np.array(rows, np.int64).reshape(-1, 3) for kind, rows in tables.items()}
 
 
-def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
+class Masses(NamedTuple):
     """Masses and inertia tensors of the frames, and their inverses.
 
-    Of a node of a beam its share of them, lumped: for what is judged, not solved, by them.
+    Of a light body they hold what it is solved with, `lacking` (light.py).  Of a node of a beam its
+    share of them, lumped: for what is judged, not solved, by them.
     """
+
+    mass: Array  # (n)
+    inertia: Array  # (n, 9)
+    mass_inverse: Array
+    inertia_inverse: Array
+    light: NDArray[np.int64]  # frames of light bodies
+    lacking: Array  # (n_light, 10)
+
+
+def masses(at: Addresses, d: int) -> Masses:
+    """Those of all frames.  Raises ModelError for what no body has."""
     n = len(at.frames)
+    light: dict[int, Array] = {}
+    arms, mean = levers(at, 0.0), mean_mass(at)
     mass, inertia = np.zeros(n), np.zeros((n, 9))
     mass_inverse, inertia_inverse = np.zeros(n), np.zeros((n, 9))
     for beam in at.beams.values():
@@ -95,30 +110,32 @@ def masses(at: Addresses, d: int) -> tuple[Array, Array, Array, Array]:
         inertia[part, 0::4] = mass[part, None] * beam.length**2 / 48.0
     for f, name in enumerate(at.owners[1 : at.n_rigid], start=1):
         spec = at.members[name]
-        mass[f] = spec.mass
-        inertia[f], complete = spec.tensor
-        known = inertia[f].reshape(3, 3)
-        if spec.mass == 0.0:
-            raise ModelError("a body without mass cannot be solved for", "give it a mass",
-                             ("bodies", name, "mass"))  # fmt: skip
-        if not LIGHTEST <= spec.mass <= HEAVIEST:
+        if spec.mass != 0.0 and not LIGHTEST <= spec.mass <= HEAVIEST:
             raise ModelError(f"no body of a mechanism has a mass of {spec.mass:.3g} kg",
                              "check its unit", ("bodies", name, "mass"))  # fmt: skip
-        mass_inverse[f] = 1.0 / spec.mass
-        if (complete and np.linalg.eigvalsh(known).min() <= 0.0) or inertia[f, 8] <= 0.0:
-            raise ModelError(
-                "an inertia must be positive about every axis",
-                "check the moments and products",
-                ("bodies", name, "inertia"),
-            )
-        check_radius(name, spec.mass, known if complete else known[2:, 2:])
+        more = lacking(name, spec, (mean, arms[f] or extent(at)), d == 3)
+        inertia[f], complete = spec.tensor
+        mass[f], inertia[f] = spec.mass + more[0], inertia[f] + more[1:]
+        known = inertia[f].reshape(3, 3)
+        mass_inverse[f] = 1.0 / mass[f]
+        if np.any(more):
+            light[f] = more
+        else:
+            check_radius(name, spec.mass, known if complete else known[2:, 2:])
         if d == 3:
             inertia_inverse[f, 8] = 1.0 / inertia[f, 8]
         elif complete:
             inertia_inverse[f] = inverse(known).ravel()
         else:  # only for the look at the rows before planarity is known
             inertia_inverse[f, [0, 4, 8]] = 1.0 / inertia[f, 8]
-    return mass, inertia, mass_inverse, inertia_inverse
+    which, more = np.array(list(light), np.int64), np.array(list(light.values())).reshape(-1, 10)
+    return Masses(mass, inertia, mass_inverse, inertia_inverse, which, more)
+
+
+def mean_mass(at: Addresses) -> float:
+    """What stands for a mass of the mechanism: between its largest and its smallest, kg."""
+    found = [one for name in at.members if (one := at.members[name].as_rigid().mass) > 0.0]
+    return sqrt(min(found)) * sqrt(max(found)) if found else 1.0
 
 
 def unequal(at: Addresses, mass: Array, inertia: Array, d: int) -> bool:

@@ -37,6 +37,7 @@ from trsim.elements.frames import (
     turn_lines,
 )
 from trsim.elements.prescribed import AnyDrive, holds, prescribed
+from trsim.errors import ScenarioError
 from trsim.fields import Function, Spec, Unit
 from trsim.kernels.lazy import internal
 
@@ -114,6 +115,10 @@ def pack(name, spec, at):
             else at.mass(driven)
         )
         zeta = spec.compliance.damping_ratio
+        if zeta is not None and m == 0.0:
+            what = "the driven body has no mass that a damping ratio could be one of"
+            path = ("compliance", "damping_ratio")
+            raise ScenarioError(what, "give `mass`, or `damping` instead", path)
         c = 2.0 * zeta * (k * m) ** 0.5 if zeta is not None else spec.compliance.damping or 0.0
     turns = x.kind == "angle"
     act = {"state": state, "motion": f, "stiffness": k, "damping": c}

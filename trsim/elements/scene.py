@@ -48,6 +48,9 @@ class Model(Packed):
     mass: A1  # (n)
     inertia: T9  # (n, 9) body axes
     mass_inverse: A1  # (n) 0 for the ground
+    light: I1  # frames of bodies without mass or without an inertia                    light.py
+    lacking: A2  # (n_light, 10) what these are solved with: a mass, an inertia in body axes
+    lightened: i8  # address of what takes that back, or 0
     inertia_inverse: T9  # (n, 9) body axes; planar: [8] is 1 / Izz
     axes: T9  # (n, 9) rotation of a node of a beam as drawn, row by row
     depth: A1  # (n) z of the centre of mass in a planar scene, m
@@ -182,8 +185,9 @@ class Scene(Model):
     kept_factors: A2  # (4, places)
     kept_roots: A2  # (2, n_x) sigma of those two places
     own: A2  # (2, 6 n) what a row has of its own
+    given_back: A2  # (n_light, 6) accelerations that make up for what light bodies have too much
     stress: A2  # (n_d, n_x) self-stresses of the redundant rows             least_norm.py
-    gram: A2  # (n_d + 1, n_d) their products, and room
+    gram: A2  # (n_d + 2, n_d) their products, room, and the largest square of one
     # where something rubs, else without rows
     pressed: T6  # (N, 6) reaction of its joint: force, and moment about the joint, world axes
     unpressed: T6  # (N, 6) the same without friction
@@ -249,8 +253,9 @@ def scene(model: Model) -> Scene:
         (("kept_factors",), (4 * loops, len(model.row))),
         (("kept_roots",), (2 * loops, n_x)),
         (("own",), (2 * loops, 6 * n)),
+        (("given_back",), (len(model.light), 6)),
         (("stress",), (shared, n_x)),
-        (("gram",), (shared + 1, shared)),
+        (("gram",), (shared + 2, shared)),
         (("pressed", "unpressed"), (whose, 6)),
         (("loads",), (whose, 10)),
         (("rubbed",), (whose,)),

@@ -56,7 +56,8 @@ REASONS = {
     STEP_TOO_LARGE: "a value is not finite, or grew beyond bounds: the fixed step is too large for "
     "the stiffest contact, or the mechanism jams",
     CONTRADICTORY: "no position or acceleration meets all constraints here: a mechanism that jams, "
-    "or masses and inertias so unequal that the arithmetic cannot tell the constraints apart",
+    "or masses and inertias so unequal that the arithmetic cannot tell the constraints apart, "
+    "or a body without mass or inertia that nothing with mass moves any more",
     STUCK: "wherever the mechanism goes from here rows of its joints depend on each other, and no "
     "choice of rows lets it go on: it jams",
     rec.STEP_TOO_SMALL: "the step size fell below the resolution of time: a force that grows "
@@ -94,8 +95,13 @@ def files(scenario: Any, mechanism: Mechanism) -> tuple[str, ...]:
     if solver.formulation is None and GGL in known:
         large, touches = mechanism.model.n_v >= SPARSE_FROM, len(mechanism.model.contact) > 0
         held = solver.stabilisation == "baumgarte"  # whose terms belong to the accelerations
-        if large and not touches and not held and solver.tolerance >= SPARSE_UNTIL:
+        light = len(mechanism.model.light) > 0  # which are solved for with the accelerations
+        if large and not touches and not held and not light and solver.tolerance >= SPARSE_UNTIL:
             formulation = GGL
+    if solver.formulation == GGL and len(mechanism.model.light):
+        hint = "leave `formulation` out, or give every body a mass and an inertia"
+        what = "ggl is not solved for with bodies without mass or inertia"
+        raise ScenarioError(what, hint, ("solver", "formulation"))
     return known.get(formulation, known.get(INDEX_1, ()))
 
 

@@ -124,7 +124,7 @@ def smooth(mechanism: Mechanism) -> Model:
 
 
 def mass_matrix(work: Scene) -> Array:
-    """M (n_v, n_v) in the axes of the solve."""
+    """M (n_v, n_v) in the axes of the solve, as it is solved with (assemble/light.py)."""
     M = np.zeros((work.n_v, work.n_v))
     for place, value in node_masses(work).items():
         M[place] = value
@@ -136,6 +136,19 @@ def mass_matrix(work: Scene) -> Array:
             M[o : o + 3, o : o + 3] = work.mass[f] * np.eye(3)
             M[o + 3 : o + 6, o + 3 : o + 6] = work.inertia[f].reshape(3, 3)
     return M
+
+
+def lacking_matrix(work: Scene) -> Array:
+    """What of M (n_v, n_v) light bodies do not have."""
+    E = np.zeros((work.n_v, work.n_v))
+    for f, more in zip(work.light, work.lacking, strict=True):
+        o = work.d * (f - 1)
+        if work.d == 3:
+            E[o : o + 3, o : o + 3] = np.diag([more[0], more[0], more[9]])
+        else:
+            E[o : o + 3, o : o + 3] = more[0] * np.eye(3)
+            E[o + 3 : o + 6, o + 3 : o + 6] = more[1:].reshape(3, 3)
+    return E
 
 
 class Probe:
@@ -174,7 +187,7 @@ class Probe:
             else:
                 T[6 * f : 6 * f + 3, 6 * f : 6 * f + 3] = np.eye(3)
                 T[6 * f + 3 : 6 * f + 6, 6 * f + 3 : 6 * f + 6] = R
-        M = mass_matrix(work)
+        M = mass_matrix(work)  # with what light bodies lack: it has an inverse
         back = np.linalg.inv(np.linalg.cholesky(M)).T  # M = L L^T, back = L^-T
         self.pseudo, self.Z = np.zeros((self.n_v, 0)), back
         if work.m:
@@ -182,6 +195,10 @@ class Probe:
             rank = int(np.sum(s > FREE * s.max(initial=0.0)))
             self.pseudo = back @ vt[:rank].T @ (u[:, :rank] / s[:rank]).T
             self.Z = back @ vt[rank:].T
+        if len(work.light):
+            M = M - lacking_matrix(work)
+            share, ways = np.linalg.eigh(self.Z.T @ M @ self.Z)
+            self.Z = self.Z @ ways / np.sqrt(share)
         self.twists, self.momenta = T @ self.Z, M @ self.Z
 
     def directions(self, mechanism: Mechanism) -> Array:

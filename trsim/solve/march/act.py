@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import kinetic, poses, stored_energy
+from trsim.assemble.light import nearest_velocities
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import CHANNEL, HELD, LOOSE, SECTION, UserEvent, lock_name
 from trsim.elements.contract import Memory, Row
@@ -195,4 +196,6 @@ def project(mechanism: Any, work: Scene, r: Record) -> None:
         if worst <= CLOSED * work.size:
             break
     poses(work, r.y)
+    given = r.y[work.n_q : work.n_q + work.n_v].copy()
     project_velocities(work, r.y)
+    nearest_velocities(work, r.y, given)

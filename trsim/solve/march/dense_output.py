@@ -1,5 +1,6 @@
 """The dense output of a step, built when something asks for it."""
 
+from trsim.assemble.least_norm import firmness_of_all
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
 from trsim.kernels.lazy import internal
@@ -71,10 +72,8 @@ def measure_in(s, r, b, step, at, theta):
     b.firm[0] = firmness(s)
     if s.redundant.shape[0] == 0 or theta == 0.0:
         return
-    # of least norm they are as right as accelerations
-    power = 2.0 if s.shared_out != 0 else 2.0 / 3.0
-    least = min(PLAIN, (NOISE / s.tolerance) ** power)
-    if not smallest_pivot(s) < least:
+    least = min(PLAIN, (NOISE / s.tolerance) ** (2.0 / 3.0))
+    if not firmness_of_all(s, smallest_pivot(s)) < least:
         return
     start, apart = step[2], NEAREST
     while apart < FURTHEST:
@@ -83,7 +82,7 @@ def measure_in(s, r, b, step, at, theta):
             beside = theta + side * apart
             time = start + (at - start) * (beside / theta)
             measure_at(s, r, b, step, time, beside)
-            nearest = min(nearest, smallest_pivot(s))
+            nearest = min(nearest, firmness_of_all(s, smallest_pivot(s)))
         if nearest >= least:
             break
         apart *= 2.0

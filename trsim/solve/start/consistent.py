@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from trsim import elements
 from trsim.assemble.assemble import assemble
 from trsim.assemble.equations import derivative, gaps
+from trsim.assemble.light import check_determined
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import closest, jacobian, largest_reaction
 from trsim.assemble.switches import LIMITS, UserEvent, hold, limits
@@ -90,6 +91,7 @@ def start(scenario: Any, mechanism: Any, located: bool) -> Start:
         raise not_closed(scenario, mechanism, np.abs(jacobian(model, 0.0, y)[0]))
     check_values(mechanism, initial, y)
     check_closed(mechanism, y, scenario.solver.tolerance)
+    check_determined(mechanism, y)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
     check_finite(mechanism, y, mem)

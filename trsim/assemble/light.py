@@ -1,0 +1,256 @@
+"""Bodies without mass, or without inertia about an axis, where the joints determine their motion.
+
+    M a + J^T lam = F,  J a = gamma       has a solution where M is positive definite on what J
+                                          leaves free, though M is not
+
+A light body is solved for with a little of both, E, and what that makes of the equations is taken
+back with the factors at hand until nothing changes:
+
+    (M + E) a' + J^T lam' = F + E a       each time the error shrinks by about E over what of the
+                                          other masses moves with the body
+
+so a, lam and the kinetic energy are those of M.  Velocities at events are nearest in the metric of
+M, too.  Positions are brought to the rows in the metric of M + E, like any that is at hand.
+"""
+
+from math import nan, sqrt
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trsim.assemble.dense import product, spaces, symmetric
+from trsim.assemble.equations import DERIVATIVE, poses, right_hand_side
+from trsim.assemble.linear import solve
+from trsim.assemble.on_beams import PULL, call_beams
+from trsim.assemble.projection import project_velocities
+from trsim.assemble.reduce import jacobian, moves, roots, times_roots
+from trsim.assemble.schur import pull
+from trsim.elements.contract import DRIVES, compiled
+from trsim.elements.scene import BAUMGARTE, Model, Scene, workspace
+from trsim.errors import ModelError
+from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import clear, clear_table
+
+Array = NDArray[np.float64]
+
+SHARE = 1e-6  # of the masses of the mechanism: what a body without any is solved with
+NONE = 1e-12  # of its largest: a moment of inertia that is none
+ENOUGH, MOST = 1e-14, 40  # of the accelerations; times something is taken back
+LEAST = 1e-9  # of M + E: of a motion left free that has less the arithmetic knows nothing
+
+
+# --- tables ----------------------------------------------------------------------------------
+
+
+def lacking(name: str, spec: Any, reference: tuple[float, float], planar: bool) -> Array:
+    """E of a body: a mass, and an inertia (9) along its axes; all zero where it lacks nothing.
+
+    reference: what stands for a mass of the mechanism, and an arm.  Raises ModelError for a mass
+    or a moment below zero.
+    """
+    found, (mass, arm) = np.zeros(10), reference
+    if spec.mass == 0.0:
+        found[0] = SHARE * mass
+    tensor, complete = spec.tensor
+    I = np.reshape(tensor, (3, 3))
+    moment = SHARE * mass * arm * arm
+    if planar or not complete:
+        if tensor[8] < 0.0:
+            raise below_zero(name)
+        found[9] = moment if tensor[8] == 0.0 else 0.0
+        if not complete:
+            found[[1, 5]] = found[9]
+        return found
+    values, axes = symmetric(I)
+    none = NONE * max(float(values[-1]), 0.0)
+    if values[0] < -none:
+        raise below_zero(name)
+    light = axes[:, values <= none]
+    found[1:] = (moment * light @ light.T).ravel()
+    return found
+
+
+def unfit(names: list[str], frames: NDArray[np.int64], rows: list[Any], rubs: bool) -> None:
+    """Refuse what is not solved for beside light bodies: contacts on them, friction of joints."""
+    for name, f in zip(names, frames, strict=True):
+        path = ("bodies", name, "mass")
+        if any(row.contact is not None and f in row.con[:2] for row in rows):
+            what = "a contact or a stop acts on a body without mass or inertia: nothing slows it"
+            raise ModelError(what, "give it what it weighs", path)
+        if rubs:
+            what = "friction of joints is not solved for beside bodies without mass or inertia"
+            raise ModelError(what, "give it what it weighs", path)
+
+
+def below_zero(name: str) -> ModelError:
+    """The error of an inertia that no body has."""
+    return ModelError(
+        "a moment of inertia below zero", "check the moments and products",
+        ("bodies", name, "inertia"),
+    )  # fmt: skip
+
+
+def check_determined(mechanism: Any, y: Array) -> None:
+    """Refuse a light body whose motion is left open where a run starts, by its name."""
+    model = mechanism.model
+    if not len(model.light):
+        return
+    _, _, J = jacobian(model, 0.0, y)
+    work, planar = posed(model, y), model.d == 3
+    C, keep = roots(work, y, planar), moves(model, planar)
+    rows = times_roots(J, C)[:, keep]  # against motions that have the mass 1 in M + E
+    size = np.sqrt(np.sum(rows * rows, axis=1))
+    rows = rows[size > 0.0] / size[size > 0.0, None]
+    free = spaces(rows, 1e-10)[1] if len(rows) else np.eye(int(np.sum(keep)))
+    if not len(free):
+        return
+    ways = np.zeros((len(free), len(C), 6))
+    ways.reshape(len(free), -1)[:, keep] = free
+    lost = np.zeros((len(free), len(free)))
+    parts = []
+    for q, f in enumerate(model.light):
+        part = ways[:, f - 1] @ (C[f - 1].T @ of_light(work, q, f) @ C[f - 1])
+        parts.append(part @ ways[:, f - 1].T)
+        lost += parts[-1]
+    share, vectors = symmetric(np.eye(len(free)) - lost)
+    if share[0] > LEAST:
+        return
+    q = int(np.argmax([vectors[:, 0] @ part @ vectors[:, 0] for part in parts]))
+    f = int(model.light[q])
+    name = next(name for name, frame in mechanism.frames.items() if frame == f)
+    twist = C[f - 1] @ (vectors[:, 0] @ ways[:, f - 1])
+    turns = np.linalg.norm(twist[3:]) * model.size > np.linalg.norm(twist[:3])
+    key = "inertia" if turns else "mass"
+    raise ModelError(
+        f"a body without {key} is free to {'turn' if turns else 'move'} where the joints leave it "
+        "so: nothing with mass moves with it, and its motion is not determined",
+        f"give it {'an inertia' if turns else 'a mass'}, or a joint that holds it",
+        ("bodies", name, key),
+    )
+
+
+def posed(model: Model, y: Array) -> Scene:
+    """The workspace of a model, at the poses of y."""
+    work = workspace(model)
+    poses(work, y)
+    return work
+
+
+def of_light(work: Scene, q: int, f: int) -> Array:
+    """E of a light body against its world-axes rates (6, 6)."""
+    R, E = work.X[f, 3:].reshape(3, 3), np.zeros((6, 6))
+    E[:3, :3] = work.lacking[q, 0] * np.eye(3)
+    E[3:, 3:] = R @ work.lacking[q, 1:].reshape(3, 3) @ R.T
+    return E
+
+
+# --- accelerations ---------------------------------------------------------------------------
+
+
+@compiled(DERIVATIVE)
+def lightened(s, t, y, yd):
+    """The multipliers and accelerations of M, from those of M + E just solved for."""
+    clear_table(s.given_back)
+    for _ in range(MOST):
+        for f in range(1, s.n_r):
+            pull(s, f, s.x)
+        if s.n_r < s.n:
+            call_beams(s.on_beams[PULL], s, s.x, s.x, 0)
+        if give_back(s) <= ENOUGH:
+            clear(s.x)
+            return
+        right_hand_side(s, s.stabilisation == BAUMGARTE)
+        solve(s, s.x)
+        for k in range(s.m):
+            s.lam[k] += s.x[k]
+            s.zd[DRIVES] += s.x[k] * s.phi_t[k]
+    s.status[3] += 1
+    for k in range(s.x.size):
+        s.x[k] = nan
+
+
+@internal
+def give_back(s):
+    """free += (M + E)^-1 (E a + omega x E omega) less what was given back before; by how much that
+    changes accelerations, of their size."""
+    most = 0.0
+    for q in range(s.light.shape[0]):
+        f, E, a, given = s.light[q], s.lacking[q], s.free[s.light[q]], s.given_back[q]
+        by_mass, K = s.mass_inverse[f], s.inertia_inverse[f]
+        width = 2 if s.d == 3 else 3
+        size, change = 0.0, 0.0
+        for c in range(width):
+            now = by_mass * E[0] * a[c]
+            size, change = size + a[c] * a[c], change + (now - given[c]) ** 2
+            a[c] += now - given[c]
+            given[c] = now
+        if s.d == 3:
+            now = K[8] * E[9] * a[2]
+            size, change = size + (s.size * a[2]) ** 2, change + (s.size * (now - given[2])) ** 2
+            a[2] += now - given[2]
+            given[2] = now
+        else:
+            X, V = s.X, s.V
+            o0 = X[f, 3] * V[f, 3] + X[f, 6] * V[f, 4] + X[f, 9] * V[f, 5]
+            o1 = X[f, 4] * V[f, 3] + X[f, 7] * V[f, 4] + X[f, 10] * V[f, 5]
+            o2 = X[f, 5] * V[f, 3] + X[f, 8] * V[f, 4] + X[f, 11] * V[f, 5]
+            h0 = E[1] * o0 + E[2] * o1 + E[3] * o2
+            h1 = E[4] * o0 + E[5] * o1 + E[6] * o2
+            h2 = E[7] * o0 + E[8] * o1 + E[9] * o2
+            m0 = E[1] * a[3] + E[2] * a[4] + E[3] * a[5] + (o1 * h2 - o2 * h1)
+            m1 = E[4] * a[3] + E[5] * a[4] + E[6] * a[5] + (o2 * h0 - o0 * h2)
+            m2 = E[7] * a[3] + E[8] * a[4] + E[9] * a[5] + (o0 * h1 - o1 * h0)
+            for c in range(3):
+                now = K[3 * c] * m0 + K[3 * c + 1] * m1 + K[3 * c + 2] * m2
+                size += (s.size * a[3 + c]) ** 2
+                change += (s.size * (now - given[3 + c])) ** 2
+                a[3 + c] += now - given[3 + c]
+                given[3 + c] = now
+        if change > 0.0:
+            most = max(most, sqrt(change / size) if size > 0.0 else 1.0)
+    return most
+
+
+# --- velocities ------------------------------------------------------------------------------
+
+
+def nearest_velocities(work: Scene, y: Array, given: Array) -> None:
+    """v of y: of those the rows allow the nearest to `given` in the metric of M.
+
+    y has those nearest in the metric of M + E already.
+    """
+    first, d = int(work.n_q), int(work.d)
+    for _ in range(MOST if len(work.light) else 0):
+        before = y[first : first + work.n_v].copy()
+        wanted = given.copy()
+        for q, f in enumerate(work.light):
+            own = slice(d * (f - 1), d * f)
+            wanted[own] += inverse_times(work, q, f) @ (before[own] - given[own])
+        y[first : first + work.n_v] = wanted
+        poses(work, y)
+        project_velocities(work, y)
+        moved = np.abs(y[first : first + work.n_v] - before).max()
+        if moved <= ENOUGH * np.abs(before).max():
+            return
+
+
+def given_back(work: Scene, C: Array, v: Array) -> Array:
+    """(M + E)^-1 E v of world-axes rates (6 (n-1)), with C C^T = (M + E)^-1; poses as they are."""
+    found = np.zeros_like(v)
+    for q, f in enumerate(work.light):
+        own = slice(6 * (f - 1), 6 * f)
+        found[own] = C[f - 1] @ C[f - 1].T @ of_light(work, q, f) @ v[own]
+    return found
+
+
+def inverse_times(work: Scene, q: int, f: int) -> Array:
+    """(M + E)^-1 E of a light body, in the axes of the solve."""
+    E, K = work.lacking[q], work.inertia_inverse[f]
+    if work.d == 3:
+        moved = work.mass_inverse[f] * E[0]
+        return np.diag([moved, moved, K[8] * E[9]])
+    found = np.zeros((6, 6))
+    found[:3, :3] = work.mass_inverse[f] * E[0] * np.eye(3)
+    found[3:, 3:] = product(K.reshape(3, 3), E[1:].reshape(3, 3))
+    return found
