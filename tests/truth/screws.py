@@ -227,13 +227,13 @@ class Tree:
             found = next((j for j in open_ if (j.i in there) != (j.j in there)), None)
             if found is None:
                 name = next(b.name for b in s.bodies if b.name not in there)
-                self.held[name] = Held("ground", self.loose(s.body(name).at))
+                self.held[name] = Held("ground", self.level(self.loose(s.body(name).at)))
                 there.add(name)
                 continue
             open_.remove(found)
             forward = found.i in there
             name, before = (found.j, found.i) if forward else (found.i, found.j)
-            steps = self.steps(found)
+            steps = self.level(self.steps(found))
             if not forward:
                 for step in steps:
                     step.sign = -1.0
@@ -272,6 +272,16 @@ class Tree:
         if name:
             self.coordinate[name] = self.n - 1
         return self.n - 1
+
+    def level(self, steps: list[Step]) -> list[Step]:
+        """Of a flat scene those that stay in the plane; the coordinates of others stay zero."""
+        if not self.s.flat:
+            return steps
+        kept = [k for k in steps if abs(k.w[2]) > 0.5 or (not k.w.any() and abs(k.d[2]) < 0.5)]
+        for step in steps:
+            if not any(step is one for one in kept):
+                self.linear.append(("flat", {step.k: 1.0}))
+        return kept
 
     def loose(self, p: np.ndarray) -> list[Step]:
         """A body that nothing holds: three slides, three turns about its centre of mass."""
