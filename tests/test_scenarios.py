@@ -250,6 +250,8 @@ def test_the_door_of_the_readme(tmp_path):
     (tmp_path / "door.yaml").write_text(block)
     r = run(load(tmp_path / "door.yaml"))
     assert r.mechanism.mobility == 1 and not r.mechanism.redundant
+    because = r.mechanism.spatial_because
+    assert len(set(because)) == len(because)  # gravity, which pulls at three bodies, is told once
     assert r["strike.reaction"][0] == pytest.approx([0, 2 / 0.82, 0], abs=1e-6)
     assert np.abs(np.degrees(r["opening"][r.t < 0.19])).max() < 1e-3
     out = r.t[np.argmax(r["drawn"] > 0.012)]

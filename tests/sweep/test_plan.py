@@ -205,6 +205,14 @@ def test_refused(planned, more, what):
     assert told.startswith("/") and "crank.yaml:" in told.splitlines()[0], told
 
 
+def test_values_of_one_key_have_one_kind_of_unit(planned):
+    """Else the table would have both in one column: 5 mm/turn is 0.8 mm/rad, and 5 mm is 5 mm."""
+    more = "parameters: {p: 1}\n"
+    [(_, fault)] = faults(planned("parameters.p=[1 mm, 2, 5 mm/turn]", more=more))
+    assert "values of parameters.p are in mm and in mm/turn" in fault.what
+    assert not list(faults(planned("parameters.p=[1 mm, 2, 5 um]", more=more)))
+
+
 def test_nothing_to_vary(planned):
     with pytest.raises(UsageError, match="says nothing to vary"):
         planned("solver.end=1 ms")

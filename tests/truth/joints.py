@@ -33,6 +33,20 @@ KINDS = ("inplane", "planar", "parallel", "screw", "constant_velocity", "cylindr
          "revolute", "prismatic", "spherical", "universal", "fixed")  # fmt: skip
 
 
+FLAT = ("revolute", "planar", "prismatic", "inplane", "inline", "parallel", "spherical")
+
+
+def level(s: Scene, v: np.ndarray) -> np.ndarray:
+    """A vector, of a flat scene its part in the plane."""
+    return v * [1, 1, 0] if s.flat else v
+
+
+def way(rng: Any, s: Scene) -> np.ndarray:
+    """A direction; of a flat scene in the plane."""
+    v = level(s, direction(rng))
+    return v / np.linalg.norm(v)
+
+
 def across(rng: Any, a: np.ndarray) -> np.ndarray:
     v = np.cross(a, direction(rng))
     return v / np.linalg.norm(v)
@@ -42,13 +56,17 @@ def hang(s: Scene, rng: Any, before: str, kind: str, at: np.ndarray, axis: Any =
     """A body on another, by a joint named from either of both; its name."""
     k = len(s.bodies)
     name, m, l = f"b{k}", decades(rng, 0.3, 3.0), between(rng, 0.3, 0.8)
-    d = l * direction(rng)
-    I = bar_inertia(m, d, 0.3) if rng.random() < 0.5 else any_inertia(rng, m, l) + 0.02 * np.eye(3)
+    d = l * way(rng, s)
+    I = (
+        bar_inertia(m, d, 0.3)
+        if s.flat or rng.random() < 0.5
+        else any_inertia(rng, m, l) + 0.02 * np.eye(3)
+    )
     s.bodies.append(Body(name, m, I, at + 0.5 * d))
     ends = (before, name) if rng.random() < 0.6 else (name, before)
     j = Joint(f"j{k}", kind, *ends, at.copy())
     if kind not in ("spherical", "fixed"):
-        j.axis = direction(rng) if axis is None else axis
+        j.axis = axis_of(rng, s, kind) if axis is None else axis
     if kind == "planar":
         j.x_axis = across(rng, j.axis)
     if kind == "universal":
@@ -65,11 +83,18 @@ def hang(s: Scene, rng: Any, before: str, kind: str, at: np.ndarray, axis: Any =
     return name
 
 
+def axis_of(rng: Any, s: Scene, kind: str) -> np.ndarray:
+    """Any; of a flat scene one about which, or along which, a body stays in the plane."""
+    if s.flat and kind in ("revolute", "planar", "parallel"):
+        return np.array([0.0, 0.0, pick(rng, -1.0, 1.0)])
+    return way(rng, s)
+
+
 def held(s: Scene, rng: Any, name: str) -> None:
     """A spring and a load, so that what is free does not fly away."""
     b = s.body(name)
-    p = b.at + rng.uniform(-0.1, 0.1, 3)
-    q = p + between(rng, 0.8, 1.6) * direction(rng)
+    p = b.at + level(s, rng.uniform(-0.1, 0.1, 3))
+    q = p + between(rng, 0.8, 1.6) * way(rng, s)
     k = decades(rng, 3, 40) * b.mass
     s.forces.append(Spring(f"s_{name}", "ground", name, q, p, k, between(rng, 0, 1)))
     if rng.random() < 0.4:
@@ -78,7 +103,8 @@ def held(s: Scene, rng: Any, name: str) -> None:
         )
         frame, torque = pick(rng, "world", name), bool(rng.random() < 0.4)
         at = None if torque else p
-        s.forces.append(Load(f"f_{name}", name, direction(rng), fn, frame, at, torque))
+        d = np.array([0.0, 0.0, 1.0]) if s.flat and torque else way(rng, s)
+        s.forces.append(Load(f"f_{name}", name, d, fn, frame, at, torque))
 
 
 def finished(s: Scene, rng: Any, w: float, forces: bool = True) -> Drawn:
@@ -91,8 +117,9 @@ def finished(s: Scene, rng: Any, w: float, forces: bool = True) -> Drawn:
     return Drawn(s, ONE, forces, lambda scene: Tree(scene).truth(y, forces))
 
 
-def chain_of(rng: Any, kinds: Callable[[int], str], n: int) -> Scene:
-    s, at, before = Scene(end=1.0), rng.uniform(-0.5, 0.5, 3), "ground"
+def chain_of(rng: Any, kinds: Callable[[int], str], n: int, flat: bool = False) -> Scene:
+    s = Scene(end=1.0, flat=flat)
+    at, before = level(s, rng.uniform(-0.5, 0.5, 3)), "ground"
     for k in range(n):
         before = hang(s, rng, before, kinds(k), at)
         at = 2 * s.bodies[-1].at - at
@@ -229,3 +256,41 @@ def geared(rng: Any) -> Drawn:
     if k.type == "revolute":
         s.forces.append(Torsion("back", two, decades(rng, 1, 20), between(rng, 0, 0.3)))
     return finished(s, rng, between(rng, 0.3, 2.0))
+
+
+@family
+def flat_joints(rng: Any) -> Drawn:
+    """Chains, loops and gears in a plane: solved as such, or in space where all is turned."""
+    n, kind = (
+        int(rng.integers(1, 4)),
+        pick(rng, "chain", "link", "inplane", "gear", "rack", "coupler"),
+    )
+    s = chain_of(rng, lambda k: pick(rng, *FLAT), n, flat=True)
+    last, z = s.bodies[-1], np.array([0.0, 0.0, 1.0])
+    p = last.at + level(s, rng.uniform(-0.2, 0.2, 3))
+    ends = ("ground", last.name)[:: pick(rng, -1, 1)]
+    if kind == "inplane":
+        s.joints.append(Joint("close", "inplane", *ends, p, way(rng, s)))
+    elif kind == "link":
+        points = (p + between(rng, 0.6, 1.2) * way(rng, s), p)
+        points = points if ends[0] == "ground" else points[::-1]
+        s.joints.append(Joint("close", "link", *ends, points[0], points=points))
+    elif kind == "coupler" and len(s.sensors) > 1:
+        names = sorted({x.joint for x in s.sensors})
+        c = tuple(pick(rng, -1, 1) * decades(rng, 0.2, 3.0) for _ in names)
+        s.gears.append(Gear("g", "coupler", tuple(names), coefficients=c))
+    elif kind in ("gear", "rack"):
+        e, r = way(rng, s), (between(rng, 0.1, 0.4), between(rng, 0.1, 0.4))
+        f, first = np.cross(z, e), len(s.bodies)
+        hang(s, rng, last.name, "revolute", p, pick(rng, -1, 1) * z)
+        g = Gear("g", "gear", (f"j{first}", f"j{first + 1}"), touch=p + r[0] * e, way=f)
+        if kind == "gear":
+            g.radii = r
+            hang(s, rng, last.name, "revolute", p + sum(r) * e, pick(rng, -1, 1) * z)
+        else:
+            g.type, g.radius = "rack_and_pinion", r[0]
+            there = g.touch + between(rng, -0.3, 0.3) * f
+            held(s, rng, hang(s, rng, last.name, "prismatic", there, pick(rng, -1, 1) * f))
+        s.gears.append(g)
+    # in the plane nothing tells forces across it; in space a flat loop has more rows than it needs
+    return finished(s, rng, between(rng, 0.3, 2.0), forces=False)

@@ -159,7 +159,8 @@ def judged(scene: Scene, t: Truth, r: Ran, v: Verdict) -> Verdict:
     if r.exit in (3, 4, 5):
         drifts = scene.rates is not None or scene.settings.get("stabilisation") == "none"
         chance = drifts and re.search("branches of the motion (nearly )?meet", r.reason)
-        v.verdict, v.why = TOLD if chance else REFUSED, r.reason
+        folded = t.folded and "is bent by half a turn" in r.reason
+        v.verdict, v.why = TOLD if chance or folded else REFUSED, r.reason
         return v
     if r.exit:
         v.verdict, v.why = CRASH, r.reason

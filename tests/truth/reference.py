@@ -450,6 +450,7 @@ class Truth:
     # times at which a contact in clearance opens for an instant or nearly so, and by how much
     openings: list[tuple[float, float]] = field(default_factory=list)
     until: float = np.inf  # nothing is judged from then on
+    folded: bool = False  # a constant-velocity joint bends by nearly half a turn: no motion is true
     sure: np.ndarray = field(default_factory=lambda: np.zeros(0))  # at each row, of the scales
     growth: np.ndarray = field(default_factory=lambda: np.ones(0))  # of a small change at the start
     felt: dict[str, np.ndarray] = field(default_factory=dict)  # the same of every channel and row

@@ -16,7 +16,7 @@ joint need.  Nothing is shared with engine.py, and nothing of trsim is used.
 """
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -30,6 +30,7 @@ from .reference import (
     TURNING,
     Channel,
     Truth,
+    Unfit,
     lightest,
     scales,
     size,
@@ -42,6 +43,7 @@ HELD = {
     "cylindrical": ("uw", "uw"), "inline": ("uw", ""), "inplane": ("a", ""),
     "planar": ("a", "uw"), "parallel": ("", "uw"), "fixed": ("uwa", "uwa"),
 }  # fmt: skip
+NEXT_TO_BACK = float(np.cos(np.pi - 0.03))  # of a bend: more than trsim fails at
 ACROSS = {"u": ("w", "a"), "w": ("u", "a"), "a": ("w", "u")}  # no turn about it: these stay so
 
 
@@ -83,8 +85,9 @@ def moved(step, q):
 
 
 @compiled
-def displaced(before, of_step, number, steps, offset, x, v):
-    """R, s, J, V, A of every body (State)."""
+def displaced(numbers, x, v):
+    """R, s, J, V, A of every body (State); numbers: see Tree.packed."""
+    before, of_step, number, steps, offset = numbers
     n = len(before)
     R, s = np.zeros((n, 3, 3)), np.zeros((n, 3))
     J, V, A = np.zeros((n, 6, len(x))), np.zeros((n, 6)), np.zeros((n, 6))
@@ -111,8 +114,10 @@ def displaced(before, of_step, number, steps, offset, x, v):
 
 
 @compiled
-def needed(J, V, A, R, s, at, mass, inertia, gravity):
-    """M and h of rigid bodies, all but the ground."""
+def needed(found, masses):
+    """M and h of rigid bodies, all but the ground, that are displaced so."""
+    R, s, J, V, A = found
+    at, mass, inertia, gravity = masses
     n = J.shape[2]
     M, h = np.zeros((n, n)), np.zeros(n)
     for b in range(1, len(J)):
@@ -186,6 +191,16 @@ class Row:
     b: np.ndarray = field(default_factory=lambda: np.zeros(3))
 
 
+class Solved(NamedTuple):
+    """The motion at one instant."""
+
+    a: np.ndarray  # x''
+    lam: np.ndarray  # multipliers of loops
+    related: np.ndarray  # what relations put on the coordinates
+    of: dict[str, State]
+    pushes: list[tuple[str, np.ndarray, np.ndarray, np.ndarray]]  # see Tree.forces
+
+
 def triad(joint: Any) -> dict[str, np.ndarray]:
     """Axes of a joint as drawn; which ones across its axis does not matter but where told."""
     a = np.asarray(joint.axis if joint.axis is not None else (0, 0, 1), float)
@@ -201,7 +216,8 @@ class Tree:
     """A scene in coordinates of its joints."""
 
     def __init__(self, s: Scene) -> None:
-        self.s, self.n = s, 0
+        self.s, self.n, self.folded = s, 0, False
+        self.shafts = [j for j in s.joints if j.type == "constant_velocity"]
         self.held: dict[str, Held] = {}
         self.coordinate: dict[str, int] = {}  # `joint` or `joint.angle` -> its number
         self.rows: list[Row] = []
@@ -211,13 +227,13 @@ class Tree:
             found = next((j for j in open_ if (j.i in there) != (j.j in there)), None)
             if found is None:
                 name = next(b.name for b in s.bodies if b.name not in there)
-                self.held[name] = Held("ground", self.loose(s.body(name).at))
+                self.held[name] = Held("ground", self.level(self.loose(s.body(name).at)))
                 there.add(name)
                 continue
             open_.remove(found)
             forward = found.i in there
             name, before = (found.j, found.i) if forward else (found.i, found.j)
-            steps = self.steps(found)
+            steps = self.level(self.steps(found))
             if not forward:
                 for step in steps:
                     step.sign = -1.0
@@ -256,6 +272,16 @@ class Tree:
         if name:
             self.coordinate[name] = self.n - 1
         return self.n - 1
+
+    def level(self, steps: list[Step]) -> list[Step]:
+        """Of a flat scene those that stay in the plane; the coordinates of others stay zero."""
+        if not self.s.flat:
+            return steps
+        kept = [k for k in steps if abs(k.w[2]) > 0.5 or (not k.w.any() and abs(k.d[2]) < 0.5)]
+        for step in steps:
+            if not any(step is one for one in kept):
+                self.linear.append(("flat", {step.k: 1.0}))
+        return kept
 
     def loose(self, p: np.ndarray) -> list[Step]:
         """A body that nothing holds: three slides, three turns about its centre of mass."""
@@ -346,7 +372,7 @@ class Tree:
 
     def states(self, x: np.ndarray, v: np.ndarray) -> dict[str, State]:
         """Of every body."""
-        R, s, J, V, A = displaced(*self.numbers, x, v)
+        R, s, J, V, A = displaced(self.numbers, x, v)
         return {name: State(R[k], s[k], J[k], V[k], A[k]) for k, name in enumerate(self.names)}
 
     def packed(self) -> Any:
@@ -422,12 +448,12 @@ class Tree:
                 Q[k] += f.preload - f.k * x[k] - f.c * v[k]
         return pushes, Q
 
-    def solved(self, t: float, x: np.ndarray, v: np.ndarray) -> Any:
-        """x'', multipliers of loops, forces of relations on the coordinates; states and forces."""
-        found = displaced(*self.numbers, x, v)
+    def solved(self, t: float, x: np.ndarray, v: np.ndarray) -> Solved:
+        """The accelerations, and what they need."""
+        found = displaced(self.numbers, x, v)
         of = {name: State(*(one[k] for one in found)) for k, name in enumerate(self.names)}
-        R, s, J, V, A = found
-        M, h = needed(J, V, A, R, s, *self.masses)
+        R = found[0]
+        M, h = needed(found, self.masses)
         pushes, Q = self.forces(t, x, v, of)
         for name, r, f, m in pushes:
             if name != "ground":
@@ -445,20 +471,29 @@ class Tree:
             full = np.linalg.solve(K, side)
         else:
             full = np.linalg.lstsq(K, side, rcond=1e-12)[0]
+        for j in self.shafts:
+            i, k = self.names.index(j.i), self.names.index(j.j)
+            cosine = (R[i] @ triad(j)["a"]) @ (
+                R[k] @ (j.second_axis / np.linalg.norm(j.second_axis))
+            )
+            self.folded = self.folded or bool(cosine < NEXT_TO_BACK)
         a, lam = N @ full[:n], -full[n:]
-        return a, lam, M @ a + h - Q - G.T @ lam, of, pushes
+        return Solved(a, lam, M @ a + h - Q - G.T @ lam, of, pushes)
 
     def rate(self, t: float, y: np.ndarray) -> np.ndarray:
         x, v = y[: self.n], y[self.n :]
-        return np.concatenate([v, self.solved(t, x, v)[0]])
+        return np.concatenate([v, self.solved(t, x, v).a])
 
     def run(self, y: np.ndarray, times: np.ndarray, rtol: float) -> np.ndarray:
         made = solve_ivp(
             self.rate, (0, times[-1]), y, "DOP853", times, rtol=rtol, atol=rtol, max_step=0.2
         )
-        if made.y.shape[1] != len(times):
-            raise RuntimeError(made.message)
-        return made.y.T
+        found = made.y.T
+        if self.folded:  # of what comes behind nothing is said
+            found = np.vstack([found, np.repeat(found[-1:], len(times) - len(found), axis=0)])
+        if len(found) != len(times):
+            raise Unfit(f"the reference stopped: {made.message}")
+        return found
 
     def start(self, v: np.ndarray) -> np.ndarray:
         """Rates next to some that gears and loops allow, as drawn."""
@@ -491,7 +526,8 @@ class Tree:
 
         for k, (t, y) in enumerate(zip(times, Y, strict=True)):
             x, v = y[: self.n], y[self.n :]
-            a, lam, related, of, pushes = self.solved(t, x, v)
+            now = self.solved(t, x, v)
+            a, of = now.a, now.of
             for b in s.bodies:
                 at = of[b.name]
                 r, J, u, gain = self.at(at, b.at)
@@ -514,11 +550,12 @@ class Tree:
                 rate, kind = sensor.sign * h * v[c], "speed" if slides else "spin"
                 put(f"{sensor.name}.rate", k, rate, plus(dims, RATE), False, kind)
             if forces:
-                self.told_forces(put, k, a, lam, related, of, pushes, (x, v))
+                self.told_forces(put, k, now, x, v)
         return found
 
-    def told_forces(self, put: Any, k: int, a: Any, lam: Any, related: Any, of: Any,
-                    pushes: Any, now: Any) -> None:  # fmt: skip
+    def told_forces(self, put: Any, k: int, now: Solved, x: Any, v: Any) -> None:
+        """Reactions, forces of links and of gears at row k."""
+        a, lam, related, of, pushes = now
         s = self.s
         mu = np.linalg.lstsq(self.A.T, related, rcond=None)[0] if len(self.A) else np.zeros(0)
         names = {g.name for g in s.gears}
@@ -569,7 +606,7 @@ class Tree:
             way = 1.0 if held.forward else -1.0
             p = second.R @ np.asarray(j.at, float) + second.s
             # what gears and springs put on it about and along its axes is not the joint's
-            Q = geared + self.forces(0.0, *now, of)[1]
+            Q = geared + self.forces(0.0, x, v, of)[1]
             R, shift = base.R, base.s
             rest_f, rest_m = f.copy(), m.copy()
             for step in held.steps:
@@ -581,7 +618,7 @@ class Tree:
                     else:
                         rest_f = rest_f - Q[step.k] * C[3:]
                         rest_m = rest_m - cross(p, Q[step.k] * C[3:])
-                one, part = step.moved(now[0])
+                one, part = step.moved(x)
                 R, shift = R @ one, R @ part + shift
             told[j.name] = [way * rest_f, way * (rest_m - cross(p, rest_f))]
         for j in s.joints:
@@ -618,5 +655,6 @@ class Tree:
                     d = np.abs(c.values - made[name].values).max(axis=1) / top[c.kind] / by
                     np.maximum(out, d, out=out)
         # what is off at 1e-9 is off by some hundredth of that here
+        t.folded = self.folded
         t.growth, t.sure = np.maximum.accumulate(away), np.maximum.accumulate(sure) * 0.1
         return t

@@ -18,7 +18,10 @@ HEAD = """# Truth: scenes drawn by the thousand
 shares nothing with trsim's assembly or events: a small integrator of rigid bodies in maximal
 coordinates kept in `tests/truth` (quaternions, dense Cholesky factors, order 8, tolerance 1e-12,
 steps of at most a fiftieth of a turn, every crossing located by making the step again), or one
-angle where that is singular. Flexible bars are judged by a tight run of another method. The truth
+angle where that is singular. The families `joints`, `joint_loops` and `geared` (all kinds of joints
+in chains and loops, links, gears, racks, worms, couplers, on carriers that move) are judged in the
+coordinates of their joints, which take no constraint rows (tests/truth/screws.py: products of
+exponentials of screws). Flexible bars are judged by a tight run of another method. The truth
 is found in units near one and in the axes of the drawing; what trsim reads has lengths, masses and
 times scaled by 1e-3 to 1e3 and is turned to any direction. Methods, tolerances (1e-2 to 1e-10),
 numbers of rows and speeds are drawn too.

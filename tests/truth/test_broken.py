@@ -51,6 +51,17 @@ BREAKS = {
             )
         ],
     ),
+    # the axis of a slide that a gear moves turns with its carrier, and has no Coriolis term
+    "geared": (
+        "geared",
+        [
+            (
+                "trsim/elements/transmission.py",
+                "        + 2.0 * dot(cross(spin(V, i), axis), d_dot)\n",
+                "        + 1.0 * dot(cross(spin(V, i), axis), d_dot)\n",
+            )
+        ],
+    ),
     # steps may turn a joint by any angle
     "branch": (
         "turns",

@@ -12,8 +12,8 @@ any motion
 
 so two shafts in bearings that stand turn equally fast at every bend below half a turn, where
 nothing tells any more how one is turned against the other: both factors of Phi_4 vanish, and the
-motion could go on with the wrong one.  In space a run fails next to it (LARGEST).  reaction acts on
-body j at the point, reaction_moment in the direction of a_i + a_j.
+motion could go on with the wrong one.  In space a run fails 0.02 rad in front of it.  reaction
+acts on body j at the point, reaction_moment in the direction of a_i + a_j.
 """
 
 from math import atan2, cos, degrees, pi, sqrt

@@ -44,7 +44,7 @@ class Worm(Transmission):
     joints  the hinges of the worm and of the wheel; they share the carrier
     teeth   starts of the worm, teeth of the wheel; which way the wheel turns follows from the hand
             and from the drawing
-    hand    of the thread
+    hand    of the thread; right unless given
     ratio   angle of the worm's joint over that of the wheel's, as their sensors show them, with its
             sign, instead of teeth
     """

@@ -21,7 +21,7 @@ from trsim.scenario.scenario import Scenario
 from trsim.scenario.text import Tree
 from trsim.sweep.digest import Digests
 from trsim.sweep.points import Point, points
-from trsim.sweep.values import units, written
+from trsim.sweep.values import mixed, units, written
 
 CASE = "case"  # the key of the named cases
 LONGEST = 80  # letters of a name
@@ -124,6 +124,7 @@ def plan(path: str, sets: Iterable[str] = (), engine: str = "") -> Plan:
 def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
     """The cases that are no scenarios, with what is wrong."""
     memories: dict[str, Memory] = {}
+    good = True
     for case in found.cases:
         if case.case not in memories:
             memories[case.case] = Memory(case.data)
@@ -131,7 +132,10 @@ def faults(found: Plan) -> Iterator[tuple[Case, TrsimError]]:
             try:
                 found.scenario(case)
             except TrsimError as error:
+                good = False
                 yield case, error
+    if good:
+        yield from mixed(found.cases, found.keys)
 
 
 # --- axes ------------------------------------------------------------------------------------

@@ -1,13 +1,13 @@
 """Values of swept keys: numbers in SI where they are numbers, and the units they have."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from trsim.errors import TrsimError
+from trsim.errors import TrsimError, UsageError
 from trsim.scenario.load import unit_of
 from trsim.scenario.merge import keys_of
-from trsim.units import quantity, si
+from trsim.units import quantity, si, unit
 
 
 def value(written: Any) -> float | str:
@@ -25,13 +25,34 @@ def value(written: Any) -> float | str:
 
 def written(found: Sequence[Any], keys: tuple[str, ...]) -> dict[str, str]:
     """The unit of the first value of each key that has one."""
-    units = {}
+    return {key: own[0] for key in keys if (own := _units(found, key))[0]}
+
+
+def mixed(found: Sequence[Any], keys: tuple[str, ...]) -> Iterator[tuple[Any, TrsimError]]:
+    """Cases with a value of another kind of unit than others: a table has one in a column."""
     for key in keys:
-        value = next(case.values[key] for case in found if key in case.values)
-        one = quantity(value) if isinstance(value, str) else None
-        if one and one[1]:
-            units[key] = one[1]
-    return units
+        those = [case for case in found if key in case.values]
+        own = _units(those, key)
+        first = next(filter(None, own), "")
+        for case, one in zip(those, own, strict=True):
+            if one and unit(one)[1] != unit(first)[1]:
+                what = f"values of {key} are in {first} and in {one}"
+                yield case, UsageError(what, "Write all of them in units of one kind.")
+                break
+
+
+def _units(found: Sequence[Any], key: str) -> list[str]:
+    """The units that the values of a key are written with; empty where none is."""
+    values = [_quantity(case.values[key]) for case in found if key in case.values]
+    return [one[1] if one else "" for one in values]
+
+
+def _quantity(value: Any) -> tuple[float, str] | None:
+    """The quantity that a value is, where it is one."""
+    try:
+        return quantity(value) if isinstance(value, str) else None
+    except TrsimError:  # of units; found, and told, when the cases are checked
+        return None
 
 
 def units(
