@@ -27,7 +27,9 @@ def places(spec, path, lines):
     for key, field in spec.model_fields.items():
         for inner in specs_in(field.annotation):
             free = get_args(field.annotation)[:1] == (str,)
-            yield from places(inner, (*path, key, "thing") if free else (*path, key), lines)
+            listed = get_args(field.annotation)[1:] == (...,)
+            here = (*path, key, "thing") if free else (*path, key, 0) if listed else (*path, key)
+            yield from places(inner, here, lines)
 
 
 def all_places():
@@ -51,11 +53,13 @@ def slips(word):
 
 def written(path, lines, needed, typo):
     """The scenario, its keys one to a line, and the line of the misspelt one."""
-    text = [f"{'  ' * depth}{key}:" for depth, key in enumerate(path)]
+    text = [f"{'  ' * depth}{key}:" for depth, key in enumerate(path) if key != 0]
     text[2:2] = [f"    {line}" for line in lines]
     indent = "  " * len(path)
-    text += [f"{indent}{key}: 1" for key in needed]
-    text.append(f"{indent}{typo}: 1")
+    own = [f"{indent}{key}: 1" for key in (*needed, typo)]
+    if path and path[-1] == 0:  # the first of a list
+        own[0] = f"{indent[2:]}- {own[0].strip()}"
+    text += own
     return "\n".join(text) + "\n", len(text)
 
 

@@ -21,7 +21,6 @@ friction; a roller turns freely, and reaction is that on its centre, or on q.
 from math import sqrt
 from typing import Annotated, ClassVar
 
-import numpy as np
 from annotated_types import Gt
 from pydantic import model_validator
 
@@ -137,6 +136,8 @@ def roller(curve, spec):
 
 def check_room(curve, side, radius):
     """Refuse a roller that meets another piece of the curve."""
+    import numpy as np
+
     step = max(1, len(curve.u) // 1000)
     places, tangents = curve.place[::step], curve.tangent[::step]
     for where, t in zip(places, tangents, strict=True):
@@ -154,6 +155,8 @@ def check_room(curve, side, radius):
 
 def face(curve, spec):
     """u and length where a flat face touches as drawn; its curve must bend one way."""
+    import numpy as np
+
     if not any(spec.face):
         raise ScenarioError("a normal must not be zero", "for example [0, 1, 0]", ("face",))
     plane = spec.curve.frame

@@ -17,8 +17,6 @@ the tangent turns by less than a right angle in it: solve/march/turns.py knows u
 from math import sqrt
 from typing import Any
 
-import numpy as np
-
 from trsim.elements.contract import Limit, compiled
 from trsim.elements.curve import Sampled, nearest
 from trsim.elements.frames import along_row, arm, carried, dot, plus, scaled
@@ -110,6 +108,8 @@ def write_settled(tab, line, out):
 def settled(curve: Sampled, u: float, p: Any, line: int) -> tuple[float, float, Any, Any]:
     """u near a given one, length, place and tangent, at the footpoint of a point or the touch of a
     line of normal p."""
+    import numpy as np
+
     out = np.array([u, *p, 0.0, 0.0, 0.0])
     write_settled(np.array(curve.numbers), line, out)
     found = out.tolist()
