@@ -174,7 +174,7 @@ def face(curve, spec):
         raise ScenarioError(
             f"a flat face needs a curve that bends one way, and this one is straight or hollow at "
             f"{named(curve.place[k])} of its coordinates",
-            "take a roller, or a convex curve",
+            "take a roller, or a convex curve; an open one through points needs `tangents`",
             ("curve",),
         )
     u = furthest(curve, m[:2])
