@@ -55,6 +55,7 @@ def test_a_cycloid_swings_alike_from_everywhere(method, s):
     begin = 4 * R * np.sin(s / 2)
     way = begin * np.cos(np.sqrt(G / (4 * R)) * r.t)
     assert r["way"] + begin == pytest.approx(way, abs=error)
+    assert r["wire.arc"] - 4 * R * np.sin(1.35) == pytest.approx(way, abs=error)
     assert r.outcome.status == "done" and energy_error(r) < 1e-5
 
 

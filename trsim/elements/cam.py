@@ -40,6 +40,7 @@ from trsim.elements.frames import (
     velocity,
 )
 from trsim.elements.on_curve import (
+    LENGTH,
     OFF,
     OnCurve,
     distance_row,
@@ -287,6 +288,7 @@ def measure(t, scene, e, o):
     there = point(scene.X, own.i, plus(arm(scene.X, own.i, own.p_i), in_world(scene, own, c)))
     for k in range(3):
         out[o + 3 + k] = there[k]
+    out[o + 6] = scene.S[own.coordinate, 0]
 
 
 def doubts(name, spec, largest):
@@ -327,6 +329,7 @@ ELEMENT = Element(
         Channel("pull", "N", "by which the follower is held where it would lift off", least=0.0),
         Channel("curvature", "1/m", "of the curve where they touch, positive to its left"),
         Channel("place", "m", "where they touch, world axes", 3),
+        LENGTH,
     ),
     loads={"normal_force": "contact force"},
     judged=lambda _: True,

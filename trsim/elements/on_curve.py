@@ -17,7 +17,7 @@ the tangent turns by less than a right angle in it: solve/march/turns.py knows u
 from math import sqrt
 from typing import Any
 
-from trsim.elements.contract import Limit, compiled
+from trsim.elements.contract import Channel, Limit, compiled
 from trsim.elements.curve import Sampled, nearest
 from trsim.elements.frames import along_row, arm, carried, dot, plus, scaled
 from trsim.elements.joint import Joint
@@ -29,6 +29,9 @@ from trsim.laws.curves import dot2, footpoint, length, length_of, place, touch
 
 SIDE = 1e-3  # of the radius of a roller: a centre nearer to the curve is on no side
 OFF = 0.1  # of the size of a curve: how far beside it a point may be drawn
+
+
+LENGTH = Channel("arc", "m", "length along the curve from its beginning, over all turns")
 
 
 class OnCurve(Joint):

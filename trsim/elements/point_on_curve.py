@@ -9,9 +9,10 @@ is closed.  reaction acts on body j at its point, across the curve: there is no 
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, Turning, kernel
+from trsim.elements.contract import Element, Reach, Row, Turning, kernel, measured
 from trsim.elements.curve import Curve, sampled
 from trsim.elements.on_curve import (
+    LENGTH,
     OnCurve,
     distance_row,
     drawn_at,
@@ -74,6 +75,11 @@ def gap(t, scene, e):
     end_gap(scene, e, own, own.normal)
 
 
+@measured
+def measure(t, scene, e, o):
+    scene.out[o] = scene.S[Own(scene, e).coordinate, 0]
+
+
 def reach(row):
     """The point goes wherever the plane of the curve does."""
     own = Own.of(row)
@@ -94,11 +100,17 @@ ELEMENT = Element(
     rows=tuple(row.name for row in ROWS),
     holds=tuple(row.holds for row in ROWS),
     coordinates=(ARC,),
+    channels=(LENGTH,),
     reach=reach,
     turning=turning,
     holds_twist=False,
     picture="bead",
-    kernels={"constraint": constraint_of(ROWS), "coordinate": coordinate, "gaps": gap},
+    kernels={
+        "constraint": constraint_of(ROWS),
+        "coordinate": coordinate,
+        "gaps": gap,
+        "measure": measure,
+    },
     example="""
 bodies:
   bead: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [-0.5, 0.25]}
