@@ -112,7 +112,7 @@ def pack(name, spec, at):
     found |= {"follower": ROLLER if spec.radius else FACE, "radius": spec.radius or 0.0}
     found["m_j"] = at.axes(found["j"], direction(spec.face)) if spec.face else (0.0, 0.0, 0.0)
     own = Own.of(Row(*Own.packed(parameter=-1, **found)))
-    _, parameter = at.on_curve(name, own, (length, u), stops=bool(spec.radius))
+    _, parameter = at.on_curve(name, own, (length, u), "beside" if spec.radius else "")
     return Row(*Own.packed(parameter=parameter, **found), limits=ends_of(curve))
 
 

@@ -55,7 +55,7 @@ def pack(name, spec, at):
     u, length, _ = drawn_at(curve, spec)
     found = frames(spec, at) | {"curve": stored(curve, spec, at)}
     own = Own.of(Row(*Own.packed(parameter=-1, **found)))
-    _, parameter = at.on_curve(name, own, (length, u))
+    _, parameter = at.on_curve(name, own, (length, u), "on")
     return Row(*Own.packed(parameter=parameter, **found), limits=ends_of(curve))
 
 
