@@ -63,8 +63,7 @@ def written(path, lines, needed, typo):
     text = [f"{'  ' * depth}{'-' if key == 0 else f'{key}:'}" for depth, key in enumerate(path)]
     text[2:2] = [f"    {line}" for line in lines]
     indent = "  " * len(path)
-    text += [f"{indent}{key}: 1" for key in needed]
-    text.append(f"{indent}{typo}: 1")
+    text += [f"{indent}{key}: 1" for key in (*needed, typo)]
     return "\n".join(text) + "\n", len(text)
 
 

@@ -321,3 +321,14 @@ def test_rope_hoist():
     assert r["lift"] == pytest.approx(0.5 * 9.81 / 11 * r.t**2, abs=1e-9)
     assert 2 * r["lift"] + r["fall"] == pytest.approx(0.0, abs=1e-10)
     assert r["line.tension"] == pytest.approx(16.053, abs=1e-3)
+
+
+def test_four_bar_with_a_link():
+    sets = ["output.channels=['*']", "solver.tolerance=1e-9"]
+    r = run(load(VALIDATION / "four_bar_links.yaml", sets))
+    d, a, b, c, t = 0.4, 0.1, 0.35, 0.25, 5 * r.t
+    diagonal = np.hypot(d - a * np.cos(t), a * np.sin(t))
+    inner = np.arccos((c**2 + diagonal**2 - b**2) / (2 * c * diagonal))
+    angle = np.unwrap(np.arctan2(a * np.sin(t), a * np.cos(t) - d)) - inner
+    assert r["swing"] == pytest.approx(angle - angle[0], abs=1e-8)
+    assert np.rad2deg(np.ptp(r["swing"])) == pytest.approx(47.39, abs=0.01)

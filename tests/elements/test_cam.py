@@ -277,6 +277,38 @@ def test_refused(what):
         built(tappet(follower, curve, at))
 
 
+def yoke(curve, half):
+    """A tappet with two faces, above its cam and below."""
+    under = (
+        f"under: {{type: cam, bodies: [wheel, tappet], at: [0, {-half}], face: [0, -1], "
+        f"curve: {{{curve}}}}}"
+    )
+    return tappet("face: [0, 1]", curve, [0, half]).replace("drives:", f"  {under}\ndrives:")
+
+
+def test_a_cam_between_two_faces():
+    """Of a circle one of them is more than enough; an ellipse would not turn."""
+    r = run(yoke(ROUND, A))
+    assert r.mechanism.redundant == ("under.contact",) and len(r.mechanism.not_unique) == 2
+    assert r["lift"] == pytest.approx(0.015 * np.sin(r["turn"]), abs=1e-12)
+    with pytest.raises(TrsimError, match="lobe, under allow 1 motions"):
+        run(yoke(ELLIPSE, B))
+
+
+def test_locked_and_let_go():
+    more = """
+events:
+  stop: {when: t, value: 0.5, do: {release: [motor], lock: [shaft]}}
+  go: {when: t, value: 0.8, do: {unlock: [shaft]}}
+"""
+    r = run(tappet("face: [0, 1]", ELLIPSE, [0, B], more=more))
+    t = r["turn"]
+    p = np.sqrt((A * np.sin(t)) ** 2 + (B * np.cos(t)) ** 2)
+    assert r["lift"] == pytest.approx(p - B, abs=1e-9)
+    assert t[60] == pytest.approx(4.5) and t[79] == pytest.approx(4.5)
+    assert abs(t[-1] - 4.5) > 1 and "way.acceleration" not in r.place
+
+
 def test_nothing_stops_it_by_the_place_of_a_face():
     more = "forces: {stop: {type: limit_stop, joint: lobe, upper: 0.1, stiffness: 1e5}}"
     with pytest.raises(TrsimError, match="no point that stays"):

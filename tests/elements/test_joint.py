@@ -22,8 +22,10 @@ FREE = {
     "planar": 3,
     "inline": 4,
     "parallel": 4,
+    "point_on_curve": 4,
     "inplane": 5,
     "link": 5,
+    "cam": 5,
 }
 IDEAL = [word for word, joint in JOINTS.items() if not joint.ideal]
 IN_THE_PLANE = {
@@ -72,9 +74,12 @@ joints: {{j: {{bodies: [ground, rod], {", ".join(keys)}}}}}
     assert (m.mobility, m.redundant) == (IN_THE_PLANE[word], ())
 
 
-@pytest.mark.parametrize("word", IDEAL)
+@pytest.mark.parametrize("word", [word for word in IDEAL if word != "cam"])
 def test_is_closed_as_drawn(word):
-    """Bodies turned away from the drawing's axes, both moving, far from the origin."""
+    """Bodies turned away from the drawing's axes, both moving, far from the origin.
+
+    The roller of a cam is drawn about where it is: test_cam.py.
+    """
     place = "" if word == "link" else "at: [300.2, 0.1, 0]"
     text = written(word).replace("at: [0.2, 0.1, 0]", place)
     m = built(f"planar: false\n{TURNED}joints: {{j: {{bodies: [left, right], {text}}}}}")

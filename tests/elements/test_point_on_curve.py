@@ -55,6 +55,7 @@ def test_a_cycloid_swings_alike_from_everywhere(method, s):
     begin = 4 * R * np.sin(s / 2)
     way = begin * np.cos(np.sqrt(G / (4 * R)) * r.t)
     assert r["way"] + begin == pytest.approx(way, abs=error)
+    assert r["wire.arc"] - 4 * R * np.sin(1.35) == pytest.approx(way, abs=error)
     assert r.outcome.status == "done" and energy_error(r) < 1e-5
 
 
@@ -147,7 +148,7 @@ def test_a_straight_slot_is_an_inline_joint(turn, swapped, far):
     assert r.mechanism.planar == i.mechanism.planar == (turn is not TILT)
     assert np.ptp(i["way"]) > 0.3 and np.ptp(i["turn"]) > 0.5
     error = 1e-8 * max(1.0, 0.1 * far)
-    for name in ("way", "way.rate", "turn", "block.position", "slot.reaction"):
+    for name in ("way", "way.rate", "way.acceleration", "turn", "block.position", "slot.reaction"):
         assert r[name] == pytest.approx(i[name], abs=error * (100 if "reac" in name else 10)), name
 
 
@@ -266,7 +267,10 @@ def test_a_sensor_tells_place_and_rate():
 poincare: {bottom: {when: way.rate, crosses: up, plot: [way, way.rate]}}
 events: {half: {when: way, value: -0.1, do: {record: true}, crosses: down}}
 """))  # fmt: skip
-    assert "way.acceleration" not in r.place and len(r.section("bottom")) == 1
+    assert len(r.section("bottom")) == 1
+    w2 = G / (4 * R)
+    way = r["way"] + 4 * R * np.sin(0.15)
+    assert r["way.acceleration"] == pytest.approx(-w2 * way, abs=1e-7)
     assert len(r.events)
 
 

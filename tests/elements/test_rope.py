@@ -313,6 +313,40 @@ def test_refused(what):
         built(hoist(through))
 
 
+def test_two_drums_are_a_belt():
+    """A rope from one onto the other, open and crossed, that holds both ways."""
+    text = """
+bodies:
+  one: {mass: 1, inertia: 0.002, at: [0, 0], angle: 1}
+  two: {mass: 1, inertia: 0.01, at: [0.4, 0.1], angle: -2}
+joints:
+  shaft: {type: revolute, bodies: [ground, one], at: [0, 0]}
+  axle: {type: revolute, bodies: [ground, two], at: [0.4, 0.1]}
+  line: %s
+sensors: {a: {joint: shaft}, b: {joint: axle}}
+forces: {push: {type: applied_load, body: one, direction: [0, 0, 1], torque: "3*cos(2*t)"}}
+solver: {end: 3, tolerance: 1e-10}
+"""
+    for crossed, turn in (("false", "left"), ("true", "right")):
+        rope = (
+            "{type: rope, through: [{body: one, at: [0, 0], radius: 0.05, turn: left}, "
+            f"{{body: two, at: [0.4, 0.1], radius: 0.12, turn: {turn}}}]}}"
+        )
+        belt = f"{{type: belt, joints: [shaft, axle], radii: [0.05, 0.12], crossed: {crossed}}}"
+        r, other = run(text % rope), run(text % belt)
+        assert np.ptp(other["a"]) > 20 * np.pi
+        for name in ("a", "b"):
+            assert r[name] == pytest.approx(other[name], abs=1e-6)
+
+
+def test_a_rope_that_is_cut():
+    cut = "events: {cut: {when: t, value: 0.2, do: {release: [line]}}}"
+    r = run(hoist(BLOCK, cut, end=0.5))
+    assert r["load.acceleration"][-1] == pytest.approx([0, -G, 0], abs=1e-9)
+    assert r["line.tension"][-1] == 0.0 and r["line.tension"][10] > 1.0
+    assert r.outcome.status == "done"
+
+
 def test_wheels_are_refused_in_space():
     text = hoist(BLOCK, "planar: false").replace("inertia: 0.01", "inertia: [0.01, 0.01, 0.01]")
     with pytest.raises(TrsimError, match="in the x-y plane only"):

@@ -41,7 +41,7 @@ class JointCoordinate(NamedTuple):
     axis: tuple[float, ...]  # and in world axes as drawn
     drawn: float  # value as drawn
     place: tuple[float, ...]  # the joint's point in world axes as drawn
-    curve: tuple[int, ...] = ()  # of an arc: offset in tab, entry of u
+    curve: tuple[int, ...] = ()  # of an arc: offset in tab, entry of u, 1: of a point on it
     other_i: tuple[float, ...] = ()  # and the y axis of its plane, where axis_i is the x axis
 
 
@@ -235,16 +235,16 @@ class Addresses:
         return self.coordinates[name]
 
     def on_curve(
-        self, name: str, own: Any, drawn: tuple[float, float], stops: bool = True
+        self, name: str, own: Any, drawn: tuple[float, float], point: str
     ) -> tuple[int, int]:
         """Entries of S with the place of a joint on its curve: its length, and u (laws/curves.py).
 
-        own: packed columns of the joint that say where; drawn: both as drawn; stops: whether what
-        pushes back along the curve acts on a point.
+        own: packed columns of the joint that say where; drawn: both as drawn; point: where the
+        point is that goes along the curve: "on" it, "beside" it, or "" where there is none.
         """
         spec, s, u = self.scenario.joints[name], self.entry(), self.wound(f"{name} u", drawn[1])
         where = (own.i, own.j, own.p_i, own.p_j, own.u_i, (0.0, 0.0, 0.0))
-        curve = (own.curve, u) if stops else ()
+        curve = (own.curve, u, int(point == "on")) if point else ()
         self.coordinates[name] = JointCoordinate(
             name, name, s, ARC, *where, drawn[0], tuple(spec.at), curve, own.w_i
         )

@@ -21,7 +21,6 @@ friction; a roller turns freely, and reaction is that on its centre, or on q.
 from math import sqrt
 from typing import Annotated, ClassVar
 
-import numpy as np
 from annotated_types import Gt
 from pydantic import model_validator
 
@@ -41,6 +40,7 @@ from trsim.elements.frames import (
     velocity,
 )
 from trsim.elements.on_curve import (
+    LENGTH,
     OFF,
     OnCurve,
     distance_row,
@@ -112,7 +112,7 @@ def pack(name, spec, at):
     found |= {"follower": ROLLER if spec.radius else FACE, "radius": spec.radius or 0.0}
     found["m_j"] = at.axes(found["j"], direction(spec.face)) if spec.face else (0.0, 0.0, 0.0)
     own = Own.of(Row(*Own.packed(parameter=-1, **found)))
-    _, parameter = at.on_curve(name, own, (length, u), stops=bool(spec.radius))
+    _, parameter = at.on_curve(name, own, (length, u), "beside" if spec.radius else "")
     return Row(*Own.packed(parameter=parameter, **found), limits=ends_of(curve))
 
 
@@ -137,6 +137,8 @@ def roller(curve, spec):
 
 def check_room(curve, side, radius):
     """Refuse a roller that meets another piece of the curve."""
+    import numpy as np
+
     step = max(1, len(curve.u) // 1000)
     places, tangents = curve.place[::step], curve.tangent[::step]
     for where, t in zip(places, tangents, strict=True):
@@ -154,6 +156,8 @@ def check_room(curve, side, radius):
 
 def face(curve, spec):
     """u and length where a flat face touches as drawn; its curve must bend one way."""
+    import numpy as np
+
     if not any(spec.face):
         raise ScenarioError("a normal must not be zero", "for example [0, 1, 0]", ("face",))
     plane = spec.curve.frame
@@ -171,7 +175,7 @@ def face(curve, spec):
         raise ScenarioError(
             f"a flat face needs a curve that bends one way, and this one is straight or hollow at "
             f"{named(curve.place[k])} of its coordinates",
-            "take a roller, or a convex curve",
+            "take a roller, or a convex curve; an open one through points needs `tangents`",
             ("curve",),
         )
     u = furthest(curve, m[:2])
@@ -284,6 +288,7 @@ def measure(t, scene, e, o):
     there = point(scene.X, own.i, plus(arm(scene.X, own.i, own.p_i), in_world(scene, own, c)))
     for k in range(3):
         out[o + 3 + k] = there[k]
+    out[o + 6] = scene.S[own.coordinate, 0]
 
 
 def doubts(name, spec, largest):
@@ -324,6 +329,7 @@ ELEMENT = Element(
         Channel("pull", "N", "by which the follower is held where it would lift off", least=0.0),
         Channel("curvature", "1/m", "of the curve where they touch, positive to its left"),
         Channel("place", "m", "where they touch, world axes", 3),
+        LENGTH,
     ),
     loads={"normal_force": "contact force"},
     judged=lambda _: True,

@@ -11,7 +11,6 @@ Coordinates are those of a plane of the body: an origin and two axes, as drawn.
 from math import inf
 from typing import Annotated, Any, ClassVar, NamedTuple
 
-import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import core_schema
 
@@ -183,6 +182,8 @@ class Sampled(NamedTuple):
     @property
     def size(self) -> float:
         """Diagonal of the box around it, m."""
+        import numpy as np
+
         return float(np.linalg.norm(np.ptp(self.place, axis=0)))
 
 
@@ -197,6 +198,8 @@ class _Raw(NamedTuple):
 
 def sampled(spec: Curve) -> Sampled:
     """The numbers of a curve.  Raises ScenarioError where it has no tangent, or no curvature."""
+    import numpy as np
+
     raw = by_formula(spec) if spec.x is not None else by_points(spec)
     pieces = len(raw.nodes) - 1
     count = SAMPLES if raw.functions else max(PER_PIECE, -(-LEAST // pieces)) * pieces
@@ -227,6 +230,7 @@ def named(place: Any) -> str:
 
 def by_points(spec: Curve) -> _Raw:
     """A spline through points."""
+    import numpy as np
     from scipy.interpolate import CubicSpline
 
     key = "points" if spec.points is not None else "table"
@@ -268,6 +272,8 @@ def by_points(spec: Curve) -> _Raw:
 
 def by_formula(spec: Curve) -> _Raw:
     """A curve by its expressions; closed where it says so, and then it must be."""
+    import numpy as np
+
     codes = []
     for key in ("x", "y"):
         try:
@@ -307,6 +313,8 @@ def by_formula(spec: Curve) -> _Raw:
 
 def measured(raw: _Raw) -> tuple[Any, Any]:
     """Nodes between which the length of the curve is as exact as numbers are, and length there."""
+    import numpy as np
+
     x = np.array([*(-a for a in PLACES[::-1]), *PLACES])
     w = np.array([*WEIGHTS[::-1], *WEIGHTS])
 
@@ -331,6 +339,8 @@ def measured(raw: _Raw) -> tuple[Any, Any]:
 
 def packed(raw: _Raw, scale: float, nodes: Any, lengths: Any) -> list[float]:
     """The numbers of laws/curves.py."""
+    import numpy as np
+
     n = len(nodes)
     head = [float(raw.closed), float(n), 0.0, 0.0, float(nodes[0]), 1.0 / scale]
     u = (nodes - nodes[0]) * scale
@@ -355,6 +365,8 @@ def nearest(curve: Sampled, p: Any) -> tuple[float, float]:
 
     Raises ScenarioError where another piece of the curve is as near: it would not tell which.
     """
+    import numpy as np
+
     away = np.linalg.norm(curve.place - np.array(p), axis=1)
     k = int(np.argmin(away))
     lower = (away <= np.roll(away, 1)) & (away <= np.roll(away, -1))
@@ -376,11 +388,15 @@ def nearest(curve: Sampled, p: Any) -> tuple[float, float]:
 
 def furthest(curve: Sampled, m: Any) -> float:
     """u of the place furthest along a direction among those sampled."""
+    import numpy as np
+
     return float(curve.u[int(np.argmax(curve.place @ np.array(m)))])
 
 
 def sharpest(curve: Sampled, side: float) -> tuple[float, Any]:
     """Least radius of curvature on a side (1 left, -1 right), and its place; inf where none."""
+    import numpy as np
+
     bend = side * curve.bend
     k = int(np.argmax(bend))
     return (1.0 / float(bend[k]) if bend[k] > 0.0 else inf), curve.place[k]

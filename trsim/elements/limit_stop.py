@@ -11,7 +11,6 @@ to d < 0, where no accepted step ever is.  The end of the ramp and the place fro
 would pull are corners, located like a touch.
 """
 
-from math import sqrt
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge, Gt
@@ -34,25 +33,23 @@ from trsim.elements.contract import (
 )
 from trsim.elements.coordinates import ANY, called, of_joint, split
 from trsim.elements.frames import (
-    Along,
     arm,
     at_both,
     carried,
     dot,
     minus,
     on_joint,
-    plus,
     points,
     push_apart,
     scaled,
-    separation,
     twist_apart,
 )
 from trsim.elements.frames import point as place
+from trsim.elements.on_curve import NO_CURVE, AlongCurve, along_curve, tangent
 from trsim.elements.rows import ARC, slides
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
-from trsim.kernels.columns import V3, f8, i8
+from trsim.kernels.columns import f8, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.contact import (
     ramped_beyond,
@@ -61,8 +58,6 @@ from trsim.laws.contact import (
     ramped_neighbour,
     ramped_on_branch,
 )
-from trsim.laws.curves import dot2
-from trsim.laws.curves import place as curve_at
 
 
 class BodyPoint(Spec):
@@ -143,14 +138,10 @@ KINDS = {"angle": ON_ANGLE, "stroke": ON_STROKE, ARC: ON_ARC}
 UNBOUNDED = 1e300
 
 
-class Own(Along):
-    """Of one instance; its axis is the normal of the wall, or that of the joint; of a curve that of
-    its x, and the other is that of its y."""
+class Own(AlongCurve):
+    """Of one instance; its axis is the normal of the wall, or that of the joint."""
 
     kind: i8  # ON_WALL, ON_ANGLE, ON_STROKE or ON_ARC
-    curve: i8  # in tab
-    parameter: i8  # entry of S with u, see laws/curves.py
-    other: V3
     stiffness: f8
     damping: f8
     ramp: f8
@@ -179,7 +170,7 @@ def pack(name, spec, at):
     x = at.coordinate(spec.joint, ANY)
     at.check_units(x.kind, LimitStop, WITH_UNITS, "forces", name)
     kind = KINDS[x.kind]
-    curve = NO_CURVE if kind != ON_ARC else along_curve(x)
+    curve = NO_CURVE if kind != ON_ARC else stopped(x)
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
     own = Own.packed(spec, **on_joint(x), kind=kind, lower=low, upper=high, **curve)
@@ -187,10 +178,7 @@ def pack(name, spec, at):
     return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 
 
-NO_CURVE = {"curve": -1, "parameter": -1, "other": (0.0, 0.0, 0.0)}
-
-
-def along_curve(x):
+def stopped(x):
     """The columns of a stop on a curve."""
     if not x.curve:
         raise ScenarioError(
@@ -198,20 +186,7 @@ def along_curve(x):
             "stop one of its bodies, by the joint that guides it",
             ("joint",),
         )
-    curve, parameter = x.curve
-    return {"curve": curve, "parameter": parameter, "other": x.other_i}
-
-
-@internal
-def tangent(scene, own, n):
-    """What the length along a curve grows by with its point, world axes; n: its x axis."""
-    X, i, j = scene.X, own.i, own.j
-    c, c1, c2 = curve_at(scene.tab, own.curve, scene.S[own.parameter, 0])
-    w = arm(X, i, own.other)
-    d = separation(X, i, arm(X, i, own.p_i), j, arm(X, j, own.p_j))
-    fall = dot2(c1, c1) - dot2(c2, (dot(n, d) - c[0], dot(w, d) - c[1]))
-    size = sqrt(dot2(c1, c1)) / fall
-    return plus(scaled(size * c1[0], n), scaled(size * c1[1], w))
+    return along_curve(x)
 
 
 @internal
@@ -220,7 +195,7 @@ def touch(scene, e):
     S, own = scene.S, Own(scene, e)
     n = arm(scene.X, own.i, own.axis)
     if own.kind == ON_ARC:
-        n = tangent(scene, own, n)
+        n = tangent(scene, own)
     if own.kind != ON_WALL:
         s = own.coordinate
         low, high = own.lower - S[s, 0], S[s, 0] - own.upper

@@ -17,20 +17,22 @@ the tangent turns by less than a right angle in it: solve/march/turns.py knows u
 from math import sqrt
 from typing import Any
 
-import numpy as np
-
-from trsim.elements.contract import Limit, compiled
+from trsim.elements.contract import Channel, Limit, compiled
 from trsim.elements.curve import Sampled, nearest
-from trsim.elements.frames import along_row, arm, carried, dot, plus, scaled
+from trsim.elements.frames import Along, along_row, arm, carried, dot, plus, scaled, separation
 from trsim.elements.joint import Joint
 from trsim.errors import ScenarioError
 from trsim.fields import direction
+from trsim.kernels.columns import V3
 from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, i8, void
 from trsim.laws.curves import dot2, footpoint, length, length_of, place, touch
 
 SIDE = 1e-3  # of the radius of a roller: a centre nearer to the curve is on no side
 OFF = 0.1  # of the size of a curve: how far beside it a point may be drawn
+
+
+LENGTH = Channel("arc", "m", "length along the curve from its beginning, over all turns")
 
 
 class OnCurve(Joint):
@@ -110,6 +112,8 @@ def write_settled(tab, line, out):
 def settled(curve: Sampled, u: float, p: Any, line: int) -> tuple[float, float, Any, Any]:
     """u near a given one, length, place and tangent, at the footpoint of a point or the touch of a
     line of normal p."""
+    import numpy as np
+
     out = np.array([u, *p, 0.0, 0.0, 0.0])
     write_settled(np.array(curve.numbers), line, out)
     found = out.tolist()
@@ -121,6 +125,44 @@ def ends_of(curve: Sampled) -> tuple[Limit, ...]:
     if curve.closed:
         return ()
     return (Limit("end", curve.length, "m", "jammed", "came to an end of its curve, of length"),)
+
+
+# --- what acts along a curve, or tells of it -------------------------------------------------
+
+
+class AlongCurve(Along):
+    """Of an element on a coordinate of a joint, which may be a length along a curve: its axis is
+    that of the coordinate, or the x axis of the curve."""
+
+    curve: i8  # in tab, or -1
+    parameter: i8  # entry of S with u
+    other: V3  # y axis of the curve
+
+
+NO_CURVE = {"curve": -1, "parameter": -1, "other": (0.0, 0.0, 0.0)}
+
+
+def along_curve(x: Any) -> dict[str, Any]:
+    """These columns, of the coordinate of a joint."""
+    curve, parameter, _ = x.curve
+    return {"curve": curve, "parameter": parameter, "other": x.other_i}
+
+
+def stays_on(x: Any) -> bool:
+    """Whether its point is on the curve itself, and not beside it."""
+    return bool(x.curve and x.curve[2])
+
+
+@internal
+def tangent(scene, own):
+    """By how much the length along the curve grows with the point, world axes."""
+    X, i, j = scene.X, own.i, own.j
+    c, c1, c2 = place(scene.tab, own.curve, scene.S[own.parameter, 0])
+    u, w = arm(X, i, own.axis), arm(X, i, own.other)
+    d = separation(X, i, arm(X, i, own.p_i), j, arm(X, j, own.p_j))
+    fall = dot2(c1, c1) - dot2(c2, (dot(u, d) - c[0], dot(w, d) - c[1]))
+    size = sqrt(dot2(c1, c1)) / fall
+    return plus(scaled(size * c1[0], u), scaled(size * c1[1], w))
 
 
 # --- kernels -----------------------------------------------------------------------------

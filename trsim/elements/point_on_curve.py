@@ -9,9 +9,10 @@ is closed.  reaction acts on body j at its point, across the curve: there is no 
 
 from typing import ClassVar
 
-from trsim.elements.contract import Element, Reach, Row, Turning, kernel
+from trsim.elements.contract import Element, Reach, Row, Turning, kernel, measured
 from trsim.elements.curve import Curve, sampled
 from trsim.elements.on_curve import (
+    LENGTH,
     OnCurve,
     distance_row,
     drawn_at,
@@ -54,7 +55,7 @@ def pack(name, spec, at):
     u, length, _ = drawn_at(curve, spec)
     found = frames(spec, at) | {"curve": stored(curve, spec, at)}
     own = Own.of(Row(*Own.packed(parameter=-1, **found)))
-    _, parameter = at.on_curve(name, own, (length, u))
+    _, parameter = at.on_curve(name, own, (length, u), "on")
     return Row(*Own.packed(parameter=parameter, **found), limits=ends_of(curve))
 
 
@@ -72,6 +73,11 @@ def coordinate(t, scene, e):
 def gap(t, scene, e):
     own = Own(scene, e)
     end_gap(scene, e, own, own.normal)
+
+
+@measured
+def measure(t, scene, e, o):
+    scene.out[o] = scene.S[Own(scene, e).coordinate, 0]
 
 
 def reach(row):
@@ -94,11 +100,17 @@ ELEMENT = Element(
     rows=tuple(row.name for row in ROWS),
     holds=tuple(row.holds for row in ROWS),
     coordinates=(ARC,),
+    channels=(LENGTH,),
     reach=reach,
     turning=turning,
     holds_twist=False,
     picture="bead",
-    kernels={"constraint": constraint_of(ROWS), "coordinate": coordinate, "gaps": gap},
+    kernels={
+        "constraint": constraint_of(ROWS),
+        "coordinate": coordinate,
+        "gaps": gap,
+        "measure": measure,
+    },
     example="""
 bodies:
   bead: {mass: 2 kg, inertia: 0.01 kg*m^2, at: [-0.5, 0.25]}

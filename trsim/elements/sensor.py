@@ -11,12 +11,12 @@ from typing import Annotated, ClassVar, Literal
 from trsim.elements.contract import Channel, Element, Row, kernel, measured
 from trsim.elements.coordinates import ANY
 from trsim.elements.frames import (
-    Along,
     arm,
     on_joint,
     stroke_acceleration,
     turn_acceleration,
 )
+from trsim.elements.on_curve import NO_CURVE, AlongCurve, along_curve, stays_on, tangent
 from trsim.elements.rows import ARC
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8, i8
@@ -36,14 +36,14 @@ class Sensor(Spec):
     at_start: Annotated[float, Unit("rad", "m")] = 0.0
 
 
-ALONG_CURVE = 2
+ON_CURVE, BESIDE_CURVE = 2, 3
 
 
-class Own(Along):
+class Own(AlongCurve):
     """Of one instance."""
 
     source: i8  # coordinate of the joint in S
-    turns: i8  # 1: it is an angle; ALONG_CURVE
+    turns: i8  # 1: it is an angle; ON_CURVE, BESIDE_CURVE
     sign: f8
     drawn: f8
     at_start: f8
@@ -53,18 +53,21 @@ def pack(name, spec, at):
     source = at.coordinate(spec.joint, ANY)
     at.check_unit(source.kind, "rad", "m", "sensors", name, "at_start")
     turns = source.kind == "angle"
-    kind = ALONG_CURVE if source.kind == ARC else int(turns)
+    kind, curve = int(turns), NO_CURVE
+    if source.kind == ARC:
+        kind = ON_CURVE if stays_on(source) else BESIDE_CURVE
+        curve = along_curve(source) if source.curve else NO_CURVE
     shown = on_joint(source) | {"coordinate": at.sensor(name)}
-    own = Own.packed(spec, **shown, source=source.entry, turns=kind, drawn=source.drawn)
-    # along a curve an acceleration would take the third derivative of the curve
-    shown = CHANNELS[:2] if source.kind == ARC else None
+    own = Own.packed(spec, **shown, source=source.entry, turns=kind, drawn=source.drawn, **curve)
+    # beside a curve an acceleration takes the third derivative of the curve
+    shown = CHANNELS[:2] if source.kind == ARC and not stays_on(source) else None
     return Row(*own, channels=shown, turns=turns, travel=source.kind)
 
 
 CHANNELS = (
     Channel("", "coordinate", "coordinate of the joint"),
     Channel("rate", "coordinate/s", "its rate"),
-    Channel("acceleration", "coordinate/s^2", "its acceleration; none along a curve"),
+    Channel("acceleration", "coordinate/s^2", "its acceleration; none of a cam"),
 )
 
 
@@ -82,7 +85,10 @@ def measure(t, scene, e, o):
     S, out = scene.S, scene.out
     own = Own(scene, e)
     out[o], out[o + 1] = S[own.coordinate, 0], S[own.coordinate, 1]
-    if own.turns == ALONG_CURVE:
+    if own.turns == BESIDE_CURVE:
+        return
+    if own.turns == ON_CURVE:
+        out[o + 2] = own.sign * stroke_acceleration(scene, e, tangent(scene, own))
         return
     axis = arm(scene.X, own.i, own.axis)
     if own.turns == 1:
