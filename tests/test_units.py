@@ -257,6 +257,8 @@ forces:
   spring: {type: spring_damper, bodies: [ground, block], points: [[-0.2, 1, 0], [0, 1, 0]],
            stiffness: 5}
   coil: {type: torsion_spring, joint: hinge, stiffness: 1}
+  own_coil: {type: joint_spring, joint: hinge, elastic: "0.1*stretch"}
+  own_spring: {type: joint_spring, joint: slide, damper: "0.1*rate"}
 events:
   held: {when: t, value: 0.09 s, do: {lock: [hinge, slide], record: true}}
 solver: {end: 0.1 s, tolerance: 1e-5}
@@ -286,6 +288,8 @@ EXPECTED = {
     "on_wall": STOP,
     "spring": {"force": "N", "length": "m"},
     "coil": {"torque": "N*m"},
+    "own_coil": {"force": "N*m", "elastic": "N*m", "stretch": "rad"},
+    "own_spring": {"force": "N", "elastic": "N", "stretch": "m"},
     "hinge.lock": TORQUE,
     "slide.lock": FORCE,
 }
@@ -312,6 +316,7 @@ FIXED = {
     "coupler": {"torque_1": "N*m", "force_2": "N"},
     "spring_damper": EXPECTED["spring"],
     "wrench": {"force": "N", "moment": "N*m"},
+    "spring": {"force": "N", "elastic": "N", "length": "m"},
     "bushing": {"force": "N", "moment": "N*m", "displacement": "m", "rotation_vector": "rad"},
     "torsion_spring": EXPECTED["coil"],
     "clearance_joint": {"normal_force": "N", "friction_force": "N", "contact_force": "N",
@@ -320,7 +325,8 @@ FIXED = {
                         "eccentricity_x_rate": "m/s", "eccentricity_y_rate": "m/s",
                         "force": "N"},
 }  # fmt: skip
-DEPENDS = {"drive", "sensor", "applied_load", "limit_stop"}  # seen in the scene above
+# seen in the scene above
+DEPENDS = {"drive", "sensor", "applied_load", "limit_stop", "joint_spring"}
 
 
 def test_units_of_the_elements():

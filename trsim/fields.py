@@ -240,6 +240,10 @@ class Column:
 
 
 class _FunctionUnit(Unit):
+    def __init__(self, *units: str, of: str = "") -> None:
+        super().__init__(*units)
+        self.of = of  # the one variable it may have; else t and sensors
+
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         def convert(value: Any, info: Any) -> Any:
             return self.convert(value, info.context or {})
@@ -253,6 +257,24 @@ class _FunctionUnit(Unit):
         parameters, names = context.get("parameters") or {}, context.get("names") or {}
         if isinstance(value, FunctionSpec):
             return value
+        if self.of:
+            return self._of_one(value, parameters)
+        return self._read(value, parameters, names)
+
+    def _of_one(self, value: Any, parameters: dict) -> FunctionSpec:
+        """A function of a variable of its own."""
+        if self.of in parameters:
+            what = f"`{self.of}` means what this is a function of, and is the name of a parameter"
+            raise ScenarioError(what, "Give the parameter another name.")
+        if isinstance(value, dict):
+            value = {"of": self.of, **value}
+        found = self._read(value, parameters, {})
+        if others := sorted((found.inputs | _of_t(found)) - {self.of}):
+            what = f"'{others[0]}' cannot stand here: this is a function of `{self.of}` alone"
+            raise ScenarioError(what, "What depends on others is an applied_load.")
+        return found
+
+    def _read(self, value: Any, parameters: dict, names: dict) -> FunctionSpec:
         if isinstance(value, dict):
             return self._table(value, parameters, names)
         if isinstance(value, str) and quantity(value, {"t", *parameters}) is None:
@@ -339,9 +361,18 @@ def _of_titles(head: list[str], own: Any) -> Any:
     return [text or other for text, other in zip(found, others, strict=True)]
 
 
-def Function(*units: str) -> Any:
-    """The type of a number that may vary with t and with sensors: see FunctionSpec."""
-    return Annotated[FunctionSpec, _FunctionUnit(*units)]
+def _of_t(f: FunctionSpec) -> set[str]:
+    """`t` where a function depends on it."""
+    used = {f.of} if f.kind == "table" else expressions.names(f.node) if f.node else set()
+    return used & {"t"}
+
+
+def Function(*units: str, of: str = "") -> Any:
+    """The type of a number that may vary with t and with sensors: see FunctionSpec.
+
+    of: with one variable of its own instead, which has this name.
+    """
+    return Annotated[FunctionSpec, _FunctionUnit(*units, of=of)]
 
 
 def _true_or_false(value: Any) -> Any:

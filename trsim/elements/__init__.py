@@ -40,8 +40,10 @@ ELEMENTS = {
     "wrench": "forces",
     "distributed_load": "forces",
     "spring_damper": "forces",
+    "spring": "forces",
     "bushing": "forces",
     "torsion_spring": "forces",
+    "joint_spring": "forces",
     "limit_stop": "forces",
     "sync_shaft": "forces",
 }

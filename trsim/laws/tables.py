@@ -233,3 +233,32 @@ def held_cubic(tab, o, n, x, held):
         f, f_x, _ = cubic(tab, o, n, n - 1, tab[o + n] - tab[o + n - 1])
         return outside(f, f_x, x - tab[o + n], tab[o])
     return cubic(tab, o, n, k, x - tab[o + k])
+
+
+@internal
+def table_integral(tab, o, n, x):
+    """The integral of the table at tab[o:] from its first point to x."""
+    first, last = tab[o + 1], tab[o + n]
+    if x < first:
+        f, f_x, _ = cubic(tab, o, n, 1, 0.0)
+        return beyond_end(f, f_x, x - first, tab[o])
+    total = 0.0
+    for k in range(1, n):
+        if x <= tab[o + k]:
+            break
+        s = min(x, tab[o + k + 1]) - tab[o + k]
+        p = o + 1 + n + 4 * (k - 1)
+        a, b, c, d = tab[p], tab[p + 1], tab[p + 2], tab[p + 3]
+        total += s * (a + s * (b / 2.0 + s * (c / 3.0 + s * d / 4.0)))
+    if x > last:
+        f, f_x, _ = cubic(tab, o, n, n - 1, last - tab[o + n - 1])
+        total += beyond_end(f, f_x, x - last, tab[o])
+    return total
+
+
+@internal
+def beyond_end(f, f_x, s, ends):
+    """The integral over a distance s beyond an end with value f and slope f_x."""
+    if ends == 2.0:
+        return math.nan
+    return s * f if ends == 0.0 else s * (f + 0.5 * f_x * s)
