@@ -196,6 +196,7 @@ class FunctionSpec:
     y: tuple[float, ...] = ()
     of: str = "t"  # the variable of a table: t or a sensor
     ends: Literal["hold", "extrapolate", "refuse"] = "hold"
+    interpolation: Literal["akima", "linear", "spline"] = "akima"
     units: tuple[str, str] = ("", "")  # of x and y as written; of a constant the second
 
     @property
@@ -212,8 +213,10 @@ class FunctionSpec:
         return frozenset(name.removesuffix(RATE) for name in self.inputs)
 
 
-ENDS = ("hold", "extrapolate", "refuse")
-TABLE_KEYS = ("table", "of", "ends", "units")
+OUTSIDE = {"hold": "hold", "extend": "extrapolate", "error": "refuse"}  # word -> what it means
+ENDS = ("hold", "extrapolate", "refuse")  # the same by the key `ends`
+INTERPOLATIONS = ("akima", "linear", "spline")
+TABLE_KEYS = ("table", "of", "interpolation", "outside", "ends", "units")
 RATE = ".rate"  # behind the name of a sensor
 VARIABLES = ("s", "m", "rad", "m/s", "rad/s")  # units of what a table may be a function of
 
@@ -288,19 +291,19 @@ class _FunctionUnit(Unit):
         return FunctionSpec("constant", number(value, self.units, parameters))
 
     def _table(self, given: dict, parameters: dict, names: dict) -> FunctionSpec:
-        """{table: [[x, y], ...], of: stroke, ends: hold, units: [mm, N]}
+        """{table: [[x, y], ...], of: stroke, outside: hold, units: [mm, N]}
 
         The units may also stand in a first row of titles, as in a file: ["s [mm]", "force [N]"].
         """
         check_keys(given, TABLE_KEYS)
         if "table" not in given:
             raise ScenarioError("field required: table", "A table is {table: [[x, y], ...]}.")
-        of, ends = given.get("of", "t"), given.get("ends", "hold")
+        of, ends, way = given.get("of", "t"), _outside(given), given.get("interpolation", "akima")
         if not isinstance(of, str):
             raise ScenarioError("must be t or the name of a sensor", path=("of",))
-        if ends not in ENDS:
-            what = f"must be one of {', '.join(ENDS)}, got {described(ends)}"
-            raise ScenarioError(what, path=("ends",))
+        if way not in INTERPOLATIONS:
+            what = f"must be one of {', '.join(INTERPOLATIONS)}, got {described(way)}"
+            raise ScenarioError(what, path=("interpolation",))
         rows, own, head = given["table"], given.get("units"), ()
         if isinstance(rows, list) and rows and _is_head(rows[0]):
             head, rows = rows[0], rows[1:]
@@ -309,7 +312,7 @@ class _FunctionUnit(Unit):
         x, y, units = _at("table", self._columns, rows, columns, parameters)
         first, dot, rest = of.partition(".")
         of = names.get(first, first) + dot + rest
-        return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units)
+        return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units, interpolation=way)
 
     def _own(self, units: Any) -> list[Column]:
         """The two columns with the units they have as a whole; without: each number its own."""
@@ -341,6 +344,19 @@ class _FunctionUnit(Unit):
             last = x
             points.append((x, y))
         return *zip(*points, strict=True), tuple(column.unit for column in columns)
+
+
+def _outside(given: dict) -> Any:
+    """What a table is outside of its rows, by its key `outside` or `ends`."""
+    if "outside" in given and "ends" in given:
+        raise ScenarioError("give `outside` or `ends`, which say the same", path=("ends",))
+    for key, words in (("outside", tuple(OUTSIDE)), ("ends", ENDS)):
+        if key in given and given[key] not in words:
+            what = f"must be one of {', '.join(words)}, got {described(given[key])}"
+            raise ScenarioError(what, path=(key,))
+    if "outside" in given:
+        return OUTSIDE[given["outside"]]
+    return given.get("ends", "hold")
 
 
 def _is_head(row: Any) -> bool:

@@ -18,7 +18,7 @@ forces:
 """
 LAWS = {
     "cubic": 'elastic: "300*stretch + 50*stretch**3", free_length: 0.2',
-    "table": "elastic: {table: [[-1, -20], [0, 3], [1, 40], [2, 50]], ends: extrapolate}",
+    "table": "elastic: {table: [[-1, -20], [0, 3], [1, 40], [2, 50]], outside: extend}",
     "corner": 'elastic: "100*max(stretch - 0.3, 0)", damper: "5*rate*abs(rate)"',
     "one way": 'elastic: "100*stretch", damper: "7*rate", damper_acts: extension',
     "rope": 'elastic: "100*stretch", damper: "2*rate", tension_only: true, free_length: 0.1',

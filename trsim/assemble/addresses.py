@@ -285,7 +285,7 @@ class Addresses:
             self.timed = self.timed or variable < 0
             self.sensed = self.sensed or variable >= 0
             self.notes += [] if free else overshoot(spec, path)
-            code = functions.table(spec.x, spec.y, variable, spec.ends)
+            code = functions.table(spec.x, spec.y, variable, spec.ends, spec.interpolation)
         else:
             self.timed = self.timed or "t" in names(spec.node)
             used = spec.inputs

@@ -21,7 +21,6 @@ class JointSpring(Sprung):
     joint        joint whose angle or stroke it pulls back; `shaft.angle` of one with several
     elastic      what pulls back: a function of `stretch`, the coordinate less as drawn and `free`
     damper       the same: a function of `rate`, with its sign
-    damper_acts  both ways, or in `extension` (the coordinate grows) or `compression` only
     free         coordinate, counted from the drawing, at which the stretch is 0
     """
 
@@ -103,7 +102,7 @@ joints:
 forces:
   buffer: {type: joint_spring, joint: slide, damper: "30*rate*abs(rate)",
            elastic: {table: [[-0.1 m, -50 N], [0 m, 0 N], [50 mm, 20 N], [0.1 m, 80 N]],
-                     ends: extrapolate}}
+                     outside: extend}}
 solver: {end: 1 s}
 """,
 )

@@ -27,7 +27,6 @@ class Spring(Sprung):
     points        on the first and on the second body, as drawn
     elastic       tension: a function of `stretch`
     damper        tension: a function of `rate`, with its sign
-    damper_acts   both ways, or in `extension` or `compression` only
     free_length   length at which the stretch is 0; the distance as drawn unless given
     tension_only  it never pushes, and is slack below its free length
     """
