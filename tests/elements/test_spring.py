@@ -243,3 +243,66 @@ def test_a_parameter_must_not_take_the_name_of_the_stretch():
     text = LINE.format(law='elastic: "3*stretch"', v=0, end=1, method="")
     with pytest.raises(ScenarioError, match="`stretch` means what this is a function of"):
         built("parameters: {stretch: 2}\n" + text)
+
+
+def chain(n, method):
+    """Rods side by side on springs with laws of their own, and a rope from their end to itself as
+    drawn, a line without length that has no direction at the start."""
+    lines = ["bodies:"]
+    lines += [f"  b{k}: {{mass: 1, inertia: 0.02, at: [{k + 0.5}, 0]}}" for k in range(n)]
+    lines += ["joints:"]
+    before = ["ground", *(f"b{k}" for k in range(n))]
+    lines += [
+        f"  j{k}: {{type: revolute, bodies: [{before[k]}, b{k}], at: [{k}, 0]}}" for k in range(n)
+    ]
+    law = 'elastic: "5*stretch + 40*stretch**3", damper: "0.5*rate + 0.1*rate*abs(rate)"'
+    lines += ["forces:"]
+    lines += [
+        f"  s{k}: {{type: joint_spring, joint: j{k}, {law}, damper_acts: extension}}"
+        for k in range(n)
+    ]
+    lines += [
+        f"  rope: {{type: spring, bodies: [ground, b{n - 1}], points: [[{n}, 0], [{n}, 0]],",
+        '         free_length: 3, elastic: "200*stretch", damper: "3*rate", tension_only: true}',
+        "  drag: {type: applied_load, body: b5, direction: [0, 0, 1],",
+        '         torque: "-0.2*bend.rate*abs(bend.rate)"}',
+        "sensors: {bend: {joint: j5}}",
+        "gravity: [0, -9.81, 0]",
+        f"solver: {{end: 2, tolerance: 1e-7, {method}}}",
+        "output: {every: 0.1}",
+    ]
+    return "\n".join(lines)
+
+
+def test_a_chain_with_many_laws_is_the_same_by_every_method():
+    methods = ("method: dop853", "method: radau, formulation: ggl",
+               "method: radau, formulation: index1")  # fmt: skip
+    runs = [run(chain(12, method)) for method in methods]
+    for r in runs:
+        assert np.abs(r["energy.residual"]).max() < 1e-5 * 1000
+        assert int(r.outcome.record.unproved) == 0
+        np.testing.assert_allclose(r["b11.position"], runs[0]["b11.position"], atol=1e-4)
+    assert runs[0]["rope.force"].max() > 10.0
+    assert runs[0].outcome.record.steps < 1000
+
+
+def test_on_a_flexible_bar():
+    """The tip of a soft bar on a hardening rope, and a load that follows its middle."""
+    text = """
+bodies:
+  bar: {type: ancf_cable, start: [0, 0], end: [1, 0], elements: 4, section: {diameter: 10 mm},
+        youngs_modulus: 2 GPa, density: 2000}
+joints: {clamp: {type: fixed, bodies: [ground, bar], at: [0, 0]}}
+forces:
+  tip: {type: spring, bodies: [ground, bar], points: [[1, 0.5], [1, 0]], free_length: 0.3,
+        elastic: "30*stretch + 100*stretch**3", damper: "rate*abs(rate)", tension_only: true}
+  push: {type: wrench, body: bar, at: [0.5, 0], frame: bar, force: [0, "-2*smoothstep(t/0.2)"],
+         moment: [0, 0, 0.1]}
+solver: {end: 0.1, tolerance: 1e-6, method: METHOD}
+output: {every: 0.01}
+"""
+    one, other = (run(text.replace("METHOD", m)) for m in ("dop853", "radau"))
+    np.testing.assert_allclose(one["bar.tip"], other["bar.tip"], atol=1e-6)
+    for r in (one, other):
+        assert np.abs(r["energy.residual"]).max() < 1e-6
+    assert one["tip.force"][0] == pytest.approx(30 * 0.2 + 100 * 0.2**3, rel=1e-9)

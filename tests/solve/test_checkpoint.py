@@ -31,6 +31,12 @@ PULSES = (
     "force: 500*(sin(3e4*t) > 0.9)}}",
     "drives.motor.velocity=abs(600 - 1e6*t)",
 )
+RATES = (
+    "forces={gate: {type: applied_load, body: slider, direction: [1, 0], "
+    "force: '30*max(stroke.rate, -1) - 40*min(crank_angle.rate, 599.9)'}, "
+    "coil: {type: spring, bodies: [ground, slider], points: [[-0.3, 0], [0, 0]], "
+    "elastic: '1e5*max(stretch, 0)', damper: 20*rate, damper_acts: compression}}",
+)
 KINDS = [
     (),
     SECTIONS,
@@ -42,6 +48,7 @@ KINDS = [
     (*RK4, *EVENTS, "solver.end=1.2ms"),
     (*EVENTS, *SECTIONS),
     PULSES,
+    RATES,
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")
 TABLES = ("rows", "steps", "events", "recorded", "points")
@@ -76,7 +83,7 @@ def assert_same(found, outcome, expected, unbroken):
     assert statistics[0] == statistics[1]
 
 
-@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT, (*RATES, "solver.method=radau")], ids=named)
 def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     unbroken, outcome = blocks(sets)
     monkeypatch.setattr(module, "VISIT", 5)
@@ -88,7 +95,7 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
 
-@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS, RATES], ids=named)
 def test_nothing_but_the_record_lasts(sets, monkeypatch):
     """Workspace as new and buffers full of NaN at every step: they carry nothing along."""
     unbroken, outcome = blocks(sets)
