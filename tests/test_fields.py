@@ -214,6 +214,21 @@ def problem(**given):
         ({"force": {"table": [[0, 1], [1, None]]}}, ("table", 1), "a row is two numbers"),
         ({"force": {"table": [[0, 1], [1, 2]], "of": 3}}, ("of",), "must be t or the name"),
         ({"force": {"table": [[0, 1], [1, 2]], "ends": "x"}}, ("ends",), "must be one of hold"),
+        (
+            {"force": {"table": [[0, 1], [1, 2]], "outside": "x"}},
+            ("outside",),
+            "must be one of hold",
+        ),
+        (
+            {"force": {"table": [[0, 1], [1, 2]], "outside": "hold", "ends": "hold"}},
+            ("ends",),
+            "give `outside` or `ends`",
+        ),
+        (
+            {"force": {"table": [[0, 1], [1, 2]], "interpolation": "x"}},
+            ("interpolation",),
+            "must be one of akima, linear, spline",
+        ),
         ({"force": {"table": [[0, 1], [1, 2]], "units": ["mm", "kg"]}}, ("units", 1), "wrong unit"),
         ({"force": {"table": [[0, 1], [1, 2]], "units": "mm"}}, ("units",), "must be two units"),
         ({"force": {"table": [[0, 1], [1, 2]], "end": "hold"}}, ("end",), "unknown key 'end'"),
@@ -243,6 +258,10 @@ def test_table():
     table = example(force={"table": [[0, 1], [20, 2]], "units": ["mm", "kN"], "ends": "refuse"})
     assert (table.force.x, table.force.y) == ((0.0, 0.02), (1000.0, 2000.0))
     assert table.force.of == "t"
+    for word, ends in (("hold", "hold"), ("extend", "extrapolate"), ("error", "refuse")):
+        given = {"table": [[0, 1], [20, 2]], "outside": word, "interpolation": "spline"}
+        table = example(force=given).force
+        assert (table.ends, table.interpolation) == (ends, "spline")
 
 
 def test_json_schema_takes_quantities():

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
 from scipy.special import ellipk
 
 from trsim.scenario.load import load
@@ -332,3 +334,51 @@ def test_four_bar_with_a_link():
     angle = np.unwrap(np.arctan2(a * np.sin(t), a * np.cos(t) - d)) - inner
     assert r["swing"] == pytest.approx(angle - angle[0], abs=1e-8)
     assert np.rad2deg(np.ptp(r["swing"])) == pytest.approx(47.39, abs=0.01)
+
+
+def test_a_door_opened_by_an_overpressure_that_fades():
+    r = run(load(VALIDATION / "overpressure_door.yaml"))
+    after = r["opening"] > 0.3
+    assert after.any() and r["opening.rate"][after] == pytest.approx(np.sqrt(60.0), rel=1e-8)
+    # work and force wherever it is: x - x^3 + x^4/2 of 720 J, with x the part of the way
+    x = np.clip(r["opening"] / 0.3, 0.0, 1.0)
+    assert r["energy.work.loads"] == pytest.approx(720.0 * (x - x**3 + 0.5 * x**4), abs=1e-6)
+    size = np.linalg.norm(r["pressure.force"], axis=1)
+    assert size == pytest.approx(6000.0 * (1.0 - x * x * (3.0 - 2.0 * x)), abs=1e-4)
+    assert energy_error(r) < 1e-8
+
+
+def test_a_door_slowed_down_by_the_air():
+    r = run(load(VALIDATION / "air_damped_door.yaml"))
+    decay = np.exp(-r.t / 0.4)
+    assert r["opening.rate"] == pytest.approx(8.0 * decay, abs=1e-7)
+    assert r["opening"] == pytest.approx(3.2 * (1.0 - decay), abs=1e-7)
+    assert r["energy.work.dampers"] == pytest.approx(-384.0 * (1.0 - decay**2), abs=1e-5)
+    assert np.all(np.diff(r["energy.work.dampers"]) < 0.0)  # its power is never positive
+    # the same as a load: only the book differs
+    as_load = "{type: applied_load, body: door, direction: [0, 0, 1], torque: '-c*opening.rate/l'}"
+    other = run(load(VALIDATION / "air_damped_door.yaml", [f"forces.air={as_load}"]))
+    assert other["opening"] == pytest.approx(r["opening"], abs=1e-7)
+    assert other["energy.work.loads"] == pytest.approx(r["energy.work.dampers"], abs=1e-5)
+
+
+def test_a_bungee_jump():
+    r = run(load(VALIDATION / "bungee_jump.yaml"))
+    deepest = brentq(lambda s: 75 * s * s + 0.5 * s**4 - 80 * 9.81 * (12 + s), 1.0, 30.0)
+    assert deepest == pytest.approx(11.4441, abs=1e-4)
+    lowest = r.outcome.peaks[r.place["rope.length"][0], 0]
+    assert lowest == pytest.approx(12.0 + deepest, rel=1e-8)
+    assert r["rope.force"].min() == 0.0
+    # down in the fall and the time of both halves under the rope; v from the energy
+    fall = np.sqrt(2 * 12 / 9.81)
+
+    def slowness(u):  # s = deepest (1 - u^2): no pole at the turn
+        s = deepest * (1 - u * u)
+        v2 = 2 * 9.81 * (12 + s) - (150 * s * s + s**4) / 80
+        return 2 * u * deepest / np.sqrt(v2)
+
+    back = 2 * (fall + quad(slowness, 1e-9, 1.0)[0])
+    assert back == pytest.approx(4.92, abs=0.001)
+    k = int(np.argmin(np.abs(r.t - back)))
+    assert r["height"][k] == pytest.approx(-4.905 * (r.t[k] - back) ** 2, abs=1e-5)
+    assert energy_error(r) < 1e-8

@@ -261,6 +261,8 @@ forces:
                  friction: {law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1 mm/s}}
   rubs_sliding: {type: joint_friction, joint: driven_slide, constant: 3 N,
                  friction: {law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1 mm/s}}
+  own_coil: {type: joint_spring, joint: hinge, elastic: "0.1*stretch"}
+  own_spring: {type: joint_spring, joint: slide, damper: "0.1*rate"}
 events:
   held: {when: t, value: 0.09 s, do: {lock: [hinge, slide], record: true}}
 solver: {end: 0.1 s, tolerance: 1e-5}
@@ -292,6 +294,8 @@ EXPECTED = {
     "coil": {"torque": "N*m"},
     "rubs_turning": {"force": "N*m", "normal_force": "N", "sliding_speed": "m/s"},
     "rubs_sliding": {"force": "N", "normal_force": "N", "sliding_speed": "m/s"},
+    "own_coil": {"force": "N*m", "elastic": "N*m", "stretch": "rad"},
+    "own_spring": {"force": "N", "elastic": "N", "stretch": "m"},
     "hinge.lock": TORQUE,
     "slide.lock": FORCE,
 }
@@ -326,6 +330,7 @@ FIXED = {
     "coupler": {"torque_1": "N*m", "force_2": "N"},
     "spring_damper": EXPECTED["spring"],
     "wrench": {"force": "N", "moment": "N*m"},
+    "spring": {"force": "N", "elastic": "N", "length": "m"},
     "bushing": {"force": "N", "moment": "N*m", "displacement": "m", "rotation_vector": "rad"},
     "torsion_spring": EXPECTED["coil"],
     "clearance_joint": {"normal_force": "N", "friction_force": "N", "contact_force": "N",
@@ -334,13 +339,8 @@ FIXED = {
                         "eccentricity_x_rate": "m/s", "eccentricity_y_rate": "m/s",
                         "force": "N"},
 }  # fmt: skip
-DEPENDS = {
-    "drive",
-    "sensor",
-    "applied_load",
-    "limit_stop",
-    "joint_friction",
-}  # seen in the scene above
+# seen in the scene above
+DEPENDS = {"drive", "sensor", "applied_load", "limit_stop", "joint_friction", "joint_spring"}
 
 
 def test_units_of_the_elements():

@@ -196,6 +196,7 @@ class FunctionSpec:
     y: tuple[float, ...] = ()
     of: str = "t"  # the variable of a table: t or a sensor
     ends: Literal["hold", "extrapolate", "refuse"] = "hold"
+    interpolation: Literal["akima", "linear", "spline"] = "akima"
     units: tuple[str, str] = ("", "")  # of x and y as written; of a constant the second
 
     def scaled(self, factor: float) -> "FunctionSpec":
@@ -221,8 +222,10 @@ class FunctionSpec:
         return frozenset(name.removesuffix(RATE) for name in self.inputs)
 
 
-ENDS = ("hold", "extrapolate", "refuse")
-TABLE_KEYS = ("table", "of", "ends", "units")
+OUTSIDE = {"hold": "hold", "extend": "extrapolate", "error": "refuse"}  # word -> what it means
+ENDS = ("hold", "extrapolate", "refuse")  # the same by the key `ends`
+INTERPOLATIONS = ("akima", "linear", "spline")
+TABLE_KEYS = ("table", "of", "interpolation", "outside", "ends", "units")
 RATE = ".rate"  # behind the name of a sensor
 VARIABLES = ("s", "m", "rad", "m/s", "rad/s")  # units of what a table may be a function of
 
@@ -249,6 +252,10 @@ class Column:
 
 
 class _FunctionUnit(Unit):
+    def __init__(self, *units: str, of: str = "") -> None:
+        super().__init__(*units)
+        self.of = of  # the one variable it may have; else t and sensors
+
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         def convert(value: Any, info: Any) -> Any:
             return self.convert(value, info.context or {})
@@ -262,6 +269,24 @@ class _FunctionUnit(Unit):
         parameters, names = context.get("parameters") or {}, context.get("names") or {}
         if isinstance(value, FunctionSpec):
             return value
+        if self.of:
+            return self._of_one(value, parameters)
+        return self._read(value, parameters, names)
+
+    def _of_one(self, value: Any, parameters: dict) -> FunctionSpec:
+        """A function of a variable of its own."""
+        if self.of in parameters:
+            what = f"`{self.of}` means what this is a function of, and is the name of a parameter"
+            raise ScenarioError(what, "Give the parameter another name.")
+        if isinstance(value, dict):
+            value = {"of": self.of, **value}
+        found = self._read(value, parameters, {})
+        if others := sorted((found.inputs | _of_t(found)) - {self.of}):
+            what = f"'{others[0]}' cannot stand here: this is a function of `{self.of}` alone"
+            raise ScenarioError(what, "What depends on others is an applied_load.")
+        return found
+
+    def _read(self, value: Any, parameters: dict, names: dict) -> FunctionSpec:
         if isinstance(value, dict):
             return self._table(value, parameters, names)
         if isinstance(value, str) and quantity(value, {"t", *parameters}) is None:
@@ -274,19 +299,19 @@ class _FunctionUnit(Unit):
         return FunctionSpec("constant", number(value, self.units, parameters))
 
     def _table(self, given: dict, parameters: dict, names: dict) -> FunctionSpec:
-        """{table: [[x, y], ...], of: stroke, ends: hold, units: [mm, N]}
+        """{table: [[x, y], ...], of: stroke, outside: hold, units: [mm, N]}
 
         The units may also stand in a first row of titles, as in a file: ["s [mm]", "force [N]"].
         """
         check_keys(given, TABLE_KEYS)
         if "table" not in given:
             raise ScenarioError("field required: table", "A table is {table: [[x, y], ...]}.")
-        of, ends = given.get("of", "t"), given.get("ends", "hold")
+        of, ends, way = given.get("of", "t"), _outside(given), given.get("interpolation", "akima")
         if not isinstance(of, str):
             raise ScenarioError("must be t or the name of a sensor", path=("of",))
-        if ends not in ENDS:
-            what = f"must be one of {', '.join(ENDS)}, got {described(ends)}"
-            raise ScenarioError(what, path=("ends",))
+        if way not in INTERPOLATIONS:
+            what = f"must be one of {', '.join(INTERPOLATIONS)}, got {described(way)}"
+            raise ScenarioError(what, path=("interpolation",))
         rows, own, head = given["table"], given.get("units"), ()
         if isinstance(rows, list) and rows and _is_head(rows[0]):
             head, rows = rows[0], rows[1:]
@@ -295,7 +320,7 @@ class _FunctionUnit(Unit):
         x, y, units = _at("table", self._columns, rows, columns, parameters)
         first, dot, rest = of.partition(".")
         of = names.get(first, first) + dot + rest
-        return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units)
+        return FunctionSpec("table", x=x, y=y, of=of, ends=ends, units=units, interpolation=way)
 
     def _own(self, units: Any) -> list[Column]:
         """The two columns with the units they have as a whole; without: each number its own."""
@@ -329,6 +354,19 @@ class _FunctionUnit(Unit):
         return *zip(*points, strict=True), tuple(column.unit for column in columns)
 
 
+def _outside(given: dict) -> Any:
+    """What a table is outside of its rows, by its key `outside` or `ends`."""
+    if "outside" in given and "ends" in given:
+        raise ScenarioError("give `outside` or `ends`, which say the same", path=("ends",))
+    for key, words in (("outside", tuple(OUTSIDE)), ("ends", ENDS)):
+        if key in given and given[key] not in words:
+            what = f"must be one of {', '.join(words)}, got {described(given[key])}"
+            raise ScenarioError(what, path=(key,))
+    if "outside" in given:
+        return OUTSIDE[given["outside"]]
+    return given.get("ends", "hold")
+
+
 def _is_head(row: Any) -> bool:
     """Whether a row of a table is one of titles: two texts, one of which ends with a bracket."""
     if not isinstance(row, list) or [type(item) for item in row] != [str, str]:
@@ -347,9 +385,18 @@ def _of_titles(head: list[str], own: Any) -> Any:
     return [text or other for text, other in zip(found, others, strict=True)]
 
 
-def Function(*units: str) -> Any:
-    """The type of a number that may vary with t and with sensors: see FunctionSpec."""
-    return Annotated[FunctionSpec, _FunctionUnit(*units)]
+def _of_t(f: FunctionSpec) -> set[str]:
+    """`t` where a function depends on it."""
+    used = {f.of} if f.kind == "table" else expressions.names(f.node) if f.node else set()
+    return used & {"t"}
+
+
+def Function(*units: str, of: str = "") -> Any:
+    """The type of a number that may vary with t and with sensors: see FunctionSpec.
+
+    of: with one variable of its own instead, which has this name.
+    """
+    return Annotated[FunctionSpec, _FunctionUnit(*units, of=of)]
 
 
 def _true_or_false(value: Any) -> Any:

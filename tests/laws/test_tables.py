@@ -5,26 +5,27 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.interpolate import Akima1DInterpolator
+from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
 from trsim.expressions import parse
 from trsim.laws.functions import expression, motion
 from trsim.laws.tables import (
     akima,
     akima_coefficients,
-    akima_table,
+    cubics,
     quintic,
     quintic_rates,
     smoothstep,
     smoothstep_rates,
+    spline_coefficients,
 )
 
 VECTORS = json.loads((Path(__file__).parents[1] / "data" / "step_and_akima.json").read_text())
 
 
-def lookup(x, y, at, ends="hold"):
+def lookup(x, y, at, ends="hold", interpolation="akima"):
     """Rows of f, f', f'' at the places `at`, from a table that does not start at 0."""
-    tab = np.array([7.0, 7.0, *akima_table(x, y, ends)])
+    tab = np.array([7.0, 7.0, *cubics(x, y, ends, interpolation)])
     return np.array([akima(tab, 2, len(x), s) for s in at])
 
 
@@ -136,9 +137,43 @@ def test_ends():
 )
 def test_bad_tables_are_refused_with_their_row(x, y, message):
     with pytest.raises(ValueError, match=message):
-        akima_table(x, y)
+        cubics(x, y)
 
 
 def test_unknown_end_is_refused():
     with pytest.raises(ValueError, match="Known: hold, extrapolate, refuse"):
-        akima_table([0, 1], [0, 1], "wrap")
+        cubics([0, 1], [0, 1], "wrap")
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5, 6, 40, 800])
+def test_a_spline_is_the_one_without_knots_next_to_its_ends(n):
+    rng = np.random.default_rng(n)
+    x, y = np.cumsum(rng.uniform(0.1, 2.0, n)), rng.normal(size=n)
+    expected = CubicSpline(x, y)
+    scale = np.abs(expected.c).max()
+    found = spline_coefficients(x, y)
+    assert np.abs(found - expected.c[::-1].T).max() < 1e-11 * scale
+    at = rng.uniform(x[0], x[-1], 50)
+    for order in (0, 1, 2):
+        rows = lookup(x, y, at, interpolation="spline")[:, order]
+        np.testing.assert_allclose(rows, expected(at, order), atol=1e-11 * scale)
+
+
+def test_a_spline_follows_a_cubic_and_goes_straight_on():
+    x = np.array([0.0, 0.3, 1.0, 1.1, 2.0])
+    y = 1 - 2 * x + x**2 - 0.5 * x**3
+    at = np.linspace(0, 2, 9)
+    rows = lookup(x, y, at, interpolation="spline")
+    np.testing.assert_allclose(rows[:, 0], 1 - 2 * at + at**2 - 0.5 * at**3, atol=1e-13)
+    np.testing.assert_allclose(rows[:, 2], 2 - 3 * at, atol=1e-12)
+    [beyond] = lookup(x, y, [3.0], "extrapolate", "spline")
+    np.testing.assert_allclose(beyond, [-3 + 1 * (-2 + 4 - 6), -4, 0], atol=1e-12)
+
+
+def test_straight_lines():
+    x, y = [0.0, 1.0, 3.0], [2.0, 4.0, 3.0]
+    rows = lookup(x, y, [0.25, 2.0, 4.0, -1.0], "extrapolate", "linear")
+    expected = [[2.5, 2, 0], [3.5, -0.5, 0], [2.5, -0.5, 0], [0, 2, 0]]
+    np.testing.assert_allclose(rows, expected, atol=1e-15)
+    with pytest.raises(ValueError, match="Known: akima, linear, spline"):
+        cubics(x, y, "hold", "quadratic")

@@ -35,6 +35,12 @@ PULSES = (
     "force: 500*(sin(3e4*t) > 0.9)}}",
     "drives.motor.velocity=abs(600 - 1e6*t)",
 )
+RATES = (
+    "forces={gate: {type: applied_load, body: slider, direction: [1, 0], "
+    "force: '30*max(stroke.rate, -1) - 40*min(crank_angle.rate, 599.9)'}, "
+    "coil: {type: spring, bodies: [ground, slider], points: [[-0.3, 0], [0, 0]], "
+    "elastic: '1e5*max(stretch, 0)', damper: 20*rate, damper_acts: compression}}",
+)
 KINDS = [
     (),
     SECTIONS,
@@ -47,6 +53,7 @@ KINDS = [
     (*EVENTS, *SECTIONS),
     HEARD,
     PULSES,
+    RATES,
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")
 TABLES = ("rows", "steps", "events", "recorded", "points")
@@ -81,7 +88,7 @@ def assert_same(found, outcome, expected, unbroken):
     assert statistics[0] == statistics[1]
 
 
-@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT, (*RATES, "solver.method=radau")], ids=named)
 def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     unbroken, outcome = blocks(sets)
     monkeypatch.setattr(module, "VISIT", 5)
@@ -129,7 +136,7 @@ def test_places_on_curves_and_turns_of_drums(text, sets, monkeypatch):
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
 
-@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS, RATES], ids=named)
 def test_nothing_but_the_record_lasts(sets, monkeypatch):
     """Workspace as new and buffers full of NaN at every step: they carry nothing along."""
     unbroken, outcome = blocks(sets)

@@ -451,3 +451,48 @@ def test_an_arc_beyond_its_end_ends_the_run():
     r = run(text.format('"1 + 0*asin(x)"', 10, "method: dop853"), fails=True)
     assert "forces.kick" in r.outcome.reason and "asin or acos beyond 1" in r.outcome.reason
     assert r.outcome.record.t == pytest.approx(2, abs=1e-4)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_tables_by_straight_lines_and_by_splines(method):
+    """The impulse of a table of t is its integral, whatever stands outside of it."""
+    from scipy.interpolate import CubicSpline
+
+    x, y = [1, 2, 2.001, 4, 7], [0, 5, -5, -4, 3]
+    rows = [list(p) for p in zip(x, y, strict=True)]
+    spline = CubicSpline([1, 2, 4, 7], [0, 3, 4, 3])
+    smooth = float(spline.integrate(1, 7))
+    start, end = float(spline(1, 1)), float(spline(7, 1))
+    cases = {
+        f"{{table: {rows}, interpolation: linear}}": np.trapezoid(y, x) + 3 * 3,
+        f"{{table: {rows}, interpolation: linear, outside: extend}}":
+            np.trapezoid(y, x) - 0.5 * 5 + 3 * 3 + 0.5 * 9 * 7 / 3,
+        "{table: [[1, 0], [2, 3], [4, 4], [7, 3]], interpolation: spline, outside: extend}":
+            smooth - 0.5 * start + 3 * 3 + 0.5 * 9 * end,
+    }  # fmt: skip
+    for text, impulse in cases.items():
+        r = run(PUSHED.format(text, 10, method))
+        accuracy = 1e-3 if "alpha" in method else 1e-8
+        assert speed(r) == pytest.approx(impulse / 2, rel=accuracy)
+
+
+def test_a_table_that_ends_ends_the_run_where_it_is_told_to():
+    text = PUSHED.replace("forces:", "sensors: {{x: {{joint: guide}}}}\nforces:")
+    table = "{table: [[0, 1], [0.5, 1], [1, 1]], of: x, interpolation: linear, outside: error}"
+    r = run(text.format(table, 10, "method: dop853"), fails=True)
+    assert "forces.kick" in r.outcome.reason and "a table that ends" in r.outcome.reason
+    assert r.outcome.record.t == pytest.approx(2, abs=1e-4)
+
+
+def test_a_drive_along_straight_lines_is_jolted_at_each_of_their_ends():
+    """2 kg from 1 to 3 m/s: an impulse of 4 N s and 8 J."""
+    r = run("""
+bodies: {slider: {mass: 2, inertia: 1}}
+joints: {guide: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}
+drives: {motor: {joint: guide, position: {table: [[0, 0], [1, 1], [2, 4]], interpolation: linear,
+                                          outside: extend}}}
+solver: {end: 3 s}
+output: {every: 0.5 s}
+""")
+    np.testing.assert_allclose(r["slider.position"][:, 0], [0, 0.5, 1, 2.5, 4, 5.5, 7], atol=1e-9)
+    assert r["energy.work.events"][-1] == pytest.approx(8.0, rel=1e-9)

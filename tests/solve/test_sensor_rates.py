@@ -97,6 +97,16 @@ def test_what_would_stick_ends_the_run_and_says_so(f, method):
     assert at == pytest.approx(2 / 3 if "<" in f else 0.75, rel=1e-6)
 
 
+def test_from_rest_on_a_jump_it_goes_or_ends_the_run():
+    """5 N of friction by a function hold nothing back at rest: sign(0) is 0."""
+    r = slide('"7 - 5*sign(stroke.rate)"', 0.0, 1)
+    assert r["stroke.rate"][-1] == pytest.approx(1.0, rel=1e-6)
+    r = slide('"3 - 5*sign(stroke.rate)"', 0.0, 1)
+    assert r.outcome.status == "failed" and "forces.load.force" in r.outcome.reason
+    r = slide('"-5*sign(stroke.rate)"', 0.0, 1)
+    assert r.outcome.status == "done" and not r["stroke"].any()
+
+
 @pytest.mark.parametrize("method", METHODS[:3])
 def test_a_comparison_that_does_not_jump_is_no_friction(method):
     """A damper of one way by a comparison: swings die out about a rate of zero for a long time."""

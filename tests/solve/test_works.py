@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from trsim.laws.tables import akima, akima_table
+from trsim.laws.tables import akima, cubics
 from trsim.solve.diagnose.doubts import of_books
 
 from ..runs import run
@@ -24,7 +24,7 @@ solver: {{end: {end}, {solver}}}
 output: {{every: {every}}}
 """
 KNOTS = ((0, 0), (0.1, -500), (0.3, -1000), (0.4, -900), (0.45, -300), (0.6, -250), (1, 0))
-TABLE = np.array(akima_table(*np.array(KNOTS, float).T, "hold"))
+TABLE = np.array(cubics(*np.array(KNOTS, float).T, "hold"))
 
 # along a stroke of 1 m: the load, and its work
 LOADS = {

@@ -1,6 +1,6 @@
 """What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import atan2
 from typing import Any, NamedTuple
@@ -45,6 +45,7 @@ class JointCoordinate(NamedTuple):
     other_i: tuple[float, ...] = ()  # and the y axis of its plane, where axis_i is the x axis
 
 
+NO_NAMES: Mapping[str, tuple[int, str]] = {}
 WOUND = "wound"
 UNITS = {"angle": "rad", "stroke": "m", "arc": "m", "time": "s"}
 
@@ -60,7 +61,7 @@ class Addresses:
     states: list[tuple[str | float, int]] = field(default_factory=list)  # scale, coordinate
     coordinates: dict[str, JointCoordinate] = field(default_factory=dict)
     sensors: dict[str, int] = field(default_factory=dict)
-    rates: dict[str, int] = field(default_factory=dict)  # of sensors that functions depend on
+    rates: dict[int, int] = field(default_factory=dict)  # entry of S -> that of its rate
     n_s: int = 0
     timed: bool = False  # something depends on t explicitly
     sensed: bool = False  # or on a sensor, and may be short between two corners
@@ -268,6 +269,12 @@ class Addresses:
             self.sensors[name] = self.entry()
         return self.sensors[name]
 
+    def rate_of(self, entry: int) -> int:
+        """Index of the rate of an entry of S in S, as functions read it."""
+        if entry not in self.rates:
+            self.rates[entry] = self.entry()
+        return self.rates[entry]
+
     def entry(self) -> int:
         """Index of a new entry of S."""
         self.n_s += 1
@@ -328,48 +335,54 @@ class Addresses:
         return laws[name]
 
     def function(
-        self, spec: Any, *path: str | int, time_only: bool = False, wanted: str = ""
-    ) -> int:
+        self, spec: Any, *path: str | int, time_only: bool = False, wanted: str = "",
+        local: Mapping[str, tuple[int, str]] = NO_NAMES, free: bool = False,
+    ) -> int:  # fmt: skip
         """Store a function of t or of sensors in tab; its offset.
 
-        wanted: the unit of its values where the field allows several.
+        wanted: the unit of its values where the field allows several; local: names of its own,
+        their entries of S and units; free: no run holds it on a piece.
         """
         offset = len(self.tab)
+
+        def known(name: str) -> int:
+            return local[name][0] if name in local else self.known_sensor(name, time_only, path)
+
         if spec.kind == "constant":
             code = functions.constant(spec.value)
         elif spec.kind == "table":
-            variable = -1 if spec.of == "t" else self.known_sensor(spec.of, time_only, path)
-            self.check_table(spec, wanted, *path)
+            variable = -1 if spec.of == "t" else known(spec.of)
+            unit = local[spec.of][1] if spec.of in local else ""
+            self.check_table(spec, unit or self.unit_of_variable(spec.of), wanted, *path)
             self.timed = self.timed or variable < 0
             self.sensed = self.sensed or variable >= 0
-            self.notes += overshoot(spec, path)
-            code = functions.table(spec.x, spec.y, variable, spec.ends)
+            self.notes += [] if free else overshoot(spec, path)
+            code = functions.table(spec.x, spec.y, variable, spec.ends, spec.interpolation)
         else:
             self.timed = self.timed or "t" in names(spec.node)
             used = spec.inputs
             # what is a polynomial between its corners has nothing short there
             self.sensed = self.sensed or (bool(used) and degree(spec.node) > LOW)
-            indices = {name: self.known_sensor(name, time_only, path) for name in used}
+            indices = {name: known(name) for name in used}
             code = functions.expression(spec.node, indices)
-        if self.end is not None:
+        if self.end is not None and not free:
             try:
                 self.functions += cornered(spec, code, offset, self.end)
             except ScenarioError as error:
                 raise error.at(*path) from None
-        if functions.waves(code):
+        if functions.waves(code) and not free:
             self.waves.append(offset)
         self.tab.extend(code)
-        self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))
+        if not free:
+            self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))
         return offset
 
-    def check_table(self, spec: Any, wanted: str, *path: str | int) -> None:
+    def check_table(self, spec: Any, found: str, wanted: str, *path: str | int) -> None:
         """Refuse units of a table's columns that are not those of its variable and its values."""
         x, y = spec.units
-        if x:
-            found = self.unit_of_variable(spec.of)
-            if not fits(x, found):
-                what = f"wrong unit: '{x}'; '{spec.of}' is in {found}"
-                raise ScenarioError(what, "", (*path, "table"))
+        if x and not fits(x, found):
+            what = f"wrong unit: '{x}'; '{spec.of}' is in {found}"
+            raise ScenarioError(what, "", (*path, "table"))
         if wanted and not fits(y, wanted):
             what = f"wrong unit: '{y}'; this number is in {wanted}"
             raise ScenarioError(what, "", (*path, "table"))
@@ -431,10 +444,7 @@ class Addresses:
         self.check_early(own, path)
         if own == name:
             return self.sensor(name)
-        if own not in self.rates:
-            self.sensor(own)
-            self.rates[own] = self.entry()
-        return self.rates[own]
+        return self.rate_of(self.sensor(own))
 
     def is_early(self, name: str) -> bool:
         """Whether a sensor shows a number of places and velocities alone, an entry of S."""

@@ -324,7 +324,7 @@ def build(
         tab=np.array(at.tab),
         n_s=at.n_s,
         n_mem=N_MEM + max((i.element.n_mem for i in instances), default=0),
-        rated=np.array([(k, at.sensors[n]) for n, k in at.rates.items()], np.int64).reshape(-1, 2),
+        rated=np.array([(k, s) for s, k in at.rates.items()], np.int64).reshape(-1, 2),
         **turns(at, d),
         **kernels(instances),
         **lines([*frames, *(r.frames for r in redundant)]),

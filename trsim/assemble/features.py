@@ -62,10 +62,14 @@ def features(at: Any, instances: list[Any]) -> dict[str, Any]:
         rows.append((*own_rows, drive.slip))
         held += f.held
     entries = sorted({k for f in at.functions for k in f.sensed})
-    early = [i.section == "sensors" and "coordinate" in i.element.kernels for i in instances]
-    sensors = [(i.row, e) for e, i in enumerate(instances) if early[e]]
-    owner = {Pair.of(row).coordinate: e for row, e in sensors}
-    rates = {k: owner[at.sensors[name]] for name, k in at.rates.items()}
+    # sensors, and springs whose stretch is an entry of their own
+    own_entries = [
+        (i.row, e)
+        for e, i in enumerate(instances)
+        if i.section in ("sensors", "forces") and "coordinate" in i.element.kernels
+    ]
+    owner = {Pair.of(row).coordinate: e for row, e in own_entries}
+    rates = {k: owner[source] for source, k in at.rates.items()}
     sensed = [
         (k, *(of_rate(instances, rates[k]) if k in rates else of_instance(instances, owner[k])[:2]))
         for k in entries

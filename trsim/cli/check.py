@@ -99,12 +99,23 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
         "load_sets": told(scenario),
         "contacts": [mechanism.instances[e].name for e in model.contact],
         "events": {e.name: e.in_words() for e in mechanism.stages.switches.events},
+        "tables": {f.name: of_table(f.spec) for f in mechanism.functions if f.spec.kind == "table"},
         "unknowns": int(model.n_v),
         "constraints": int(model.m),
         **{name: getattr(mechanism, name) for name in FACTS},
         "release": released(scenario, mechanism),
         "notes": [*mechanism.notes, *lint(scenario), *scenario.bare],
     }
+
+
+def of_table(spec: Any) -> str:
+    """A table in words: its variable, its curve, and what it is outside of its rows."""
+    outside = {"hold": "holds the end values", "extrapolate": "goes straight on",
+               "refuse": "ends the run"}[spec.ends]  # fmt: skip
+    return (
+        f"of {spec.of}, {len(spec.x)} rows from {spec.x[0]:g} to {spec.x[-1]:g}, "
+        f"{spec.interpolation}; outside it {outside}"
+    )
 
 
 def released(scenario: Any, mechanism: Any) -> dict[str, Any] | None:
@@ -189,6 +200,7 @@ def lines(found: dict[str, Any]) -> list[str]:
         *(f"  load set    {name} {told}" for name, told in found["load_sets"].items()),
         f"  contacts    {words(found['contacts'])}",
         *(f"  event       {name}: {told}" for name, told in found["events"].items()),
+        *(f"  table       {name}: {told}" for name, told in found["tables"].items()),
         f"  motion      {plane if found['planar'] else space}",
         *mobility_lines(found),
         *start_lines(found["start"]),

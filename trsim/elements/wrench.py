@@ -11,7 +11,7 @@ wrench at another point q of the body has M_q = M + (p - q) x F.
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, model_validator
+from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
 from trsim.elements.contract import (
     LOADS,
@@ -42,7 +42,9 @@ def _three(given: Any) -> Any:
 def components(*units: str) -> Any:
     """The type of three functions; two in a plane."""
     of: Any = Function(*units)
-    return Annotated[tuple[of, of, of], BeforeValidator(_three)]
+    one = {"anyOf": [{"type": word} for word in ("number", "string", "object")]}
+    schema = {"type": "array", "prefixItems": [one] * 3, "minItems": 2, "maxItems": 3}
+    return Annotated[tuple[of, of, of], BeforeValidator(_three), WithJsonSchema(schema)]
 
 
 NOTHING = (FunctionSpec("constant"),) * 3
@@ -62,12 +64,12 @@ class Wrench(Spec):
     body: str
     at: point("m") | None = None
     frame: str = "world"
-    force: components("N") = NOTHING
-    moment: components("N*m") = NOTHING
+    force: components("N") | None = None
+    moment: components("N*m") | None = None
 
     @model_validator(mode="after")
     def something(self):
-        if not any(map(varies, (*self.force, *self.moment))):
+        if not any(map(varies, (*(self.force or ()), *(self.moment or ())))):
             what = "all six components are zero"
             raise ScenarioError(what, "give `force` or `moment`, three functions each")
         return self
@@ -102,17 +104,19 @@ def pack(name, spec, at):
     place = origin if spec.at is None else spec.at
     i = at.body(spec.body, "body", near=place)
     place = at.centre(i) if place is None else place
-    parts = {}
-    for key, letter in (("force", "f"), ("moment", "m")):
-        for k, f in enumerate(getattr(spec, key)):
-            parts[f"{letter}_{'xyz'[k]}"] = at.function(f, key, k)
+    given = {"force": spec.force or NOTHING, "moment": spec.moment or NOTHING}
+    parts = {
+        f"{key[0]}_{axis}": at.function(f, key, k)
+        for key, functions in given.items()
+        for k, (axis, f) in enumerate(zip("xyz", functions, strict=True))
+    }
     own = Own.packed(
         body=i, frame=frame, **parts, point=at.local(i, place),
         **dict(zip("xyz", axes, strict=True)),
-        acts=tuple(map(float, map(varies, spec.force))),
-        turns=tuple(map(float, map(varies, spec.moment))),
+        acts=tuple(map(float, map(varies, given["force"]))),
+        turns=tuple(map(float, map(varies, given["moment"]))),
     )  # fmt: skip
-    reads = frozenset().union(*(f.sensors for f in (*spec.force, *spec.moment)))
+    reads = frozenset().union(*(f.sensors for functions in given.values() for f in functions))
     return Row(*own, reads=reads)
 
 

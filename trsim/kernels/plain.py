@@ -25,7 +25,8 @@ def whole(x: Any) -> int:
 
 BUILTINS = {"complex": np.complex128, "float": np.float64, "int": whole}
 SAME = {
-    math.asinh: np.arcsinh, math.atan2: np.arctan2, math.copysign: np.copysign, math.cos: np.cos,
+    math.acos: np.arccos, math.asin: np.arcsin, math.asinh: np.arcsinh, math.atan2: np.arctan2,
+    math.copysign: np.copysign, math.cos: np.cos,
     math.exp: np.exp, math.isfinite: np.isfinite, math.log: np.log, math.log10: np.log10,
     math.sin: np.sin, math.sqrt: np.sqrt, math.tan: np.tan,
     math.ceil: lambda x: whole(np.ceil(x)), math.floor: lambda x: whole(np.floor(x)),

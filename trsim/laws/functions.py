@@ -1,7 +1,7 @@
-"""A number that varies: a constant, an Akima table or an expression, in one flat array.
+"""A number that varies: a constant, a table or an expression, in one flat array.
 
     constant     0, c
-    table        1, variable, n, held, then the table of `tables.akima_table`
+    table        1, variable, n, held, then the table of `tables.cubics`
                                                       variable -1: t, else the sensor's index
     expression   2, n_in, n_op, first slot, result slot, n_in sensors,
                  n_op (code, a, b, watched, held), slots
@@ -61,7 +61,7 @@ from trsim.laws.operations import (
     switching,
 )
 from trsim.laws.ranges import ranged
-from trsim.laws.tables import akima, akima_table, held_cubic, interval_at, interval_ends
+from trsim.laws.tables import akima, cubics, held_cubic, interval_at, interval_ends
 
 CONSTANT, TABLE, EXPRESSION = 0, 1, 2
 VALUE = 1  # of a constant
@@ -77,9 +77,10 @@ def constant(c):
     return [float(CONSTANT), float(c)]
 
 
-def table(x, y, variable=-1, ends="hold"):
-    """An Akima table of t (variable -1) or of sensor number `variable`, as numbers for `tab`."""
-    return [float(TABLE), float(variable), float(len(x)), FREE, *akima_table(x, y, ends)]
+def table(x, y, variable=-1, ends="hold", interpolation="akima"):
+    """A table of t (variable -1) or of sensor number `variable`, as numbers for `tab`."""
+    found = cubics(x, y, ends, interpolation)
+    return [float(TABLE), float(variable), float(len(x)), FREE, *found]
 
 
 def _folded(code, a, b):

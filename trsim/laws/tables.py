@@ -1,4 +1,4 @@
-"""Smooth steps and Akima tables.
+"""Smooth steps, and tables that are cubics between their points.
 
     smoothstep(x)          3 x^2 - 2 x^3             x clipped to 0..1
     quintic(x)             10 x^3 - 15 x^4 + 6 x^5   x clipped to 0..1
@@ -10,6 +10,11 @@
 
 with m0..m3 the slopes of the four intervals around x_k; beyond the ends slopes are extrapolated
 quadratically.  f' is continuous, f'' jumps at the points of the table.
+
+    linear  f = a + b s
+    spline  M = f'' is continuous too, and its slope at the second and the last but one point, which
+            are no knots:  h_k-1 M_k-1 + 2 (h_k-1 + h_k) M_k + h_k M_k+1 = 6 (m_k - m_k-1)
+                                                                                     [deBoor1978]
 
 A table in a flat array is, from its offset,   ends, x (n), then a b c d of each interval.
 """
@@ -122,7 +127,64 @@ def akima_coefficients(x, y):
     return np.column_stack((y[:-1], b[:-1], c, d))
 
 
-def akima_table(x, y, ends="hold"):
+def linear_coefficients(x, y):
+    """The same of straight lines from point to point."""
+    import numpy as np
+
+    x, y = _checked(x, y)
+    m = np.diff(y) / np.diff(x)
+    return np.column_stack((y[:-1], m, 0.0 * m, 0.0 * m))
+
+
+def spline_coefficients(x, y):
+    """The same of the cubic spline that is smooth to its second derivative, without a knot at the
+    second and the last but one point.  Two points give a straight line, three a parabola."""
+    import numpy as np
+
+    x, y = _checked(x, y)
+    h = np.diff(x)
+    m = np.diff(y) / h
+    bend = _bends(h, 6.0 * np.diff(m))
+    slope = m - h * (2.0 * bend[:-1] + bend[1:]) / 6.0
+    return np.column_stack((y[:-1], slope, 0.5 * bend[:-1], np.diff(bend) / (6.0 * h)))
+
+
+def _bends(h, r):
+    """f'' at every point, from the lengths of intervals and the right-hand sides of inner ones."""
+    import numpy as np
+
+    n = h.size + 1
+    if n == 2:
+        return np.zeros(2)
+    if n == 3:
+        return np.full(3, r[0] / (3.0 * (h[0] + h[1])))
+    below, above = h[:-1].copy(), h[1:].copy()
+    middle = 2.0 * (below + above)
+    # M goes straight on from the second point to the first, and so at the other end
+    first, last = h[0] / h[1], h[-1] / h[-2]
+    middle[0] += h[0] * (1.0 + first)
+    above[0] -= h[0] * first
+    middle[-1] += h[-1] * (1.0 + last)
+    below[-1] -= h[-1] * last
+    r = r.copy()
+    for k in range(1, n - 2):
+        w = below[k] / middle[k - 1]
+        middle[k] -= w * above[k - 1]
+        r[k] -= w * r[k - 1]
+    bend = np.zeros(n)
+    for k in range(n - 3, -1, -1):
+        bend[k + 1] = (r[k] - (above[k] * bend[k + 2] if k < n - 3 else 0.0)) / middle[k]
+    bend[0] = bend[1] + first * (bend[1] - bend[2])
+    bend[-1] = bend[-2] + last * (bend[-2] - bend[-3])
+    return bend
+
+
+COEFFICIENTS = {
+    "akima": akima_coefficients, "linear": linear_coefficients, "spline": spline_coefficients,
+}  # fmt: skip
+
+
+def cubics(x, y, ends="hold", interpolation="akima"):
     """The numbers that `akima` reads: code of the ends, x, then a b c d of each interval.
 
     Parameters
@@ -130,6 +192,7 @@ def akima_table(x, y, ends="hold"):
     x, y : (n,)          the points
     ends : str           outside the table: 'hold' the end value, 'extrapolate' along the end
                          slope, or 'refuse' (nan)
+    interpolation : str  'akima', 'linear' or 'spline'
 
     Returns
     -------
@@ -137,7 +200,10 @@ def akima_table(x, y, ends="hold"):
     """
     if ends not in ENDS:
         raise ValueError(f"no end behaviour named '{ends}'.  Known: {', '.join(ENDS)}.")
-    coefficients = akima_coefficients(x, y)
+    if interpolation not in COEFFICIENTS:
+        known = ", ".join(COEFFICIENTS)
+        raise ValueError(f"no interpolation named '{interpolation}'.  Known: {known}.")
+    coefficients = COEFFICIENTS[interpolation](x, y)
     return [float(ENDS[ends]), *map(float, x), *coefficients.ravel().tolist()]
 
 
@@ -158,7 +224,7 @@ def akima(tab, o, n, x):
     Parameters
     ----------
     tab : (n_tab,)       flat array
-    o : int              offset of the table, made by `akima_table`
+    o : int              offset of the table, made by `cubics`
     n : int              number of points
     x : float            where
 
@@ -233,3 +299,32 @@ def held_cubic(tab, o, n, x, held):
         f, f_x, _ = cubic(tab, o, n, n - 1, tab[o + n] - tab[o + n - 1])
         return outside(f, f_x, x - tab[o + n], tab[o])
     return cubic(tab, o, n, k, x - tab[o + k])
+
+
+@internal
+def table_integral(tab, o, n, x):
+    """The integral of the table at tab[o:] from its first point to x."""
+    first, last = tab[o + 1], tab[o + n]
+    if x < first:
+        f, f_x, _ = cubic(tab, o, n, 1, 0.0)
+        return beyond_end(f, f_x, x - first, tab[o])
+    total = 0.0
+    for k in range(1, n):
+        if x <= tab[o + k]:
+            break
+        s = min(x, tab[o + k + 1]) - tab[o + k]
+        p = o + 1 + n + 4 * (k - 1)
+        a, b, c, d = tab[p], tab[p + 1], tab[p + 2], tab[p + 3]
+        total += s * (a + s * (b / 2.0 + s * (c / 3.0 + s * d / 4.0)))
+    if x > last:
+        f, f_x, _ = cubic(tab, o, n, n - 1, last - tab[o + n - 1])
+        total += beyond_end(f, f_x, x - last, tab[o])
+    return total
+
+
+@internal
+def beyond_end(f, f_x, s, ends):
+    """The integral over a distance s beyond an end with value f and slope f_x."""
+    if ends == 2.0:
+        return math.nan
+    return s * f if ends == 0.0 else s * (f + 0.5 * f_x * s)

@@ -14,6 +14,7 @@ from trsim.scenario.schema import schema
 
 SIGNS = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
 TYPES = {"integer": "whole number", "string": "text", "boolean": "true or false", "null": ""}
+FUNCTION = "number, expression or table"
 LAWS = ("trsim.scenario.contact_law", "trsim.scenario.event")  # modules that tell one
 
 Page = dict[str, Any]
@@ -149,7 +150,7 @@ def worded(rule: dict[str, Any]) -> str:
 
 def _any(rules: list[dict[str, Any]]) -> str:
     if [rule.get("type") for rule in rules[:3]] == ["number", "string", "object"]:
-        return "number, expression or table"
+        return FUNCTION
     words = list(filter(None, dict.fromkeys(map(worded, rules))))
     if any(word.startswith("number") for word in words):
         words = [word for word in words if word != "text"]
@@ -160,6 +161,8 @@ def _list(rule: dict[str, Any]) -> str:
     items = [worded(item) for item in rule.get("prefixItems", ())]
     if not items:
         return f"list of {worded(rule['items'])}"
+    if items == [FUNCTION] * 3:
+        return f"[x, y] or [x, y, z], each a {FUNCTION}"
     if items == ["number"] * 3 and rule["minItems"] == 2:
         return "[x, y] or [x, y, z]"
     return f"[{', '.join(items)}]" if len(items) < 3 else f"{len(items)} numbers"

@@ -97,12 +97,13 @@ def corners_ahead(s, r, b, setting, method):
             s.S[entry, 1] = (b.shown[k, 1] - b.shown[k, 0]) / b.h
     if b.built == 0 and method[STAGES_AT] > 0:
         for k in range(s.sensed.shape[0]):
-            kind, e = s.sensed[k, KIND], s.sensed[k, INSTANCE]
+            kind, e, entry = s.sensed[k, KIND], s.sensed[k, INSTANCE], s.sensed[k, ENTRY]
             if kind > RATE_OF:
-                L, M = rate_at_stages(s, r, b, (kind, e))
+                most, L, M = rate_at_stages(s, r, b, (kind, e))
             else:
-                L, M = spread_at_stages(s, r, b, (kind, e), EITHER_WAY)
+                most, (L, M) = -1.0, spread_at_stages(s, r, b, (kind, e), EITHER_WAY)
             see(s, b, k, L, M, b.h)
+            limit(b.seen[entry], most)
         if verdict(s, b, b.t, b.t + b.h) == CLEAR:
             return NONE
     evaluations = s.status[1]
@@ -135,6 +136,13 @@ def see(s, b, k, L, M, length):
 
 
 @internal
+def limit(seen, most):
+    """Take into a range that what it is of is never larger than `most`, where that is known."""
+    if most >= 0.0:
+        seen[0], seen[1] = max(seen[0], -most), min(seen[1], most)
+
+
+@internal
 def verdict(s, b, t0, t1):
     """The worst of all functions, on the part of the step whose ranges are in b.seen."""
     worst = CLEAR
@@ -158,10 +166,11 @@ def first_corner(s, r, b, setting):
             kind, e = s.sensed[k, KIND], s.sensed[k, INSTANCE]
             b.shown[k, 1] = s.S[s.sensed[k, ENTRY], 0]
             if kind > RATE_OF:
-                L, M = spread_of_rate(s, r, b, (kind, e), (low, high))
+                most, L, M = spread_of_rate(s, r, b, (kind, e), (low, high))
             else:
-                L, M = spread(s, r, b, (kind, e), EITHER_WAY, (low, high))
+                most, (L, M) = -1.0, spread(s, r, b, (kind, e), EITHER_WAY, (low, high))
             see(s, b, k, L, M, length)
+            limit(b.seen[s.sensed[k, ENTRY]], most)
             seen = b.seen[s.sensed[k, ENTRY]]
             hidden = hidden and seen[1] - seen[0] < hidden_depth(s, r, setting, kind)
         found = verdict(s, b, t + low * h, t + high * h)

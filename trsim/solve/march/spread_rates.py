@@ -107,14 +107,14 @@ def moved_apart(s, b, n, i, j, first_j, length):
 
 @internal
 def spread_of_rate(s, r, b, what, part):
-    """Bounds L of |g''| and M of |g'''| on a part of the step, from theta to theta.
+    """Bounds of |g'|, |g''| and |g'''| on a part of the step, from theta to theta.
 
     what: RATE_OF added to the kind of g, and its instance.  The poses are those of one end of the
-    part.  Both are negative where there are none.
+    part.  All are negative where there are none.
     """
     kind, e = what[0] - RATE_OF, what[1]
     if kind <= UNKNOWN:
-        return -1.0, -1.0
+        return -1.0, -1.0, -1.0
     own, length, n = Pair(s, e), (part[1] - part[0]) * b.h, r.degree + 1
     i, j = own.i, own.j
     first_j = fill_speeds(s, b, n, i, 0)
@@ -124,7 +124,7 @@ def spread_of_rate(s, r, b, what, part):
     bent_i = a_i + w_i * w_i
     if kind == ANGLE:
         turn, bend = w_i + w_j, a_i + a_j
-        return bend + w_i * turn, b_i + b_j + 2.0 * w_i * bend + bent_i * turn
+        return turn, bend + w_i * turn, b_i + b_j + 2.0 * w_i * bend + bent_i * turn
     round_i = b_i + 3.0 * a_i * w_i + w_i**3
     round_j = b_j + 3.0 * a_j * w_j + w_j**3
     bend, jerk = moved_apart(s, b, n, i, j, first_j, length)
@@ -140,23 +140,23 @@ def spread_of_rate(s, r, b, what, part):
     far = size + speed * length
     once = bend + 2.0 * w_i * speed + bent_i * far
     twice = jerk + 3.0 * w_i * bend + 3.0 * bent_i * speed + round_i * far
-    if kind != DISTANCE:
-        return once, twice
     about = cross(spin(s.V, i), d)
     seen = (v[0] - about[0], v[1] - about[1], v[2] - about[2])
     fastest = sqrt(dot(seen, seen)) + once * length
+    if kind != DISTANCE:
+        return fastest, once, twice
     least = size - fastest * length
-    if least <= 0.1 * size:
-        return inf, inf
+    if least <= 0.1 * size:  # a line next to its other end turns as fast as it likes
+        return fastest, inf, inf
     w = fastest / least
-    return once + w * fastest, twice + 6.0 * w * once + 3.0 * w * w * fastest
+    return fastest, once + w * fastest, twice + 6.0 * w * once + 3.0 * w * w * fastest
 
 
 @internal
 def rate_at_stages(s, r, b, what):
-    """A bound L of |g''| over the whole step, from its stages; of |g'''| they tell nothing."""
+    """The same over the whole step, from its stages, which tell nothing of |g'''|."""
     kind, e = what[0] - RATE_OF, what[1]
     if kind <= UNKNOWN:
-        return -1.0, -1.0
-    _, L = spread_at_stages(s, r, b, (kind, e), -1.0)
-    return L, -1.0
+        return -1.0, -1.0, -1.0
+    L, M = spread_at_stages(s, r, b, (kind, e), -1.0)
+    return L, M, -1.0
