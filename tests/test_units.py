@@ -323,7 +323,7 @@ FIXED = {
                         "eccentricity_x_rate": "m/s", "eccentricity_y_rate": "m/s",
                         "force": "N"},
 }  # fmt: skip
-DEPENDS = {"drive", "sensor", "applied_load", "limit_stop"}  # seen in the scene above
+DEPENDS = {"drive", "sensor", "applied_load", "limit_stop", "reaction"}  # seen in the scene above
 
 
 def test_units_of_the_elements():

@@ -61,6 +61,7 @@ class Addresses:
     notes: list[str] = field(default_factory=list)
     instances: dict[tuple[str, str], Any] = field(default_factory=dict)  # packed so far
     switches: Any = None  # of user events, once all elements are packed
+    of_start: bool = False  # bars are stiff, joints ideal or drives others than in the run
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
     waves: list[int] = field(default_factory=list)  # offsets of those that have sines
@@ -253,6 +254,10 @@ class Addresses:
             if instance.section not in ("", "bodies", "points", "sensors") and body in (*acted,):
                 found.append((e, instance))
         return found
+
+    def numbered(self, section: str, name: str) -> tuple[int, Any]:
+        """An instance that is packed before the one that asks, with its number."""
+        return [*self.instances].index((section, name)), self.instances[section, name]
 
     def joint_of(self, instance: Any) -> str:
         """The joint along whose coordinate a drive, a force or a lock acts; of others none."""

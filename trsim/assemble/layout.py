@@ -133,7 +133,8 @@ def watched(columns: list[Column], switches: Switches) -> dict[str, Any]:
     for event in switches.events:
         stem = event.when if event.when in there else event.when[:-2]
         place = COMPONENTS.get(event.when[len(stem) :], 0)
-        found.append(there[stem] + place if event.kind == CHANNEL else -1)
+        heard = event.kind == CHANNEL and stem in there
+        found.append(there[stem] + place if heard else -1)
     return {"heard": np.array(found, np.int64), "hear": hear.address()}
 
 
@@ -188,4 +189,6 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
 
 def is_vector(column: Column) -> bool:
     """Whether the extremes of a channel are those of its magnitude as well."""
-    return column.size == 3 and "reaction" in column.name and column.wanted
+    return (
+        column.size == 3 and column.name.rpartition(".")[2].startswith("reaction") and column.wanted
+    )

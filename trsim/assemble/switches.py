@@ -192,7 +192,7 @@ class _Packing:
 
         Nobody looks at the channels of a start, where bars are stiff and joints may be ideal.
         """
-        if self.at.end is None:
+        if self.at.of_start:
             return ""
         there = {
             f"{i.name}.{c.name}" if c.name else i.name: (c.unit, c.size)

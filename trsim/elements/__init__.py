@@ -46,6 +46,7 @@ ELEMENTS = {
     "torsion_spring": "forces",
     "limit_stop": "forces",
     "sync_shaft": "forces",
+    "reaction": "sensors",
     "section": "sensors",  # behind all that may act on a body
 }
 
