@@ -296,6 +296,7 @@ FIXED = {
     "distance": LENGTH,
     "section": {"force": "N", "moment": "N*m", "shear": "N", "bending": "N*m"},
     "point": LENGTH,
+    "point_velocity": {"": "m/s", "rate": "m/s^2"},
     "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},
     "gravity": {},

@@ -41,7 +41,7 @@ class JointCoordinate(NamedTuple):
     place: tuple[float, ...]  # the joint's point in world axes as drawn
 
 
-UNITS = {"angle": "rad", "stroke": "m", "time": "s"}
+UNITS = {"angle": "rad", "stroke": "m", "time": "s", "speed": "m/s"}
 
 
 @dataclass
@@ -321,13 +321,27 @@ class Addresses:
             code = functions.expression(spec.node, indices)
         if self.end is not None:
             try:
-                self.functions += cornered(spec, code, offset, self.end)
+                found = cornered(spec, code, offset, self.end)
+                self.check_corners(found)
+                self.functions += found
             except ScenarioError as error:
                 raise error.at(*path) from None
         if functions.waves(code):
             self.waves.append(offset)
         self.tab.extend(code)
         return offset
+
+    def check_corners(self, found: list[Cornered]) -> None:
+        """Refuse corners that are met by a sensor without bounds: one could be passed over."""
+        met = {k for one in found for k in one.sensed}
+        for name, k in self.sensors.items():
+            packed = self.instances.get(("sensors", name))
+            if k in met and packed and not packed.row.travel:
+                raise ScenarioError(
+                    f"'{name}' ({packed.element.key}) meets a corner of this function, and has no "
+                    "bounds by which it could be found",
+                    "write a smooth function: v*sqrt(v**2 + 1e-12) for v*abs(v)",
+                )
 
     def check_table(self, spec: Any, wanted: str, *path: str) -> None:
         """Refuse units of a table's columns that are not those of its variable and its values."""

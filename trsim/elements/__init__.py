@@ -37,6 +37,7 @@ ELEMENTS = {
     "relative_angle": "sensors",
     "distance": "sensors",
     "point": "sensors",
+    "point_velocity": "sensors",
     "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
