@@ -296,6 +296,8 @@ FIXED = {
     "distance": LENGTH,
     "section": {"force": "N", "moment": "N*m", "shear": "N", "bending": "N*m"},
     "point": LENGTH,
+    "energy": {"": "J"},
+    "formula": {"": "-", "rate": "1/s"},
     "point_velocity": {"": "m/s", "rate": "m/s^2"},
     "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},

@@ -1,7 +1,7 @@
 """What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import atan2
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from trsim.elements.coordinates import named, split
 from trsim.elements.joint import triad
 from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError, known
-from trsim.expressions import LOW, degree, names
+from trsim.expressions import LOW, degree, names, rebuilt
 from trsim.frame import Frame
 from trsim.laws import functions
 from trsim.scenario.load import unit_of
@@ -303,6 +303,8 @@ class Addresses:
         wanted: the unit of its values where the field allows several.
         """
         offset = len(self.tab)
+        if spec.kind not in ("constant", "table"):
+            spec = replace(spec, node=self.inlined(spec.node, path))
         if spec.kind == "constant":
             code = functions.constant(spec.value)
         elif spec.kind == "table":
@@ -329,6 +331,49 @@ class Addresses:
         if functions.waves(code):
             self.waves.append(offset)
         self.tab.extend(code)
+        return offset
+
+    def inlined(self, node: Any, path: tuple[str, ...], within: tuple[str, ...] = ()) -> Any:
+        """An expression with those of formulas in the place of their names."""
+        if node[0] != "name" or node[1] not in self.scenario.sensors:
+            return rebuilt(node, lambda part: self.inlined(part, path, within))
+        name = node[1]
+        stands_for = self.elements["sensors", name].stands_for
+        if stands_for is None:
+            return node
+        if name in within:
+            what = f"'{name}' refers to itself: {' -> '.join((*within, name))}"
+            raise ScenarioError(what, "a formula names sensors that stand before it", path)
+        return self.inlined(stands_for(self.scenario.sensors[name]), path, (*within, name))
+
+    def read_by_formula(self, name: str, path: tuple[str, ...]) -> Any:
+        """The packed row of a sensor that a formula names, which stands before it."""
+        sensors = self.scenario.sensors
+        if name not in sensors:
+            what = f"no parameter or sensor named '{name}'"
+            raise ScenarioError(what, known(name, [*sensors, *self.scenario.parameters, "t"]), path)
+        if ("sensors", name) not in self.instances:
+            what = f"'{name}' stands behind it in the file, or is the formula itself"
+            raise ScenarioError(what, "a formula names sensors that stand before it", path)
+        instance = self.instances["sensors", name]
+        if instance.channels[0].name:
+            what = f"'{name}' ({instance.element.key}) shows several numbers"
+            raise ScenarioError(what, "name a sensor of one number, such as a `reaction`", path)
+        return instance.row
+
+    def frames_of_sensor(self, name: str) -> frozenset[int]:
+        """The frames that a packed sensor depends on."""
+        instance = self.instances["sensors", name]
+        found: frozenset[int] = instance.element.acts_on(instance.row)
+        return found
+
+    def stored(self, node: Any, sensors: Sequence[str], path: tuple[str, ...]) -> int:
+        """Store an expression that nothing of the motion depends on; its offset."""
+        offset = len(self.tab)
+        try:
+            self.tab += functions.expression(node, {name: self.sensor(name) for name in sensors})
+        except ScenarioError as error:
+            raise error.at(*path) from None
         return offset
 
     def check_corners(self, found: list[Cornered]) -> None:
@@ -402,6 +447,9 @@ class Addresses:
 
     def check_early(self, name: str, path: tuple[str | int, ...]) -> None:
         """Refuse a sensor that shows no number of places and velocities."""
+        if self.elements["sensors", name].stands_for:
+            what = f"'{name}' is a formula, and a table is a function of one sensor"
+            raise ScenarioError(what, "write the table of the sensor itself", path)
         if not self.is_early(name):
             key = self.elements["sensors", name].key
             raise ScenarioError(

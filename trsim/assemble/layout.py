@@ -86,13 +86,21 @@ def layout(
         columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least, turn))
         width += size
 
+    read: set[str] = set()  # sensors that formulas need which are needed
+    for instance in reversed(instances):
+        if instance.section == "sensors" and instance.row.reads:
+            own = [f"{instance.name}.{c.name}".rstrip(".") for c in instance.channels]
+            if instance.name in read or any(map(needed, own)):
+                read |= instance.row.reads
+
     for e, instance in enumerate(instances):
         channels = instance.channels
         names = [f"{instance.name}.{c.name}" if c.name else instance.name for c in channels]
         # contacts are always measured: their peaks and steps are part of every result
         anyway = any(map(asked, names)) or instance.row.contact
         judged = instance.element.judged(instance.row)
-        if names and (anyway or judged or any(map(needed, names))):
+        needs = any(map(needed, names)) or (instance.section == "sensors" and instance.name in read)
+        if names and (anyway or judged or needs):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
                 add(name, channel, extra=not anyway)

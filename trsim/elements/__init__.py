@@ -48,7 +48,9 @@ ELEMENTS = {
     "limit_stop": "forces",
     "sync_shaft": "forces",
     "reaction": "sensors",
+    "energy": "sensors",
     "section": "sensors",  # behind all that may act on a body
+    "formula": "sensors",  # behind all that it may read
 }
 
 # word -> the key that makes it another element, and which

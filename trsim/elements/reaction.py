@@ -63,7 +63,8 @@ def pack(name, spec, at):
     i, drawn = first if body == joint.bodies[0] else second
     frame = at.body(spec.frame, "frame", near=spec.at)
     own = Own.packed(
-        i=i, j=frame, coordinate=-1, **acting([(e, instance)]), turns=spec.of == "moment",
+        i=i, j=frame, coordinate=at.sensor(name), **acting([(e, instance)]),
+        turns=spec.of == "moment",
         place=drawn if spec.at is None else at.looked_at(i, spec.at),
         axis=(0.0, 0.0, 0.0) if spec.axis is None else at.axes(frame, of_key(spec, "axis")),
     )  # fmt: skip
@@ -81,10 +82,8 @@ def measure(t, scene, e, o):
     elif scene.d == 3:
         f = (f[0], f[1], 0.0)
     axis = arm(scene.X, own.j, own.axis)
-    if dot(axis, axis) > 0.0:
-        scene.out[o] = dot(axis, f)
-    else:
-        scene.out[o] = sqrt(dot(f, f))
+    shown = dot(axis, f) if dot(axis, axis) > 0.0 else sqrt(dot(f, f))
+    scene.out[o] = scene.S[own.coordinate, 0] = shown  # in S for formulas
 
 
 def turning(row):

@@ -32,15 +32,16 @@ from trsim.elements.frames import (
     centripetal,
     cross,
     dot,
+    inside,
     minus,
     plus,
     scaled,
     spin,
+    times,
     velocity,
 )
 from trsim.elements.inertia import Inertia, tensor_of
 from trsim.elements.joint import triad
-from trsim.elements.rotations import into
 from trsim.elements.wrench import Acted, acting, wrench
 from trsim.errors import ScenarioError, known
 from trsim.fields import Spec, Unit, point, vector
@@ -196,20 +197,9 @@ def of_inertia(scene, e):
     """I alpha + omega x I omega of the part beyond, world axes."""
     X, own = scene.X, Own(scene, e)
     i, I = own.i, own.inertia
-    R = (arm(X, i, (1.0, 0.0, 0.0)), arm(X, i, (0.0, 1.0, 0.0)), arm(X, i, (0.0, 0.0, 1.0)))
-    alpha, omega = into(R, spin(scene.A, i)), into(R, spin(scene.V, i))
+    alpha, omega = inside(X, i, spin(scene.A, i)), inside(X, i, spin(scene.V, i))
     rate, turning = times(I, alpha), times(I, omega)
     return arm(X, i, plus(rate, cross(omega, turning)))
-
-
-@internal
-def times(I, v):
-    """A tensor, row by row, times a vector."""
-    return (
-        I[0] * v[0] + I[1] * v[1] + I[2] * v[2],
-        I[3] * v[0] + I[4] * v[1] + I[5] * v[2],
-        I[6] * v[0] + I[7] * v[1] + I[8] * v[2],
-    )
 
 
 @measured
