@@ -19,7 +19,7 @@ points:
   eye: {body: left, at: [0, 0, 0], x_axis: [1, 2, 2], y_axis: [0, 1, 0]}
 sensors:
   fixed: {type: point_velocity, body: right, at: tip, axis: [0, 3, 4]}
-  turning: {type: point_velocity, body: right, at: tip, axis: eye.x, frame: left}
+  turning: {type: point_velocity, body: right, at: tip, axis: eye.x, frame: eye}
   speed: {type: point_velocity, body: right, at: tip}
 solver: {end: 1, tolerance: 1e-11}
 output: {every: 1 ms, channels: ["*", "*.rotation"]}

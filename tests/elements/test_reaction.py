@@ -27,7 +27,7 @@ sensors:
   first: {type: reaction, joint: bearing, axis: [1, 0, 0], on: ground}
   m: {type: reaction, joint: bearing, of: moment, axis: [0, 1, 0]}
   size: {type: reaction, joint: ball, of: moment, on: arm}
-  carried: {type: reaction, joint: ball, axis: tip.x, frame: arm}
+  carried: {type: reaction, joint: ball, axis: tip.x, frame: tip}
   about: {type: reaction, joint: bearing, of: moment, axis: tip.z, frame: arm, at: tip}
 gravity: [0, -9.81, 0]
 solver: {end: 0.5, tolerance: 1e-9}
@@ -111,7 +111,7 @@ phase_portraits: {p: {x: load, y: block.velocity.x}}
         ("joint: bearing, axis: [2", "joint: baring, axis: [2", ("joint",), "no joint named"),
         ("axis: [2, 0, 0]", "axis: [0, 0, 0]", ("axis",), "must not be zero"),
         ("axis: [2, 0, 0]", "axis: [2, 0, 0], on: bob", ("on",), "none of its bodies"),
-        ("axis: [2, 0, 0]", "axis: [2, 0, 0], frame: bib", ("frame",), "no body"),
+        ("axis: [2, 0, 0]", "axis: [2, 0, 0], frame: bib", ("frame",), "no body or point"),
     ],
 )
 def test_refused(old, new, path, what):

@@ -106,6 +106,15 @@ class Addresses:
             raise ScenarioError(what, hint, path)
         return beam.first + k
 
+    def frame(self, name: str, near: Any = None) -> int:
+        """What axes turn with: the world, a body, or the body of a named point."""
+        points = self.scenario.points
+        owner = "ground" if name == "world" else points[name].body if name in points else name
+        if owner != "ground" and owner not in self.members:
+            there = ["world", *self.members, *points]
+            raise ScenarioError(f"no body or point named '{name}'", known(name, there), ("frame",))
+        return self.body(owner, "frame", near=near, off=1.0)
+
     def bodies(self, pair: tuple[str, str], at: Any, other: Any = None) -> tuple[int, int]:
         """Frames of two different bodies, at a place; or each at its own."""
         if pair[0] == pair[1]:

@@ -23,18 +23,18 @@ class PointVelocity(Spec):
     body   the one the point is fixed in
     at     the point, as drawn
     axis   direction of the component, as drawn; the speed unless given
-    frame  body with which the axis turns; the `ground`: a fixed direction
+    frame  `world`, or a body or the body of a point, with which the axis turns
     """
 
     type: ClassVar[str] = "point_velocity"
     body: str
     at: point("m")
     axis: vector("-") | None = None
-    frame: str = "ground"
+    frame: str = "world"
 
 
 def pack(name, spec, at):
-    i = at.body(spec.frame, "frame", near=spec.at)
+    i = at.frame(spec.frame, spec.at)
     j = at.body(spec.body, "body", near=spec.at)
     axis = (0.0, 0.0, 0.0) if spec.axis is None else at.axes(i, of_key(spec, "axis"))
     places = {"p_i": (0.0, 0.0, 0.0), "p_j": at.looked_at(j, spec.at)}

@@ -24,7 +24,7 @@ class Reaction(Spec):
     joint  the joint
     of     `force` or `moment`
     axis   direction of the component, as drawn; the size unless given
-    frame  body with which the axis turns; the `ground`: a fixed direction
+    frame  `world`, or a body or the body of a point, with which the axis turns
     on     the body that is acted on; the second one of the joint unless given
     at     place about which a moment is taken, as drawn; it is fixed in the body that is acted on;
            that of the joint unless given
@@ -34,7 +34,7 @@ class Reaction(Spec):
     joint: str
     of: Literal["force", "moment"] = "force"
     axis: vector("-") | None = None
-    frame: str = "ground"
+    frame: str = "world"
     on: str | None = None
     at: point("m") | None = None
 
@@ -61,7 +61,7 @@ def pack(name, spec, at):
         raise ScenarioError(f"'{body}' is none of its bodies", known(body, joint.bodies), ("on",))
     first, second = instance.element.acts_at(instance.row)
     i, drawn = first if body == joint.bodies[0] else second
-    frame = at.body(spec.frame, "frame", near=spec.at)
+    frame = at.frame(spec.frame, spec.at)
     own = Own.packed(
         i=i, j=frame, coordinate=at.sensor(name), **acting([(e, instance)]),
         turns=spec.of == "moment",

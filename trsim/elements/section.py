@@ -230,7 +230,7 @@ ELEMENT = Element(
     spec=BodySection,
     pack=pack,
     channels=(
-        Channel("force", "N", "on the part beyond, axes of the section: z is normal", 3),
+        Channel("force", "N", "on the part beyond, axes of the section: z normal, < 0 pulls", 3),
         Channel("moment", "N*m", "the same about the station: z is torsion", 3),
         Channel("shear", "N", "size of the force in the section", least=0.0),
         Channel("bending", "N*m", "size of the moment in it", least=0.0),
