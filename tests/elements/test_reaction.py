@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
+from trsim.analyse.trajectory import problem
 from trsim.errors import TrsimError
 from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, USER
 
 from .. import small
-from ..runs import built, run
+from ..runs import built, run, scenario
 
 SPUN = """
 planar: false
@@ -133,3 +134,12 @@ sensors: {s: {type: reaction, joint: g}}
 """
     with pytest.raises(TrsimError, match="bears nothing"):
         built(text)
+
+
+def test_is_no_motion_where_runs_are_compared():
+    """A reaction jumps at an impact, so it tells nothing of where two motions part."""
+    text = SPUN.replace(
+        "bearing, axis: [2, 0, 0]}", "bearing, axis: [2, 0, 0]}\n  turn: {joint: bearing}"
+    )
+    chosen = [c.name for c in problem(scenario(text)).quantities]
+    assert chosen == ["turn", "turn.rate"]
