@@ -16,6 +16,8 @@ WORDS = {
     "drive": "an entry of `drives`, in messages",
     "distance": "a kind of what is watched",
     "point": "a key of what is given by one, in messages and in pictures",
+    "energy": "the energy book",
+    "reaction": "a channel of joints and actuators",
     "section": "of a scenario, and of a study; a Poincare section",
     "sensor": "an entry of `sensors`, in messages",
     "gravity": "a key of the scenario",

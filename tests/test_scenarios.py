@@ -382,3 +382,17 @@ def test_a_bungee_jump():
     k = int(np.argmin(np.abs(r.t - back)))
     assert r["height"][k] == pytest.approx(-4.905 * (r.t[k] - back) ** 2, abs=1e-5)
     assert energy_error(r) < 1e-8
+
+
+def test_what_a_rod_carries_at_a_station():
+    r = run(load(VALIDATION / "rod_section.yaml"))
+    x, w, a = 0.4, 20 + 30 * r.t, 30.0
+    # on the part beyond: inwards, against the normal, and forwards
+    force = np.outer(w**2, [0, 0, x**2 - 1]) + a * np.array([1 - x**2, 0, 0])
+    assert r["cut.force"] == pytest.approx(force, rel=1e-9, abs=1e-9)
+    moment = 2 * a * (1 / 3 - x / 2 + x**3 / 6)
+    # y of the section is z x x = (1, 0, 0) x (0, 1, 0), the z of the world
+    assert r["cut.moment"][:, 1] == pytest.approx(np.full(r.t.size, moment), rel=1e-9)
+    assert not r["cut.moment"][:, [0, 2]].any()
+    told = [abs(r["cut.force"][-1, 2]), r["cut.shear"][-1], r["cut.bending"][-1]]
+    assert told == pytest.approx([1029.0, 25.2, 8.64], rel=1e-9)

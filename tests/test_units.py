@@ -306,6 +306,9 @@ FIXED = {
     "distance": LENGTH,
     "section": {"force": "N", "moment": "N*m", "shear": "N", "bending": "N*m"},
     "point": LENGTH,
+    "energy": {"": "J"},
+    "formula": {"": "-", "rate": "1/s"},
+    "point_velocity": {"": "m/s", "rate": "m/s^2"},
     "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},
     "gravity": {},
@@ -340,7 +343,15 @@ FIXED = {
                         "force": "N"},
 }  # fmt: skip
 # seen in the scene above
-DEPENDS = {"drive", "sensor", "applied_load", "limit_stop", "joint_friction", "joint_spring"}
+DEPENDS = {
+    "drive",
+    "sensor",
+    "applied_load",
+    "limit_stop",
+    "joint_friction",
+    "joint_spring",
+    "reaction",
+}
 
 
 def test_units_of_the_elements():

@@ -81,5 +81,5 @@ def test_refused():
     text = "bodies: {b: {mass: 1, inertia: 1}}\nsensors: {s: {type: point, body: b, at: [0, 0], "
     with pytest.raises(TrsimError, match="must not be zero"):
         built(text + "axis: [0, 0]}}")
-    with pytest.raises(TrsimError, match="no body named 'c'"):
+    with pytest.raises(TrsimError, match="no body or point named 'c'"):
         built(text + "axis: [1, 0], frame: c}}")

@@ -271,7 +271,12 @@ planar: false
         ("beyond: []", "beyond: [other]", ("beyond", 0), "named 'other'"),
         ("axis: [1, 0, 0], mass", "axis: [0, 0, 0], mass", ("axis",), "must not be zero"),
         ("torque: 3", "torque: 3*s", None, "known only once"),
-        ("planar: false", "events: {e: {when: s, do: {end: true}}}", None, "known only once"),
+        (
+            "planar: false",
+            "events: {e: {when: s, do: {end: true}}}",
+            None,
+            "no sensor and no channel",
+        ),
     ],
 )
 def test_refused(old, new, path, what):

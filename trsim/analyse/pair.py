@@ -14,6 +14,7 @@ from trsim.store.grow import components
 
 MOTION = ("position", "velocity", "angular_velocity", "rate", "eccentricity_x", "eccentricity_y",
           "eccentricity_x_rate", "eccentricity_y_rate")  # fmt: skip
+MOVING = ("m", "rad", "m/s", "rad/s")  # units of what no contact makes jump: no force or energy
 
 
 class Column(NamedTuple):
@@ -58,7 +59,8 @@ class Pair:
 
     def moves(self, name: str) -> bool:
         """Whether a channel is of positions and velocities, which no contact makes jump."""
-        return name in self.sensors or name.rsplit(".", 1)[-1] in MOTION
+        moves = name in self.sensors or name.rsplit(".", 1)[-1] in MOTION
+        return moves and self.units[name] in MOVING
 
     def whole(self) -> bool:
         """Whether nothing is left out of either run, but for a last row at an event."""

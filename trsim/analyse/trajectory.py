@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.analyse.pair import MOVING
 from trsim.arrays import Array
 from trsim.errors import ScenarioError, SolverError, UsageError, known
 from trsim.solve.blocks import Blocks
@@ -96,7 +97,8 @@ def chosen(mechanism: Any, patterns: Sequence[str]) -> list[Any]:
     if not patterns:
         parts = [(i.section, i.name) for i in mechanism.instances]
         sensors = [name for section, name in parts if section == "sensors"]
-        patterns = [f"{name}{rate}" for name in sensors for rate in ("", ".rate")]
+        own = {f"{name}{rate}" for name in sensors for rate in ("", ".rate")}
+        patterns = [c.name for c in mechanism.columns if c.name in own and c.unit in MOVING]
         patterns = patterns or [f"{n}.position" for section, n in parts if section == "bodies"]
         return [column for column in mechanism.columns if column.name in patterns]
     for pattern in patterns:

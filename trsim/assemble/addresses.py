@@ -1,7 +1,7 @@
 """What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import atan2
 from typing import Any, NamedTuple
 
@@ -17,7 +17,7 @@ from trsim.elements.coordinates import ANY, named, split
 from trsim.elements.joint import triad
 from trsim.elements.rows import ARC, COORDINATES
 from trsim.errors import ScenarioError, known
-from trsim.expressions import LOW, degree, names
+from trsim.expressions import LOW, degree, names, rebuilt
 from trsim.fields import RATE
 from trsim.frame import Frame
 from trsim.laws import functions
@@ -47,7 +47,7 @@ class JointCoordinate(NamedTuple):
 
 NO_NAMES: Mapping[str, tuple[int, str]] = {}
 WOUND = "wound"
-UNITS = {"angle": "rad", "stroke": "m", "arc": "m", "time": "s"}
+UNITS = {"angle": "rad", "stroke": "m", "arc": "m", "time": "s", "speed": "m/s"}
 
 
 @dataclass
@@ -68,6 +68,7 @@ class Addresses:
     notes: list[str] = field(default_factory=list)
     instances: dict[tuple[str, str], Any] = field(default_factory=dict)  # packed so far
     switches: Any = None  # of user events, once all elements are packed
+    of_start: bool = False  # bars are stiff, joints ideal or drives others than in the run
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
     packed_functions: list[Named] = field(default_factory=list)
@@ -112,6 +113,15 @@ class Addresses:
                 what = f"without `at` this is at the middle of '{name}', and that {what}"
             raise ScenarioError(what, hint, path)
         return beam.first + k
+
+    def frame(self, name: str, near: Any = None) -> int:
+        """What axes turn with: the world, a body, or the body of a named point."""
+        points = self.scenario.points
+        owner = "ground" if name == "world" else points[name].body if name in points else name
+        if owner != "ground" and owner not in self.members:
+            there = ["world", *self.members, *points]
+            raise ScenarioError(f"no body or point named '{name}'", known(name, there), ("frame",))
+        return self.body(owner, "frame", near=near, off=1.0)
 
     def bodies(self, pair: tuple[str, str], at: Any, other: Any = None) -> tuple[int, int]:
         """Frames of two different bodies, at a place; or each at its own."""
@@ -296,6 +306,10 @@ class Addresses:
                 found.append((e, instance))
         return found
 
+    def numbered(self, section: str, name: str) -> tuple[int, Any]:
+        """An instance that is packed before the one that asks, with its number."""
+        return [*self.instances].index((section, name)), self.instances[section, name]
+
     def joint_of(self, instance: Any) -> str:
         """The joint along whose coordinate a drive, a force or a lock acts; of others none."""
         name, joints = instance.name, self.scenario.joints
@@ -348,6 +362,8 @@ class Addresses:
         def known(name: str) -> int:
             return local[name][0] if name in local else self.known_sensor(name, time_only, path)
 
+        if spec.kind == "expression" and not local:
+            spec = replace(spec, node=self.inlined(spec.node, path))
         if spec.kind == "constant":
             code = functions.constant(spec.value)
         elif spec.kind == "table":
@@ -367,7 +383,9 @@ class Addresses:
             code = functions.expression(spec.node, indices)
         if self.end is not None and not free:
             try:
-                self.functions += cornered(spec, code, offset, self.end)
+                found = cornered(spec, code, offset, self.end)
+                self.check_corners(found)
+                self.functions += found
             except ScenarioError as error:
                 raise error.at(*path) from None
         if functions.waves(code) and not free:
@@ -376,6 +394,61 @@ class Addresses:
         if not free:
             self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))
         return offset
+
+    def inlined(self, node: Any, path: tuple[str | int, ...], within: tuple[str, ...] = ()) -> Any:
+        """An expression with those of formulas in the place of their names."""
+        if node[0] != "name" or node[1] not in self.scenario.sensors:
+            return rebuilt(node, lambda part: self.inlined(part, path, within))
+        name = node[1]
+        stands_for = self.elements["sensors", name].stands_for
+        if stands_for is None:
+            return node
+        if name in within:
+            what = f"'{name}' refers to itself: {' -> '.join((*within, name))}"
+            raise ScenarioError(what, "a formula names sensors that stand before it", path)
+        return self.inlined(stands_for(self.scenario.sensors[name]), path, (*within, name))
+
+    def read_by_formula(self, name: str, path: tuple[str, ...]) -> Any:
+        """The packed row of a sensor that a formula names, which stands before it."""
+        sensors = self.scenario.sensors
+        if name not in sensors:
+            what = f"no parameter or sensor named '{name}'"
+            raise ScenarioError(what, known(name, [*sensors, *self.scenario.parameters, "t"]), path)
+        if ("sensors", name) not in self.instances:
+            what = f"'{name}' stands behind it in the file, or is the formula itself"
+            raise ScenarioError(what, "a formula names sensors that stand before it", path)
+        instance = self.instances["sensors", name]
+        if instance.channels[0].name:
+            what = f"'{name}' ({instance.element.key}) shows several numbers"
+            raise ScenarioError(what, "name a sensor of one number, such as a `reaction`", path)
+        return instance.row
+
+    def frames_of_sensor(self, name: str) -> frozenset[int]:
+        """The frames that a packed sensor depends on."""
+        instance = self.instances["sensors", name]
+        found: frozenset[int] = instance.element.acts_on(instance.row)
+        return found
+
+    def stored(self, node: Any, sensors: Sequence[str], path: tuple[str, ...]) -> int:
+        """Store an expression that nothing of the motion depends on; its offset."""
+        offset = len(self.tab)
+        try:
+            self.tab += functions.expression(node, {name: self.sensor(name) for name in sensors})
+        except ScenarioError as error:
+            raise error.at(*path) from None
+        return offset
+
+    def check_corners(self, found: list[Cornered]) -> None:
+        """Refuse corners that are met by a sensor without bounds: one could be passed over."""
+        met = {k for one in found for k in one.sensed}
+        for name, k in self.sensors.items():
+            packed = self.instances.get(("sensors", name))
+            if k in met and packed and not packed.row.travel:
+                raise ScenarioError(
+                    f"'{name}' ({packed.element.key}) meets a corner of this function, and has no "
+                    "bounds by which it could be found",
+                    "write a smooth function: v*sqrt(v**2 + 1e-12) for v*abs(v)",
+                )
 
     def check_table(self, spec: Any, found: str, wanted: str, *path: str | int) -> None:
         """Refuse units of a table's columns that are not those of its variable and its values."""
@@ -452,6 +525,9 @@ class Addresses:
 
     def check_early(self, name: str, path: tuple[str | int, ...]) -> None:
         """Refuse a sensor that shows no number of places and velocities."""
+        if self.elements["sensors", name].stands_for:
+            what = f"'{name}' is a formula, and a table is a function of one sensor"
+            raise ScenarioError(what, "write the table of the sensor itself", path)
         if not self.is_early(name):
             key = self.elements["sensors", name].key
             raise ScenarioError(

@@ -223,6 +223,7 @@ def pack(  # type: ignore[no-untyped-def]
     wanted.sort(key=lambda item: order.index(item[0]))
     kinds = {key: elements.load(key) for key, *_ in wanted}
     at = Addresses(scenario, {(s, n): kinds[key] for key, s, n, _ in wanted}, bodies)
+    at.of_start = bool(ideal) or stiff or drives is not None
     at.end = None if drives is not None or stiff else scenario.solver.end
     instances = []
     for key, section, name, spec in wanted:

@@ -86,13 +86,21 @@ def layout(
         columns.append(Column(name, unit, meaning, width, size, asked(name), extra, least, turn))
         width += size
 
+    read: set[str] = set()  # sensors that formulas need which are needed
+    for instance in reversed(instances):
+        if instance.section == "sensors" and instance.row.reads:
+            own = [f"{instance.name}.{c.name}".rstrip(".") for c in instance.channels]
+            if instance.name in read or any(map(needed, own)):
+                read |= instance.row.reads
+
     for e, instance in enumerate(instances):
         channels = instance.channels
         names = [f"{instance.name}.{c.name}" if c.name else instance.name for c in channels]
         # contacts are always measured: their peaks and steps are part of every result
         anyway = any(map(asked, names)) or instance.row.contact
         judged = instance.element.judged(instance.row)
-        if names and (anyway or judged or any(map(needed, names))):
+        needs = any(map(needed, names)) or (instance.section == "sensors" and instance.name in read)
+        if names and (anyway or judged or needs):
             wanted[e] = width
             for name, channel in zip(names, channels, strict=True):
                 add(name, channel, extra=not anyway)
@@ -133,7 +141,8 @@ def watched(columns: list[Column], switches: Switches) -> dict[str, Any]:
     for event in switches.events:
         stem = event.when if event.when in there else event.when[:-2]
         place = COMPONENTS.get(event.when[len(stem) :], 0)
-        found.append(there[stem] + place if event.kind == CHANNEL else -1)
+        heard = event.kind == CHANNEL and stem in there
+        found.append(there[stem] + place if heard else -1)
     return {"heard": np.array(found, np.int64), "hear": hear.address()}
 
 
@@ -188,4 +197,6 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
 
 def is_vector(column: Column) -> bool:
     """Whether the extremes of a channel are those of its magnitude as well."""
-    return column.size == 3 and "reaction" in column.name and column.wanted
+    return (
+        column.size == 3 and column.name.rpartition(".")[2].startswith("reaction") and column.wanted
+    )

@@ -179,7 +179,7 @@ class _Packing:
     def watched(self, name: str, spec: Event) -> tuple[int, str, str]:
         """Entry of S, what kind of quantity it is, and its unit where that does not tell."""
         kind, unit = "time", ""
-        if spec.when in self.scenario.sensors and self.at.is_early(spec.when):
+        if spec.when in self.scenario.sensors and self.is_bounded(spec.when):
             kind = self.at.sensor_kind(spec.when)
         elif spec.when != "t":
             kind, unit = CHANNEL, self.unit_of(spec.when, (SECTION, name, "when"))
@@ -188,12 +188,16 @@ class _Packing:
         entry = TIME if kind in ("time", CHANNEL) else self.at.sensor(spec.when)
         return entry, kind, unit
 
+    def is_bounded(self, sensor: str) -> bool:
+        """Whether it is known how far a sensor may go inside a step."""
+        return self.at.is_early(sensor) and bool(self.instances["sensors", sensor].row.travel)
+
     def unit_of(self, channel: str, path: tuple) -> str:
         """The unit of a channel.  Raises ScenarioError for what is none, or no single number.
 
         Nobody looks at the channels of a start, where bars are stiff and joints may be ideal.
         """
-        if self.at.end is None:
+        if self.at.of_start:
             return ""
         there = {
             f"{i.name}.{c.name}" if c.name else i.name: (c.unit, c.size)

@@ -41,6 +41,7 @@ ELEMENTS = {
     "relative_angle": "sensors",
     "distance": "sensors",
     "point": "sensors",
+    "point_velocity": "sensors",
     "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
     "applied_load": "forces",
@@ -54,7 +55,10 @@ ELEMENTS = {
     "limit_stop": "forces",
     "joint_friction": "forces",
     "sync_shaft": "forces",
+    "reaction": "sensors",
+    "energy": "sensors",
     "section": "sensors",  # behind all that may act on a body
+    "formula": "sensors",  # behind all that it may read
 }
 
 # word -> the key that makes it another element, and which

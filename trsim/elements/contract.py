@@ -310,6 +310,8 @@ class Element:
     judged: Callable[[Row], bool] = lambda _: False
     # (name, spec, largest) -> what speaks against believing a run, in sentences; see doubts.py
     doubts: Callable[[str, Any, Callable], Iterable[str]] = lambda *_: ()
+    # (spec) -> the expression of other sensors that a sensor is short for
+    stands_for: Callable[[Any], tuple] | None = None
     springs: Callable[[Row], Springs] | None = None  # what they hold is at rest at the start
     elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
     viscous: tuple[int, ...] = ()  # and those of its material's damping

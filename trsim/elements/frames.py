@@ -83,6 +83,26 @@ def arm(X, i, s):
 
 
 @internal
+def inside(X, i, v):
+    """R_i^T v: a vector in world axes, in those of frame i."""
+    return (
+        X[i, 3] * v[0] + X[i, 6] * v[1] + X[i, 9] * v[2],
+        X[i, 4] * v[0] + X[i, 7] * v[1] + X[i, 10] * v[2],
+        X[i, 5] * v[0] + X[i, 8] * v[1] + X[i, 11] * v[2],
+    )
+
+
+@internal
+def times(I, v):
+    """A tensor, row by row, times a vector."""
+    return (
+        I[0] * v[0] + I[1] * v[1] + I[2] * v[2],
+        I[3] * v[0] + I[4] * v[1] + I[5] * v[2],
+        I[6] * v[0] + I[7] * v[1] + I[8] * v[2],
+    )
+
+
+@internal
 def plus(a, b):
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 

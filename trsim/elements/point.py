@@ -19,7 +19,7 @@ class Point(Spec):
     body    the one the point is fixed in
     at      the point, as drawn
     axis    direction of the component, as drawn; of any length
-    frame   body in which the axis and the origin are fixed; `ground`: the world
+    frame   `world`, or a body or the body of a point, in which axis and origin are fixed
     origin  place from which it is counted, as drawn
     """
 
@@ -27,12 +27,12 @@ class Point(Spec):
     body: str
     at: point("m")
     axis: vector("-")
-    frame: str = "ground"
+    frame: str = "world"
     origin: point("m") = (0.0, 0.0, 0.0)
 
 
 def pack(name, spec, at):
-    i = at.body(spec.frame, "frame", near=spec.origin)
+    i = at.frame(spec.frame, spec.origin)
     j = at.body(spec.body, "body", near=spec.at)
     axis = perpendicular(spec.axis)[2]
     places = {"p_i": at.looked_at(i, spec.origin), "p_j": at.looked_at(j, spec.at)}

@@ -20,14 +20,12 @@ import numpy as np
 from annotated_types import Ge
 from pydantic import model_validator
 
+from trsim.elements.acted import Acted, acting, wrench
 from trsim.elements.contract import (
-    FIRST_ROW,
     Channel,
     Element,
-    Pair,
     Row,
     Turning,
-    call_kernel,
     measured,
 )
 from trsim.elements.frames import (
@@ -35,18 +33,19 @@ from trsim.elements.frames import (
     centripetal,
     cross,
     dot,
+    inside,
     minus,
     plus,
     scaled,
     spin,
+    times,
     velocity,
 )
 from trsim.elements.inertia import Inertia, tensor_of
 from trsim.elements.joint import triad
-from trsim.elements.rotations import into
 from trsim.errors import ScenarioError, known
 from trsim.fields import Spec, Unit, point, vector
-from trsim.kernels.columns import V3, f8, i8, run
+from trsim.kernels.columns import V3, f8, run
 from trsim.kernels.lazy import internal
 
 IN_PLANE = 1e-9  # of the size of a body: so near to the section nobody knows the side
@@ -84,12 +83,9 @@ class BodySection(Spec):
         return self
 
 
-class Own(Pair):
-    """Of one instance."""
+class Own(Acted):
+    """Of one instance; what acts is what acts on the part beyond."""
 
-    number: i8  # of what acts on the part beyond
-    pushes: i8  # 1: some of that are no constraint rows
-    members: run(i8)  # of each its instance and how many constraint rows it has
     station: V3  # m, from the centre of mass, in the axes of the body
     x: V3  # axes of the section, in those of the body
     y: V3
@@ -110,12 +106,8 @@ def pack(name, spec, at):
     u, w, a = triad(spec)
     centre = spec.at if spec.centre is None else spec.centre
     tensor = check_part(spec, at, i)
-    members = [m for e, instance in beyond(spec, at, i, a)
-               for m in (e, len(instance.element.rows))]  # fmt: skip
-    instances = [*at.instances.values()]
     own = Own.packed(
-        i=i, j=i, coordinate=-1, number=len(members) // 2, members=members,
-        pushes=any("force" in instances[e].element.kernels for e in members[::2]),
+        i=i, j=i, coordinate=-1, **acting(beyond(spec, at, i, a)),
         station=at.looked_at(i, spec.at), x=at.axes(i, u), y=at.axes(i, w), z=at.axes(i, a),
         centre=at.looked_at(i, centre), weight=[spec.mass * g for g in at.scenario.gravity],
         mass=spec.mass, inertia=tensor,
@@ -201,74 +193,13 @@ def side_of(spec, at, i, a, instance):
 
 
 @internal
-def body_wrench(scene, i, e, rows):
-    """What the constraint rows of instance e put on a body, about its centre of mass."""
-    con, lam, J, row_start = scene.con, scene.lam, scene.J, scene.row_start
-    f0 = f1 = f2 = m0 = m1 = m2 = 0.0
-    for r in range(FIRST_ROW, FIRST_ROW + rows):
-        row = con[e, r]
-        if row >= 0:
-            for l in range(row_start[row], row_start[row + 1]):
-                if scene.line_frame[l] == i:
-                    f0, f1, f2 = (
-                        f0 - lam[row] * J[l, 0],
-                        f1 - lam[row] * J[l, 1],
-                        f2 - lam[row] * J[l, 2],
-                    )
-                    m0, m1, m2 = (
-                        m0 - lam[row] * J[l, 3],
-                        m1 - lam[row] * J[l, 4],
-                        m2 - lam[row] * J[l, 5],
-                    )
-    return (f0, f1, f2), (m0, m1, m2)
-
-
-@internal
-def pushed(t, scene, e):
-    """What the forces among the members put on the body, about its centre of mass.
-
-    Their kernels are called alone; forces and rates of the last evaluation are put back.
-    """
-    own = Own(scene, e)
-    i, F, kept, zd, rates = own.i, scene.F, scene.moved, scene.zd, scene.aside[1]
-    for f in range(scene.n):
-        for c in range(6):
-            kept[f, c], F[f, c] = F[f, c], 0.0
-    for k in range(scene.n_z):
-        rates[k] = zd[k]
-    for k in range(own.number):
-        one = own.members[2 * k]
-        for n in range(scene.force.shape[0]):
-            if scene.force[n, 1] <= one < scene.force[n, 2]:
-                call_kernel(scene.force[n, 0], t, scene, one, one + 1)
-    found = (F[i, 0], F[i, 1], F[i, 2]), (F[i, 3], F[i, 4], F[i, 5])
-    for f in range(scene.n):
-        for c in range(6):
-            F[f, c] = kept[f, c]
-    for k in range(scene.n_z):
-        zd[k] = rates[k]
-    return found
-
-
-@internal
 def of_inertia(scene, e):
     """I alpha + omega x I omega of the part beyond, world axes."""
     X, own = scene.X, Own(scene, e)
     i, I = own.i, own.inertia
-    R = (arm(X, i, (1.0, 0.0, 0.0)), arm(X, i, (0.0, 1.0, 0.0)), arm(X, i, (0.0, 0.0, 1.0)))
-    alpha, omega = into(R, spin(scene.A, i)), into(R, spin(scene.V, i))
+    alpha, omega = inside(X, i, spin(scene.A, i)), inside(X, i, spin(scene.V, i))
     rate, turning = times(I, alpha), times(I, omega)
     return arm(X, i, plus(rate, cross(omega, turning)))
-
-
-@internal
-def times(I, v):
-    """A tensor, row by row, times a vector."""
-    return (
-        I[0] * v[0] + I[1] * v[1] + I[2] * v[2],
-        I[3] * v[0] + I[4] * v[1] + I[5] * v[2],
-        I[6] * v[0] + I[7] * v[1] + I[8] * v[2],
-    )
 
 
 @measured
@@ -278,12 +209,8 @@ def measure(t, scene, e, o):
     a_c = plus(velocity(scene.A, i, c), centripetal(scene.V, i, c))
     F = minus(scaled(own.mass, a_c), own.weight)
     M = plus(of_inertia(scene, e), cross(minus(c, p), F))
-    for k in range(own.number):
-        f, m = body_wrench(scene, i, own.members[2 * k], own.members[2 * k + 1])
-        F, M = minus(F, f), minus(M, minus(m, cross(p, f)))
-    if own.pushes == 1:
-        f, m = pushed(t, scene, e)
-        F, M = minus(F, f), minus(M, minus(m, cross(p, f)))
+    f, m = wrench(t, scene, e)
+    F, M = minus(F, f), minus(M, minus(m, cross(p, f)))
     if scene.d == 3:
         F, M = (F[0], F[1], 0.0), (0.0, 0.0, M[2])
     x, y, z = arm(X, i, own.x), arm(X, i, own.y), arm(X, i, own.z)
@@ -303,7 +230,7 @@ ELEMENT = Element(
     spec=BodySection,
     pack=pack,
     channels=(
-        Channel("force", "N", "on the part beyond, axes of the section: z is normal", 3),
+        Channel("force", "N", "on the part beyond, axes of the section: z normal, < 0 pulls", 3),
         Channel("moment", "N*m", "the same about the station: z is torsion", 3),
         Channel("shear", "N", "size of the force in the section", least=0.0),
         Channel("bending", "N*m", "size of the moment in it", least=0.0),

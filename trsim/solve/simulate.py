@@ -15,6 +15,7 @@ from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.solve.diagnose.blame import undecided, why
 from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
+from trsim.solve.diagnose.no_number import refuse_no_number, unshown
 from trsim.solve.diagnose.strained import collapsed
 from trsim.solve.march import record as rec
 from trsim.solve.march.act import act
@@ -46,6 +47,7 @@ SPARSE_FROM = 30  # velocities: ten planar bodies, five spatial ones; measured o
 # what the multipliers of a tighter one are rounded to looks like its error, as it does in the first
 # moments of a hard touch, whose error is judged by depths of nanometres
 SPARSE_UNTIL = 1e-11  # tolerance
+NO_STEP_FOUND = (rec.NOT_FINITE, rec.STEP_TOO_SMALL)
 GO_ON = (rec.FULL, rec.PAUSE, rec.LOAD, rec.ACT)  # the march is called again after these
 VISIT, LIGHT = 5000, 30  # steps between two looks at the outside world, of so many velocities
 BARS = 100  # steps, where flexible bars may collapse
@@ -174,6 +176,7 @@ def compiled(
         work.tab[work.held] = r.held  # functions, as the record says
     else:
         begin(work, r, b, setting)
+        refuse_no_number(mechanism, b.rows[0, 1:])
         r.h = first_step(scenario, r)
     if driven and not keep_side(work, r, b):
         from trsim.solve.diagnose.singular import singular_start
@@ -237,6 +240,8 @@ def ending(
     if whose is not None and reason != NO_STEPS_LEFT:
         entry = scenario.entry(whose.section, whose.name)
         return "painleve", f"{entry}: from t = {r.t:.6g} s on {text}"
+    if reason in NO_STEP_FOUND and (text := unshown(mechanism, work.out)):
+        return "failed", text
     if reason in (rec.NOT_FINITE, rec.TOO_FAST) and setting.fixed_step > 0.0:
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:

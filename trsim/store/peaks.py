@@ -31,11 +31,16 @@ class Peak(NamedTuple):
     unit: str
 
 
+def bears(channel: str) -> bool:
+    """Whether a channel, by its whole name, is a reaction."""
+    return channel.rpartition(".")[2].startswith("reaction")
+
+
 class Magnitudes:
     """Largest magnitudes of vectors so far, kept while rows pass by."""
 
     def __init__(self, columns: tuple[Any, ...]) -> None:
-        self.columns = [c for c in columns if c.size == 3 and "reaction" in c.name and c.wanted]
+        self.columns = [c for c in columns if c.size == 3 and c.wanted and bears(c.name)]
         self.row = {c.name: k for k, c in enumerate(self.columns)}
         self.largest = np.zeros((len(self.columns), 2))  # square, time: a root would lose bits
 

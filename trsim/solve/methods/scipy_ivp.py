@@ -22,6 +22,7 @@ from trsim.kernels.vectors import clear, copy_to
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.blame import undecided, why
 from trsim.solve.diagnose.mesh_error import Bends
+from trsim.solve.diagnose.no_number import refuse_no_number, unshown
 from trsim.solve.march import record as rec
 from trsim.solve.march.accelerations import (
     ALLOWED,
@@ -122,6 +123,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     )
     clock0 = time.process_time()
     begin(s, r, b, setting)
+    refuse_no_number(mechanism, b.rows[0, 1:])
     r.h = first_step(scenario, r)
     status: Ended = "done"
     reason = ""
@@ -145,7 +147,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         b.h, b.built = h, 1
         outcome = complete(s, r, b, setting, method)
         if outcome == WORTHLESS:
-            status, reason = "failed", "a value is not finite"
+            status, reason = "failed", unshown(mechanism, s.out) or "a value is not finite"
             break
         if outcome in (STRAYED, WOUND):
             r.h = 0.3 * h

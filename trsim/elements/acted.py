@@ -1,0 +1,84 @@
+"""What single joints, drives and forces put on a body, once the motion is known.
+
+Of constraint rows it is -J^T lambda of the rows alone; of what else pushes, its kernel is called
+alone.
+"""
+
+from trsim.elements.contract import FIRST_ROW, Pair, call_kernel
+from trsim.elements.frames import plus
+from trsim.kernels.columns import i8, run
+from trsim.kernels.lazy import internal
+
+
+class Acted(Pair):
+    """Of what tells a wrench on body i."""
+
+    number: i8  # of what acts
+    pushes: i8  # 1: some of that are no constraint rows
+    members: run(i8)  # of each its instance and how many constraint rows it has
+
+
+def acting(members):
+    """These columns, of instances with their numbers."""
+    pairs = [(e, len(instance.element.rows)) for e, instance in members]
+    return {
+        "number": len(pairs),
+        "pushes": any("force" in instance.element.kernels for _, instance in members),
+        "members": [n for pair in pairs for n in pair],
+    }
+
+
+@internal
+def wrench(t, scene, e):
+    """Force and moment about the centre of mass of body i, world axes."""
+    own = Acted(scene, e)
+    f, m = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for k in range(own.number):
+        f_k, m_k = of_rows(scene, own.i, own.members[2 * k], own.members[2 * k + 1])
+        f, m = plus(f, f_k), plus(m, m_k)
+    if own.pushes == 1:
+        f_k, m_k = pushed(t, scene, e)
+        f, m = plus(f, f_k), plus(m, m_k)
+    return f, m
+
+
+@internal
+def of_rows(scene, i, e, rows):
+    """What the constraint rows of instance e put on a body."""
+    J, f, m = scene.J, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for r in range(FIRST_ROW, FIRST_ROW + rows):
+        row = scene.con[e, r]
+        if row >= 0:
+            pull = -scene.lam[row]
+            for l in range(scene.row_start[row], scene.row_start[row + 1]):
+                if scene.line_frame[l] == i:
+                    f = plus(f, (pull * J[l, 0], pull * J[l, 1], pull * J[l, 2]))
+                    m = plus(m, (pull * J[l, 3], pull * J[l, 4], pull * J[l, 5]))
+    return f, m
+
+
+@internal
+def pushed(t, scene, e):
+    """What the forces among the members put on the body.
+
+    Forces and rates of the last evaluation are put back: other numbers of a row need them.
+    """
+    own = Acted(scene, e)
+    i, F, kept, zd, rates = own.i, scene.F, scene.moved, scene.zd, scene.aside[1]
+    for f in range(scene.n):
+        for c in range(6):
+            kept[f, c], F[f, c] = F[f, c], 0.0
+    for k in range(scene.n_z):
+        rates[k] = zd[k]
+    for k in range(own.number):
+        one = own.members[2 * k]
+        for n in range(scene.force.shape[0]):
+            if scene.force[n, 1] <= one < scene.force[n, 2]:
+                call_kernel(scene.force[n, 0], t, scene, one, one + 1)
+    found = (F[i, 0], F[i, 1], F[i, 2]), (F[i, 3], F[i, 4], F[i, 5])
+    for f in range(scene.n):
+        for c in range(6):
+            F[f, c] = kept[f, c]
+    for k in range(scene.n_z):
+        zd[k] = rates[k]
+    return found

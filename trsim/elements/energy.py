@@ -1,0 +1,111 @@
+"""Energy sensor: kinetic, stored, or both together, of the whole mechanism.
+
+    kinetic    sum of m v^2 / 2 + omega . I omega / 2
+    stored     in springs, contacts and gravity, from zero as `energy.stored` is     contract.py
+
+The same numbers stand in the energy book, `energy.kinetic` and `energy.stored.springs` and so on;
+as a sensor they have a name of their own, for formulas.
+"""
+
+from typing import ClassVar, Literal
+
+from trsim.elements.contract import (
+    CONTACTS,
+    GRAVITY,
+    SPRINGS,
+    Channel,
+    Element,
+    Pair,
+    Row,
+    call_kernel,
+    measured,
+)
+from trsim.elements.frames import dot, inside, spin, times
+from trsim.errors import ScenarioError
+from trsim.fields import Spec
+from trsim.kernels.columns import f8
+from trsim.kernels.lazy import internal
+
+
+class Energy(Spec):
+    """An energy of the mechanism.
+
+    of  `total`, `kinetic` or `stored`
+    """
+
+    type: ClassVar[str] = "energy"
+    of: Literal["total", "kinetic", "stored"] = "total"
+
+
+class Own(Pair):
+    """Of one instance."""
+
+    moves: f8  # 1: kinetic energy counts
+    stores: f8  # 1: stored energy counts
+
+
+def pack(name, spec, at):
+    if spec.of != "stored" and at.beams:
+        raise ScenarioError(
+            f"the {spec.of} energy of flexible bars is told by the energy book alone",
+            "record or watch `energy.kinetic` and `energy.stored.springs`",
+            ("of",),
+        )
+    counts = {"moves": spec.of != "stored", "stores": spec.of != "kinetic"}
+    return Row(*Own.packed(i=0, j=0, coordinate=at.sensor(name), **counts))
+
+
+@internal
+def kinetic(scene):
+    """Of all rigid bodies, J."""
+    T, V = 0.0, scene.V
+    for f in range(1, scene.n_r):
+        v, I = (V[f, 0], V[f, 1], V[f, 2]), scene.inertia[f]
+        T += 0.5 * scene.mass[f] * dot(v, v)
+        if scene.d == 3:
+            T += 0.5 * I[8] * V[f, 5] * V[f, 5]
+        else:
+            o = inside(scene.X, f, spin(V, f))
+            T += 0.5 * dot(o, times(I, o))
+    return T
+
+
+@internal
+def stored(t, scene):
+    """In all elements, J; the energy book makes E anew."""
+    E = scene.E
+    E[SPRINGS], E[CONTACTS], E[GRAVITY] = 0.0, 0.0, 0.0
+    for n in range(scene.energy.shape[0]):
+        call_kernel(scene.energy[n, 0], t, scene, scene.energy[n, 1], scene.energy[n, 2])
+    return E[SPRINGS] + E[CONTACTS] + E[GRAVITY]
+
+
+@measured
+def measure(t, scene, e, o):
+    own, energy = Own(scene, e), 0.0
+    if own.moves == 1.0:
+        energy += kinetic(scene)
+    if own.stores == 1.0:
+        energy += stored(t, scene)
+    scene.out[o] = scene.S[own.coordinate, 0] = energy  # in S for formulas
+
+
+ELEMENT = Element(
+    key="energy",
+    section="sensors",
+    spec=Energy,
+    pack=pack,
+    acts_on=lambda _: frozenset(),
+    channels=(Channel("", "J", "energy of the mechanism"),),
+    kernels={"measure": measure},
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+sensors:
+  whole: {type: energy}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
+)

@@ -1,0 +1,100 @@
+"""Formula: an expression of other sensors, and of t.
+
+    s = f(t, sensors)          s' = df/dt by the rates of the sensors, where all of them have one
+
+It is evaluated as written; where it has no finite number, as where it divides by zero, the run
+ends.  In a load the expression stands for the formula: its corners are found there like those of
+any other load.
+"""
+
+from typing import ClassVar
+
+from trsim.elements.contract import Channel, Element, Pair, Row, measured
+from trsim.errors import ScenarioError
+from trsim.fields import Function, Spec
+from trsim.kernels.columns import i8, run
+from trsim.laws.functions import value, value_and_rate
+from trsim.units import unit
+
+
+class Formula(Spec):
+    """A sum, a ratio, or any other expression of sensors that stand before it in the file.
+
+    value  the expression, in SI units
+    unit   of what it shows, for files and figures: an SI unit
+    """
+
+    type: ClassVar[str] = "formula"
+    value: Function("-")
+    unit: str = "-"
+
+
+class Own(Pair):
+    """Of one instance."""
+
+    function: i8  # in tab
+    rates: i8  # 1: it has a rate
+    frames: run(i8)  # that its sensors depend on
+
+
+def pack(name, spec, at):
+    if spec.value.kind != "expression":
+        what = "a formula is an expression of sensors, such as `x + 2*y`"
+        raise ScenarioError(what, "name a sensor in it", ("value",))
+    if unit(spec.unit)[0] != 1:
+        what = f"'{spec.unit}' is no SI unit, and the expression is in SI units"
+        raise ScenarioError(what, "write m, not mm", ("unit",))
+    read = sorted(spec.value.sensors)
+    rows = [at.read_by_formula(one, ("value",)) for one in read]
+    # not `at.function`: what is only looked at changes no step
+    offset = at.stored(spec.value.node, read, ("value",))
+    rates = all(row.travel for row in rows)
+    frames = sorted({f for one in read for f in at.frames_of_sensor(one)})
+    own = Own.packed(
+        i=0, j=0, coordinate=at.sensor(name), function=offset, rates=rates, frames=frames
+    )
+    shown = (Channel("", spec.unit, "value of the expression"),)
+    if rates:
+        per = "1/s" if spec.unit == "-" else f"({spec.unit})/s" if "/" in spec.unit else None
+        shown += (Channel("rate", per or f"{spec.unit}/s", "its rate"),)
+    return Row(*own, channels=shown, reads=frozenset(read))
+
+
+@measured
+def measure(t, scene, e, o):
+    own, S = Own(scene, e), scene.S
+    if own.rates == 1:
+        scene.out[o], scene.out[o + 1] = value_and_rate(scene.tab, own.function, t, S)
+    else:
+        scene.out[o] = value(scene.tab, own.function, t, S)
+    S[own.coordinate, 0] = scene.out[o]
+
+
+def acts_on(row):
+    return frozenset(f for f in Own.of(row).frames if f >= 0)
+
+
+ELEMENT = Element(
+    key="formula",
+    section="sensors",
+    spec=Formula,
+    pack=pack,
+    acts_on=acts_on,
+    channels=(
+        Channel("", "-", "value of the expression"),
+        Channel("rate", "1/s", "its rate"),
+    ),
+    stands_for=lambda spec: spec.value.node,
+    kernels={"measure": measure},
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+sensors:
+  turn: {joint: hinge}
+  cosine: {type: formula, value: "cos(turn) + 0.1*turn"}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
+)

@@ -1,0 +1,110 @@
+"""Point velocity: a component of the velocity of a point, or its speed.
+
+    s = a . v         s' = a . v' + (omega_f x a) . v          a fixed in the body `frame`
+    s = |v|           s' = v . v' / |v|,  |v'| where v = 0
+
+v is the velocity of the point in the world: along an axis that turns, it is what a gauge fixed in
+`frame` shows of it, and not the rate of a place seen from there (that is `rate` of point.py).
+"""
+
+from math import sqrt
+from typing import ClassVar
+
+from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
+from trsim.elements.frames import Along, arm, centripetal, cross, dot, plus, spin, velocity
+from trsim.elements.joint import of_key
+from trsim.fields import Spec, point, vector
+from trsim.kernels.lazy import internal
+
+
+class PointVelocity(Spec):
+    """A component of the velocity of a point of a body, or its speed.
+
+    body   the one the point is fixed in
+    at     the point, as drawn
+    axis   direction of the component, as drawn; the speed unless given
+    frame  `world`, or a body or the body of a point, with which the axis turns
+    """
+
+    type: ClassVar[str] = "point_velocity"
+    body: str
+    at: point("m")
+    axis: vector("-") | None = None
+    frame: str = "world"
+
+
+def pack(name, spec, at):
+    i = at.frame(spec.frame, spec.at)
+    j = at.body(spec.body, "body", near=spec.at)
+    axis = (0.0, 0.0, 0.0) if spec.axis is None else at.axes(i, of_key(spec, "axis"))
+    places = {"p_i": (0.0, 0.0, 0.0), "p_j": at.looked_at(j, spec.at)}
+    return Row(*Along.packed(i=i, j=j, coordinate=at.sensor(name), **places, axis=axis))
+
+
+@internal
+def motion(scene, e):
+    """The axis, zero for the speed, the velocity and what is shown of it."""
+    own = Along(scene, e)
+    axis = arm(scene.X, own.i, own.axis)
+    v = velocity(scene.V, own.j, arm(scene.X, own.j, own.p_j))
+    shown = dot(axis, v) if dot(axis, axis) > 0.0 else sqrt(dot(v, v))
+    return axis, v, shown
+
+
+@kernel
+def coordinate(t, scene, e):
+    s = Along(scene, e).coordinate
+    _, _, scene.S[s, 0] = motion(scene, e)
+    scene.S[s, 1] = 0.0  # known only with the accelerations: nobody may ask
+
+
+@measured
+def measure(t, scene, e, o):
+    V, out, own = scene.V, scene.out, Along(scene, e)
+    axis, v, shown = motion(scene, e)
+    p = arm(scene.X, own.j, own.p_j)
+    a = plus(velocity(scene.A, own.j, p), centripetal(V, own.j, p))
+    if dot(axis, axis) > 0.0:
+        rate = dot(axis, a) + dot(cross(spin(V, own.i), axis), v)
+    elif shown > 0.0:
+        rate = dot(v, a) / shown
+    else:
+        rate = sqrt(dot(a, a))
+    out[o], out[o + 1] = shown, rate
+
+
+def reach(row):
+    own = Along.of(row)
+    return Reach(shown=((own.i, own.axis),) if any(own.axis) else ())
+
+
+def turning(row):
+    own = Along.of(row)
+    axes = ((own.i, own.axis),) if any(own.axis) else ()
+    return Turning(points=((own.j, own.p_j),), axes=axes)
+
+
+ELEMENT = Element(
+    key="point_velocity",
+    section="sensors",
+    spec=PointVelocity,
+    pack=pack,
+    reach=reach,
+    coordinates=("speed",),
+    channels=(
+        Channel("", "m/s", "component of the velocity, or the speed"),
+        Channel("rate", "m/s^2", "its rate"),
+    ),
+    turning=turning,
+    kernels={"coordinate": coordinate, "measure": measure},
+    example="""
+bodies:
+  rod: {mass: 2 kg, inertia: 0.05 kg*m^2, at: [0.2, 0]}
+joints:
+  hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}
+sensors:
+  tip_speed: {type: point_velocity, body: rod, at: [0.4, 0]}
+gravity: [0, -9.81, 0]
+solver: {end: 1 s}
+""",
+)
