@@ -59,6 +59,7 @@ from trsim.elements.coordinates import of_joint
 from trsim.elements.rows import column_of
 from trsim.elements.scene import BAUMGARTE, N_MEM, NONE, PROJECTION, Model, Scene, scene
 from trsim.errors import ScenarioError
+from trsim.scenario.methods import METHODS
 
 
 def assemble(
@@ -125,6 +126,7 @@ def assemble(
         notes=(*verdict.notes(), *notes(scenario), *at.notes),
         stages=stages(scenario, at, instances, Choice(model, kept, dropped(rows, found)), planar),
         sections=shown,
+        least_norm=model.shares > 0,
     )
 
 
@@ -169,6 +171,16 @@ def stages(
     ]
     held = [(of, angle) for of, angle in turning if angle is not None]
     return Stages(at.switches, instances, first, built, rebuilt, held)
+
+
+def measured_with(solver: Any, redundant: Sequence[RowName]) -> dict[str, int]:
+    """What multipliers are made to be for what is measured: see `plain` of elements/scene.py."""
+    if METHODS[solver.method].driven and redundant:
+        from trsim.assemble.least_norm import least_norm
+
+        return {"plain": least_norm.address(), "shares": 1}
+    plain = without_feedback.address() if solver.stabilisation == "baumgarte" else 0
+    return {"plain": plain, "shares": 0}
 
 
 def notes(scenario: Any) -> tuple[str, ...]:
@@ -308,7 +320,7 @@ def build(
         **band_tables(list(at.beams.values()), frames, n),
         derivative=derivative.address(),
         beside=beside.address(),
-        plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
+        **measured_with(solver, redundant),
         near=near(solver, rows, spans(at)),
         near_rows=near_rows(solver, rows, spans(at)),
         looped=looped(instances, rows, spans(at)),

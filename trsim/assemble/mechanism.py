@@ -41,6 +41,7 @@ class Mechanism:
     notes: tuple[str, ...]
     stages: Stages  # what user events make of it
     sections: tuple[Section, ...] = ()  # in the order of model.section
+    least_norm: bool = False  # reactions that are not unique are those of least norm
     ahead: Mapping[int, float] = field(default_factory=dict)  # state -> how far from its coordinate
 
     def in_stage(self, stage: NDArray[np.int64], left_out: NDArray[np.int64]) -> "Mechanism":

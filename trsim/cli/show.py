@@ -37,6 +37,7 @@ def command(answer: Answer, run: str, verify: bool) -> None:
         "solver": found.group("solver"),
         "warnings": list(found.warnings),
         "mobility": found.group("mechanism")["mobility"],
+        "least_norm": bool(found.group("mechanism").get("least_norm", 0)),
         "redundant": list(found.text("mechanism/redundant")),
         "not_unique": list(found.text("mechanism/not_unique")),
         "provenance": found.group("provenance"),

@@ -89,7 +89,8 @@ class Model(Packed):
     looped: I1  # rigid bodies in kinematic loops    assemble/loops.py
     judged: I2  # (n, 2) frames of what judges how far one is turned against the other: bushings
     tolerance: f8  # asked for, of the units of the error norm
-    plain: i8  # address of what leaves Baumgarte's feedback out of what is measured, or 0
+    plain: i8  # address of what makes multipliers those that are measured, or 0  outputs.py
+    shares: i8  # 1: those are of least norm, of redundant rows too  least_norm.py
     stabilisation: i8  # NONE, BAUMGARTE, PROJECTION
     alpha: f8  # 1/s, Baumgarte: Phi'' + 2 alpha Phi' + beta^2 Phi = 0
     beta: f8
@@ -165,6 +166,7 @@ class Scene(Model):
     r: A1  # (n_x) refinement
     r2: A1  # (n_x)
     aside: A2  # (10, n_y or n_v+m+1) states and accelerations beside this one   beside.py
+    gram: A2  # (n_v+4, n_v) J^T J of all rows, and vectors beside it  least_norm.py
     root: A2  # (3, n_x) sigma at the ends of the last step and of this one    solve/march/passes.py
     part_root: A2  # (3, n_x) the same of parts of a step
     kept_rows: A2  # (4, 6 slots) B and the factors of two places, and of both ends of a step
@@ -219,6 +221,7 @@ def scene(model: Model) -> Scene:
         (("first", "x", "r", "r2"), (n_x,)),
         (("through",), (m,)),
         (("aside",), (10, max(n_y, model.n_v + m + 1))),
+        (("gram",), (model.shares * (model.n_v + 4), model.n_v)),
         (("root", "part_root"), (3 * loops, n_x)),
         (("kept_rows",), (4 * loops, 6 * slots)),
         (("kept_factors",), (4 * loops, len(model.row))),

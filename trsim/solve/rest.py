@@ -119,6 +119,7 @@ def at_rest(scenario: Any) -> AtRest:
         if error.path[:1] != ("initial",) or error.path[1:2] not in ((), ("equilibrium",)):
             raise
         raise ModelError(error.what, NO_BALANCE) from None
+    mechanism = replace(mechanism, least_norm=len(mechanism.redundant) > 0)
     begun = replace(begun, y=without_rates(mechanism, begun.y))
     work, load, left = balanced(mechanism, begun)
     measure_at_rest(work, begun.y)

@@ -91,6 +91,8 @@ def _mechanism(group: h5py.Group, scenario: Any, mechanism: Any) -> None:
     """What was assembled: instances, and what the motion does not determine."""
     group.attrs["planar"] = bool(mechanism.planar)
     group.attrs["mobility"] = int(mechanism.mobility)
+    if mechanism.least_norm:
+        group.attrs["least_norm"] = 1
     for name in ("redundant", "singular", "not_unique", "notes"):
         group[name] = np.array(list(getattr(mechanism, name)), dtype=TEXT)
     shown = [i for i in mechanism.instances if i.section]
@@ -155,6 +157,7 @@ def summary(
         "statistics": dict(outcome.statistics) if outcome else {},
         "warnings": [*mechanism.notes, *lint(run.scenario), *late],
         "mobility": int(mechanism.mobility),
+        "least_norm": bool(mechanism.least_norm),
         "redundant": list(mechanism.redundant),
         "not_unique": list(mechanism.not_unique),
     }

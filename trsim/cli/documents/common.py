@@ -50,9 +50,13 @@ class Subject(TypedDict):
 class Result(Subject):
     """A run of it.
 
-    warnings  what looks wrong: in the scenario, at the start, in the results
-    fired     user event -> how often it happened
+    least_norm  whether reactions that are not unique are those of least norm; else those of dropped
+                rows are zero
+    warnings    what looks wrong: in the scenario, at the start, in the results
+    fired       user event -> how often it happened
     """
+
+    least_norm: bool
 
     reason: str
     warnings: list[str]

@@ -117,7 +117,8 @@ class Ran(Results, Result):
     status          how it ended; after `failed` the exit code is 5
     reason          why it failed, or which user event ended it
     statistics      what the solver did
-    redundant       constraint rows dropped, "joint.axis"; their reactions are stored as zero
+    redundant       constraint rows dropped, "joint.axis"; their reactions are stored as zero, but
+                    see least_norm
     content_sha256  of all results; the same for the same results
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again

@@ -35,9 +35,10 @@ def _rows(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
             "plane are reported as zero"
         )
     if mechanism.redundant:
+        told = "of least norm" if mechanism.least_norm else "reported as zero"
         yield (
             f"{len(mechanism.redundant)} redundant rows ({some(mechanism.redundant, SHOWN)}): the "
-            "other rows hold the mechanism; their reactions are reported as zero"
+            f"other rows hold the mechanism; their reactions are {told}"
         )
     if model.m == 0:
         yield "constraints: no joint or drive has a row in the solve, so nothing is factorised"
