@@ -36,6 +36,7 @@ GOOD = {
     "sweep": ("crank.yaml", *VARIED),
     "status": ("sweep",),
     "check": ("crank.yaml",),
+    "statics": ("crank.yaml", "-o", "rest.h5"),
     "report": ("x.h5",),
     "show": ("x.h5",),
     "export": ("x.h5", "--csv"),
@@ -52,6 +53,7 @@ SEAMS = {  # what a command calls to do its work
     "sweep": "trsim.sweep.go.go",
     "status": "trsim.sweep.study.study",
     "check": "trsim.cli.check.one",
+    "statics": "trsim.cli.statics.one",
     "report": "trsim.report.report",
     "show": "trsim.store.read.read",
     "export": "trsim.store.csv.export",
@@ -63,6 +65,7 @@ SEAMS = {  # what a command calls to do its work
 USAGE = {  # beside wrong options
     "run": ("crank.yaml", "-o", "crank.yaml"),
     "check": ("crank.yaml", "--set", "nonsense"),
+    "statics": ("crank.yaml", "-o", "crank.yaml"),
     "sweep": ("crank.yaml",),
     "export": ("x.h5", "--csv", "--channels", "strke"),
     "recover": ("x.h5", "-o", "x.h5"),
@@ -73,6 +76,7 @@ USAGE = {  # beside wrong options
 NO_FILE = {
     "run": ("crank.yaml", "-o", "crank.yaml/x.h5"),
     "check": ("none.yaml",),
+    "statics": ("none.yaml",),
     "report": ("x.h5", "-o", "crank.yaml/x"),
     "show": ("none.h5",),
     "sweep": (*("crank.yaml", *VARIED), "-o", "crank.yaml/x"),

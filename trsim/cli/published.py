@@ -19,6 +19,7 @@ ENDS = {command: ALWAYS for command in COMMANDS} | {
     "run": ALWAYS | {3, 4, 5},
     "sweep": ALWAYS | {3, 4, 6},
     "check": ALWAYS | {3, 4},
+    "statics": ALWAYS | {3, 4},
     "bench": ALWAYS | {3, 4, 5},
     "trsim": {2, 130},  # a command line that names no command
 }

@@ -96,7 +96,9 @@ def settings(scenario: Any, mechanism: Mechanism) -> Settings:
         )
     every = output.every or solver.end / 1000.0 or 1.0
     longest = solver.max_step or solver.end or 1.0
-    if mechanism.timed and not solver.max_step:
+    # where rows alone tell places nothing is missed but what lies between two rows
+    told = method.driven and mechanism.model.n_z == N_BOOK
+    if mechanism.timed and not solver.max_step and not told:
         # what is smooth and short between two stages of a long step would not be seen at all
         longest = min(longest, max(solver.end / LOOKS, 1e-300), LOOK_ROWS * every)
     if solver.stabilisation == "baumgarte" and method.explicit and method.adaptive:

@@ -50,8 +50,8 @@ class Subject(TypedDict):
 class Result(Subject):
     """A run of it.
 
-    warnings  what looks wrong: in the scenario, at the start, in the results
-    fired     user event -> how often it happened
+    warnings    what looks wrong: in the scenario, at the start, in the results
+    fired       user event -> how often it happened
     """
 
     reason: str

@@ -37,7 +37,7 @@ def _rows(scenario: Any, mechanism: Mechanism) -> Iterator[str]:
     if mechanism.redundant:
         yield (
             f"{len(mechanism.redundant)} redundant rows ({some(mechanism.redundant, SHOWN)}): the "
-            "other rows hold the mechanism; their reactions are reported as zero"
+            f"other rows hold the mechanism; reactions are those of least norm"
         )
     if model.m == 0:
         yield "constraints: no joint or drive has a row in the solve, so nothing is factorised"

@@ -6,6 +6,7 @@ and the drives at speed - with bodies' velocities given, the nearest that the jo
 stops stay closed, and what is then still free of the named joints has zero rate.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -72,12 +73,17 @@ class Start:
     depth: Array  # (n_contacts) penetration expected at the forces of the start, m
 
 
-def start(scenario: Any, mechanism: Any, located: bool) -> Start:
-    """The start of a run; raises ModelError where there is none."""
+def start(
+    scenario: Any, mechanism: Any, located: bool, judge: Callable[..., None] | None = None
+) -> Start:
+    """The start of a run; raises ModelError where there is none.
+
+    judge: of an equilibrium, see start/statics.py.
+    """
     initial = scenario.initial
     check_names(scenario, initial)
     mechanism = with_scene(mechanism)
-    y, residual, angles, ahead = positions(scenario, mechanism, initial)
+    y, residual, angles, ahead = positions(scenario, mechanism, initial, judge)
     mechanism = replace(mechanism, ahead=ahead)
     model = mechanism.model
     for name, x in mechanism.coordinates.items():
@@ -192,7 +198,7 @@ def exceeded(mechanism: Mechanism, t: float, y: Array) -> list[UserEvent]:
 
 
 def positions(
-    scenario: Any, mechanism: Mechanism, initial: Any
+    scenario: Any, mechanism: Mechanism, initial: Any, judge: Callable[..., None] | None = None
 ) -> tuple[Array, float, dict[str, float], dict[int, float]]:
     """q as drawn, at the given joint values, in equilibrium; the static force left, N; angles; how
     far states are ahead of the coordinates they follow."""
@@ -220,7 +226,7 @@ def positions(
     if settle and targets and playing:
         there = by_ideal_joints(scenario, initial, frozenset(playing), held, rigid)
     if settle:
-        y, residual = equilibrium(held, y if there is None else there, rigid)
+        y, residual = equilibrium(held, y if there is None else there, rigid, judge)
     if targets and there is None:
         y, residual = approach(held, y, targets, settle, rigid)
     remember(held.model, y)

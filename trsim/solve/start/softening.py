@@ -151,7 +151,8 @@ def balanced(
 
 def unstable(K: Array, J: Array) -> int:
     """How many of the motions that J allows have a negative stiffness: Sylvester's law."""
-    J = J * (np.abs(K).max() / np.abs(J).max(initial=1e-300))  # of the size of K, lest it is lost
+    if len(J):
+        J = J * (np.abs(K).max() / np.abs(J).max(initial=1e-300))  # of the size of K, or it is lost
     bordered = np.block([[0.5 * (K + K.T), J.T], [J, np.zeros((len(J), len(J)))]])
     values = np.linalg.eigvalsh(bordered)
     return int(np.sum(values < -NEGLIGIBLE * np.abs(values).max())) - len(J)

@@ -9,6 +9,8 @@ the clearance.  A motion that stays without stiffness is indifferent, and refuse
 that is none of its lowest: steps go downhill, but one that begins on the top stays there.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -103,12 +105,16 @@ def balance(
     return F, J, free_motions(J, free, mass)
 
 
-def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Array, float]:
+def equilibrium(
+    mechanism: Mechanism, y: Array, rigid: bool = True, judge: Callable[..., None] | None = None
+) -> tuple[Array, float]:
     """The equilibrium reached from y, drives held at t = 0; and the force left, N.
 
     rigid: no body is a flexible bar made stiff, which may spin about itself; an equilibrium that
     is indifferent is refused.  One that is not stable is refused always.
+    judge: what refuses them, `check_stable` unless given.
     """
+    judge = judge or check_stable
     model = workspace(mechanism.model)
     y, _ = closest(model, 0.0, y)
     free, mass = moves(model, model.d == 3), mass_matrix(model, y)
@@ -133,7 +139,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
         size = length(r)
         left = length(product(Z, r) * mass)
         if left <= BALANCED * scale or size == 0.0:
-            check_stable(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
+            judge(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
         if count == 0:
             push, load = max(abs(values[0]), size / reach), acting
@@ -148,7 +154,7 @@ def equilibrium(mechanism: Mechanism, y: Array, rigid: bool = True) -> tuple[Arr
         turned = float(np.max(np.abs(dx.reshape(-1, 6)[:, 3:]))) * 0.1 * model.size
         # a stiff contact turns the rounding of a position into a force: no step is left to take
         if max(longest, turned) < ROUNDING * model.size and left < 1e-6 * scale:
-            check_stable(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
+            judge(mechanism, values, Z @ vectors, max(load, acting), model, rigid)
             return y, left
         limit = min(1.0, reach / max(longest, turned, 1e-300))
         y_new, _ = closest(model, 0.0, displaced(model, y, limit * dx))
