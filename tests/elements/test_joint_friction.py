@@ -290,6 +290,125 @@ def test_backdriving(mu, locks):
         assert np.polyfit(r.t[500:], r["turn.rate"][500:], 1)[0] == pytest.approx(alpha, rel=1e-5)
 
 
+# --- several ways to slide ------------------------------------------------------------------------
+
+SPATIAL = ["dop853", "radau", "ggl", "generalized_alpha"]
+
+
+def puck(more="", velocity="[3, 4, 0]", text=SLIDING, mu=0.2, gravity="[0, 0, -9.81]",
+         solver="tolerance: 1e-10", spin=0.0):  # fmt: skip
+    """A puck on a table."""
+    return f"""
+planar: false
+bodies:
+  puck: {{mass: 2, inertia: [0.01, 0.01, 0.02], at: [1, 2, 3], angle: 0.4, velocity: {velocity},
+         angular_velocity: [0, 0, {spin}]}}
+joints: {{table: {{type: planar, bodies: [ground, puck], at: [1, 2, 3], x_axis: [1, 2, 0]}}}}
+forces:
+  {rubs("table", mu, more, text)}
+gravity: {gravity}
+solver: {{end: 2, {solver}}}
+output: {{channels: ["*"]}}
+"""
+
+
+@pytest.mark.parametrize("method", SPATIAL)
+def test_a_puck_slides_straight(method):
+    """Its friction is against its velocity, whatever the axes: it goes v^2/(2 mu g)."""
+    solver, error = METHODS[method]
+    r = run(puck(solver=solver))
+    stops = 5 / (0.2 * G)
+    t = np.minimum(r.t, stops)
+    gone = 5 * t - 0.2 * G * t**2 / 2
+    way = r["puck.position"] - [1, 2, 3]
+    # below v1 it creeps by v1^2/(2 mu g) more
+    assert way == pytest.approx(np.outer(gone, [0.6, 0.8, 0]), abs=10 * error + 1e-6)
+    moving = r.t < stops - 0.01
+    assert r["rub.force"][moving] == pytest.approx(-0.2 * 2 * G, rel=1e-8)
+    speed = np.linalg.norm(r["puck.velocity"], axis=1)
+    assert r["rub.sliding_speed"] == pytest.approx(speed, abs=1e-6)
+
+
+def test_a_puck_sticks_in_every_direction():
+    """On a table at 0.3 with mu = 0.35: it sits, and its friction is the weight along the table."""
+    for direction in (0.0, 1.0, 2.5):
+        g = G * np.array([np.sin(0.3) * np.cos(direction), np.sin(0.3) * np.sin(direction),
+                          -np.cos(0.3)])  # fmt: skip
+        text = puck(velocity="[0, 0, 0]", mu=0.35, text=STICKS, gravity=g.tolist(),
+                    solver="tolerance: 1e-8")  # fmt: skip
+        r = run(text)
+        assert np.abs(r["puck.position"] - [1, 2, 3]).max() < 3e-5
+        assert r["rub.force"][-1] == pytest.approx(-2 * G * np.sin(0.3), rel=1e-6)
+        r = run(text.replace("0.35", "0.25"))
+        a = G * (np.sin(0.3) - 0.25 * np.cos(0.3))
+        late = r.t > 1
+        slope = np.polyfit(r.t[late], r["puck.velocity"][late], 1)[0]
+        assert slope == pytest.approx(a * np.array([np.cos(direction), np.sin(direction), 0]),
+                                      abs=1e-5)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", [SLIDING, STICKS])
+@pytest.mark.parametrize("kind", ["cylindrical", "planar"])
+def test_what_turns_rubs_less_along(kind, text):
+    """A shaft that spins in its sleeve, a puck that spins on a rim: the friction turns to where it
+    slides, against an integration of the two equations."""
+    m, I, r0, mu = 2.0, 0.02, 0.05, 0.2
+    if kind == "planar":
+        told = puck(f", radius: {r0}", "[1, 0, 0]", text, mu, spin=30.0, solver="tolerance: 1e-9")
+        told, way = told.replace("end: 2", "end: 0.3"), 0
+    else:
+        told, way = f"""
+planar: false
+bodies:
+  shaft: {{mass: {m}, inertia: [0.02, 0.01, 0.01], velocity: [1, 0, 0],
+          angular_velocity: [30, 0, 0]}}
+joints: {{sleeve: {{type: cylindrical, bodies: [ground, shaft], at: [0, 0, 0], axis: [1, 0, 0]}}}}
+forces:
+  {rubs("sleeve", mu, f", radius: {r0}", text)}
+gravity: [0, 0, -{G}]
+solver: {{end: 0.3, tolerance: 1e-9}}
+output: {{channels: ["*"]}}
+""", 0  # fmt: skip
+    r = run(told)
+
+    def rates(_, y):
+        speed = np.hypot(y[0], r0 * y[1])
+        F = mu * m * G / speed
+        return [-F * y[0] / m, -F * r0 * r0 * y[1] / I]
+
+    found = solve_ivp(rates, (0, 0.3), [1, 30], t_eval=r.t, rtol=1e-10, atol=1e-12).y
+    name, spin = ("puck", 2) if kind == "planar" else ("shaft", 0)
+    near = 1e-6 if text is SLIDING else 2e-3  # bristles bend first
+    assert r[f"{name}.velocity"][:, way] == pytest.approx(found[0], abs=near)
+    assert r[f"{name}.angular_velocity"][:, spin] == pytest.approx(found[1], abs=30 * near)
+    assert r["rub.sliding_speed"][10:] == pytest.approx(
+        np.hypot(found[0], r0 * found[1])[10:], abs=3 * near
+    )
+    assert found[0][-1] > 0.6  # alone it would be 0.41
+    assert energy_error(r) < 1e-6
+
+
+def test_a_plane_of_which_nothing_is_solved_is_refused():
+    with pytest.raises(TrsimError, match="holds nothing in the x-y plane") as caught:
+        built(puck(gravity="[0, -9.81, 0]").replace("planar: false", "planar: true"))
+    assert caught.value.path == ("forces", "rub")
+
+
+def test_in_a_template():
+    """Names of an instance: two wheels, each on its own journal."""
+    one = wheel()
+    parts = one[: one.index("gravity:")]
+    text = f"""
+templates:
+  part:{parts.replace(chr(10), chr(10) + "    ")}
+instances: {{a: {{template: part}}, b: {{template: part, forces: {{rub: {{radius: 24 mm}}}}}}}}
+{one[one.index("gravity:") :]}"""
+    r = run(text)
+    for name, radius in (("a", 0.012), ("b", 0.024)):
+        slower = radius * 0.2 * 3 * G / 0.02
+        assert r[f"{name}_turn.rate"] == pytest.approx(20 - slower * r.t, abs=1e-7)
+
+
 # --- guides that jam ------------------------------------------------------------------------------
 
 GUIDE = """

@@ -31,6 +31,12 @@ PULSES = (
     "force: 500*(sin(3e4*t) > 0.9)}}",
     "drives.motor.velocity=abs(600 - 1e6*t)",
 )
+RUBS = (
+    "forces={journal: {type: joint_friction, joint: O, radius: 10 mm, friction: {law: sticking, "
+    "coefficient: 0.1, stribeck_speed: 1 mm/s, bristle_stiffness: 1e4, bristle_damping: 10}}, "
+    "rail: {type: joint_friction, joint: guide, length: 30 mm, friction: "
+    "{law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1 mm/s}}}",
+)
 KINDS = [
     (),
     SECTIONS,
@@ -42,8 +48,10 @@ KINDS = [
     (*RK4, *EVENTS, "solver.end=1.2ms"),
     (*EVENTS, *SECTIONS),
     PULSES,
+    RUBS,
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")
+GGL = (*RUBS, "solver.method=radau", "solver.formulation=ggl")
 TABLES = ("rows", "steps", "events", "recorded", "points")
 KEPT = {"mem", "branch", "status"}  # of a scene: the record's, and counters
 
@@ -76,7 +84,7 @@ def assert_same(found, outcome, expected, unbroken):
     assert statistics[0] == statistics[1]
 
 
-@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT, GGL], ids=named)
 def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     unbroken, outcome = blocks(sets)
     monkeypatch.setattr(module, "VISIT", 5)
@@ -88,7 +96,7 @@ def test_every_state_leads_to_the_same_end(sets, monkeypatch):
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
 
-@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS, RUBS], ids=named)
 def test_nothing_but_the_record_lasts(sets, monkeypatch):
     """Workspace as new and buffers full of NaN at every step: they carry nothing along."""
     unbroken, outcome = blocks(sets)
