@@ -505,6 +505,29 @@ def test_a_rod_that_comes_to_where_there_is_no_answer(method):
     assert at == pytest.approx(first, abs=1e-3 if "alpha" in method else 1e-4)
 
 
+# --- explicit steps -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("speed, mu", [(0.0, 0.6), (2.0, 0.2)])
+def test_a_fixed_step_that_is_too_long_is_refused(speed, mu):
+    """Of a ramp 2.785 (v1 - v0)/(mu g cos), of bristles 2.828/sqrt(sigma0 g cos), sliding
+    2.785 mu/(sigma0 v)."""
+    N = G * np.cos(SLOPE)
+    ramp = 2.785 * 1e-3 / (mu * N)
+    soft = "{law: sticking, coefficient: MU, stribeck_speed: 1 mm/s, bristle_stiffness: 1e5}"
+    bristles = min(2.828 / np.sqrt(1e5 * N), 2.785 * mu / (1e5 * speed) if speed else 1.0)
+    for text, longest in ((SLIDING, ramp), (soft, bristles)):
+        for part, well in ((0.7, True), (1.02, False)):
+            step = f"method: rk4, step: {float(part * longest)!r}"
+            told = block(speed, mu, text=text, solver=step, end=20 * float(longest))
+            if well:
+                run(told, "output.every=1e-4")
+                continue
+            with pytest.raises(TrsimError, match="is not stable") as caught:
+                run(told)
+            assert "friction of rub" in caught.value.what
+
+
 # --- several, loops, and what is refused ----------------------------------------------------------
 
 CRANK = """

@@ -131,9 +131,12 @@ def pack(name, spec, at):
         axes=filled((c for x in parts for c in x.axis_i), 0.0, 3 * MOST),
         preload=spec.constant / (mu * (abs(gears[0]) if len(parts) == 1 else 1.0)),
     )  # fmt: skip
-    channels = None if len(parts) == 1 else SEVERAL
-    return Row(*own, states=tuple(states), turns=kind == "angle", rubs=axis.joint,
-               channels=channels)  # fmt: skip
+    if sticks:
+        grips = (numbers[3], numbers[4], numbers[3] / numbers[1])
+    else:
+        grips = (0.0, numbers[0] / (numbers[2] - numbers[1]), 0.0)
+    return Row(*own, states=tuple(states), turns=kind == "angle", rubs=axis.joint, grips=grips,
+               channels=None if len(parts) == 1 else SEVERAL)  # fmt: skip
 
 
 def filled(values, rest=0.0, number=MOST):
