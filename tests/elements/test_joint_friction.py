@@ -313,11 +313,12 @@ output: {{channels: ["*"]}}
 """
 
 
+@pytest.mark.parametrize("kind", ["planar", "inplane, axis: [0, 0, 3]"])
 @pytest.mark.parametrize("method", SPATIAL)
-def test_a_puck_slides_straight(method):
+def test_a_puck_slides_straight(method, kind):
     """Its friction is against its velocity, whatever the axes: it goes v^2/(2 mu g)."""
     solver, error = METHODS[method]
-    r = run(puck(solver=solver))
+    r = run(puck(solver=solver).replace("type: planar", f"type: {kind}"))
     stops = 5 / (0.2 * G)
     t = np.minimum(r.t, stops)
     gone = 5 * t - 0.2 * G * t**2 / 2
@@ -393,6 +394,25 @@ def test_a_plane_of_which_nothing_is_solved_is_refused():
     with pytest.raises(TrsimError, match="holds nothing in the x-y plane") as caught:
         built(puck(gravity="[0, -9.81, 0]").replace("planar: false", "planar: true"))
     assert caught.value.path == ("forces", "rub")
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+def test_a_bead_on_a_slope(planar):
+    """An inplane joint in the plane of the scene: one of its coordinates is across that."""
+    r = run(f"""
+planar: {planar}
+bodies: {{bead: {{mass: 2, inertia: [0.1, 0.1, 0.1], at: [3, 1], velocity: [1.6, -1.2]}}}}
+joints: {{slope: {{type: inplane, bodies: [ground, bead], at: [3, 1], axis: [3, 4]}}}}
+forces:
+  {rubs("slope", 0.3)}
+gravity: [0, -{G}]
+solver: {{end: 1, tolerance: 1e-10}}
+output: {{channels: ["*"]}}
+""")
+    away = r["bead.position"] - [3, 1, 0]
+    gone = 2 * r.t + G * (0.6 - 0.3 * 0.8) * r.t**2 / 2
+    assert away == pytest.approx(np.outer(gone, [0.8, -0.6, 0]), abs=1e-7)
+    assert r["rub.normal_force"] == pytest.approx(2 * G * 0.8)
 
 
 def test_in_a_template():

@@ -45,6 +45,7 @@ from trsim.elements.frames import (
     scaled,
 )
 from trsim.elements.friction_law import Friction
+from trsim.elements.joint import triad
 from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
@@ -157,9 +158,13 @@ def coordinates(spec, at):
         x = at.coordinate(f"{spec.joint}.angle" if thread else spec.joint)
         return [x], x
     found = [at.coordinate(name) for name in there]
-    angle = next(x for x in found if x.kind == "angle")
+    angle = next((x for x in found if x.kind == "angle"), None)
     plane = sum(x.kind == "stroke" for x in found) > 1
-    return [x for x in found if not (plane and x is angle and spec.radius is None)], angle
+    normal = found[0]
+    if angle is None:  # of a point on a plane
+        _, _, a = triad(at.scenario.joints[spec.joint])
+        normal = normal._replace(axis_i=at.axes(normal.i, a), axis=a)
+    return [x for x in found if not (plane and x is angle and spec.radius is None)], angle or normal
 
 
 def gear(spec, x, at):
