@@ -459,6 +459,38 @@ def test_an_eccentric_push_jams_a_guide(mu, jams):
         assert gained == pytest.approx((40 - mu * 160) / 4, rel=1e-6)
 
 
+@pytest.mark.parametrize("mu, locks", [(0.0, False), (0.2, False), (0.35, True)])
+def test_a_wedge(mu, locks):
+    """A weight m on a wedge of the mass M and the angle b, rough on its face alone: it drives the
+    wedge out by N (sin - mu cos)/M, N = m g/(cos + mu sin + m/M tan (sin - mu cos)), or rests on it
+    where mu > tan b."""
+    m, M, b = 3.0, 5.0, 0.3
+    c, s = np.cos(b), np.sin(b)
+    r = run(f"""
+bodies:
+  wedge: {{mass: {M}, inertia: 0.1}}
+  weight: {{mass: {m}, inertia: 0.1, at: [0.1, 0.2]}}
+joints:
+  floor: {{type: prismatic, bodies: [ground, wedge], axis: [1, 0, 0]}}
+  shaft: {{type: prismatic, bodies: [ground, weight], axis: [0, 1, 0]}}
+  face: {{type: inline, bodies: [wedge, weight], at: [0.1, 0.2], axis: [{c}, {s}, 0]}}
+forces:
+  {rubs("face", mu, ", constant: 1e-9 N", STICKS if mu else SLIDING)}
+sensors: {{out: {{joint: floor}}}}
+gravity: [0, -{G}]
+solver: {{end: 1, tolerance: 1e-9}}
+output: {{channels: ["*"]}}
+""")
+    if locks:
+        assert abs(r["out"][-1]) < 1e-4
+        assert r["rub.normal_force"][-1] == pytest.approx(m * G * c, rel=1e-6)
+        return
+    N = m * G / (c + mu * s + m / M * np.tan(b) * (s - mu * c))
+    late = r.t > 0.5
+    assert r["rub.normal_force"][late] == pytest.approx(N, rel=1e-6)
+    assert r["wedge.acceleration"][late, 0] == pytest.approx(N * (s - mu * c) / M, rel=1e-5)
+
+
 # --- Painleve -------------------------------------------------------------------------------------
 
 
@@ -645,6 +677,70 @@ output: {channels: ["*"]}
         assert np.abs(M[:, 0 if name == "d" else 1]).max() > 0.1
         check_law(r, name, 0.1 * radius, radius)
     assert energy_error(r) < max(100 * error, 1e-7)
+
+
+@pytest.mark.parametrize("how", ["baumgarte, baumgarte: {alpha: 50, beta: 50}", "none"])
+def test_with_other_stabilisations(how):
+    """What feedback brings back to the constraints presses nothing."""
+    exact = run(crank(mu=0.3))
+    r = run(crank(f"tolerance: 1e-9, stabilisation: {how}", 0.3))
+    assert r["turn"] == pytest.approx(exact["turn"], abs=1e-8)
+    load = np.linalg.norm(r["A.reaction"], axis=1)
+    assert r["a.normal_force"] == pytest.approx(load, rel=1e-12)
+
+
+def test_with_masses_far_apart():
+    """A rod of a milligram: loads as exact as the reactions of the others."""
+    text = crank("tolerance: 1e-8", 0.2).replace(
+        "mass: 2, inertia: 0.02", "mass: 1e-6, inertia: 1e-8"
+    )
+    r = run(text.replace("end: 0.5", "end: 0.2"))
+    load = np.linalg.norm(r["C.reaction"], axis=1)
+    assert r["c.normal_force"] == pytest.approx(load, rel=1e-7, abs=1e-9)
+    assert r["d.normal_force"] == pytest.approx(load_of_slide(r), rel=1e-7, abs=1e-9)
+    assert energy_error(r) < 1e-6
+
+
+@pytest.mark.parametrize("planar", [True, False])
+@pytest.mark.parametrize("method", ["dop853", "radau", "ggl"])
+def test_on_a_hub(method, planar):
+    """Ten pendulums on one wheel, whose motion is an unknown of the solve, rub in eleven hinges."""
+    angles = np.linspace(0, 2 * np.pi, 10, endpoint=False)
+    places = [(float(0.8 * np.cos(a)), float(0.8 * np.sin(a))) for a in angles]
+
+    def turning(x):
+        return f"{x}" if planar else f"[{x}, {x}, {x}]"
+
+    hinges = {"c": ("ground, hub", (0.0, 0.0))}
+    bodies = f"  hub: {{mass: 50, inertia: {turning(5)}, angular_velocity: [0, 0, 2]}}\n"
+    for k, (x, y) in enumerate(places):
+        hinges[f"j{k}"] = (f"hub, b{k}", (x, y))
+        bodies += f"  b{k}: {{mass: 1, inertia: {turning(0.02)}, at: [{x + 0.3}, {y}]}}\n"
+    joints = "".join(
+        f"  {name}: {{type: revolute, bodies: [{pair}], at: [{x}, {y}]}}\n"
+        for name, (pair, (x, y)) in hinges.items()
+    )
+    frictions = "".join(
+        f"  f{name}: {{type: joint_friction, joint: {name}, radius: 20 mm,\n"
+        f"       friction: {law(SLIDING, 0.2)}}}\n"
+        for name in hinges
+    )
+    solver, _ = METHODS[method]
+    r = run(f"""
+planar: {str(planar).lower()}
+bodies:
+{bodies}joints:
+{joints}forces:
+{frictions}gravity: [0, -9.81, 0]
+solver: {{end: 0.3, {solver}}}
+output: {{channels: ["*"]}}
+""")
+    assert np.sum(r.mechanism.model.hub >= 0) == 1
+    for name in ("c", "j3"):
+        load = np.linalg.norm(r[f"{name}.reaction"], axis=1)
+        assert r[f"f{name}.normal_force"] == pytest.approx(load, rel=1e-12)
+    assert r["hub.angular_velocity"][-1, 2] == pytest.approx(0.434650767, abs=1e-7)
+    assert energy_error(r) < 1e-8
 
 
 def test_newton_feels_how_friction_goes_with_multipliers():

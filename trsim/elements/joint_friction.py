@@ -98,6 +98,7 @@ class Own(Along):
     axial_counts: f8
     twist_counts: f8  # of the moment about the axis, 1/m
     tilt_counts: f8  # of moments across it at each end, 1/m
+    reacts: f8  # 1 where a load makes friction, 0 where the constant is all there is
     preload: f8  # N
     friction: run(f8, N_PARAMETERS)
 
@@ -120,8 +121,9 @@ def pack(name, spec, at):
     gears, along, about = zip(*(gear(spec, x, at) for x in parts), strict=True)
     mu, (law, numbers) = spec.friction.coefficient, spec.friction.numbers
     counted = counts(spec, surface, lead(at.scenario.joints[axis.joint]))
+    counted["reacts"] = float(mu > 0.0)
     if mu == 0.0:  # the constant alone, as of a coefficient of 1
-        mu, numbers, counted = 1.0, (1.0, *numbers[1:]), dict.fromkeys(counted, 0.0)
+        mu, numbers = 1.0, (1.0, *numbers[1:])
     # w settles at +-mu / sigma0: that is its size in the error norm
     sticks = law == STICKING
     states = [at.state(numbers[1] / numbers[3]) if sticks else -1 for _ in parts]
@@ -281,9 +283,9 @@ def ends(own, a, R, M):
 
 @internal
 def direction(c, v):
-    """c v / |v|, and c |v|; zero where there is none."""
+    """c v / |v|; zero where there is none."""
     size = sqrt(dot(v, v))
-    return (scaled(c / size, v) if size > 0.0 else (0.0, 0.0, 0.0)), c * size
+    return scaled(c / size, v) if size > 0.0 else (0.0, 0.0, 0.0)
 
 
 @internal
@@ -338,16 +340,32 @@ def sliding(scene, e):
     return -size, d, d[0] * v + d[1] * u + d[2] * t
 
 
+@internal
+def reaction(scene, e):
+    """The axis of the load, force and moment of the joint's reaction; world axes."""
+    own, p = Own(scene, e), scene.pressed
+    R, M = (p[e, 0], p[e, 1], p[e, 2]), (p[e, 3], p[e, 4], p[e, 5])
+    return arm(scene.X, own.i, own.axis), R, M
+
+
+@internal
+def pressing(scene, e):
+    """The load that the reaction makes."""
+    own = Own(scene, e)
+    a, R, M = reaction(scene, e)
+    first, second = ends(own, a, R, M)
+    across = own.across_counts * (sqrt(dot(first, first)) + sqrt(dot(second, second)))
+    return across + own.axial_counts * abs(dot(R, a)) + own.twist_counts * abs(dot(M, a))
+
+
 @kernel
 def load(t, scene, e):
-    own, p, out = Own(scene, e), scene.pressed, scene.loads
-    a = arm(scene.X, own.i, own.axis)
-    R, M = (p[e, 0], p[e, 1], p[e, 2]), (p[e, 3], p[e, 4], p[e, 5])
+    own, out = Own(scene, e), scene.loads
+    a, R, M = reaction(scene, e)
     first, second = ends(own, a, R, M)
-    n_1, N_1 = direction(own.across_counts, first)
-    n_2, N_2 = direction(own.across_counts, second)
+    n_1, n_2 = direction(own.across_counts, first), direction(own.across_counts, second)
     axial, twist = dot(R, a), dot(M, a)
-    N = N_1 + N_2 + own.axial_counts * abs(axial) + own.twist_counts * abs(twist)
+    N = pressing(scene, e)
     f, _, slip = sliding(scene, e)
     bend(scene, e)
     # ends: n . dR/2 across the axis, and n . (dM x a) c = (a x n) . dM c
@@ -356,9 +374,9 @@ def load(t, scene, e):
         scaled(own.tilt_counts, cross(a, minus(n_1, n_2))),
         scaled(signed(own.twist_counts, twist), a),
     )
-    out[e, 0], out[e, 1], out[e, 2], out[e, 3] = N, own.preload, f, slip
+    out[e, 0], out[e, 1], out[e, 2], out[e, 3] = own.reacts * N, own.preload, f, slip
     for c in range(3):
-        out[e, 4 + c], out[e, 7 + c] = by_R[c], by_M[c]
+        out[e, 4 + c], out[e, 7 + c] = own.reacts * by_R[c], own.reacts * by_M[c]
 
 
 @internal
@@ -393,7 +411,7 @@ def measure(t, scene, e, o):
     own, out = Own(scene, e), scene.out
     _, _, slip = sliding(scene, e)
     out[o] = own.gears[0] * scene.rubbed[e] if own.number == 1 else scene.rubbed[e]
-    out[o + 1], out[o + 2] = scene.loads[e, 0], slip
+    out[o + 1], out[o + 2] = pressing(scene, e), slip
 
 
 ELEMENT = Element(
