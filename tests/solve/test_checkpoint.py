@@ -41,6 +41,12 @@ RATES = (
     "coil: {type: spring, bodies: [ground, slider], points: [[-0.3, 0], [0, 0]], "
     "elastic: '1e5*max(stretch, 0)', damper: 20*rate, damper_acts: compression}}",
 )
+RUBS = (
+    "forces={journal: {type: joint_friction, joint: O, radius: 10 mm, friction: {law: sticking, "
+    "coefficient: 0.1, stribeck_speed: 1 mm/s, bristle_stiffness: 1e4, bristle_damping: 10}}, "
+    "rail: {type: joint_friction, joint: guide, length: 30 mm, friction: "
+    "{law: modified_coulomb, coefficient: 0.1, v0: 0, v1: 1 mm/s}}}",
+)
 KINDS = [
     (),
     SECTIONS,
@@ -54,8 +60,10 @@ KINDS = [
     HEARD,
     PULSES,
     RATES,
+    RUBS,
 ]
 IMPLICIT = (*EVENTS, "solver.method=radau")
+GGL = (*RUBS, "solver.method=radau", "solver.formulation=ggl")
 TABLES = ("rows", "steps", "events", "recorded", "points")
 KEPT = {"mem", "branch", "status"}  # of a scene: the record's, and counters
 
@@ -88,7 +96,9 @@ def assert_same(found, outcome, expected, unbroken):
     assert statistics[0] == statistics[1]
 
 
-@pytest.mark.parametrize("sets", [*KINDS, IMPLICIT, (*RATES, "solver.method=radau")], ids=named)
+@pytest.mark.parametrize(
+    "sets", [*KINDS, IMPLICIT, (*RATES, "solver.method=radau"), GGL], ids=named
+)
 def test_every_state_leads_to_the_same_end(sets, monkeypatch):
     unbroken, outcome = blocks(sets)
     monkeypatch.setattr(module, "VISIT", 5)
@@ -136,7 +146,7 @@ def test_places_on_curves_and_turns_of_drums(text, sets, monkeypatch):
         assert_same([*cut[: k + 1], *rest], end, unbroken, outcome)
 
 
-@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS, RATES], ids=named)
+@pytest.mark.parametrize("sets", [*KINDS[:4], EVENTS, RATES, RUBS], ids=named)
 def test_nothing_but_the_record_lasts(sets, monkeypatch):
     """Workspace as new and buffers full of NaN at every step: they carry nothing along."""
     unbroken, outcome = blocks(sets)

@@ -28,6 +28,7 @@ from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
+    check_pressed,
     check_rubbing,
     check_shaky,
     check_space,
@@ -107,6 +108,7 @@ def assemble(
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     if drives is None and not ideal:
+        check_pressed(instances, kept, planar)
         check_rubbing(instances, rows, not_unique, found)
     return Mechanism(
         model=model,

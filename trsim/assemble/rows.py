@@ -131,6 +131,19 @@ def check_rubbing(
             )
 
 
+def check_pressed(instances: list[Instance], kept: list[RowName], planar: bool) -> None:
+    """Friction of a joint that holds nothing in the plane, so that nobody knows what presses it."""
+    held = {row.element for row in kept}
+    for instance in instances:
+        if planar and instance.row.rubs and instance.row.rubs not in held:
+            raise ModelError(
+                f"'{instance.row.rubs}' holds nothing in the x-y plane, and what presses it is not "
+                "solved for in a planar scene",
+                "set `planar: false`, and give three inertias of each body",
+                (instance.section, instance.name),
+            )
+
+
 def dropped(rows: list[RowName], found: list[Dependence]) -> list[RowName]:
     """The rows that are not solved, as others hold what they do."""
     return [rows[f.row] for f in found if f.everywhere]

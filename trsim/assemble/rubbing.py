@@ -205,6 +205,7 @@ def undecided(s, t, largest):
                 s.rub_room[FOUND, k] = s.rub_room[FORCE, k]
             elif abs(s.rub_room[FORCE, k] - s.rub_room[FOUND, k]) > ALIKE * largest:
                 return culprit
+    s.status[8] += 1
     return 0
 
 

@@ -17,6 +17,10 @@ Without `length` its moment presses nothing, N counts |R - a a . R|.  A thread r
 by a force F sin l along the axis and a torque radius F cos l about it.  What drives, locks and
 stops do along the coordinate is no part of the reaction.
 
+Of a joint that slides along several coordinates at once, as a shaft that turns in a sleeve or a
+block on a table, s' and F are vectors with a part for each, F against s', and f that of |s'|.  A
+sleeve is pressed like a hinge without collar, a plane by N = |R . a| along its normal.
+
 Reaction and friction depend on each other.  They are solved for together, to rounding, in every
 evaluation of the equations of motion (assemble/rubbing.py).  Where large friction has no solution,
 or several [Painleve1895], the run ends with the status `painleve`.
@@ -28,7 +32,7 @@ from typing import Annotated, ClassVar
 from annotated_types import Ge, Gt
 
 from trsim.elements.contract import Channel, Element, Reach, Row, kernel, measured
-from trsim.elements.coordinates import named
+from trsim.elements.coordinates import named, of_joint
 from trsim.elements.frames import (
     Along,
     act_along,
@@ -41,20 +45,23 @@ from trsim.elements.frames import (
     scaled,
 )
 from trsim.elements.friction_law import Friction
+from trsim.elements.joint import triad
 from trsim.elements.rows import COORDINATES
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit
 from trsim.kernels.columns import f8, i8, run
 from trsim.kernels.lazy import internal
-from trsim.laws.friction import N_PARAMETERS, friction_force
+from trsim.laws.friction import CODES, N_PARAMETERS, friction_force, part_of_bristle
 
 Length = Annotated[float, Gt(0), Unit("m")]
+MOST = 3  # coordinates of a joint
 
 
 class JointFriction(Spec):
     """Friction in a joint, made by the joint's own reaction.
 
-    joint          joint that rubs, and along which coordinate if it has several
+    joint          joint that rubs; of one with several coordinates all of them together, as they
+                   slide, or the one that is named
     friction       law modified_coulomb or sticking, with its numbers; a coefficient of 0 leaves
                    `constant` alone
     radius         of the journal of a hinge, at which it rubs; of a thread its mean radius
@@ -77,63 +84,115 @@ class JointFriction(Spec):
 
 
 class Own(Along):
-    """Of one instance."""
+    """Of one instance; its axis is that of the load."""
 
-    state: i8  # of z: the deflection of bristles, or -1
+    number: i8  # of coordinates along which it slides
+    entries: run(i8, MOST)  # of these in S
+    states: run(i8, MOST)  # of z: the deflections of bristles, or -1
     law: i8  # one of CODES
-    gear: f8  # sliding speed over the rate of the coordinate
-    along: f8  # of a friction force of 1: the force along the axis, and
-    about: f8  # the torque about it, m
+    gears: run(f8, MOST)  # sliding speed over the rate of a coordinate
+    along: run(f8, MOST)  # of a friction force of 1: the force along the axis of a coordinate, and
+    about: run(f8, MOST)  # the torque about it, m
+    axes: run(f8, 3 * MOST)  # in the axes of frame i
     across_counts: f8  # of the load: of forces across the axis
     axial_counts: f8
     twist_counts: f8  # of the moment about the axis, 1/m
     tilt_counts: f8  # of moments across it at each end, 1/m
+    reacts: f8  # 1 where a load makes friction, 0 where the constant is all there is
     preload: f8  # N
     friction: run(f8, N_PARAMETERS)
 
 
+STICKING = CODES["sticking"]
+SEVERAL = (
+    Channel("force", "N", "friction along the surfaces, negative: against the sliding"),
+    Channel("normal_force", "N", "how the reaction presses what rubs together", least=0.0),
+    Channel("sliding_speed", "m/s", "of the second body against the first, where it rubs"),
+)
+
+
 def pack(name, spec, at):
-    x = at.coordinate(spec.joint)
-    joint = at.packed("joints", x.joint, ("joint",))
-    check(spec, x, joint, at)
-    at.check_units(x.kind, JointFriction, ("constant",), "forces", name)
-    surface = surfaces(spec, x, joint, at)
+    parts, axis = coordinates(spec, at)
+    joint = at.packed("joints", axis.joint, ("joint",))
+    check(spec, axis, joint, at)
+    surface = check_sizes(spec, parts, joint, at)
+    kind = axis.kind if len(parts) == 1 else "stroke"
+    at.check_units(kind, JointFriction, ("constant",), "forces", name)
+    gears, along, about = zip(*(gear(spec, x, at) for x in parts), strict=True)
     mu, (law, numbers) = spec.friction.coefficient, spec.friction.numbers
+    counted = counts(spec, surface, lead(at.scenario.joints[axis.joint]))
+    counted["reacts"] = float(mu > 0.0)
     if mu == 0.0:  # the constant alone, as of a coefficient of 1
         mu, numbers = 1.0, (1.0, *numbers[1:])
-        surface |= dict.fromkeys(("across_counts", "axial_counts", "twist_counts"), 0.0)
     # w settles at +-mu / sigma0: that is its size in the error norm
-    sticks = spec.friction.law == "sticking"
-    state = at.state(numbers[1] / numbers[3]) if sticks else -1
-    preload = spec.constant / (mu * abs(surface["gear"]))
-    own = Own.packed(**on_joint(x), **surface, law=law, friction=numbers, state=state,
-                     preload=preload)  # fmt: skip
-    return Row(*own, states=(state,), turns=x.kind == "angle", rubs=x.joint)
+    sticks = law == STICKING
+    states = [at.state(numbers[1] / numbers[3]) if sticks else -1 for _ in parts]
+    own = Own.packed(
+        **on_joint(axis), **counted, law=law, friction=numbers, number=len(parts),
+        entries=filled((x.entry for x in parts), -1), states=filled(states, -1),
+        gears=filled(gears), along=filled(along), about=filled(about),
+        axes=filled((c for x in parts for c in x.axis_i), 0.0, 3 * MOST),
+        preload=spec.constant / (mu * (abs(gears[0]) if len(parts) == 1 else 1.0)),
+    )  # fmt: skip
+    if sticks:
+        grips = (numbers[3], numbers[4], numbers[3] / numbers[1])
+    else:
+        grips = (0.0, numbers[0] / (numbers[2] - numbers[1]), 0.0)
+    return Row(*own, states=tuple(states), turns=kind == "angle", rubs=axis.joint, grips=grips,
+               channels=None if len(parts) == 1 else SEVERAL)  # fmt: skip
 
 
-def surfaces(spec, x, joint, at):
-    """What rubs: where it acts, and how a reaction presses it."""
+def filled(values, rest=0.0, number=MOST):
+    """So many numbers."""
+    values = [*values]
+    return (*values, *[rest] * (number - len(values)))
+
+
+def coordinates(spec, at):
+    """The coordinates along which it slides, and the one about or along whose axis it is pressed.
+
+    Of a joint named alone all that it has, but of a thread, which has one freedom; of a plane the
+    angle where a `radius` says at what distance that rubs.
+    """
+    there = of_joint(spec.joint, at.scenario.joints)
+    thread = len(there) > 1 and lead(at.scenario.joints[spec.joint]) != 0.0
+    if len(there) < 2 or thread:
+        x = at.coordinate(f"{spec.joint}.angle" if thread else spec.joint)
+        return [x], x
+    found = [at.coordinate(name) for name in there]
+    angle = next((x for x in found if x.kind == "angle"), None)
+    plane = sum(x.kind == "stroke" for x in found) > 1
+    normal = found[0]
+    if angle is None:  # of a point on a plane
+        _, _, a = triad(at.scenario.joints[spec.joint])
+        normal = normal._replace(axis_i=at.axes(normal.i, a), axis=a)
+    return [x for x in found if not (plane and x is angle and spec.radius is None)], angle or normal
+
+
+def gear(spec, x, at):
+    """Sliding speed over the rate of a coordinate; force and torque of a friction of 1."""
     screw = lead(at.scenario.joints[x.joint])
-    tilt = 1.0 / spec.length if spec.length else 0.0
-    across = 1.0 if presses(joint, x, at)[0] else 0.0
     if screw:
         l = atan(screw / spec.radius)
-        gear = spec.radius / cos(l) if x.kind == "angle" else 1.0 / sin(l)
-        return {
-            "gear": gear, "along": sin(l), "about": spec.radius * cos(l), "across_counts": 0.0,
-            "axial_counts": 1.0 / cos(l), "twist_counts": 0.0, "tilt_counts": 0.0,
-        }  # fmt: skip
-    if x.kind == "angle":
+        rate = spec.radius / cos(l) if x.kind == "angle" else 1.0 / sin(l)
+        return rate, sin(l), spec.radius * cos(l)
+    return (spec.radius, 0.0, spec.radius) if x.kind == "angle" else (1.0, 1.0, 0.0)
+
+
+def counts(spec, surface, screw):
+    """How a reaction presses what rubs."""
+    counted = dict.fromkeys(("across_counts", "axial_counts", "twist_counts", "tilt_counts"), 0.0)
+    if surface == "a thread":
+        return counted | {"axial_counts": 1.0 / cos(atan(screw / spec.radius))}
+    if surface == "a plane":
+        return counted | {"axial_counts": 1.0}
+    if surface == "a hinge":
         thrust = spec.thrust_radius / spec.radius if spec.thrust_radius else 0.0
-        return {
-            "gear": spec.radius, "along": 0.0, "about": spec.radius, "across_counts": across,
-            "axial_counts": thrust, "twist_counts": 0.0, "tilt_counts": tilt,
-        }  # fmt: skip
-    twist = 2.0 / spec.width if spec.width else 0.0
-    return {
-        "gear": 1.0, "along": 1.0, "about": 0.0, "across_counts": across, "axial_counts": 0.0,
-        "twist_counts": twist, "tilt_counts": tilt,
-    }  # fmt: skip
+        counted["axial_counts"] = thrust
+    if surface == "a slide" and spec.width:
+        counted["twist_counts"] = 2.0 / spec.width
+    tilt = 1.0 / spec.length if spec.length else 0.0
+    return counted | {"across_counts": 1.0, "tilt_counts": tilt}
 
 
 def lead(joint):
@@ -153,6 +212,8 @@ KEYS = {
     "a thread": ("radius",),
     "a hinge": ("radius", "thrust_radius", "length"),
     "a slide": ("length", "width"),
+    "a sleeve": ("radius", "length"),
+    "a plane": ("radius",),
 }
 
 
@@ -184,18 +245,21 @@ def check(spec, x, joint, at):
             "give a `coefficient`, a `constant` or both",
             ("friction",),
         )
-    check_sizes(spec, x, joint, at)
 
 
-def check_sizes(spec, x, joint, at):
-    """Refuse sizes that the joint does not have, and those that are missing."""
-    thread, turns = lead(at.scenario.joints[x.joint]) != 0.0, x.kind == "angle"
-    what = "a thread" if thread else "a hinge" if turns else "a slide"
+def check_sizes(spec, parts, joint, at):
+    """What rubs, in words.  Refuses sizes that it does not have, and those that are missing."""
+    x, angle = parts[0], any(part.kind == "angle" for part in parts)
+    what = "a hinge" if x.kind == "angle" else "a slide"
+    if lead(at.scenario.joints[x.joint]) != 0.0:
+        what = "a thread"
+    elif len(parts) > 1:
+        what = "a plane" if sum(part.kind == "stroke" for part in parts) > 1 else "a sleeve"
     for key in dict.fromkeys(key for keys in KEYS.values() for key in keys):
         if key not in KEYS[what] and getattr(spec, key) is not None:
             hint = f"friction of {what} takes {', '.join(f'`{k}`' for k in KEYS[what])}"
             raise ScenarioError(f"{what} has no `{key}`", hint, (key,))
-    if "radius" in KEYS[what] and spec.radius is None:
+    if angle and spec.radius is None:
         raise ScenarioError(
             f"friction of {what} needs `radius`", "it acts at that radius", ("radius",)
         )
@@ -206,6 +270,7 @@ def check_sizes(spec, x, joint, at):
             "give `thrust_radius`: the mean radius of the faces that carry the force along it",
             ("thrust_radius",),
         )
+    return what
 
 
 @internal
@@ -218,9 +283,9 @@ def ends(own, a, R, M):
 
 @internal
 def direction(c, v):
-    """c v / |v|, and c |v|; zero where there is none."""
+    """c v / |v|; zero where there is none."""
     size = sqrt(dot(v, v))
-    return (scaled(c / size, v) if size > 0.0 else (0.0, 0.0, 0.0)), c * size
+    return scaled(c / size, v) if size > 0.0 else (0.0, 0.0, 0.0)
 
 
 @internal
@@ -229,47 +294,124 @@ def signed(c, x):
     return c if x > 0.0 else (-c if x < 0.0 else 0.0)
 
 
+@internal
+def slides(scene, e, c):
+    """The sliding speed along the c-th coordinate, and the deflection of its bristles."""
+    own = Own(scene, e)
+    state = own.states[c]
+    w = scene.z[state] if state >= 0 else 0.0
+    return own.gears[c] * scene.S[own.entries[c], 1], w
+
+
+@internal
+def part(scene, e, c, speed):
+    """Friction of a load of 1 along the c-th coordinate, where it slides at a speed in all; the
+    rate of its bristles."""
+    own = Own(scene, e)
+    v, w = slides(scene, e, c)
+    f = own.friction
+    if own.law == STICKING:
+        return part_of_bristle(1.0, v, speed, w, f[0], f[1], f[2], f[3], f[4])
+    whole, _ = friction_force(own.law, 1.0, speed, 0.0, f)
+    return (whole * v / speed if speed > 0.0 else 0.0), 0.0
+
+
+@internal
+def sliding(scene, e):
+    """Friction of a load of 1 along all coordinates, negative where there are several; the unit
+    vector it is along, and the sliding speed along that."""
+    own = Own(scene, e)
+    v, w = slides(scene, e, 0)
+    if own.number == 1:
+        f, _ = friction_force(own.law, 1.0, v, w, own.friction)
+        return f, (1.0, 0.0, 0.0), v
+    u, _ = slides(scene, e, 1)
+    t, _ = slides(scene, e, own.number - 1)
+    t *= float(own.number - 2)
+    speed = sqrt(v * v + u * u + t * t)
+    f, _ = part(scene, e, 0, speed)
+    g, _ = part(scene, e, 1, speed)
+    h, _ = part(scene, e, own.number - 1, speed)
+    h *= float(own.number - 2)
+    size = sqrt(f * f + g * g + h * h)
+    if size == 0.0:
+        return 0.0, (0.0, 0.0, 0.0), 0.0
+    d = (-f / size, -g / size, -h / size)
+    return -size, d, d[0] * v + d[1] * u + d[2] * t
+
+
+@internal
+def reaction(scene, e):
+    """The axis of the load, force and moment of the joint's reaction; world axes."""
+    own, p = Own(scene, e), scene.pressed
+    R, M = (p[e, 0], p[e, 1], p[e, 2]), (p[e, 3], p[e, 4], p[e, 5])
+    return arm(scene.X, own.i, own.axis), R, M
+
+
+@internal
+def pressing(scene, e):
+    """The load that the reaction makes."""
+    own = Own(scene, e)
+    a, R, M = reaction(scene, e)
+    first, second = ends(own, a, R, M)
+    across = own.across_counts * (sqrt(dot(first, first)) + sqrt(dot(second, second)))
+    return across + own.axial_counts * abs(dot(R, a)) + own.twist_counts * abs(dot(M, a))
+
+
 @kernel
 def load(t, scene, e):
-    own, p, out = Own(scene, e), scene.pressed, scene.loads
-    a = arm(scene.X, own.i, own.axis)
-    R, M = (p[e, 0], p[e, 1], p[e, 2]), (p[e, 3], p[e, 4], p[e, 5])
+    own, out = Own(scene, e), scene.loads
+    a, R, M = reaction(scene, e)
     first, second = ends(own, a, R, M)
-    n_1, N_1 = direction(own.across_counts, first)
-    n_2, N_2 = direction(own.across_counts, second)
+    n_1, n_2 = direction(own.across_counts, first), direction(own.across_counts, second)
     axial, twist = dot(R, a), dot(M, a)
-    N = N_1 + N_2 + own.axial_counts * abs(axial) + own.twist_counts * abs(twist)
-    slip = own.gear * scene.S[own.coordinate, 1]
-    w = scene.z[own.state] if own.state >= 0 else 0.0
-    f, w_dot = friction_force(own.law, 1.0, slip, w, own.friction)
-    if own.state >= 0:
-        scene.zd[own.state] = w_dot
+    N = pressing(scene, e)
+    f, _, slip = sliding(scene, e)
+    bend(scene, e)
     # ends: n . dR/2 across the axis, and n . (dM x a) c = (a x n) . dM c
     by_R = plus(scaled(0.5, plus(n_1, n_2)), scaled(signed(own.axial_counts, axial), a))
     by_M = plus(
         scaled(own.tilt_counts, cross(a, minus(n_1, n_2))),
         scaled(signed(own.twist_counts, twist), a),
     )
-    out[e, 0], out[e, 1], out[e, 2], out[e, 3] = N, own.preload, f, slip
+    out[e, 0], out[e, 1], out[e, 2], out[e, 3] = own.reacts * N, own.preload, f, slip
     for c in range(3):
-        out[e, 4 + c], out[e, 7 + c] = by_R[c], by_M[c]
+        out[e, 4 + c], out[e, 7 + c] = own.reacts * by_R[c], own.reacts * by_M[c]
+
+
+@internal
+def bend(scene, e):
+    """The rates of its bristles."""
+    own, speed = Own(scene, e), 0.0
+    if own.law != STICKING:
+        return
+    for c in range(own.number):
+        v, _ = slides(scene, e, c)
+        speed = v if own.number == 1 else sqrt(speed * speed + v * v)
+    for c in range(own.number):
+        _, scene.zd[own.states[c]] = part(scene, e, c, abs(speed))
 
 
 @kernel
 def rub(t, scene, e):
-    own, F = Own(scene, e), scene.rubbed[e]
-    a = arm(scene.X, own.i, own.axis)
-    if own.about != 0.0:
-        act_along(scene, e, scaled(F * own.about, a), 1)
-    if own.along != 0.0:
-        act_along(scene, e, scaled(F * own.along, a), 0)
+    own = Own(scene, e)
+    _, d, _ = sliding(scene, e)
+    for c in range(own.number):
+        F = scene.rubbed[e] * (d[0] if c == 0 else (d[1] if c == 1 else d[2]))
+        n = (own.axes[3 * c], own.axes[3 * c + 1], own.axes[3 * c + 2])
+        a = arm(scene.X, own.i, n)
+        if own.about[c] != 0.0:
+            act_along(scene, e, scaled(F * own.about[c], a), 1)
+        if own.along[c] != 0.0:
+            act_along(scene, e, scaled(F * own.along[c], a), 0)
 
 
 @measured
 def measure(t, scene, e, o):
     own, out = Own(scene, e), scene.out
-    out[o], out[o + 1] = own.gear * scene.rubbed[e], scene.loads[e, 0]
-    out[o + 2] = own.gear * scene.S[own.coordinate, 1]
+    _, _, slip = sliding(scene, e)
+    out[o] = own.gears[0] * scene.rubbed[e] if own.number == 1 else scene.rubbed[e]
+    out[o + 1], out[o + 2] = pressing(scene, e), slip
 
 
 ELEMENT = Element(

@@ -208,7 +208,8 @@ class Scene(Model):
     # [4] evaluations of the step at hand that took a limit where branches meet,
     # [5] 1: what is evaluated lies inside a step, and will be measured,
     # [6] factorisations of the step at hand with a small pivot,
-    # [7] 1 + the row of what rubs, where the last evaluation found no friction, or several
+    # [7] 1 + the row of what rubs, where the last evaluation found no friction, or several,
+    # [8] evaluations whose friction is not proved to be the only one
     status: I1
 
 
@@ -269,7 +270,7 @@ def scene(model: Model) -> Scene:
         model,
         {name: shape for names, shape in shapes for name in names},
         tab=model.tab.copy(),  # scratch, and what functions are held on
-        status=np.zeros(8, np.int64),
+        status=np.zeros(9, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
     made.X[:, 2] = model.depth

@@ -152,8 +152,14 @@ def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     """
     if F_n <= 0.0:
         return 0.0, 0.0
-    s = abs(v_t)
-    x = v_t / v_s
+    return part_of_bristle(F_n, v_t, abs(v_t), w, mu_s, mu_k, v_s, sigma0, sigma1)
+
+
+@internal
+def part_of_bristle(F_n, v_t, s, w, mu_s, mu_k, v_s, sigma0, sigma1):
+    """`bristle` in one direction of a surface on which the body slides at the speed s, v_t of it in
+    this direction: bristles bend in each, and what they hold together is that of one."""
+    x = s / v_s
     g = mu_k + (mu_s - mu_k) * exp(-x * x)
     F = -F_n * (sigma0 * w + sigma1 * v_t) / (1.0 + sigma1 * s / g)  # = -F_n (sigma0 w + s1 w')
     return F, v_t - sigma0 * s * w / g

@@ -371,6 +371,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "redundant_open_relative": redundant,
         "redundant_open_rate": float(r.worst_open_rate),
         **rounding(r),
+        **unproved(work),
         "integration_cpu": cpu,
     }
 
@@ -379,6 +380,12 @@ def rounding(r: Record) -> dict[str, float]:
     """What rounding made of a step, of what the tolerance allows; where it was more."""
     rounded = float(r.rounded)
     return {"rounding_of_tolerance": rounded} if rounded > 1.0 else {}
+
+
+def unproved(work: Scene) -> dict[str, float]:
+    """How often the friction found in joints was not proved to be the only one; where it was so."""
+    many = int(work.status[8])
+    return {"unproved_frictions": many} if many else {}
 
 
 def natural(work: Any, begun: Start) -> float:

@@ -29,6 +29,8 @@ class Solver(Statistics, total=False):
     force          whether a warning was overruled
     rounding_of_tolerance  what rounding made of a step at most, in units of what the tolerance
                            allows; there where it is more
+    unproved_frictions     evaluations whose friction in joints was not proved to be the only one
+                           that fits; there where there were some
     """
 
     method: str
@@ -43,6 +45,7 @@ class Solver(Statistics, total=False):
     locate_events: bool
     force: bool
     rounding_of_tolerance: Number
+    unproved_frictions: int
 
 
 class Summary(TypedDict, total=False):

@@ -5,7 +5,8 @@ from typing import NotRequired
 from typing_extensions import TypedDict  # pydantic wants this one before Python 3.12
 
 from trsim.cli.documents.certificate import Certified
-from trsim.cli.documents.common import Document, Number, Result
+from trsim.cli.documents.common import Document, Number, Result, Subject, of
+from trsim.solve.rest import Resting
 from trsim.statuses import Ended
 
 
@@ -138,3 +139,50 @@ class Run(Document):
     """
 
     runs: list[Ran]
+
+
+class Channel(TypedDict):
+    """A channel at rest.
+
+    unit   of it
+    value  one number, or the components
+    """
+
+    unit: str
+    value: list[Number]
+
+
+class Turned(TypedDict):
+    """How a body has turned against the drawing.
+
+    body      its name
+    rotation  rotation vector in world axes, rad
+    """
+
+    body: str
+    rotation: list[Number]
+
+
+class Statics(Document, Subject):
+    """trsim statics.
+
+    file            as given
+    result          the result file, of one row
+    redundant       constraint rows that others repeat, "joint.axis"
+    equilibrium     whether it is stable, and how nearly
+    elements        name -> type
+    sections        name -> section of the scenario it stands in
+    channels        at rest, in SI units; reactions that are not unique are those of least norm
+    turns           how bodies have turned
+    content_sha256  of the result file
+    warnings        what looks wrong in the scenario; a balance that is not stable
+    """
+
+    result: str
+    equilibrium: of(Resting)
+    elements: dict[str, str]
+    sections: dict[str, str]
+    channels: dict[str, Channel]
+    turns: list[Turned]
+    content_sha256: str
+    warnings: list[str]

@@ -17,6 +17,7 @@ branches   the run changed from one to another where they nearly meet           
 sections   have points between swings that are not resolved                              swings.py
 extremes   of forces are chance, next to where rows depend on each other                 chance.py
 rows       that were left out as redundant are open, though not so far that the run ended
+friction   in several joints may not have been the only one that fits
 """
 
 from collections.abc import Iterator
@@ -90,7 +91,20 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_sections(scenario, mechanism, outcome.record),
         *of_drift(scenario, mechanism, outcome.record),
         *of_extremes(scenario, mechanism, outcome),
+        *of_friction(mechanism, outcome),
     )
+
+
+def of_friction(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:
+    """Frictions that feed each other so much that there might be other solutions."""
+    many = int(outcome.statistics.get("unproved_frictions", 0))
+    if many:
+        names = [i.name for i in mechanism.instances if i.row.rubs]
+        yield (
+            f"forces.{names[0]}: in {many} evaluations friction of {', '.join(names)} feeds on "
+            "itself so much that it is not proved to be the only one that fits; all starts looked "
+            "at led to it; compare with smaller coefficients, or with a spring between the bodies"
+        )
 
 
 def of_start(scenario: Any, mechanism: Mechanism, begun: Start) -> Iterator[str]:

@@ -4,6 +4,7 @@
     contact   k = n K d^(n-1),  1/m = g Z Z^T g^T,  half a period pi sqrt(m / k)
     impact    time from touch to separation at the slowest impact        laws/contact.py
     friction  ramp of modified Coulomb friction: mu F / (v1 - v0) / m_t, 1/s
+              in joints: rub_scales.py
 
 g is the gradient of the gap against the twists, Z the free motions: m is the mass a contact really
 moves, with all joints and drives in force.  d is the penetration expected at the forces of the
@@ -23,6 +24,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.solve.diagnose.bar_scales import bar_scales
 from trsim.solve.diagnose.contact_scales import ContactScale, contact_scales
 from trsim.solve.diagnose.linearised import linearised, rounding
+from trsim.solve.diagnose.rub_scales import rub_scales
 from trsim.solve.methods.rk4 import IMAGINARY, REAL
 from trsim.solve.start.consistent import Start
 
@@ -69,6 +71,8 @@ def scales(scenario: Any, mechanism: Mechanism, begun: Start) -> Scales:
     contacts = tuple(contact_scales(mechanism, begun, linear))
     swings = [abs(x.imag) for x in some if abs(x.imag) > least]
     limits = list(bounds(some, contacts))
+    for value, name in rub_scales(mechanism, begun, linear):
+        limits += list(bounds([value], (), f"friction of {name}"))
     step, fastest, words = min(limits, default=(np.inf, 0.0, ""))
     return Scales(
         eigenvalues=tuple(complex(x) for x in some),
@@ -107,13 +111,15 @@ def rank(x: complex) -> tuple[float, float]:
 
 
 def bounds(
-    some: list[complex], contacts: tuple[ContactScale, ...]
+    some: list[complex],
+    contacts: tuple[ContactScale, ...],
+    words: str = "the linearised motion at the start",
 ) -> Iterator[tuple[float, float, str]]:
     """Stable step, rate and name of everything that limits an explicit method."""
     for x in some:
         if x.real <= abs(x.imag):  # what only grows limits the error, not the stability
             end = REAL if -x.real > abs(x.imag) else IMAGINARY
-            yield end / abs(x), abs(x), "the linearised motion at the start"
+            yield end / abs(x), abs(x), words
     for contact in contacts:
         omega = pi / contact.half_period
         if omega > 0.0:
