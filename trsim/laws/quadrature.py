@@ -8,19 +8,17 @@ are nodes, as a corner next to an end would be seen by no other.  Tables are int
 cubic.
 """
 
-from math import nan
-
-import numpy as np
+from math import nan, sqrt
 
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import OF_TABLE, POINTS, TABLE, value
 from trsim.laws.tables import table_integral
 
 N = 7
-_P = np.polynomial.legendre.Legendre.basis(N - 1)
-_x = np.array([-1.0, *np.sort(_P.deriv().roots().real), 1.0])
-NODES = tuple(_x.tolist())
-WEIGHTS = tuple((2.0 / (N * (N - 1) * _P(_x) ** 2)).tolist())
+_near, _far = (sqrt(5.0 / 11.0 + side * 2.0 / 11.0 * sqrt(5.0 / 3.0)) for side in (-1.0, 1.0))
+_of_near, _of_far = ((124.0 + side * 7.0 * sqrt(15.0)) / 350.0 for side in (1.0, -1.0))
+NODES = (-1.0, -_far, -_near, 0.0, _near, _far, 1.0)
+WEIGHTS = (1.0 / 21.0, _of_far, _of_near, 256.0 / 525.0, _of_near, _of_far, 1.0 / 21.0)
 ENOUGH = 1e-14  # of the integral of |f|
 FINEST = 1e-13  # of the whole: a part is no shorter
 MOST = 10_000  # parts that are looked at
