@@ -185,3 +185,33 @@ solver: {end: 200 ms}
     assert r["s"][-1] < -0.1
     with pytest.raises(TrsimError, match="turns with 'rod'"):
         built(text.replace("PLANAR", "false").replace("KIND", "spherical"))
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize(
+    "more", ["initial: {hinge: 700 deg}", "initial: {hinge: 700 deg, next: -500 deg}",
+             'drives: {d: {joint: hinge, position: 20 + t}}',
+             'drives: {d: {joint: hinge, position: -30 - t}}'],
+)  # fmt: skip
+def test_turns_of_the_start_are_counted(planar, more):
+    """As the angles of the joints are, by a start and by a drive, in the plane and in space."""
+    text = f"""
+planar: {planar}
+bodies:
+  one: {{mass: 2, inertia: [1, 1, 1], at: [0.2, 0, 0]}}
+  two: {{mass: 1, inertia: [1, 1, 1], at: [0.6, 0, 0]}}
+joints:
+  hinge: {{type: revolute, bodies: [ground, one], at: [0, 0, 0]}}
+  next: {{type: revolute, bodies: [one, two], at: [0.5, 0, 0]}}
+sensors:
+  h: {{joint: hinge}}
+  n: {{joint: next}}
+  x: {{type: relative_angle, bodies: [ground, one]}}
+  back: {{type: relative_angle, bodies: [two, ground], axis: [0, 0, -1]}}
+solver: {{end: 0.1}}
+{more}
+"""
+    r = run(text)
+    assert abs(r["h"][0]) > tau
+    assert r["x"] == pytest.approx(r["h"], abs=1e-9)
+    assert r["back"] == pytest.approx(r["h"] + r["n"], abs=1e-9)

@@ -64,7 +64,9 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
         if not isfinite(place):
             continue  # refused where the drive is first evaluated
         if entry in model.wound:
+            turns = round((place - float(posed(model, y).S[entry, 0])) / (2.0 * pi))
             model.branch[entry] = place
+            carry_along(mechanism, own, turns)
         elif entry in sign_of:
             turns = (
                 round((place - float(posed(model, y).S[entry, 0])) / (2.0 * pi)) * sign_of[entry]
@@ -73,6 +75,20 @@ def on_turns_of_drives(mechanism: Mechanism, y: Array) -> Array:
             for f in frames if turns else ():
                 y[3 * (f - 1) + 2] += way * turns * 2.0 * pi
     return y
+
+
+def carry_along(mechanism: Mechanism, own: Any, turns: int) -> None:
+    """Count the turns of a drive in the angles in space that no joint has, about the same axis:
+    as in the plane, those of bodies behind the joint against others."""
+    model: Any = mechanism.model
+    angles = [x for x in mechanism.coordinates.values() if x.kind == "angle"]
+    (driven,) = (x for x in angles if x.entry == own.coordinate)
+    frames, way = behind(mechanism, own.i, own.j)
+    for x in angles if turns else ():
+        along = round(sum(a * b for a, b in zip(x.axis, driven.axis, strict=True)), 6)
+        if x.joint == "" and abs(along) == 1.0:
+            sides = (x.j in frames) - (x.i in frames)
+            model.branch[x.entry] += sides * way * along * turns * 2.0 * pi
 
 
 def behind(mechanism: Mechanism, i: int, j: int) -> tuple[frozenset[int], int]:
