@@ -26,10 +26,17 @@ def places(spec, path, lines):
     yield path, lines, spec
     for key, field in spec.model_fields.items():
         for inner in specs_in(field.annotation):
-            free = get_args(field.annotation)[:1] == (str,)
-            listed = get_args(field.annotation)[1:] == (...,)
-            here = (*path, key, "thing") if free else (*path, key, 0) if listed else (*path, key)
-            yield from places(inner, here, lines)
+            yield from places(inner, (*path, key, *below(field.annotation)), lines)
+
+
+def below(annotation):
+    """What stands between a key and a spec that it holds: a name, a place in a list, nothing."""
+    parts = get_args(annotation)
+    if parts[:1] == (str,):
+        return ("thing",)
+    if parts[1:] == (Ellipsis,):
+        return (0,)
+    return next(filter(None, map(below, parts)), ())
 
 
 def all_places():
@@ -53,13 +60,10 @@ def slips(word):
 
 def written(path, lines, needed, typo):
     """The scenario, its keys one to a line, and the line of the misspelt one."""
-    text = [f"{'  ' * depth}{key}:" for depth, key in enumerate(path) if key != 0]
+    text = [f"{'  ' * depth}{'-' if key == 0 else f'{key}:'}" for depth, key in enumerate(path)]
     text[2:2] = [f"    {line}" for line in lines]
     indent = "  " * len(path)
-    own = [f"{indent}{key}: 1" for key in (*needed, typo)]
-    if path and path[-1] == 0:  # the first of a list
-        own[0] = f"{indent[2:]}- {own[0].strip()}"
-    text += own
+    text += [f"{indent}{key}: 1" for key in (*needed, typo)]
     return "\n".join(text) + "\n", len(text)
 
 
