@@ -126,15 +126,18 @@ events: {far: {when: way, value: -1, crosses: down, do: {record: true}}}
 gravity: [0, -9.81, 0]
 solver: {end: 3}
 """
-DRUM = (CURVES.replace("{body: wheel, at: [0, 0]}", "{body: wheel, at: [0, 0], radius: 5 cm, "
-                       "turn: right}"),)  # fmt: skip
+DRUM = CURVES.replace(
+    "{body: wheel, at: [0, 0]}", "{body: wheel, at: [0, 0], radius: 5 cm, turn: right}"
+)
+SPACE, RADAU = ("planar=false",), ("solver.method=radau",)
 
 
-@pytest.mark.parametrize("sets", [(), ("planar=false",), ("solver.method=radau",)], ids=named)
-@pytest.mark.parametrize("text", [CURVES, *DRUM], ids=["eye", "drum"])
+@pytest.mark.parametrize(
+    "text, sets",
+    [(CURVES, ()), (CURVES, SPACE), (CURVES, RADAU), (DRUM, ()), (DRUM, RADAU)],
+    ids=["planar", "space", "radau", "drum", "drum, radau"],
+)
 def test_places_on_curves_and_turns_of_drums(text, sets, monkeypatch):
-    if text != CURVES and sets == ("planar=false",):
-        pytest.skip("drums are those of a plane")
     unbroken, outcome = blocks(sets, text=text)
     assert outcome.status != "failed"
     monkeypatch.setattr(module, "VISIT", 5)
