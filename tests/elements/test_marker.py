@@ -342,3 +342,16 @@ def test_explain_knows_points():
     [key] = explained("revolute.axis")["keys"]
     assert key["type"] == "[x, y] or [x, y, z] or axis of a point"
     json.dumps(explained("points"))
+
+
+def test_an_x_axis_along_y_needs_a_y_axis():
+    """The other axis is that of the world unless given: the hint says so."""
+    text = """
+points: {tip: {body: arm, at: [0, 0], x_axis: [0, 1]}}
+bodies: {arm: {mass: 1, inertia: 1}}
+solver: {end: 1}
+"""
+    with pytest.raises(TrsimError, match="y_axis is parallel to x_axis") as caught:
+        loads(text)
+    assert "give `y_axis` too" in caught.value.problems[0].hint
+    loads(text.replace("[0, 1]}", "[0, 1], y_axis: [-1, 0]}"))

@@ -95,7 +95,10 @@ def test_a_pitch_computed_of_advances_per_angle_is_refused(text):
     with pytest.raises(TrsimError, match="does not tell whether it is the advance of a turn") as e:
         built(nut(more, pitch=text))
     assert e.value.problems[0].path == ("joints", "thread", "pitch")
-    assert built(nut("parameters: {n: -50 mm/turn}", pitch="-n"))
+    for more, pitch in (("n: -50 mm/turn", "-n"), ("n: -50 mm/turn, m: -n", "m")):
+        found = built(nut(f"parameters: {{{more}}}", pitch=pitch))
+        [thread] = [i for i in found.instances if i.name == "thread"]
+        assert Own.of(thread.row).advance == pytest.approx(H, rel=1e-14)
 
 
 JACK = """

@@ -213,6 +213,14 @@ def test_values_of_one_key_have_one_kind_of_unit(planned):
     assert not list(faults(planned("parameters.p=[1 mm, 2, 5 um]", more=more)))
 
 
+def test_values_that_differ_in_their_unit_alone(planned):
+    """2 and 2 m are one number, and not one mass: what was read with one is not taken for both."""
+    more = "parameters: {p: 1}\n"
+    found = planned("parameters.p=[2, 2 kg, 2 m]", "bodies.crank.mass=p", more=more)
+    told = [(case.name, fault.what) for case, fault in faults(found)]
+    assert [name for name, _ in told] == ["p=2m"] and "'m' is a length" in told[0][1]
+
+
 def test_nothing_to_vary(planned):
     with pytest.raises(UsageError, match="says nothing to vary"):
         planned("solver.end=1 ms")

@@ -18,13 +18,13 @@ HEAD = """# Truth: scenes drawn by the thousand
 shares nothing with trsim's assembly or events: a small integrator of rigid bodies in maximal
 coordinates kept in `tests/truth` (quaternions, dense Cholesky factors, order 8, tolerance 1e-12,
 steps of at most a fiftieth of a turn, every crossing located by making the step again), or one
-angle where that is singular. The families `joints`, `joint_loops` and `geared` (all kinds of joints
-in chains and loops, links, gears, racks, worms, couplers, on carriers that move) are judged in the
-coordinates of their joints, which take no constraint rows (tests/truth/screws.py: products of
-exponentials of screws). Flexible bars are judged by a tight run of another method. The truth
-is found in units near one and in the axes of the drawing; what trsim reads has lengths, masses and
-times scaled by 1e-3 to 1e3 and is turned to any direction. Methods, tolerances (1e-2 to 1e-10),
-numbers of rows and speeds are drawn too.
+angle where that is singular. The families `joints`, `joint_loops`, `geared` and `flat_joints` (all
+kinds of joints in chains and loops, links, gears, racks, worms and couplers on carriers that move)
+are judged in the coordinates of their joints, which take no constraint rows (tests/truth/screws.py:
+products of exponentials of screws). Flexible bars are judged by a tight run of another method. The
+truth is found in units near one and in the axes of the drawing; what trsim reads has lengths,
+masses and times scaled by 1e-3 to 1e3 and is turned to any direction. Methods, tolerances (1e-2 to
+1e-10), numbers of rows and speeds are drawn too.
 
 Wrong: ended `done` with a place, turn, velocity, acceleration, reaction, drive torque, load or work
 off by more than max(100 tolerance, 10 stated error) of the largest of its kind in the scene
@@ -40,9 +40,10 @@ before a scene is told to be wrong, behind an instant at which a contact in clea
 than a tolerance of the size in one of both and not in the other, since where it opens another
 impact begins, with other damping: such scenes are counted as grazing. Of rk4, whose step is
 chosen, the tolerance is 1e-6 at 200 steps a turn. What is refused is counted: a scene that is valid
-is to run. `told` are scenes that have no motion, or whose way is chance without projection: they
-were refused as they must be. Not compared are reactions of joints with redundant rows, which no
-rigid body determines, and the angle of a hinge in space that came apart, which is a convention.
+is to run. `told` are scenes that have no motion, whose way is chance without projection, or in
+which a constant-velocity joint folds to half a turn: they were refused as they must be.
+Not compared are reactions of joints with redundant rows, which no rigid body determines, and the
+angle of a hinge in space that came apart, which is a convention.
 
 `tests/truth/test_broken.py` breaks the bound of events, the look at dropped rows and the rule for
 the turns of angles in a copy of trsim, one at a time, and sees that the scenes find each of them.

@@ -32,7 +32,10 @@ class Placed(Spec):
                 raise ScenarioError("an axis must not be zero", "for example [1, 0, 0]", (key,))
         if _across(direction(self.x_axis), direction(self.y_axis))[1] < PARALLEL:
             what = "y_axis is parallel to x_axis"
-            raise ScenarioError(what, "z = x cross y needs two directions", ("y_axis",))
+            hint = "z = x cross y needs two directions"
+            if "y_axis" not in self.model_fields_set:
+                hint = "give `y_axis` too: it is [0, 1, 0] unless given"
+            raise ScenarioError(what, hint, ("y_axis",))
         return self
 
     @property
