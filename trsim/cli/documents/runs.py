@@ -89,9 +89,12 @@ class RunStatistics(Statistics, total=False):
     integration_cpu        s
     rounding_of_tolerance  what rounding made of a step at most, in units of what the tolerance
                            allows; only where that was more than 1
+    unproved_frictions     evaluations whose friction in joints was not proved to be the only one
+                           that fits; only where there were some
     """
 
     rounding_of_tolerance: Number
+    unproved_frictions: int
     integration_cpu: Number
 
 
