@@ -104,7 +104,12 @@ def test_recovered(events, trsim, answer):
 
 
 WRONG = [
-    ("when: stroke,", "when: strok,", "no sensor named 'strok'", "Did you mean 'stroke'?"),
+    (
+        "when: stroke,",
+        "when: strok,",
+        "no sensor and no channel named 'strok'",
+        "Did you mean 'stroke'?",
+    ),
     ("release: [motor]", "release: [moter]", "no joint or drive named 'moter'", "'motor'?"),
     ("lock: [O]", "lock: [G]", "no joint named 'G'", "Known: O"),
     ("unlock: [O]", "unlock: [A]", "no event locks the joint 'A'", ""),

@@ -71,6 +71,9 @@ class RigidBody(Spec):
     @model_validator(mode="after")
     def complete(self):
         """Fill in what follows from the shape; without one mass and inertia are needed."""
+        for key in FOLLOW:
+            if self.says(key) and getattr(self, key) is None:
+                raise ScenarioError("must be a number or numbers, got nothing", "", (key,))
         origin = self.drawn_in.at if self.drawn_in else (0.0, 0.0, 0.0)
         if self.shape is None:
             if self.density is not None:

@@ -16,7 +16,6 @@ other axes are zero, as those of joints are.
 from math import sqrt
 from typing import Annotated, ClassVar
 
-import numpy as np
 from annotated_types import Ge
 from pydantic import model_validator
 
@@ -132,6 +131,8 @@ def check_part(spec, at, i):
         raise ScenarioError(what, "give three or six numbers, as of the body", ("inertia",))
     if spec.mass == 0.0:
         return tensor
+    import numpy as np  # checking text needs none
+
     I, part = np.array(total).reshape(3, 3), np.array(tensor).reshape(3, 3)
     c, rest = np.array(at.looked_at(i, spec.centre)), body.mass - spec.mass
     # both parts have their centres on a line through that of the body
