@@ -69,6 +69,20 @@ def test_a_run_has_the_loads_of_its_sets():
     np.testing.assert_allclose(r["wind.magnitude"], 2.0 * (3.0 + r["angle"]), rtol=1e-12)
 
 
+def test_a_wrench_is_a_load():
+    text = TEXT.replace(
+        "  man: {{type: applied_load, body: arm, direction: [0, -1], force: 700 N}}",
+        "  man: {{type: wrench, body: arm, force: [0, -700 N], moment: [0, 0, 3*t]}}",
+    )
+    man = loads(text.format("loads: {step: ultimate}")).forces["man"]
+    assert [f.value for f in man.force] == [0.0, -1400.0, 0.0]
+    assert man.moment[2].node[:3] == ("binary", "*", ("number", 2.0))
+    man = loads(text.format("loads: {}")).forces["man"]
+    assert {f.kind for f in (*man.force, *man.moment)} == {"constant"}
+    r = run(loads(text.format("loads: {}")))
+    assert not r["man.force"].any()
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

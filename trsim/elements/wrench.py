@@ -25,8 +25,9 @@ from trsim.elements.contract import (
     measured,
 )
 from trsim.elements.frames import arm, dot, plus, push, scaled, spin, twist, velocity
+from trsim.elements.loads import Load
 from trsim.errors import ScenarioError
-from trsim.fields import Function, FunctionSpec, Spec, point
+from trsim.fields import Function, FunctionSpec, point
 from trsim.kernels.columns import V3, i8
 from trsim.kernels.lazy import internal
 from trsim.laws.functions import value
@@ -50,7 +51,7 @@ def components(*units: str) -> Any:
 NOTHING = (FunctionSpec("constant"),) * 3
 
 
-class Wrench(Spec):
+class Wrench(Load):
     """Six components of a load at a point of a body.
 
     body    the body it acts on
