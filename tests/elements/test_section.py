@@ -275,7 +275,7 @@ planar: false
             "planar: false",
             "events: {e: {when: s, do: {end: true}}}",
             None,
-            "no sensor and no channel",
+            "no sensor named",
         ),
     ],
 )

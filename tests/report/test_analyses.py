@@ -38,6 +38,21 @@ def named(found):
 
 
 @pytest.mark.parametrize("several", [False, True])
+def test_portrait(several, paths, tmp_path):
+    """A force over a coordinate that turns back, of several runs, in a window too."""
+    given = paths if several else paths[:1]
+    words = ("stroke:B.normal_force", "crank_angle.rate:slider.velocity.x@1ms..")
+    found = analysed(given, tmp_path, Asked(portrait=words))
+    names = {"portrait_stroke_B_normal_force.png",
+             "portrait_crank_angle_rate_slider_velocity_x_1ms.png"}  # fmt: skip
+    assert named(found) == names
+    for word, what in (("stroke", "over what"), ("stroke:strake", "no channel"),
+                       ("stroke:slider.velocity", "3 components")):  # fmt: skip
+        with pytest.raises(UsageError, match=what):
+            analysed(given, tmp_path, Asked(portrait=(word,)))
+
+
+@pytest.mark.parametrize("several", [False, True])
 def test_spectrum(several, paths, tmp_path):
     given = paths if several else paths[:1]
     found = analysed(given, tmp_path, Asked(spectrum=("crank_angle.rate@1ms..",)))

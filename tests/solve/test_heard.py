@@ -151,8 +151,8 @@ def test_a_channel_that_rests_on_the_value():
     "old, new, path, what",
     [
         ("weld.reaction.x", "weld.reaction", ("when",), "has 3 components"),
-        ("weld.reaction.x", "weld.raction.x", ("when",), "no sensor and no channel"),
-        ("weld.reaction.x", "push.magnitude.x", ("when",), "no sensor and no channel"),
+        ("weld.reaction.x", "weld.raction.x", ("when",), "no sensor named"),
+        ("weld.reaction.x", "push.magnitude.x", ("when",), "no sensor named"),
         ("weld.reaction.x", "energy.residual", ("when",), "judged by"),
         ("-40,", "-40 mm,", ("value",), "wrong unit: 'mm'; 'weld.reaction.x' is in N"),
         ("end: 1}", "end: 1, method: scipy:RK45}", None, "knows no events"),

@@ -70,7 +70,8 @@ def curve(run: Run, channel: str, against: str = "") -> Curve:
     back = np.diff(s) <= 0.0
     if s.size > 1 and np.any(np.diff(s) < -1e-9 * np.ptp(s)):
         what = f"{run.path}: '{against}' turns back, so nothing is a function of it"
-        raise UsageError(what, "Compare over time, or over a channel that only grows.")
+        hint = f"Compare over time; `--portrait {against}:{channel}` draws one over the other."
+        raise UsageError(what, hint)
     kept = np.append(True, ~back)
     return Curve(s[kept], x[kept])
 

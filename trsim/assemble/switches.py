@@ -207,7 +207,7 @@ class _Packing:
         there |= {f"energy.{name}": ("J", 1) for name in energy_columns(0)}
         stem = channel[:-2] if channel not in there and channel[-2:] in COMPONENTS else channel
         if stem not in there or (stem != channel and there[stem][1] != 3):
-            what = f"no sensor and no channel named '{channel}'"
+            what = f"no sensor named '{channel}', and no channel"
             raise ScenarioError(what, known(channel, [*self.scenario.sensors, "t", *there]), path)
         unit, size = there[stem]
         if stem == channel and size > 1:

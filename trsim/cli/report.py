@@ -17,6 +17,8 @@ PAPERS = ("thrust-reverser",)
 @click.option("-o", "--output", type=NAMED, help="Folder of the figures.")
 @click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
               help="A Poincare section that was not declared, with its errors.")  # fmt: skip
+@click.option("--portrait", multiple=True, metavar="X:Y",
+              help="A channel over any other, however that turns back.")  # fmt: skip
 @click.option("--spectrum", multiple=True, metavar="CHANNEL", help="Its spectral density.")
 @click.option("--lyapunov", multiple=True, metavar="CHANNEL",
               help="Its largest Lyapunov exponent.")  # fmt: skip

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
 
 SWEEP = ("bifurcation", "sobol", "map")  # what only a study has
-RUNS = ("section", "spectrum", "lyapunov", "compare", "overlay")  # what only runs have
+RUNS = ("section", "portrait", "spectrum", "lyapunov", "compare", "overlay")  # what only runs have
 
 
 def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathLike) -> list[Path]:
@@ -50,7 +50,7 @@ def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "As
 def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "Found":
     """The analyses of result files."""
     from trsim.report import compared as beside
-    from trsim.report import exponents, numbers, sections, spectra
+    from trsim.report import exponents, numbers, portraits, sections, spectra
     from trsim.report.asked import nothing, words
     from trsim.report.display import compared
     from trsim.store.read import read
@@ -58,6 +58,8 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
     runs, found = compared([read(path) for path in paths]), nothing()
     if asked.section:
         found.files.extend(sections.draw(runs, asked.section, folder))
+    for word in asked.portrait:
+        found.add(portraits.draw(runs, word, folder))
     for word in asked.spectrum:
         found.add(spectra.draw(runs, word, folder))
     for word in asked.lyapunov:

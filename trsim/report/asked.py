@@ -13,6 +13,7 @@ class Asked(NamedTuple):
     """Analyses, by the words of their options."""
 
     section: tuple[str, ...] = ()  # when=CHANNEL,crosses=up,plot=X:Y
+    portrait: tuple[str, ...] = ()  # X:Y[@WINDOW]
     spectrum: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
     lyapunov: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
     compare: bool = False
