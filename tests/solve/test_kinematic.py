@@ -324,3 +324,46 @@ def test_least_norm_of_redundant_rows():
             one, other = found[f"{name}.{what}"], known[f"{name}.{what}"]
             np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max() + 1e-9)
     few_evaluations(found)
+
+
+GAP = """
+planar: {planar}
+bodies:
+  crank: {{mass: 1 kg, inertia: [0.01, 0.02, 0.03], at: [0, 0.25]}}
+  rod: {{mass: 2 kg, inertia: [0.01, 0.02, 0.03], at: [0.5, 0.5]}}
+  rocker: {{mass: 1 kg, inertia: [0.01, 0.02, 0.03], at: [1, 0.25]}}
+joints:
+  a: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}
+  b: {{type: spherical, bodies: [rod, crank], at: [0, 0.5]}}
+  c: {{type: revolute, bodies: [rod, rocker], at: [{x}, 0.5]}}
+  d: {{type: revolute, bodies: [ground, rocker], at: [1, 0]}}
+drives:
+  motor: {{joint: a, position: "2.6*sin(8*t)"}}
+sensors: {{swing: {{joint: d}}}}
+output: {{every: 0.028}}
+solver: {{end: 0.6, method: kinematic}}
+"""
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("off", [3e-3, 1e-4, 1e-6, -3e-3, -1e-4, -1e-6])
+def test_branches_that_nearly_meet(off, planar):
+    """Not quite a parallelogram: it turns sharply, or cannot get past; never straight on.
+
+    In space rows across the plane depend on each other at the same place, and det J keeps its sign.
+    """
+    r = run(GAP.format(x=1 + off, planar=planar), fails=None)
+    q = 2.6 * np.sin(8 * r.t)
+    b = 0.5 * np.array([-np.sin(q), np.cos(q)])
+    d = np.array([1.0, 0.0])[:, None] - b
+    rod, rocker, far = 1 + off, np.hypot(off, 0.5), np.hypot(*d)
+    along = (far**2 + rod**2 - rocker**2) / (2 * far)
+    square = rod**2 - along**2
+    assert np.all(square > -1e-12)  # a triangle, at all rows
+    across = np.sqrt(np.maximum(square, 0.0))
+    c = b + (along * d + across * np.array([-d[1], d[0]])) / far
+    swing = np.arctan2(c[1], c[0] - 1) - np.arctan2(0.5, off)
+    left = np.abs((r["swing"] - swing + np.pi) % (2 * np.pi) - np.pi)
+    print(r.outcome.status, r.outcome.time, left.max())
+    assert np.max(left * across) < 1e-9
+    assert r.outcome.status == "done" or "singular" in r.outcome.reason

@@ -204,6 +204,10 @@ def compiled(
                 reason = STUCK if stuck(r, setting) else reason
             if work is not before:
                 b = sparse.buffers(b, mechanism, work) if sparse else b
+        if driven and r.crossings and ended is None:
+            from trsim.solve.diagnose.singular import crossed
+
+            ended = "failed", crossed(mechanism, r)
         bends.look(float(r.t), r.y)
         if reason in GO_ON and ended is None and mechanism.beams:
             text = collapsed(scenario, mechanism, float(r.t), r.y)

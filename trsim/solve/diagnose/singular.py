@@ -37,6 +37,15 @@ def singular(mechanism: Mechanism, r: Record) -> str:
     )
 
 
+def crossed(mechanism: Mechanism, r: Record) -> str:
+    """Why a kinematic run ends that went on along another branch, in words."""
+    return (
+        f"at t = {r.crossed_t:.6g} s it went on along another branch of the motion, past a place "
+        f"where branches come close, {driven_to(mechanism, r)} by now: the drives do not say which "
+        f"one it is on; drive another joint, draw lengths to more digits, {DYNAMIC}"
+    )
+
+
 def driven_to(mechanism: Mechanism, r: Record) -> str:
     """Where the drives are, in words."""
     w = posed(mechanism.model, r.y)

@@ -350,7 +350,7 @@ def accept(s, r, b, last):
     s.status[3] = 0
     stays = b.t1 - r.t <= SMALLEST * 2.2e-16 * b.t1
     r.same_time = r.same_time + 1 if stays else 0
-    r.t = b.t1
+    r.t, r.least_pivot = b.t1, b.firm[1]
     r.work_projection += b.projected
     copy_to(r.y, b.y1)
     copy_to(r.yd, b.K[last])

@@ -95,6 +95,7 @@ from trsim.solve.methods.auto import calm, choose
 
 MAX_SAME_TIME = 1000  # events without progress: chatter
 LONGER = 6.0  # times the step before: the next one at most
+CRAWLED_SOON = 1000  # vanishing steps towards a singular position: there is no way on
 AIM = 0.9  # times the step that would just meet the error allowed
 STRETCH = 1.05  # times the step as controlled: what may be added to end where it is to end
 TIGHTER = 0.7  # of a step whose inside is not right, and whose end is
@@ -240,7 +241,7 @@ def crawls(r, setting, h):
     """Whether step after step is so short that 10^11 of them would be needed."""
     short = setting.fixed_step == 0.0 and h < CRAWLING * setting.t_end
     r.crawled = r.crawled + 1 if short else 0
-    return r.crawled > CRAWLED_MOST
+    return r.crawled > (CRAWLED_MOST if r.driven == 0 else CRAWLED_SOON)
 
 
 @internal

@@ -198,6 +198,7 @@ class Record(Packed):
     decay: F8  # 1/s, of the fastest decay
     step_turn: F8  # rad, the most a body turned by in a fixed step  rk4.py
     side: F8  # sign of det J where rows alone tell places  kinematic.py
+    least_pivot: F8  # of rows at y, 1 in open chains  kinematic.py
     count: I1  # and the whole ones
     steps: I8
     rejected: I8

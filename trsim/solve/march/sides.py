@@ -7,7 +7,7 @@ changes its sign.
 
 import numpy as np
 
-from trsim.assemble.linear import SINGULAR
+from trsim.assemble.linear import SINGULAR, smallest_pivot
 from trsim.assemble.projection import project_positions
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import Scene
@@ -48,6 +48,7 @@ def keep_side(work: Scene, r: Record, b: Buffers) -> bool:
     counted = work.status.copy()
     project_positions(work, float(r.t), r.y.copy())
     singular = work.status[0] == SINGULAR
-    work.status[:] = counted
     r.driven, r.side = 1, 0.0 if singular else side(work, b)
+    r.least_pivot = smallest_pivot.python(work) if work.near_rows > 0.0 else 1.0
+    work.status[:] = counted
     return bool(r.side != 0.0)

@@ -16,15 +16,17 @@ Steps end at output rows.  One is made again, shorter, where
 
     * Newton's method does not converge, or goes further than CORRECTED from the prediction,
     * a body moves further than FAR,
+    * rows may depend on each other inside: the root of the least pivot is about the way to where
+      they do, and half a step goes no further than PAST of both,
     * places are not those that velocities lead to: another branch has others,
     * det J has another sign than at the start.  It is zero only where rows depend on each other:
       at a turning point of the mechanism and where branches of its motion meet.  What goes from one
-      branch to another, or past such a place, changes it.
+      branch to another, or past such a place, changes it, unless two depend at once.
 
 Steps shrink towards such a place, and the run ends there.
 """
 
-from math import inf
+from math import inf, sqrt
 
 import numpy as np
 
@@ -35,6 +37,7 @@ from trsim.elements.contract import N_BOOK, compiled
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import all_finite, copy_to
 from trsim.solve.march.calls import BOOK, DENSE, INTERPOLATE, NO_STEP, STEP
+from trsim.solve.march.samples import firmness
 from trsim.solve.march.sides import side
 from trsim.solve.methods.displacements import turn
 
@@ -46,6 +49,7 @@ IMPLICIT = False
 
 FAR = 0.5  # rad, or of the mechanism's size: what a body moves in a step at most
 CORRECTED = 0.02  # the same: how far from its prediction a place is found
+PAST = 0.5  # times the roots of the least pivots at both ends of half a step: what a body moves
 ASTRAY, BESIDE = 0.01, 1e-3  # of what a body moves, and the same as FAR: another branch is further
 SQUARED = 1e-16  # what the next step of Newton's method would leave, squares of parts of the size
 # places and weights of Gauss in a step as long as one
@@ -65,6 +69,7 @@ def step(s, r, b, setting, t, h):
     if nearly < 0.0:
         return NO_STEP
     evaluate(s, t + half, middle, K[MIDDLE])
+    inside = sqrt(firmness(s))
     go_on(s, y, K[0], middle, K[MIDDLE], half, y1)
     corrected = close(s, t + h, y1, b.y2)
     if corrected < 0.0:
@@ -74,8 +79,13 @@ def step(s, r, b, setting, t, h):
     if side(s, b) != r.side:
         return NO_STEP
     far = way(s, y, y1)
+    past = max(
+        way(s, y, middle) / (sqrt(r.least_pivot) + inside),
+        way(s, middle, y1) / (inside + sqrt(firmness(s))),
+    )
     astray = beside(s, y, middle, y1, h) / (ASTRAY * far + BESIDE)
-    return max(max(error, astray), max(max(nearly, corrected) / CORRECTED, far / FAR))
+    corrected = max(nearly, corrected) / CORRECTED
+    return max(max(error, astray), max(corrected, far / FAR), past / PAST)
 
 
 @internal
