@@ -78,6 +78,7 @@ COMMANDS = (
     ("sweep", "many.yaml", "-o", "many", "--jobs", "1"),
     ("status", "many"),
     ("report", "done.h5", "-o", "figures"),
+    ("statics", "crank.yaml", "-o", "rest.h5"),
     ("show", "done.h5", "--verify"),
     ("export", "done.h5", "--csv", "-o", "done.csv"),
     ("explain", "revolute"),
