@@ -12,6 +12,7 @@ Nothing is ever executed: `evaluate` walks the tuples.  A comparison is 1 or 0.
     smoothstep(s)                3 s^2 - 2 s^3,               s clipped to 0..1
     step(x, x0, h0, x1, h1)      h0 + (h1 - h0) smoothstep((x - x0)/(x1 - x0))
     step5(x, x0, h0, x1, h1)     the same with 10 s^3 - 15 s^4 + 6 s^5
+    havsin(x, x0, h0, x1, h1)    the same with (1 - cos(pi s))/2
 """
 
 import ast
@@ -58,6 +59,12 @@ def _sign(x: float) -> float:
     return float((x > 0.0) - (x < 0.0))
 
 
+def _havsin(x: float, x0: float, h0: float, x1: float, h1: float) -> float:
+    return h0 + (h1 - h0) * 0.5 * (1.0 - math.cos(math.pi * _clipped((x - x0) / (x1 - x0))))
+
+
+STEPS = ("step", "step5", "havsin")
+
 # word -> function, fewest arguments, most arguments
 FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
     "min": (min, 2, 50),
@@ -76,6 +83,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., float], int, int]] = {
     "log": (math.log, 1, 1),
     "step": (_step, 5, 5),
     "step5": (_step5, 5, 5),
+    "havsin": (_havsin, 5, 5),
     "smoothstep": (_smoothstep, 1, 1),
 }
 
@@ -276,10 +284,26 @@ def substitute(node: Node, values: Mapping[str, float]) -> Node:
         case ("name" | "number", _):
             return node
     new = rebuilt(node, lambda part: substitute(part, values))
-    if new[1] in ("step", "step5") and new[2][1] == new[2][3]:
+    if new[1] in STEPS and new[2][1] == new[2][3]:
         raise ScenarioError(f"{new[1]} from x0 to x1 = x0", "A jump needs x1 other than x0.")
     constant = all(part[0] == "number" for part in parts(new))
-    return ("number", evaluate(new, {})) if constant else new
+    if constant:
+        return ("number", evaluate(new, {}))
+    return haversine(*new[2]) if new[:2] == ("call", "havsin") else new
+
+
+def haversine(x: Node, x0: Node, h0: Node, x1: Node, h1: Node) -> Node:
+    """A step by a haversine, of simpler operations; its ends are corners of min and max."""
+
+    def binary(sign: str, a: Node, b: Node) -> Node:
+        return ("binary", sign, a, b)
+
+    zero, one, half = ("number", 0.0), ("number", 1.0), ("number", 0.5)
+    part = binary("/", binary("-", x, x0), binary("-", x1, x0))
+    part = ("call", "min", (("call", "max", (part, zero)), one))
+    wave = ("call", "cos", (binary("*", ("number", math.pi), part),))
+    rise = binary("*", binary("-", one, wave), half)
+    return binary("+", h0, binary("*", binary("-", h1, h0), rise))
 
 
 def evaluate(node: Node, values: Mapping[str, float]) -> float:

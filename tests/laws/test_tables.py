@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
-from trsim.expressions import parse
+from trsim.expressions import parse, substitute
 from trsim.laws.functions import expression, motion
 from trsim.laws.tables import (
     akima,
@@ -31,7 +31,7 @@ def lookup(x, y, at, ends="hold", interpolation="akima"):
 
 def stepped(name, x, *rest):
     """The words `step` and `step5` of expressions, and their first two derivatives."""
-    tree = parse(f"{name.lower()}(t, {', '.join(map(str, rest))})")
+    tree = substitute(parse(f"{name.lower()}(t, {', '.join(map(str, rest))})"), {})
     return motion(np.array(expression(tree, {})), 0, x)
 
 
@@ -52,7 +52,7 @@ def test_unit_steps(rates, f):
         assert rates(x)[2] == pytest.approx(slope, rel=1e-8)
 
 
-@pytest.mark.parametrize("name", ["STEP", "STEP5"])
+@pytest.mark.parametrize("name", ["STEP", "STEP5", "HAVSIN"])
 def test_step_derivatives(name):
     h, rest = 1e-5, (0.5, 3.0, 2.5, -4.0)
     for x in (0.2, 0.7, 1.4, 2.2, 3.0):
