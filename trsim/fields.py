@@ -101,18 +101,32 @@ def _or_text(schema: Any) -> Any:
 
 
 class _VectorUnit(Unit):
-    """Two or three numbers; z = 0 when omitted.  From the frame of the context into the world."""
+    """Two or three numbers; z = 0 when omitted.  From the frame of the context into the world.
+
+    {in: seat, at: [1, 2]} are the same seen from a named point, along its axes as drawn.
+    """
 
     into_world = staticmethod(Frame.turned)
+    is_place = False
     otherwise = "axis of a point"  # what may stand instead of numbers
 
     def __init__(self, *units: str, named: bool = True) -> None:
         super().__init__(*units)
-        self.by_name = named
+        self.by_name = named and (units == ("-",) or self.is_place)
+        self.framed = named
 
     def convert(self, value: Any, context: dict, words: tuple[str, ...] = ()) -> Any:
         if isinstance(value, str) and self.by_name and context.get("points") is not None:
             return self.named(value, context)
+        frame = context.get("frame")
+        seen = isinstance(value, dict) and not value.keys().isdisjoint(("in", "at"))
+        if seen and self.framed and context.get("points") is not None:
+            frame, value = _seen_from(value, context)
+        whole = self.three(value, context)
+        return self.into_world(frame, whole) if frame else whole
+
+    def three(self, value: Any, context: dict) -> Any:
+        """Three numbers in SI units."""
         if not isinstance(value, list | tuple) or len(value) not in (2, 3):
             raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
         for k, item in enumerate(value):  # a frame moves numbers, whatever pydantic says later
@@ -120,8 +134,7 @@ class _VectorUnit(Unit):
                 what = f"must be a number, got {described(item)}"
                 raise ScenarioError(what, units_hint(self.units), (k,))
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
-        whole = tuple([*numbers, 0.0][:3])
-        return self.into_world(frame, whole) if (frame := context.get("frame")) else whole
+        return tuple([*numbers, 0.0][:3])
 
     def named(self, value: str, context: dict) -> Any:
         """The axis of a point: world axes, whatever frame this is read in."""
@@ -133,12 +146,19 @@ class _VectorUnit(Unit):
 
     def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> Any:
         numbers = {**super().__get_pydantic_json_schema__(schema, handler), "minItems": 2}
+        if not self.framed:
+            return numbers
         named = {"type": "string", "title": self.otherwise}
-        return {"anyOf": [numbers, named]} if self.by_name else numbers
+        seen = {
+            "type": "object", "title": "these seen from a point", "required": ["in", "at"],
+            "properties": {"in": {"type": "string"}, "at": numbers}, "additionalProperties": False,
+        }  # fmt: skip
+        return {"anyOf": [numbers, *([named] if self.by_name else ()), seen]}
 
 
 class _PointUnit(_VectorUnit):
     into_world = staticmethod(Frame.moved)
+    is_place = True
     otherwise = "name of a point"
 
     def named(self, value: str, context: dict) -> Any:
@@ -146,6 +166,19 @@ class _PointUnit(_VectorUnit):
             return _frame_of(value, context).at
         what = f"must be [x, y], [x, y, z] or the name of a point, got {described(value)}"
         raise ScenarioError(what)
+
+
+def _seen_from(value: dict, context: dict) -> tuple[Frame, Any]:
+    """The frame of {in: seat, at: [1, 2]}, in world axes as drawn, and the numbers seen from it."""
+    check_keys(value, ("in", "at"))
+    for key in ("in", "at"):
+        if key not in value:
+            what = f"field required: {key}"
+            raise ScenarioError(what, "Seen from a point it is {in: NAME, at: [x, y, z]}.")
+    if not isinstance(value["in"], str):
+        what = f"must be the name of a point, got {described(value['in'])}"
+        raise ScenarioError(what, path=("in",))
+    return _at("in", _frame_of, value["in"], context), value["at"]
 
 
 def _frame_of(name: str, context: dict) -> Frame:
@@ -162,16 +195,16 @@ def _frame_of(name: str, context: dict) -> Frame:
 def vector(*units: str, named: bool = True) -> Any:
     """The type of a free vector (a direction, a velocity): three floats; two or three numbers.
 
-    named: a direction may also be an axis of a point.
+    named: it may also be seen from a point, and a direction may be an axis of one.
     """
-    mark = _VectorUnit(*units, named=named and units == ("-",))
+    mark = _VectorUnit(*units, named=named)
     return Annotated[tuple[float, float, float], mark]
 
 
 def point(*units: str, named: bool = True) -> Any:
     """The type of a place: three floats, given as two or three numbers.
 
-    named: or by the name of a point.
+    named: or by the name of a point, or seen from one.
     """
     return Annotated[tuple[float, float, float], _PointUnit(*units, named=named)]
 

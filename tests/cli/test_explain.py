@@ -104,7 +104,7 @@ def test_meanings_of_docstrings():
         ("marker", ["p'' = r''", "body: text, required", "at: [x, y] or [x, y, z], m, req"]),
         ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial;"]),
         ("at", ["applied_load.at", "limit_stop.wall.at", "revolute.at"]),
-        ("wall.normal", ["wall.normal: [x, y] or [x, y, z] or axis of a point, required"]),
+        ("wall.normal", ["wall.normal: [x, y] or [x, y, z] or axis of a point or these seen f"]),
         ("friction", ["contact_laws.friction: mapping", "contact_laws.friction.v0: number >= 0"]),
     ],
 )  # fmt: skip

@@ -186,6 +186,69 @@ def test_a_body_may_be_where_a_point_is():
     assert loads(text).bodies["b"].at == (1.0, 2.0, 3.0)
 
 
+SEEN = """
+planar: false
+points: {{seat: {{body: ground, at: [1, 2, 3], x_axis: [0, 1, 0], y_axis: [0, 0, 1]}}}}
+bodies:
+  arm: {{mass: 1, inertia: [0.1, 0.2, 0.3], at: {0}, velocity: {1}}}
+joints:
+  pivot: {{type: revolute, bodies: [ground, arm], at: {2}, axis: {3}}}
+forces:
+  push: {{type: applied_load, body: arm, at: {4}, direction: {5}, force: 3}}
+solver: {{end: 0.1 s}}
+"""
+
+
+def test_places_and_directions_seen_from_a_point():
+    """x of the seat is y of the world, y is z, and so z is x."""
+    seen = SEEN.format(
+        "{in: seat, at: [0.1, 20 cm, 0.3]}", "{in: seat, at: [0, 0, 2]}", "{in: seat, at: [0, 0]}",
+        "{in: seat, at: [0, 1, 0]}", "{in: seat, at: [1, 0, 0]}", "{in: seat, at: [2, 0, 1]}",
+    )  # fmt: skip
+    world = SEEN.format(
+        "[1.3, 2.1, 3.2]", "[2, 0, 0]", "[1, 2, 3]", "[0, 0, 1]", "[1, 3, 3]", "[1, 2, 0]"
+    )
+    one, two = loads(seen), loads(world)
+    for section, name in (("bodies", "arm"), ("joints", "pivot"), ("forces", "push")):
+        for key, value in getattr(one, section)[name]:
+            other = getattr(getattr(two, section)[name], key)
+            if isinstance(value, tuple) and not isinstance(value[0], str):
+                np.testing.assert_allclose(value, other, atol=1e-15)
+
+
+def test_points_of_an_instance_are_those_that_its_entries_see():
+    text = """
+planar: false
+templates:
+  leg:
+    points: {foot: {body: rod, at: [1, 0, 0], x_axis: [0, 0, 1], y_axis: [1, 0, 0]}}
+    bodies: {rod: {mass: 1, inertia: [1, 1, 1], at: {in: foot, at: [0, -0.5, 0]}}}
+instances:
+  left: {template: leg, frame: {at: [0, 5, 0], x_axis: [0, 1, 0], y_axis: [-1, 0, 0]}}
+"""
+    assert loads(text).bodies["left_rod"].at == pytest.approx((0.0, 5.5, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        ("{in: seat}", "field required: at"),
+        ("{at: [0, 0]}", "field required: in"),
+        ("{in: set, at: [0, 0]}", "Did you mean 'seat'?"),
+        ("{in: 3, at: [0, 0]}", "must be the name of a point"),
+        ("{in: seat, at: [0]}", "must be [x, y]"),
+        ("{in: seat, at: [0, 1 kg]}", "kg"),
+        ("{in: seat, at: seat}", "must be [x, y]"),
+        ("{in: seat, at: [0, 0], of: 3}", "unknown key"),
+    ],
+)
+def test_what_is_not_seen_from_a_point(at, said):
+    text = SEEN.format(at, "[0, 0, 0]", "[0, 0]", "[0, 0, 1]", "[0, 0]", "[1, 0]")
+    with pytest.raises(TrsimError) as error:
+        loads(text)
+    assert said in error.value.problems[0].show()
+
+
 def test_sections_and_portraits_of_a_point():
     text = """
 points: {tip: {body: arm, at: [1, 0]}}
@@ -338,9 +401,9 @@ def test_explain_knows_points():
     [page] = explained("marker")["elements"]
     assert [c["name"] for c in page["channels"]][:2] == ["NAME.position", "NAME.velocity"]
     [key] = explained("applied_load.at")["keys"]
-    assert key["type"] == "[x, y] or [x, y, z] or name of a point"
+    assert key["type"] == "[x, y] or [x, y, z] or name of a point or these seen from a point"
     [key] = explained("revolute.axis")["keys"]
-    assert key["type"] == "[x, y] or [x, y, z] or axis of a point"
+    assert key["type"] == "[x, y] or [x, y, z] or axis of a point or these seen from a point"
     json.dumps(explained("points"))
 
 

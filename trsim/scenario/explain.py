@@ -138,12 +138,12 @@ def worded(rule: dict[str, Any]) -> str:
         return "mapping"
     if rule.get("const") is False:
         return "false"
+    if rule.get("type") in ("string", "object") and "title" in rule and "$ref" not in rule:
+        return str(rule["title"])
     if rule.get("type") == "object":
         return "mapping of names" if rule.get("additionalProperties") else "mapping"
     if rule.get("type") == "array":
         return _list(rule)
-    if rule.get("type") == "string" and "title" in rule:
-        return str(rule["title"])
     bounds = ", ".join(f"{sign} {rule[key]:g}" for key, sign in SIGNS.items() if key in rule)
     return f"{TYPES.get(rule.get('type', ''), rule.get('type', 'anything'))} {bounds}".strip()
 

@@ -235,7 +235,7 @@ class Scenario(Spec):
 
     title: str = ""
     planar: Flag | None = None
-    gravity: vector("m/s^2") = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
+    gravity: vector("m/s^2", named=False) = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
     parameters: dict[str, Any] = EMPTY  # numbers, Measured where they were written with a unit
     points: dict[str, Annotated[Any, _Element("points")]] = EMPTY  # first: all others may name them
     bodies: dict[str, Annotated[Any, _Element("bodies")]] = EMPTY
