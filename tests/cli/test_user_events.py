@@ -107,7 +107,7 @@ WRONG = [
     (
         "when: stroke,",
         "when: strok,",
-        "no sensor and no channel named 'strok'",
+        "no sensor named 'strok'",
         "Did you mean 'stroke'?",
     ),
     ("release: [motor]", "release: [moter]", "no joint or drive named 'moter'", "'motor'?"),
