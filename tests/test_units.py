@@ -301,6 +301,7 @@ EXPECTED = {
 }
 # of the elements whose units depend on nothing, by their kind
 FIXED = {
+    "gear_mesh": {"force": "N", "play": "m", "torque_1": "N*m", "torque_2": "N*m"},
     "rigid_body": {**BODY, "rotation": "-"},
     "displacement": LENGTH,
     "distance": LENGTH,

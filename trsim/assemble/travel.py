@@ -12,8 +12,8 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.switches import CHANNEL, LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
-# TWIST: an angle about axes that may lean apart
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST = range(6)
+# TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN = range(7)
 RATE_OF = 8  # added to a kind: the rate of such a quantity
 KINDS = {
     "": UNKNOWN,
@@ -22,8 +22,9 @@ KINDS = {
     "stroke": STROKE,
     "distance": DISTANCE,
     "twist": TWIST,
+    "train": TRAIN,
 }
-UNBOUNDED = (UNKNOWN, TWIST)  # kinds whose rates have no bound
+UNBOUNDED = (UNKNOWN, TWIST, TRAIN)  # kinds whose rates have no bound
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:

@@ -22,7 +22,7 @@ The multiplier of a row is minus the generalised force it puts on body j along i
 from math import sqrt
 
 from trsim.elements.contract import Pair, Turning
-from trsim.kernels.columns import V3, constraint_row
+from trsim.kernels.columns import V3, constraint_row, f8, i8
 from trsim.kernels.lazy import internal
 
 
@@ -31,6 +31,15 @@ class TwoPoints(Pair):
 
     p_i: V3  # m, from the centre of mass in the axes of frame i
     p_j: V3
+
+
+class TwoAngles(Pair):
+    """Of an element between two hinges, each between two frames: c_1 phi_1 + c_2 phi_2."""
+
+    i_2: i8
+    j_2: i8
+    c_1: f8  # m
+    c_2: f8
 
 
 def points(at, i, j, p, q, coordinate=-1):

@@ -9,6 +9,7 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
     twist      |g'| <= k Omega              |g''| <= k (alpha_i + alpha_j + omega_i Omega)
                                                      + k^2 (1 + k) Omega^2 / 2
                Omega = omega_i + omega_j,  k = 1 / cos(tilt / 2) of its axes  relative_angle.py
+    train      |c_1| and |c_2| times those of two angles                      gear_mesh.py
 
     |u''| <= |d''| + 2 omega_i |d'| + (alpha_i + omega_i^2) |d|
     |d''| <= |r_j'' - r_i''| + (alpha_i + omega_i^2) |p_i| + (alpha_j + omega_j^2) |p_j|
@@ -27,9 +28,10 @@ from math import acos, comb, cos, inf, pi, sqrt
 import numpy as np
 
 from trsim.assemble.dense import inverse
-from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, TWIST, UNKNOWN
+from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, TRAIN, TWIST, UNKNOWN
 from trsim.elements.contract import Pair
 from trsim.elements.frames import (
+    TwoAngles,
     arm,
     centripetal,
     cross,
@@ -214,6 +216,12 @@ def spread(s, r, b, what, sign, part):
         return of_angle(of_i, of_j)
     if kind == TWIST:
         return of_twist(s, e, of_i, of_j, length)
+    if kind == TRAIN:
+        two = TwoAngles(s, e)
+        first_j = fill_curve(s, b, n, two.i_2, 0)
+        cut(b.curve, n, fill_curve(s, b, n, two.j_2, first_j), part[0], part[1])
+        of_2 = turning(s, r, b, two.i_2, 0, length), turning(s, r, b, two.j_2, first_j, length)
+        return of_train(s, e, of_angle(of_i, of_j), of_angle(of_2[0], of_2[1]))
     (spin_i, bend_i), (spin_j, bend_j) = of_i, of_j
     away = apart(s, b, n, i, j, first_j, length)
     _, p_i, _, p_j = two_points(s, e)
@@ -228,6 +236,14 @@ def of_angle(of_i, of_j):
     acceleration."""
     turn = of_i[0] + of_j[0]
     return turn, of_i[1] + of_j[1] + of_i[0] * turn
+
+
+@internal
+def of_train(s, e, of_1, of_2):
+    """The same of two angles, each times a radius."""
+    own = TwoAngles(s, e)
+    c, d = abs(own.c_1), abs(own.c_2)
+    return c * of_1[0] + d * of_2[0], c * of_1[1] + d * of_2[1]
 
 
 @internal
@@ -392,4 +408,8 @@ def spread_at_stages(s, r, b, what, sign):
         return of_angle(of_i, of_j)
     if kind == TWIST:
         return of_twist(s, e, of_i, of_j, b.h)
+    if kind == TRAIN:
+        two = TwoAngles(s, e)
+        of_2 = of_angle(at_stages(s, r, b, two.i_2), at_stages(s, r, b, two.j_2))
+        return of_train(s, e, of_angle(of_i, of_j), of_2)
     return from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)
