@@ -90,7 +90,7 @@ def test_a_touch_is_not_passed_over_in_a_long_flight():
 
 
 def test_a_flank_that_is_touched_inside_a_step_is_found():
-    """A driven pinion that goes a thousandth beyond the play and back, its wheel heavy and still."""
+    """A driven pinion that goes a thousandth beyond the play, and back; its wheel is heavy."""
     more = "backlash: 0.2 mm"
     drive = "drives: {motor: {joint: first, position: '0.002002*sin(300*t)'}}\n"
     r = run(loads(text(more, w=0, end=0.3) + drive))
