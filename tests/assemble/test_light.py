@@ -199,3 +199,34 @@ solver: {end: 1 s}
     r = run(loads(text))
     np.testing.assert_allclose(r["motor.force"], 5 * 0.2 * np.cos(2 * r.t), atol=1e-9)
     assert np.abs(r["energy.kinetic"]).max() < 1e-20
+
+
+TORN_OFF = """
+bodies:
+  crank: {mass: 1, inertia: 0.01, at: [0.05, 0]}
+  rod: {mass: 0, inertia: 0, at: [0.2, 0.1]}
+  slider: {mass: 2, inertia: 0.1, at: [0.4, 0.1]}
+joints:
+  a: {type: revolute, bodies: [ground, crank], at: [0, 0]}
+  b: {type: revolute, bodies: [crank, rod], at: [0.1, 0]}
+  c: {type: revolute, bodies: [rod, slider], at: [0.4, 0.1]}
+  d: {type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}
+gravity: [0, -9.81, 0]
+events: {off: {when: t, value: 0.1, do: {release: [%s]}}}
+solver: {end: 0.2}
+"""
+
+
+@pytest.mark.parametrize("joints", ["c", "b, c"])
+def test_an_event_that_leaves_a_light_body_open_ends_the_run(joints):
+    r = run(loads(TORN_OFF % joints), fails=True)
+    assert r.outcome.status == "failed"
+    assert r.t[-1] == pytest.approx(0.1)
+    assert r.outcome.reason.startswith("event 'off' (release ")
+    assert "): 'rod', a body without " in r.outcome.reason
+    assert "its motion is not determined" in r.outcome.reason
+
+
+def test_an_event_may_leave_a_light_body_on_what_moves_it():
+    r = run(loads(TORN_OFF.replace("release: [%s]", "release: [c], lock: [b]")))
+    assert r.outcome.status == "done"

@@ -380,6 +380,16 @@ events: {off: {when: t, value: 0.1, do: {release: [wire]}}}
     assert r.outcome.status == "done"
 
 
+def test_what_a_stop_holds_along_its_curve_is_not_released():
+    more = """
+forces: {end: {type: limit_stop, joint: wire, lower: 0.1, stiffness: 1e4}}
+events: {off: {when: t, value: 0.1, do: {release: [wire]}}}
+"""
+    with pytest.raises(TrsimError) as error:
+        run(bead(CYCLOID, on_cycloid(0.3), end=1, more=more))
+    assert "'end' stops 'wire' along its curve" in str(error.value)
+
+
 def test_a_stop_knows_its_kinds():
     assert LimitStop.type == "limit_stop"
     r = run(bead(CYCLOID, on_cycloid(0.3), end=0.1))

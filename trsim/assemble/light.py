@@ -20,14 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.dense import product, spaces, symmetric
-from trsim.assemble.equations import DERIVATIVE, poses, right_hand_side
+from trsim.assemble.equations import DERIVATIVE, constraints, poses, right_hand_side
 from trsim.assemble.linear import solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.projection import project_velocities
-from trsim.assemble.reduce import jacobian, moves, roots, times_roots
+from trsim.assemble.reduce import moves, roots, spread_out, times_roots
 from trsim.assemble.schur import pull
 from trsim.elements.contract import DRIVES, compiled
-from trsim.elements.scene import BAUMGARTE, Model, Scene, workspace
+from trsim.elements.scene import BAUMGARTE, Model, Scene
 from trsim.errors import ModelError
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear, clear_table
@@ -91,13 +91,17 @@ def below_zero(name: str) -> ModelError:
     )  # fmt: skip
 
 
-def check_determined(mechanism: Any, y: Array) -> None:
-    """Refuse a light body whose motion is left open where a run starts, by its name."""
-    model = mechanism.model
+def check_determined(mechanism: Any, model: Model, work: Scene, y: Array) -> None:
+    """Refuse a light body whose motion is left open in a stage of a run, by its name.
+
+    model, work: of the stage that begins; work knows the turns and places on curves of y.
+    """
     if not len(model.light):
         return
-    _, _, J = jacobian(model, 0.0, y)
-    work, planar = posed(model, y), model.d == 3
+    planar = model.d == 3
+    poses(work, y)
+    constraints(work, 0.0)
+    J = spread_out(work, model.m)
     C, keep = roots(work, y, planar), moves(model, planar)
     rows = times_roots(J, C)[:, keep]  # against motions that have the mass 1 in M + E
     size = np.sqrt(np.sum(rows * rows, axis=1))
@@ -128,13 +132,6 @@ def check_determined(mechanism: Any, y: Array) -> None:
         f"give it {'an inertia' if turns else 'a mass'}, or a joint that holds it",
         ("bodies", name, key),
     )
-
-
-def posed(model: Model, y: Array) -> Scene:
-    """The workspace of a model, at the poses of y."""
-    work = workspace(model)
-    poses(work, y)
-    return work
 
 
 def of_light(work: Scene, q: int, f: int) -> Array:

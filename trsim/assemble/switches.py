@@ -20,6 +20,7 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.outputs import energy_columns
 from trsim.elements.coordinates import called, named
 from trsim.elements.prescribed import AnyDrive
+from trsim.elements.rows import ARC
 from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
@@ -288,7 +289,21 @@ class _Packing:
                 "make it ideal with `clearance: 0`, or release a joint next to it",
                 path,
             )
+        own = self.at.coordinates.get(one)
+        if own is not None and own.kind == ARC:
+            self.check_no_stop(one, path)
         return self.switch("joints", one, LOOSE)
+
+    def check_no_stop(self, joint: str, path: tuple) -> None:
+        """Refuse to take apart a joint on a curve whose stops would go on acting far from it."""
+        for name, force in self.scenario.forces.items():
+            if getattr(force, "joint", None) == joint:
+                raise ScenarioError(
+                    f"'{name}' stops '{joint}' along its curve: what has come off a curve is at no "
+                    "place along it, and nothing could stop it there",
+                    f"leave '{name}' out, or put it at a `point` and a `wall`",
+                    path,
+                )
 
     def unlocked(self, name: str, k: int, one: str) -> tuple[int, int]:
         path = (SECTION, name, "do", "unlock", k)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import kinetic, poses, stored_energy
-from trsim.assemble.light import nearest_velocities
+from trsim.assemble.light import check_determined, nearest_velocities
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import CHANNEL, HELD, LOOSE, SECTION, UserEvent, lock_name
 from trsim.elements.contract import Memory, Row
@@ -82,11 +82,12 @@ def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
 
 def failure(event: UserEvent, error: ModelError) -> str:
     """Why an event could not be carried out."""
-    section, name = error.path if len(error.path) == 2 else ("", "")
-    if section == "drives":
+    section, name = error.path[:2] if len(error.path) > 1 else ("", "")
+    if section == "drives" and len(error.path) == 2:
         fixed = "a coordinate that joints, locks or other drives fix"
         return f"event '{event.name}' ({event.said}): the drive '{name}' would move {fixed}"
-    return f"event '{event.name}' ({event.said}): {error.what}"
+    of = f"'{name}', " if section == "bodies" else ""
+    return f"event '{event.name}' ({event.said}): {of}{error.what}"
 
 
 def turned(
@@ -94,7 +95,8 @@ def turned(
 ) -> tuple[Scene, float]:
     """The scene of the stage an event leads to, with the record brought to it; the work done, J.
 
-    Raises ModelError where its constraints contradict each other or the positions.
+    Raises ModelError where its constraints contradict each other or the positions, or leave the
+    motion of a body without mass open.
     """
     before, stages = r.stage.copy(), mechanism.stages
     for switch, to in event.turned:
@@ -112,6 +114,7 @@ def turned(
     r.weak, r.weakest = 1, 1.0
     work = carried(work, model)
     project(mechanism, work, r)
+    check_determined(mechanism, model, work, y)
     done = total_energy(work, t, y) - energy
     y[work.n_q + work.n_v + work.jumps] += done
     settle(work, r, b, setting)

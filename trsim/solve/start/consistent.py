@@ -97,7 +97,7 @@ def start(
         raise not_closed(scenario, mechanism, np.abs(jacobian(model, 0.0, y)[0]))
     check_values(mechanism, initial, y)
     check_closed(mechanism, y, scenario.solver.tolerance)
-    check_determined(mechanism, y)
+    check_determined(mechanism, model, workspace(model), y)
     y = velocities(scenario, mechanism, y, tuple(initial.equilibrium))
     mem = phases(model, y, located)
     check_finite(mechanism, y, mem)
