@@ -52,6 +52,17 @@ def test_values_and_rates():
     assert energy_error(r) < 1e-8
 
 
+def test_rates_of_sensors_stand_in_formulas():
+    """In a load, too: a damper that is stiffer the farther it is out."""
+    slow = '{type: formula, value: "abs(x - 0.1)*x.rate", unit: m^2/s}'
+    text = TEXT.replace("  bent:", f"  slow: {slow}\n  bent:")
+    one = run(text.replace("-50*x", "-50*x - 8*slow"))
+    two = run(TEXT.replace("-50*x", "-50*x - 8*abs(x - 0.1)*x.rate"))
+    assert one["slow"] == pytest.approx(np.abs(one["x"] - 0.1) * one["x.rate"], abs=1e-12)
+    assert one["slow"].max() > 0.05 and "slow.rate" not in {c.name for c in one.mechanism.columns}
+    assert np.array_equal(one["x"], two["x"])
+
+
 def test_what_is_only_looked_at_changes_no_step():
     bare = "\n".join(
         line for line in TEXT.splitlines()
@@ -133,7 +144,10 @@ def test_energy_of_flexible_bars():
         ("unit: m}", "unit: mm}", ("sensors", "two", "unit"), "no SI unit"),
         ("unit: m}", "unit: bananas}", ("sensors", "two"), "unit"),
         ("-50*x", "-50*ratio", None, "known only once"),
-        ("-50*x", "{table: [[0, 1], [1, 2]], of: bent}", None, "a function of one sensor"),
+        ("-50*x", "{table: [[0, 1], [1, 2]], of: bent}", None, "neither a table nor a rate"),
+        ("-50*x", "-50*bent.rate", None, "neither a table nor a rate"),
+        ('"2*x + 0.3*t"', "2*v.rate", ("sensors", "two", "value"), "no place and no angle"),
+        ('"2*x + 0.3*t"', "2*bent.rate", ("sensors", "two", "value"), "no place and no angle"),
     ],
 )
 def test_refused(old, new, path, what):

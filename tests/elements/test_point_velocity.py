@@ -77,6 +77,14 @@ def test_a_corner_that_it_meets_is_refused(force):
     assert error.path[:3] == ("forces", "drag", "force")
 
 
+@pytest.mark.parametrize("force", ["-3*v.rate", "{table: [[0, 1], [1, 2]], of: v.rate}"])
+def test_its_rate_is_an_acceleration_and_in_no_load(force):
+    with pytest.raises(TrsimError, match="once the accelerations are") as caught:
+        built(DRAG.replace("METHOD", "auto").replace("-0.5*v*w", force))
+    [error] = caught.value.problems
+    assert error.path[:3] == ("forces", "drag", "force")
+
+
 def test_refused():
     with pytest.raises(TrsimError, match="must not be zero"):
         built(DRAG.replace("METHOD", "auto").replace("axis: [1, 0]", "axis: [0, 0]"))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trsim import elements
 from trsim.errors import TrsimError
 
 from ..runs import built, run
@@ -133,6 +134,92 @@ def test_by_every_method(solver):
     one = run(scene(False, solver=solver, end=0.1))
     two = run(scene(True, solver="tolerance: 1e-12", end=0.1))
     check_same(one, two, 1e-6)
+
+
+# what may stand at the end of a body, and pushes it: joints, and forces
+ENDS = {
+    "wrench": ("", "{type: wrench, body: FAR, at: [0.8, 0.1, 0.1], frame: FAR, "
+               "force: [3, '4*t', 5], moment: [1, 2, '-t']}"),
+    "moment": ("", "{type: wrench, body: FAR, at: [0.8, 0, 0], moment: [1, 2, 3]}"),
+    "spring": ("", "{type: spring, bodies: [ground, FAR], points: [[1, 1, 0.2], [0.9, 0, 0]], "
+               "free_length: 0.99, elastic: 300*stretch, damper: 3*rate, tension_only: true}"),
+    "of an angle": ("{type: revolute, bodies: [bob, FAR], at: [0.9, 0, 0], axis: [1, 0, 0.3]}",
+                    "{type: joint_spring, joint: end, elastic: 4*stretch, free: 0.4}"),
+    "of a stroke": ("{type: cylindrical, bodies: [FAR, bob], at: [0.9, 0, 0], axis: [1, 2, 0.3]}",
+                    "{type: joint_spring, joint: end.stroke, elastic: 400*stretch, free: 10 mm}"),
+    "bearing": ("{type: revolute, bodies: [FAR, bob], at: [0.9, 0, 0], axis: [1, 0, 0.3]}",
+                "{type: joint_friction, joint: end, radius: 20 mm, friction: RUBS}"),
+    "guide": ("{type: prismatic, bodies: [bob, FAR], at: [0.9, 0, 0], axis: [1, 1, 0.3]}",
+              "{type: joint_friction, joint: end, length: 80 mm, friction: RUBS}"),
+    "sleeve": ("{type: cylindrical, bodies: [bob, FAR], at: [0.9, 0, 0], axis: [1, 2, 0.3]}",
+               "{type: joint_friction, joint: end, radius: 20 mm, friction: RUBS}"),
+}  # fmt: skip
+RUBS = "{law: modified_coulomb, coefficient: 0.2, v0: 0, v1: 1 mm/s}"
+
+
+def with_end(split, joint, force):
+    """A bar on a universal joint, whole or of two welded parts, with something at its end."""
+    I = [0.005, 0.167, 0.169]
+    bodies, weld, sensor = f"far: {{mass: 2, inertia: {I}, at: [0.5, 0, 0]}}", "", ""
+    if split:
+        bodies = (
+            "near: {mass: 0.8, inertia: [0.002, 0.011, 0.012], at: [0.2, 0, 0]}, "
+            "far: {mass: 1.2, inertia: [0.003, 0.036, 0.037], at: [0.7, 0, 0]}"
+        )
+        weld = ", cut: {type: fixed, bodies: [near, far], at: [0.4, 0, 0]}"
+    else:
+        sensor = (
+            "sensors: {cut: {type: section, body: far, at: [0.4, 0, 0], axis: [1, 0, 0], mass: 1.2,"
+            " x_axis: [0, 1, 0], centre: [0.7, 0, 0], inertia: [0.003, 0.036, 0.037]}}"
+        )
+    bob = ", bob: {mass: 0.3, inertia: [0.01, 0.02, 0.015], at: [1, 0.2, 0]}" if joint else ""
+    near = "near" if split else "far"
+    return f"""
+bodies: {{{bodies}{bob}}}
+joints: {{root: {{type: universal, bodies: [ground, {near}], at: [0, 0, 0], axis: [0, 1, 0],
+          second_axis: [0, 0, 1]}}{weld}{f", end: {joint}" if joint else ""}}}
+forces: {{acts: {force}}}
+gravity: [0, -9.81, 1]
+{sensor}
+solver: {{end: 0.2, tolerance: 1e-11}}
+output: {{every: 0.02, channels: ["*", "*.rotation"]}}
+""".replace("FAR", "far").replace("RUBS", RUBS)
+
+
+@pytest.mark.parametrize("joint, force", ENDS.values(), ids=ENDS)
+def test_all_that_pushes_counts(joint, force):
+    one, two = (run(with_end(split, joint, force)) for split in (False, True))
+    R = two["far.rotation"].reshape(-1, 3, 3)
+    for mine, other in (("force", "reaction"), ("moment", "reaction_moment")):
+        want = np.einsum("nba,nb->na", R, two[f"cut.{other}"])[:, [1, 2, 0]]
+        assert one[f"cut.{mine}"] == pytest.approx(want, abs=1e-8 * np.abs(want).max())
+
+
+@pytest.mark.parametrize(
+    "force",
+    ["{type: applied_load, body: far, direction: [1, 0, 0], torque: 3}",
+     "{type: wrench, body: far, moment: [1, 2, 3]}"],
+)  # fmt: skip
+def test_a_torque_without_a_place_must_be_listed(force):
+    text = with_end(False, "", force)
+    with pytest.raises(TrsimError, match="which side of the section 'acts' acts cannot be told"):
+        built(text)
+    bare, full = (
+        run(text.replace("at: [0.4, 0, 0],", f"at: [0.4, 0, 0], beyond: {names},"))
+        for names in ("[]", "[acts]")
+    )
+    M = full["acts.load" if "applied" in force else "acts.moment"]
+    M = np.einsum("nba,nb->na", full["far.rotation"].reshape(-1, 3, 3), M)[:, [1, 2, 0]]
+    assert bare["cut.moment"] - full["cut.moment"] == pytest.approx(M, abs=1e-9)
+
+
+def test_every_element_that_pushes_says_where():
+    """Or it would be missing in sections without a word."""
+    every = [elements.load(word) for word in elements.ELEMENTS]
+    pushing = [e for e in every if {"force", "rub"} & {*e.kernels} and e.section]
+    silent = {e.key for e in pushing if e.acts_at is None}
+    # bars are no rigid bodies, and pistons no bodies
+    assert silent == {"ancf_cable", "distributed_load", "sync_shaft"}
 
 
 def test_what_acts_beyond_may_be_listed():

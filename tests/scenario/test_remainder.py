@@ -86,3 +86,35 @@ def test_what_cannot_be_is_refused_where_it_stands(text, said):
         door(text)
     assert said in str(error.value)
     assert error.value.problems[0].place is not None
+
+
+CHAIN = """
+planar: false
+bodies:
+  a: {mass: 1, inertia: [0.1, 0.1, 0.1]}
+  b: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [1, 0, 0]}
+  c: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 1, 0]}
+totals:
+  all: {bodies: [a, b, c], mass: 9, at: [0.5, 0.5, 0], remainder: c}
+  two: {bodies: [a, b], mass: 5, at: [0.7, 0.1, 0.05], remainder: b}
+solver: {end: 1}
+"""
+
+
+def test_a_remainder_among_the_bodies_of_a_total_before_it():
+    """Whichever of them stands first, both totals are what they say."""
+    bodies = loads(CHAIN).bodies
+    for names, mass, centre in (("ab", 5, (0.7, 0.1, 0.05)), ("abc", 9, (0.5, 0.5, 0))):
+        whole = together(of_body(bodies[name]) for name in names)
+        assert whole.mass == pytest.approx(mass)
+        assert whole.centre == pytest.approx(centre, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("remainder", "said"),
+    [("a", "all, two wait for the remainders of each other"), ("b", "another total already")],
+)
+def test_totals_that_depend_on_each_other(remainder, said):
+    with pytest.raises(TrsimError, match=said) as error:
+        loads(CHAIN.replace("remainder: c", f"remainder: {remainder}"))
+    assert error.value.problems[0].place is not None

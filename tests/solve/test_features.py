@@ -484,6 +484,23 @@ def test_a_table_that_ends_ends_the_run_where_it_is_told_to():
     assert r.outcome.record.t == pytest.approx(2, abs=1e-4)
 
 
+@pytest.mark.parametrize("kind", ["akima", "linear", "spline"])
+def test_the_end_of_a_table_is_named_where_it_drives_beyond(kind):
+    """Of a component of a wrench, too; whatever the accelerations there were."""
+    r = run(
+        f"""
+bodies: {{a: {{mass: 1, inertia: 1, velocity: [1, 0]}}}}
+sensors: {{x: {{type: point, body: a, at: [0, 0], axis: [1, 0, 0]}}}}
+forces: {{push: {{type: wrench, body: a, force: [{{table: [[0, 1], [0.5, 2]], of: x,
+          interpolation: {kind}, outside: error}}, 0]}}}}
+solver: {{end: 1}}
+""",
+        fails=True,
+    )
+    assert "forces.push" in r.outcome.reason and "a table that ends" in r.outcome.reason
+    assert r["x"][-1] == pytest.approx(0.5, abs=1e-3)
+
+
 def test_a_drive_along_straight_lines_is_jolted_at_each_of_their_ends():
     """2 kg from 1 to 3 m/s: an impulse of 4 N s and 8 J."""
     r = run("""

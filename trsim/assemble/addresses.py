@@ -1,6 +1,6 @@
 """What `pack` may ask: where a body, a point, a joint coordinate or a function lives."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import atan2
 from typing import Any, NamedTuple
@@ -429,11 +429,15 @@ class Addresses:
         found: frozenset[int] = instance.element.acts_on(instance.row)
         return found
 
-    def stored(self, node: Any, sensors: Sequence[str], path: tuple[str, ...]) -> int:
-        """Store an expression that nothing of the motion depends on; its offset."""
-        offset = len(self.tab)
+    def stored(self, node: Any, inputs: Iterable[str], path: tuple[str, ...]) -> int:
+        """Store an expression of packed sensors and their rates that nothing of the motion depends
+        on; its offset."""
+        offset, indices = len(self.tab), dict[str, int]()
+        for name in sorted(inputs):
+            own = name.removesuffix(RATE)
+            indices[name] = self.sensor(name) if own == name else self.rate_of_sensor(own, path)
         try:
-            self.tab += functions.expression(node, {name: self.sensor(name) for name in sensors})
+            self.tab += functions.expression(node, indices)
         except ScenarioError as error:
             raise error.at(*path) from None
         return offset
@@ -515,9 +519,19 @@ class Addresses:
                 path,
             )
         self.check_early(own, path)
-        if own == name:
-            return self.sensor(name)
-        return self.rate_of(self.sensor(own))
+        return self.sensor(name) if own == name else self.rate_of_sensor(own, path)
+
+    def rate_of_sensor(self, name: str, path: tuple[str | int, ...]) -> int:
+        """Index in S of the rate of a packed sensor.  Refuses one of which that is no velocity."""
+        packed = self.instances["sensors", name]
+        if not packed.row.travel:
+            raise ScenarioError(
+                f"'{name}' ({packed.element.key}) is no place and no angle: its rate is known "
+                "only once the accelerations are",
+                "take the rate of a sensor of places; what depends on an acceleration is a mass",
+                path,
+            )
+        return self.rate_of(self.sensor(name))
 
     def is_early(self, name: str) -> bool:
         """Whether a sensor shows a number of places and velocities alone, an entry of S."""
@@ -526,8 +540,9 @@ class Addresses:
     def check_early(self, name: str, path: tuple[str | int, ...]) -> None:
         """Refuse a sensor that shows no number of places and velocities."""
         if self.elements["sensors", name].stands_for:
-            what = f"'{name}' is a formula, and a table is a function of one sensor"
-            raise ScenarioError(what, "write the table of the sensor itself", path)
+            what = f"'{name}' is a formula: neither a table nor a rate of it can stand here"
+            hint = "a table of the sensor itself, or an expression with the rates of its sensors"
+            raise ScenarioError(what, hint, path)
         if not self.is_early(name):
             key = self.elements["sensors", name].key
             raise ScenarioError(

@@ -9,6 +9,8 @@ from trsim.elements.frames import plus
 from trsim.kernels.columns import i8, run
 from trsim.kernels.lazy import internal
 
+PUSHES = {"force", "rub"}  # kernels that push; what rubs does so by forces found before
+
 
 class Acted(Pair):
     """Of what tells a wrench on body i."""
@@ -23,7 +25,7 @@ def acting(members):
     pairs = [(e, len(instance.element.rows)) for e, instance in members]
     return {
         "number": len(pairs),
-        "pushes": any("force" in instance.element.kernels for _, instance in members),
+        "pushes": any(PUSHES & {*instance.element.kernels} for _, instance in members),
         "members": [n for pair in pairs for n in pair],
     }
 
@@ -58,6 +60,14 @@ def of_rows(scene, i, e, rows):
 
 
 @internal
+def call_one(t, scene, kernels, e):
+    """Call the kernel of a table that instance e has, for e alone."""
+    for n in range(kernels.shape[0]):
+        if kernels[n, 1] <= e < kernels[n, 2]:
+            call_kernel(kernels[n, 0], t, scene, e, e + 1)
+
+
+@internal
 def pushed(t, scene, e):
     """What the forces among the members put on the body.
 
@@ -72,9 +82,8 @@ def pushed(t, scene, e):
         rates[k] = zd[k]
     for k in range(own.number):
         one = own.members[2 * k]
-        for n in range(scene.force.shape[0]):
-            if scene.force[n, 1] <= one < scene.force[n, 2]:
-                call_kernel(scene.force[n, 0], t, scene, one, one + 1)
+        call_one(t, scene, scene.force, one)
+        call_one(t, scene, scene.rub, one)
     found = (F[i, 0], F[i, 1], F[i, 2]), (F[i, 3], F[i, 4], F[i, 5])
     for f in range(scene.n):
         for c in range(6):

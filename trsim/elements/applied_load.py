@@ -127,7 +127,7 @@ def reach(row):
 def acts_at(row):
     """Of a torque without a point of its own nobody knows where."""
     own = Own.of(row)
-    return () if own.turns and not any(own.point) else ((own.body, own.point),)
+    return ((own.body, None if own.turns and not any(own.point) else own.point),)
 
 
 def turning(row):

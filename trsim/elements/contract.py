@@ -305,7 +305,8 @@ class Element:
     loads: dict[str, str] = field(default_factory=dict)  # channels -> names in tables of loads
     acts_on: Callable[[Row], frozenset[int]] = ends  # frames whose motion its forces depend on
     # (row) -> (frame, point in its axes from its centre) of all places where it pushes or holds a
-    # body, turns it included; None: not at places
+    # body, turns it included; the point is None where nobody can tell it.  None: its rows alone say
+    # which bodies it holds
     acts_at: Callable[[Row], tuple] | None = None
     reach: Callable[[Row], Reach] | None = None  # None: nothing but its rows
     turning: Callable[[Row], Turning] | None = None  # None: of all frames it acts on

@@ -2,6 +2,8 @@
 
     s = f(t, sensors)          s' = df/dt by the rates of the sensors, where all of them have one
 
+The rate of a sensor may stand in it, `x*x.rate`; it has no rate of its own then.
+
 It is evaluated as written; where it has no finite number, as where it divides by zero, the run
 ends.  In a load the expression stands for the formula: its corners are found there like those of
 any other load.
@@ -47,8 +49,8 @@ def pack(name, spec, at):
     read = sorted(spec.value.sensors)
     rows = [at.read_by_formula(one, ("value",)) for one in read]
     # not `at.function`: what is only looked at changes no step
-    offset = at.stored(spec.value.node, read, ("value",))
-    rates = all(row.travel for row in rows)
+    offset = at.stored(spec.value.node, spec.value.inputs, ("value",))
+    rates = all(row.travel for row in rows) and not {*spec.value.inputs} - {*read}
     frames = sorted({f for one in read for f in at.frames_of_sensor(one)})
     own = Own.packed(
         i=0, j=0, coordinate=at.sensor(name), function=offset, rates=rates, frames=frames

@@ -37,6 +37,7 @@ from trsim.elements.frames import (
     Along,
     act_along,
     arm,
+    at_both,
     cross,
     dot,
     minus,
@@ -419,6 +420,7 @@ ELEMENT = Element(
     section="forces",
     spec=JointFriction,
     pack=pack,
+    acts_at=at_both,
     reach=lambda row: Reach(),  # acts along a coordinate, whose joint says where that leads
     channels=(
         Channel("force", "drive", "friction on the second body, along the coordinate"),

@@ -9,7 +9,15 @@ f is the elastic force or torque, d the damper (sprung.py).
 from typing import Annotated, ClassVar
 
 from trsim.elements.contract import DAMPERS, Channel, Element, Row, kernel, measured
-from trsim.elements.frames import arm, carried, on_joint, push_apart, scaled, twist_apart
+from trsim.elements.frames import (
+    arm,
+    at_both,
+    carried,
+    on_joint,
+    push_apart,
+    scaled,
+    twist_apart,
+)
 from trsim.elements.sprung import RATE, Law, Sprung, X, packed_law, store, tension
 from trsim.fields import Function, Unit
 from trsim.kernels.columns import f8, i8
@@ -87,6 +95,7 @@ ELEMENT = Element(
     section="forces",
     spec=JointSpring,
     pack=pack,
+    acts_at=at_both,
     channels=(
         Channel("force", "drive", "on the second body of the joint, along or about its axis"),
         Channel("elastic", "drive", "what of it is elastic"),

@@ -181,13 +181,16 @@ def beyond(spec, at, i, a):
 
 
 def side_of(spec, at, i, a, instance):
-    """On which sides of the section something acts on the body: 1 beyond, -1, 0 in its plane."""
+    """On which sides of the section something acts on the body: 1 beyond, -1, 0: in its plane, or
+    nobody can tell."""
     element = instance.element
     near, found = IN_PLANE * at.size_of(i), set()
     station = at.looked_at(i, spec.at)
     a = at.axes(i, a)
     for frame, place in element.acts_at(instance.row) if element.acts_at else ():
-        if frame == i:
+        if frame == i and place is None:
+            found.add(0)
+        elif frame == i:
             height = sum((p - s) * c for p, s, c in zip(place, station, a, strict=True))
             found.add(0 if abs(height) <= near else 1 if height > 0.0 else -1)
     return found

@@ -14,7 +14,7 @@ from typing import Annotated, ClassVar
 from annotated_types import Ge
 
 from trsim.elements.contract import DAMPERS, Channel, Element, Reach, Row, kernel, measured
-from trsim.elements.frames import between_points, line, points, push_apart, scaled
+from trsim.elements.frames import at_both, between_points, line, points, push_apart, scaled
 from trsim.elements.sprung import RATE, Law, Sprung, X, packed_law, store, tension
 from trsim.fields import Flag, Function, Unit, point
 from trsim.kernels.columns import f8
@@ -97,6 +97,7 @@ ELEMENT = Element(
     section="forces",
     spec=Spring,
     pack=pack,
+    acts_at=at_both,
     reach=reach,
     channels=(
         Channel("force", "N", "tension"),

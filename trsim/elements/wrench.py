@@ -178,6 +178,12 @@ def reach(row):
     return Reach(forces=forces, torques=_along(own, own.turns), places=places)
 
 
+def acts_at(row):
+    """Of moments without a point of their own nobody knows where."""
+    own = Own.of(row)
+    return ((own.body, own.point if any(own.acts) or any(own.point) else None),)
+
+
 def turning(row):
     own = Own.of(row)
     forces, moments = _along(own, own.acts), _along(own, own.turns)
@@ -194,6 +200,7 @@ ELEMENT = Element(
     section="forces",
     spec=Wrench,
     pack=pack,
+    acts_at=acts_at,
     reach=reach,
     channels=(
         Channel("force", "N", "at its point, world axes", 3),

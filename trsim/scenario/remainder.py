@@ -22,14 +22,36 @@ from trsim.scenario.totals import Total
 def remainders(totals: dict[str, Total], bodies: dict[str, Any]) -> dict[str, Any]:
     """The bodies that take the rest, as they are then.  Raises ScenarioError with its path."""
     found: dict[str, Any] = {}
-    for name, total in totals.items():
+    for name, total in in_order(totals, bodies):
         try:
-            if total.remainder in found:
-                what = f"'{total.remainder}' is the remainder of another total already"
-                raise ScenarioError(what, "a body takes the rest of one", ("remainder",))
             found[total.remainder] = rest(total, {**bodies, **found})
         except ScenarioError as error:
             raise error.at("totals", name) from None
+    return found
+
+
+def in_order(totals: dict[str, Total], bodies: dict[str, Any]) -> list[tuple[str, Total]]:
+    """The totals, each behind those whose remainders are among its bodies, whatever the file."""
+    others, taken = dict[str, list[str]](), set[str]()
+    for name, total in totals.items():
+        try:
+            others[name] = members(total, bodies)
+            if total.remainder in taken:
+                what = f"'{total.remainder}' is the remainder of another total already"
+                raise ScenarioError(what, "a body takes the rest of one", ("remainder",))
+        except ScenarioError as error:
+            raise error.at("totals", name) from None
+        taken.add(total.remainder)
+    found, left = list[tuple[str, Total]](), dict(totals)
+    while left:
+        unknown = {total.remainder for total in left.values()}
+        ready = [name for name in left if not unknown & {*others[name]}]
+        if not ready:
+            name = next(iter(left))
+            what = f"the totals {', '.join(left)} wait for the remainders of each other"
+            hint = "leave the remainder of the one out of the bodies of the other"
+            raise ScenarioError(what, hint, ("totals", name, "remainder"))
+        found += [(name, left.pop(name)) for name in ready]
     return found
 
 

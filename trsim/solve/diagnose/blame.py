@@ -70,7 +70,7 @@ def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     if not np.all(np.isfinite(r.y)):
         return ""
     t, step = float(r.t), scenario.solver.step or 0.0
-    rates = r.yd if np.all(np.isfinite(r.yd)) else np.zeros_like(r.y)
+    rates = np.where(np.isfinite(r.yd), r.yd, 0.0)  # accelerations may be no numbers already
     for ahead in (0.0, *(share * scenario.solver.end for share in AHEAD), step):
         found = blamed(mechanism, t + ahead, r.y + ahead * rates, r.mem)
         if found is not None and found.section:
