@@ -129,6 +129,29 @@ def test_a_jump_over_zero_is_no_crossing(force, at):
     assert found[:, 0] == pytest.approx(at, abs=1e-9)
 
 
+@pytest.mark.parametrize("method", ["dop853", "radau", "generalized_alpha", "rk4, step: 1e-3"])
+@pytest.mark.parametrize("load", ["-50*x*(x > 0) - 3*x.rate*abs(x.rate)", "-x*abs(x)"])
+def test_a_corner_of_a_load_where_the_channel_is_zero(method, load):
+    """A step ends there, and rounding says on which side."""
+    tolerance = ", tolerance: 1e-7" if "alpha" in method else ""
+    r = run(f"""
+bodies: {{a: {{mass: 1, inertia: 1, velocity: [1, 0]}}}}
+sensors: {{x: {{type: point, body: a, at: [0, 0], axis: [1, 0, 0]}}}}
+forces:
+  spring: {{type: spring, bodies: [ground, a], points: [[-1, 0], [0, 0]], elastic: 100*stretch}}
+  load: {{type: applied_load, body: a, direction: [1, 0], force: "{load}"}}
+poincare:
+  turn: {{when: x.rate, crosses: both, plot: [x, x.rate]}}
+  middle: {{when: x, crosses: both, plot: [x, x.rate]}}
+solver: {{end: 5, method: {method}{tolerance}}}
+""")
+    for name, channel in (("turn", "x.rate"), ("middle", "x")):
+        found = r.section(name)[:, 0]
+        k = np.flatnonzero(np.diff(np.sign(r[channel][1:]))) + 1
+        assert len(found) == len(k), name
+        assert np.all((r.t[k] <= found) & (found <= r.t[k + 1])), name
+
+
 @pytest.mark.parametrize("before, after, at", [
     (-1, "1", []), (-1, "4*t - 1", [0.75]), (1, "-1", []), (1, "50*t - 1", [0.52]),
 ])  # fmt: skip

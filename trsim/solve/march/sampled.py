@@ -15,9 +15,9 @@ PARTS = 8  # of a step that is looked at, for each TURN
 TURN, WAVE = 0.5, 2.0  # rad
 DIPS = 12  # looks at the bottom of a dip
 NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
-JUMP = 1e-6  # of a channel's change between two points: more than that is not done in one ulp
 TRIALS = 100
 RESOLUTION = 2.3e-16
+SHORT = 64.0  # resolutions of the time: inside so short a step there is rounding alone
 
 
 @internal
@@ -80,12 +80,20 @@ def dip(s, r, b, what, side, places):
 
 
 @internal
+def resolution(b):
+    """Of the time, as theta."""
+    return RESOLUTION * max(1.0, abs(b.t) / b.h)
+
+
+@internal
 def root(s, r, b, what, low, high):
-    """Where what is looked at is zero between two places, as theta, and whether it jumps there."""
-    if low[1] == 0.0:
-        return low[0], False
-    rising, change = high[1] > 0.0, abs(high[1] - low[1])
-    finest = RESOLUTION * max(1.0, abs(b.t) / b.h)
+    """Where what is looked at is zero between two places, as theta, and what it jumps by there: its
+    change between neighbouring doubles of the time."""
+    if low[1] == 0.0 or (low[1] > 0.0) == (high[1] > 0.0):  # beyond zero at once
+        return low[0], 0.0
+    rising, finest = high[1] > 0.0, resolution(b)
+    if high[0] - low[0] <= SHORT * finest:
+        return high[0], abs(high[1] - low[1])
     bracket, f0, f1 = (low[0], low[1], high[0], high[1], 0.0), low[1], high[1]
     for n in range(TRIALS):
         if bracket[2] - bracket[0] <= finest:
@@ -93,10 +101,10 @@ def root(s, r, b, what, low, high):
         middle = between(bracket, n)
         f = value(s, r, b, what, middle)
         if f == 0.0:
-            return middle, False
+            return middle, 0.0
         bracket = narrowed(bracket, middle, f, rising)
         if (f > 0.0) == rising:
             f1 = f
         else:
             f0 = f
-    return bracket[2], abs(f1 - f0) > JUMP * change
+    return bracket[2], abs(f1 - f0)

@@ -61,9 +61,20 @@ from trsim.solve.march.record import (
     RATE,
     SWINGS,
 )
-from trsim.solve.march.sampled import NEAR, PARTS, dip, parts_of, root, value, waves_of
+from trsim.solve.march.sampled import (
+    NEAR,
+    PARTS,
+    SHORT,
+    dip,
+    parts_of,
+    resolution,
+    root,
+    value,
+    waves_of,
+)
 
 AHEAD = 1e-4  # of a step: how far the rate of a channel looks
+JUMP = 1e-6  # of how far a channel swung before: more than that is not done in one ulp
 AT_START = 1e-9  # of a channel's next value: so small, a run starts on zero and rounding is left
 
 
@@ -183,8 +194,10 @@ def ends_known(s, r, b, last, event):
         measure(s, t, r.y, done, energy_0)
         for k in range(s.section.shape[0]):
             if crosses_after(s, k, t1) and r.section[k, KNOWN] == 0.0:
-                r.section[k, LAST] = s.out[s.section[k, WHEN]]
-                r.section[k, ON] = side_of(r.section[k, LAST], r.section[k, ON])
+                first = s.out[s.section[k, WHEN]]
+                if abs(first - r.section[k, LAST]) > JUMP * r.section[k, FAR]:  # not rounding alone
+                    r.section[k, ON] = side_of(first, r.section[k, ON])
+                r.section[k, LAST] = first
     if asked:
         ahead = AHEAD * (t1 - t)
         for c in range(b.y2.size):
@@ -240,6 +253,8 @@ def crossings(s, r, b, k, parts):
     what, reach = (s.section[k, WHEN], 0.0), (b.t1 - b.t) / b.h
     before = (-1.0, 0.0)  # the neighbour before the last, where both are on one side
     low, side = (0.0, r.section[k, LAST]), r.section[k, ON]
+    if reach <= SHORT * resolution(b):
+        parts = 1
     for j in range(1, parts + 1):
         theta = reach * j / parts
         high = (theta, value(s, r, b, what, theta) if j < parts else b.out[what[0]])
@@ -247,8 +262,8 @@ def crossings(s, r, b, k, parts):
             side = 0.0
         new = side_of(high[1], side)
         if side * new < 0.0:
-            swung(r, k, abs(low[1]))
             crossed(s, r, b, k, low, high, new)
+            swung(r, k, abs(low[1]))
             r.section[k, FAR] = abs(high[1])
             before = (-1.0, 0.0)
         else:
@@ -256,10 +271,10 @@ def crossings(s, r, b, k, parts):
                 theta = dip(s, r, b, what, side, (before, low, high))
                 if theta >= 0.0:
                     bottom = (theta, value(s, r, b, what, theta))
-                    swung(r, k, before[1])
-                    swung(r, k, bottom[1])
                     crossed(s, r, b, k, before, bottom, -side)
+                    swung(r, k, before[1])
                     crossed(s, r, b, k, bottom, high, side)
+                    swung(r, k, bottom[1])
             r.section[k, FAR] = max(r.section[k, FAR], abs(high[1]))
             before = low
         low, side = high, new
@@ -276,11 +291,15 @@ def swung(r, k, f):
 
 @internal
 def crossed(s, r, b, k, low, high, to):
-    """The point of a crossing to the side `to` between two places, if it is asked for."""
+    """The point of a crossing to the side `to` between two places, if it is asked for.
+
+    Whether it jumps is judged by its swing until here: of a step that lasts an ulp, such as those
+    at a corner of a load, both places may be zero but for rounding.
+    """
     want = s.section[k, DIRECTION]
     if want != 0 and want != to:
         return
-    theta, jumps = root(s, r, b, (s.section[k, WHEN], 0.0), low, high)
-    if not jumps:
+    theta, jump = root(s, r, b, (s.section[k, WHEN], 0.0), low, high)
+    if jump <= JUMP * max(r.section[k, FAR], abs(high[1] - low[1])):
         measure_inside(s, r, b, b.t + theta * b.h, theta)
         point(s, r, b, k, min(b.t + theta * b.h, b.t1), s.out)
