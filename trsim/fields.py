@@ -128,13 +128,18 @@ class _VectorUnit(Unit):
     def three(self, value: Any, context: dict) -> Any:
         """Three numbers in SI units."""
         if not isinstance(value, list | tuple) or len(value) not in (2, 3):
-            raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}")
+            hint = f"About z it is [0, 0, {value}]." if self.turns(value) else ""
+            raise ScenarioError(f"must be [x, y] or [x, y, z], got {described(value)}", hint)
         for k, item in enumerate(value):  # a frame moves numbers, whatever pydantic says later
             if not isinstance(item, str | int | float):
                 what = f"must be a number, got {described(item)}"
                 raise ScenarioError(what, units_hint(self.units), (k,))
         numbers = [_at(k, Unit.convert, self, item, context) for k, item in enumerate(value)]
         return tuple([*numbers, 0.0][:3])
+
+    def turns(self, value: Any) -> bool:
+        """Whether one number stands where an angular velocity should."""
+        return isinstance(value, str | int | float) and "rad/s" in self.units
 
     def named(self, value: str, context: dict) -> Any:
         """The axis of a point: world axes, whatever frame this is read in."""

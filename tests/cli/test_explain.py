@@ -4,6 +4,8 @@ import pytest
 
 from trsim import elements
 from trsim.assemble.assemble import assemble
+from trsim.expressions import FUNCTIONS
+from trsim.fields import TABLE_KEYS
 from trsim.scenario.explain import explained, worded
 from trsim.scenario.load import loads
 from trsim.scenario.meanings import meanings, specs
@@ -105,6 +107,9 @@ def test_meanings_of_docstrings():
         ("clearance", ["clearance_joint.clearance: number >= 0, m, required\n    radial;"]),
         ("at", ["applied_load.at", "limit_stop.wall.at", "revolute.at"]),
         ("wall.normal", ["wall.normal: [x, y] or [x, y, z] or axis of a point or these seen f"]),
+        ("floor", ["floor(x)", "the largest whole number"]),
+        ("interpolation", ["{table: [[x, y], ...], interpolation: ...}", "akima"]),
+        ("havsin", ["havsin(x, x0, h0, x1, h1)"]),
         ("friction", ["contact_laws.friction: mapping", "contact_laws.friction.v0: number >= 0"]),
     ],
 )  # fmt: skip
@@ -143,3 +148,7 @@ def test_unknown_word(trsim):
 )
 def test_types_in_words(rule, told):
     assert worded(rule) == told
+
+
+def test_every_function_and_every_key_of_tables_is_explained():
+    assert {page["word"] for page in EVERYTHING["functions"]} == {*FUNCTIONS, *TABLE_KEYS}

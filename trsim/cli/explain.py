@@ -16,7 +16,7 @@ INDENT = 4
 @click.argument("word", required=False)
 @framed
 def command(answer: Answer, word: str | None) -> None:
-    """Say what WORD is: an element, a section or a key of a scenario file.
+    """Say what WORD is: an element, a section, a key or a function of a scenario file.
 
     Without WORD, list all there are.  A key may be named by its place: limit_stop.wall.normal.
     """
@@ -32,6 +32,7 @@ def listed(found: dict[str, list[Any]]) -> Iterator[str]:
     """All words, by what they are."""
     names = {kind: [page["word"] for page in found[kind]] for kind in ("elements", "sections")}
     names["keys"] = sorted({key["place"].rpartition(".")[2] for key in found["keys"]})
+    names["functions and keys of tables"] = [page["word"] for page in found["functions"]]
     for kind, words in names.items():
         yield f"{kind}:"
         yield from _wrapped("  ".join(words), INDENT)
@@ -42,6 +43,7 @@ def lines(found: dict[str, list[Any]]) -> Iterator[str]:
     parts = [list(element(page)) for page in found["elements"]]
     parts += [list(section(page)) for page in found["sections"]]
     parts += [list(key(page, page["place"], 0)) for page in found["keys"]]
+    parts += [list(function(page)) for page in found["functions"]]
     for k, part in enumerate(parts):
         yield from ["", *part] if k else part
 
@@ -89,6 +91,11 @@ def key(one: dict[str, Any], name: str, indent: int) -> Iterator[str]:
     told_of = _wrapped(f"{name}: {', '.join(facts)}", indent)
     yield from (line if k == 0 else f"{' ' * INDENT}{line}" for k, line in enumerate(told_of))
     yield from _wrapped(one["meaning"], indent + INDENT)
+
+
+def function(page: dict[str, str]) -> Iterator[str]:
+    yield page["written"]
+    yield from _wrapped(page["meaning"], INDENT)
 
 
 def as_written(default: Any) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 from trsim import elements
 from trsim.errors import UsageError, known
 from trsim.fields import Spec
+from trsim.scenario.functions import functions
 from trsim.scenario.load import unit_of
 from trsim.scenario.meanings import description, inside, meanings
 from trsim.scenario.scenario import Scenario
@@ -21,7 +22,7 @@ Page = dict[str, Any]
 
 
 def explained(word: str | None = None) -> dict[str, list[Page]]:
-    """All elements, sections and keys that a word names; without a word, all there are.
+    """All elements, sections, keys and functions that a word names; without a word, all there are.
 
     A key is named by its place, `limit_stop.wall.normal`, or by the end of it, `normal`; the keys
     of a mapping come with it.  Raises UsageError for a word nobody knows.
@@ -30,6 +31,7 @@ def explained(word: str | None = None) -> dict[str, list[Page]]:
     kinds = [_element(name, section, of) for name, section in elements.ELEMENTS.items()]
     sections = [_section(name, rule, of) for name, rule in of["Scenario"]["properties"].items()]
     keys = [key for page in (*kinds, *sections) for key in page["keys"]]
+    calls = list(functions())
     if word is not None:
         words = [page["word"] for page in (*kinds, *sections)]
         words += [key["place"].rpartition(".")[2] for key in keys]
@@ -39,9 +41,11 @@ def explained(word: str | None = None) -> dict[str, list[Page]]:
         keys = [key for key in keys if f".{word}." in f".{key['place']}."]
         whole = {f"{page['word']}." for page in (*kinds, *sections)}  # these show their keys
         keys = [key for key in keys if not key["place"].startswith(tuple(whole))]
-        if not (kinds or sections or keys):
+        words += [page["word"] for page in calls]
+        calls = [page for page in calls if page["word"] == word]
+        if not (kinds or sections or keys or calls):
             raise UsageError(f"nothing is called '{word}'", known(word, words))
-    return {"elements": kinds, "sections": sections, "keys": keys}
+    return {"elements": kinds, "sections": sections, "keys": keys, "functions": calls}
 
 
 def _element(word: str, section: str, of: dict[str, Any]) -> Page:

@@ -88,19 +88,34 @@ class SectionPage(Page):
     elements: list[str]
 
 
+class FunctionPage(TypedDict):
+    """A function of expressions, or a key of tables.
+
+    word     its name
+    written  how it is written
+    meaning  in words
+    """
+
+    word: str
+    written: str
+    meaning: str
+
+
 class Explain(Document):
     """trsim explain.
 
-    word      as given, or null: then everything follows
-    elements  of that name
-    sections  of that name
-    keys      of that name, and of the mappings they hold
+    word       as given, or null: then everything follows
+    elements   of that name
+    sections   of that name
+    keys       of that name, and of the mappings they hold
+    functions  of expressions, and keys of tables, of that name
     """
 
     word: str | None
     elements: list[ElementPage]
     sections: list[SectionPage]
     keys: list[Key]
+    functions: list[FunctionPage]
 
 
 class Schema(Document):
