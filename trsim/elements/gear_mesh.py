@@ -75,6 +75,10 @@ class Own(TwoAngles):
     damping: f8
     half: f8  # m, of the backlash
     ramp: f8
+    p_1i: V3  # m, the joints' places on their bodies
+    p_1j: V3
+    p_2i: V3
+    p_2j: V3
 
 
 def pack(name, spec, at):
@@ -88,6 +92,7 @@ def pack(name, spec, at):
         spec, i=x.i, j=x.j, i_2=y.i, j_2=y.j, angle_1=x.entry, angle_2=y.entry, coordinate=entry,
         flanks=flanks, axis_1=x.axis_i, axis_2=y.axis_i, c_1=c_1, c_2=c_2,
         drawn=c_1 * x.drawn + c_2 * y.drawn, half=0.5 * spec.backlash,
+        p_1i=x.s_i, p_1j=x.s_j, p_2i=y.s_i, p_2j=y.s_j,
     )  # fmt: skip
     return Row(*own, travel="train")
 
@@ -168,6 +173,13 @@ def reach(row):
     return Reach(hinges=((own.i, own.axis_1), (own.i_2, own.axis_2)))
 
 
+def acts_at(row):
+    """Where its joints are."""
+    own = Own.of(row)
+    first = (own.i, own.p_1i), (own.j, own.p_1j)
+    return (*first, (own.i_2, own.p_2i), (own.j_2, own.p_2j))
+
+
 def acts_on(row):
     own = Own.of(row)
     return frozenset((own.i, own.j, own.i_2, own.j_2))
@@ -179,6 +191,7 @@ ELEMENT = Element(
     spec=GearMesh,
     pack=pack,
     acts_on=acts_on,
+    acts_at=acts_at,
     reach=reach,
     channels=(
         Channel("force", "N", "of the teeth along the pitch line, positive on the first flank"),
