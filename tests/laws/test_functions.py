@@ -145,6 +145,13 @@ def test_random_trees_against_python(node, t, stroke, angle):
     assert tab[0] == tab[-1] == 5.0
 
 
+@pytest.mark.parametrize("text", ["sign(-t)", "floor(-t)", "abs(-t)"])
+def test_nothing_has_no_sign(text):
+    """Python's -0.0 and 0.0 are told apart by atan2 alone."""
+    tab = np.array(expression(parse(text), {}))
+    assert math.copysign(1.0, value(tab, 0, 0.0, np.zeros((1, 2)))) == 1.0
+
+
 # every operation once, at places where it is smooth
 SMOOTH = [
     "3 - t*t + 2*t",

@@ -71,7 +71,9 @@ def sign(x):
     """-1, 0 or 1."""
     if x > 0.0:
         return 1.0
-    return -1.0 if x < 0.0 else x
+    if x < 0.0:
+        return -1.0
+    return 0.0 if x == 0.0 else x  # -0.0 is 0, and what is no number stays none
 
 
 @internal
