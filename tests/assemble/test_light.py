@@ -46,6 +46,18 @@ def test_a_rod_without_mass_is_a_link(method):
     np.testing.assert_allclose(along, 0.0, atol=1e-7)
 
 
+@pytest.mark.parametrize("beta", [50, 500])
+def test_what_is_measured_beside_baumgartes_feedback_is_that_of_no_mass(beta):
+    """Outputs are solved for again without the feedback; a rod without mass carries alike at both
+    ends then, too."""
+    held = f"stabilisation: baumgarte, baumgarte: {{alpha: {beta}, beta: {beta}}}"
+    own = run(loads(ENGINE.format(ROD, PINS, held)))
+    link = run(loads(ENGINE.format("", LINK, "method: dop853")))
+    size = np.abs(link["b.reaction"]).max()
+    np.testing.assert_allclose(own["c.reaction"], own["b.reaction"], atol=1e-11 * size)
+    np.testing.assert_allclose(own["c.reaction"], link["b.reaction"], atol=1e-5 * size)
+
+
 def test_the_energy_book_has_no_mass_that_is_not_there():
     own = run(loads(ENGINE.format(ROD, PINS, "method: dop853")))
     link = run(loads(ENGINE.format("", LINK, "method: dop853")))

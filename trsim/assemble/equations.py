@@ -104,6 +104,8 @@ def without_feedback(s, t, y, yd):
     solve(s, s.x)
     for k in range(s.lam.size):
         s.lam[k] = s.x[k] if k < s.m else 0.0
+    if s.lightened != 0:
+        call_derivative(s.lightened, s, t, y, yd)
     accelerations(s, y, yd)
 
 

@@ -20,14 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.dense import product, spaces, symmetric
-from trsim.assemble.equations import DERIVATIVE, constraints, poses, right_hand_side
+from trsim.assemble.equations import DERIVATIVE, constraints, poses
 from trsim.assemble.linear import solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.projection import project_velocities
 from trsim.assemble.reduce import moves, roots, spread_out, times_roots
 from trsim.assemble.schur import pull
 from trsim.elements.contract import DRIVES, compiled
-from trsim.elements.scene import BAUMGARTE, Model, Scene
+from trsim.elements.scene import Model, Scene
 from trsim.errors import ModelError
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import clear, clear_table
@@ -154,10 +154,11 @@ def lightened(s, t, y, yd):
             pull(s, f, s.x)
         if s.n_r < s.n:
             call_beams(s.on_beams[PULL], s, s.x, s.x, 0)
-        if give_back(s) <= ENOUGH:
-            clear(s.x)
+        changed = give_back(s)
+        clear(s.x)
+        if changed <= ENOUGH:
             return
-        right_hand_side(s, s.stabilisation == BAUMGARTE)
+        felt_by_rows(s)
         solve(s, s.x)
         for k in range(s.m):
             s.lam[k] += s.x[k]
@@ -168,25 +169,31 @@ def lightened(s, t, y, yd):
 
 
 @internal
+def felt_by_rows(s):
+    """x += J of what light bodies were just given back, in s.moved."""
+    for f in s.light:
+        for p in range(s.frame_start[f], s.frame_start[f + 1]):
+            for a in range(s.d):
+                s.x[s.slot_row[p]] += s.B[p, a] * s.moved[f, a]
+
+
+@internal
 def give_back(s):
-    """free += (M + E)^-1 (E a + omega x E omega) less what was given back before; by how much that
-    changes accelerations, of their size."""
+    """free += (M + E)^-1 (E a + omega x E omega) less what was given back before, which is left in
+    s.moved; by how much that changes accelerations, of their size."""
     most = 0.0
     for q in range(s.light.shape[0]):
-        f, E, a, given = s.light[q], s.lacking[q], s.free[s.light[q]], s.given_back[q]
+        f, E, given = s.light[q], s.lacking[q], s.given_back[q]
+        a, more = s.free[f], s.moved[f]
         by_mass, K = s.mass_inverse[f], s.inertia_inverse[f]
         width = 2 if s.d == 3 else 3
         size, change = 0.0, 0.0
         for c in range(width):
-            now = by_mass * E[0] * a[c]
-            size, change = size + a[c] * a[c], change + (now - given[c]) ** 2
-            a[c] += now - given[c]
-            given[c] = now
+            more[c] = by_mass * E[0] * a[c] - given[c]
+            size, change = size + a[c] * a[c], change + more[c] * more[c]
         if s.d == 3:
-            now = K[8] * E[9] * a[2]
-            size, change = size + (s.size * a[2]) ** 2, change + (s.size * (now - given[2])) ** 2
-            a[2] += now - given[2]
-            given[2] = now
+            more[2] = K[8] * E[9] * a[2] - given[2]
+            size, change = size + (s.size * a[2]) ** 2, change + (s.size * more[2]) ** 2
         else:
             X, V = s.X, s.V
             o0 = X[f, 3] * V[f, 3] + X[f, 6] * V[f, 4] + X[f, 9] * V[f, 5]
@@ -200,10 +207,12 @@ def give_back(s):
             m2 = E[7] * a[3] + E[8] * a[4] + E[9] * a[5] + (o0 * h1 - o1 * h0)
             for c in range(3):
                 now = K[3 * c] * m0 + K[3 * c + 1] * m1 + K[3 * c + 2] * m2
+                more[3 + c] = now - given[3 + c]
                 size += (s.size * a[3 + c]) ** 2
-                change += (s.size * (now - given[3 + c])) ** 2
-                a[3 + c] += now - given[3 + c]
-                given[3 + c] = now
+                change += (s.size * more[3 + c]) ** 2
+        for c in range(s.d):
+            a[c] += more[c]
+            given[c] += more[c]
         if change > 0.0:
             most = max(most, sqrt(change / size) if size > 0.0 else 1.0)
     return most
@@ -243,11 +252,14 @@ def given_back(work: Scene, C: Array, v: Array) -> Array:
 
 def inverse_times(work: Scene, q: int, f: int) -> Array:
     """(M + E)^-1 E of a light body, in the axes of the solve."""
-    E, K = work.lacking[q], work.inertia_inverse[f]
+    inverse = block(work, work.mass_inverse[f], work.inertia_inverse[f])
+    return product(inverse, block(work, work.lacking[q, 0], work.lacking[q, 1:]))
+
+
+def block(work: Model, mass: float, inertia: Array) -> Array:
+    """A mass and an inertia (9) as a matrix (d, d) in the axes of the solve."""
     if work.d == 3:
-        moved = work.mass_inverse[f] * E[0]
-        return np.diag([moved, moved, K[8] * E[9]])
+        return np.diag([mass, mass, inertia[8]])
     found = np.zeros((6, 6))
-    found[:3, :3] = work.mass_inverse[f] * E[0] * np.eye(3)
-    found[3:, 3:] = product(K.reshape(3, 3), E[1:].reshape(3, 3))
+    found[:3, :3], found[3:, 3:] = mass * np.eye(3), inertia.reshape(3, 3)
     return found

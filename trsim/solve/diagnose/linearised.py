@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import constraints, derivative, forces, gaps, poses
+from trsim.assemble.light import block
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.projection import move_all
 from trsim.assemble.reduce import (
@@ -129,12 +130,8 @@ def mass_matrix(work: Scene) -> Array:
     for place, value in node_masses(work).items():
         M[place] = value
     for f in range(1, work.n_r):
-        o = work.d * (f - 1)
-        if work.d == 3:
-            M[o : o + 3, o : o + 3] = np.diag([work.mass[f], work.mass[f], work.inertia[f, 8]])
-        else:
-            M[o : o + 3, o : o + 3] = work.mass[f] * np.eye(3)
-            M[o + 3 : o + 6, o + 3 : o + 6] = work.inertia[f].reshape(3, 3)
+        own = slice(work.d * (f - 1), work.d * f)
+        M[own, own] = block(work, work.mass[f], work.inertia[f])
     return M
 
 
@@ -142,12 +139,8 @@ def lacking_matrix(work: Scene) -> Array:
     """What of M (n_v, n_v) light bodies do not have."""
     E = np.zeros((work.n_v, work.n_v))
     for f, more in zip(work.light, work.lacking, strict=True):
-        o = work.d * (f - 1)
-        if work.d == 3:
-            E[o : o + 3, o : o + 3] = np.diag([more[0], more[0], more[9]])
-        else:
-            E[o : o + 3, o : o + 3] = more[0] * np.eye(3)
-            E[o + 3 : o + 6, o + 3 : o + 6] = more[1:].reshape(3, 3)
+        own = slice(work.d * (f - 1), work.d * f)
+        E[own, own] = block(work, more[0], more[1:])
     return E
 
 
