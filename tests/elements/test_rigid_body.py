@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from trsim.elements.rigid_body import RigidBody
+from trsim.errors import TrsimError
+from trsim.scenario.load import loads
 
 from ..mechanisms import free_top
 from ..runs import run
@@ -42,3 +44,10 @@ def test_rotation_turns_with_the_angular_velocity():
     omega = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
     assert omega == pytest.approx(r["top.angular_velocity"][1:-1], abs=2e-3)
     np.testing.assert_allclose(R @ R.transpose(0, 2, 1) - np.eye(3), 0.0, atol=1e-12)
+
+
+def test_one_number_is_no_angular_velocity():
+    text = "bodies: {disc: {mass: 1, inertia: 1, angular_velocity: 3 rad/s}}"
+    with pytest.raises(TrsimError) as error:
+        loads(text)
+    assert error.value.hint == "About z it is [0, 0, 3 rad/s]."

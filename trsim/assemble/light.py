@@ -13,17 +13,17 @@ so a, lam and the kinetic energy are those of M.  Velocities at events are neare
 M, too.  Positions are brought to the rows in the metric of M + E, like any that is at hand.
 """
 
+from collections.abc import Callable
 from math import nan, sqrt
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.dense import product, spaces, symmetric
+from trsim.assemble.dense import spaces, symmetric
 from trsim.assemble.equations import DERIVATIVE, constraints, poses
 from trsim.assemble.linear import solve
 from trsim.assemble.on_beams import PULL, call_beams
-from trsim.assemble.projection import project_velocities
 from trsim.assemble.reduce import moves, roots, spread_out, times_roots
 from trsim.assemble.schur import pull
 from trsim.elements.contract import DRIVES, compiled
@@ -221,24 +221,20 @@ def give_back(s):
 # --- velocities ------------------------------------------------------------------------------
 
 
-def nearest_velocities(work: Scene, y: Array, given: Array) -> None:
-    """v of y: of those the rows allow the nearest to `given` in the metric of M.
+def nearest_in_mass(
+    number: int, given: Array, nearest: Callable[[Array], Array], shared: Callable[[Array], Array]
+) -> Array:
+    """Of the velocities that rows allow the nearest to some in the metric of M.
 
-    y has those nearest in the metric of M + E already.
+    number: of light bodies; nearest: v -> those nearest to v in the metric of M + E; shared: v ->
+    (M + E)^-1 E v.
     """
-    first, d = int(work.n_q), int(work.d)
-    for _ in range(MOST if len(work.light) else 0):
-        before = y[first : first + work.n_v].copy()
-        wanted = given.copy()
-        for q, f in enumerate(work.light):
-            own = slice(d * (f - 1), d * f)
-            wanted[own] += inverse_times(work, q, f) @ (before[own] - given[own])
-        y[first : first + work.n_v] = wanted
-        poses(work, y)
-        project_velocities(work, y)
-        moved = np.abs(y[first : first + work.n_v] - before).max()
-        if moved <= ENOUGH * np.abs(before).max():
-            return
+    v = nearest(given)
+    for _ in range(MOST if number else 0):
+        before, v = v, nearest(given + shared(v - given))
+        if np.abs(v - before).max() <= ENOUGH * np.abs(before).max():
+            break
+    return v
 
 
 def given_back(work: Scene, C: Array, v: Array) -> Array:
@@ -250,10 +246,14 @@ def given_back(work: Scene, C: Array, v: Array) -> Array:
     return found
 
 
-def inverse_times(work: Scene, q: int, f: int) -> Array:
-    """(M + E)^-1 E of a light body, in the axes of the solve."""
-    inverse = block(work, work.mass_inverse[f], work.inertia_inverse[f])
-    return product(inverse, block(work, work.lacking[q, 0], work.lacking[q, 1:]))
+def given_back_in_own(work: Scene, v: Array) -> Array:
+    """The same of velocities in the axes of the solve (n_v)."""
+    found = np.zeros_like(v)
+    for q, f in enumerate(work.light):
+        own = slice(work.d * (f - 1), work.d * f)
+        inverse = block(work, work.mass_inverse[f], work.inertia_inverse[f])
+        found[own] = inverse @ block(work, work.lacking[q, 0], work.lacking[q, 1:]) @ v[own]
+    return found
 
 
 def block(work: Model, mass: float, inertia: Array) -> Array:

@@ -15,7 +15,7 @@ from annotated_types import Gt
 from trsim.elements.transmission import (
     PARALLEL,
     Transmission,
-    apart,
+    aside,
     carried,
     product,
     relation,
@@ -60,12 +60,10 @@ def pack(name, spec, at):
 
 def check_distance(x, y, spec):
     """Refuse pulleys around which no such belt goes."""
-    d = apart(x, y)
-    along = product(d, x.axis)
-    distance = size(tuple(p - along * q for p, q in zip(d, x.axis, strict=True)))
+    distance, whole_way = aside(x, y)
     first, second = spec.radii
     least = first + second if spec.crossed else abs(first - second)
-    if distance <= max(least, PARALLEL * size(d)):
+    if distance <= max(least, PARALLEL * whole_way):
         how = "crossed" if spec.crossed else "open"
         raise ScenarioError(
             f"the axes are {distance:.6g} m apart, and an {how} belt over pulleys of these radii "

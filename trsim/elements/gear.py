@@ -20,6 +20,7 @@ from trsim.elements.transmission import (
     TOUCH,
     Transmission,
     apart,
+    aside,
     carried,
     not_zero,
     one_of,
@@ -104,10 +105,8 @@ def sense(x, y, spec):
 
 def check_distance(x, y, spec):
     """Refuse wheels on one axis, and radii that do not touch as drawn."""
-    d = apart(x, y)
-    along = product(d, x.axis)
-    distance = size(tuple(p - along * q for p, q in zip(d, x.axis, strict=True)))
-    if distance <= PARALLEL * size(d):
+    distance, whole_way = aside(x, y)
+    if distance <= PARALLEL * whole_way:
         raise ScenarioError(
             f"'{x.joint}' and '{y.joint}' turn about one axis, where teeth do not meet",
             "draw the wheels beside each other, with a planet wheel between them where they have "

@@ -68,6 +68,7 @@ class Own(TwoAngles):
     angle_1: i8  # in S
     angle_2: i8
     flanks: i8  # k times how far the teeth are pressed in, in tab
+    whole: i8  # the same, which no run holds on a piece: for the energy
     axis_1: V3  # in the axes of i
     axis_2: V3
     drawn: f8  # m, c_1 phi_1 + c_2 phi_2 as drawn
@@ -87,10 +88,12 @@ def pack(name, spec, at):
     first, second = spec.radii
     c_1, c_2 = found.of_x * first, -sense(x, y, spec) * found.of_y * second
     entry = at.entry()
-    flanks = at.function(pressed_in(spec), "backlash", wanted="N", local={X: (entry, "m")})
+    law, local = pressed_in(spec), {X: (entry, "m")}
+    flanks = at.function(law, "backlash", wanted="N", local=local)
+    whole = at.function(law, "backlash", wanted="N", local=local, free=True)
     own = Own.packed(
         spec, i=x.i, j=x.j, i_2=y.i, j_2=y.j, angle_1=x.entry, angle_2=y.entry, coordinate=entry,
-        flanks=flanks, axis_1=x.axis_i, axis_2=y.axis_i, c_1=c_1, c_2=c_2,
+        flanks=flanks, whole=whole, axis_1=x.axis_i, axis_2=y.axis_i, c_1=c_1, c_2=c_2,
         drawn=c_1 * x.drawn + c_2 * y.drawn, half=0.5 * spec.backlash,
         p_1i=x.s_i, p_1j=x.s_j, p_2i=y.s_i, p_2j=y.s_j,
     )  # fmt: skip
@@ -143,21 +146,11 @@ def force(t, scene, e):
     scene.zd[DAMPERS] -= (T - elastic) * S[own.coordinate, 1]
 
 
-@internal
-def pressed(x, half):
-    """How far teeth are pressed in, with the sign of the flank."""
-    if x > half:
-        return x - half
-    if x < -half:
-        return x + half
-    return 0.0
-
-
 @kernel
 def energy(t, scene, e):
     own = Own(scene, e)
-    x = pressed(scene.S[own.coordinate, 0], own.half)
-    scene.E[SPRINGS] += 0.5 * own.stiffness * x * x
+    pushed = value(scene.tab, own.whole, t, scene.S)
+    scene.E[SPRINGS] += 0.5 * pushed * pushed / own.stiffness
 
 
 @measured

@@ -152,6 +152,13 @@ def size(v: Any) -> float:
     return float(product(v, v) ** 0.5)
 
 
+def aside(x: Any, y: Any) -> tuple[float, float]:
+    """How far the place of joint y lies from the axis of x, and from its place, as drawn."""
+    d = apart(x, y)
+    along = product(d, x.axis)
+    return size(tuple(p - along * q for p, q in zip(d, x.axis, strict=True))), size(d)
+
+
 # --- the row ---------------------------------------------------------------------------------
 
 

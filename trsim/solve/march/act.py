@@ -4,13 +4,14 @@ The equations of the new stage are those of a model of its own (assemble/stages.
 the branches and the counters of the run; positions stay, velocities are projected once.
 """
 
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.equations import kinetic, poses, stored_energy
-from trsim.assemble.light import check_determined, nearest_velocities
+from trsim.assemble.light import check_determined, given_back_in_own, nearest_in_mass
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.assemble.switches import CHANNEL, HELD, LOOSE, SECTION, UserEvent, lock_name
 from trsim.elements.contract import Memory, Row
@@ -198,7 +199,12 @@ def project(mechanism: Any, work: Scene, r: Record) -> None:
             )
         if worst <= CLOSED * work.size:
             break
-    poses(work, r.y)
-    given = r.y[work.n_q : work.n_q + work.n_v].copy()
-    project_velocities(work, r.y)
-    nearest_velocities(work, r.y, given)
+    v = r.y[work.n_q : work.n_q + work.n_v]
+
+    def nearest(wanted: Array) -> Array:
+        v[:] = wanted
+        poses(work, r.y)
+        project_velocities(work, r.y)
+        return v.copy()
+
+    nearest_in_mass(len(work.light), v.copy(), nearest, partial(given_back_in_own, work))

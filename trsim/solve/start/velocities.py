@@ -12,7 +12,7 @@ from trsim.assemble.assemble import assemble
 from trsim.assemble.dense import length, product, spaces
 from trsim.assemble.equations import derivative, gaps, poses
 from trsim.assemble.instances import Instance
-from trsim.assemble.light import ENOUGH, MOST, given_back
+from trsim.assemble.light import given_back, nearest_in_mass
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import Branches
 from trsim.assemble.projection import project_velocities
@@ -111,13 +111,12 @@ def nearest(
     planar = model.d == 3
     C = roots(model, y_ideal, planar)
     if len(J):
-        given = v
-        v = given + shortest(J, C, rate - product(J, given))
-        for _ in range(MOST if len(model.light) else 0):
-            wanted, before = given + given_back(model, C, v - given), v
-            v = wanted + shortest(J, C, rate - product(J, wanted))
-            if np.abs(v - before).max() <= ENOUGH * np.abs(v).max():
-                break
+        v = nearest_in_mass(
+            len(model.light),
+            v,
+            lambda w: w + shortest(J, C, rate - product(J, w)),
+            lambda w: given_back(model, C, w),
+        )
     left = np.max(np.abs(J @ v - rate), initial=0.0)
     if left > 1e-6 * max(1.0, np.max(np.abs(rate), initial=0.0)):
         raise ModelError(
