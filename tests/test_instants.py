@@ -27,6 +27,7 @@ AROUND = (math.pi / 2 - math.acos(0.99), math.pi / 2 + math.acos(0.99))
         ("floor(0.08*t*t)", [math.sqrt(k / 0.08) for k in range(1, 8)]),
         ("acos(cos(t - 1))", [1.0, 1 + math.pi, 1 + 2 * math.pi]),
         ("-step5(3 - t, 0, 1, 1, 0)", [2.0, 3.0]),
+        ("havsin(t*t, 4, 0, 9, 2)", [2.0, 3.0]),
         ("(x > t) + sin(t)", []),
         # whatever stands inside
         ("(t**2 > 4) + (x > t) + sin(t)", [2.0]),

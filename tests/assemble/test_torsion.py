@@ -139,6 +139,36 @@ ALLOWED = {
 }  # fmt: skip
 
 
+# of a disc that nobody turns about the bar, what shows that turn and what does not
+OBLIQUE = "-9.81, 1]"  # gravity that leaves no plane
+SHOWN = {
+    "points: {p: {body: disc, at: [PLACE]}}": ("1.1, 0.1, 0", "1.2, 0, 0"),
+    "sensors: {s: {type: point, body: disc, at: [PLACE], axis: [0, 0, 1]}}":
+        ("1.1, 0.1, 0", "1.2, 0, 0"),
+    "sensors: {s: {type: point, body: ground, at: [2, 0, 0], frame: disc, origin: [1.1, 0, 0], "
+    "axis: [PLACE]}}": ("0, 1, 0", None),
+    "sensors: {s: {type: point_velocity, body: disc, at: [PLACE], axis: [0, 0, 1]}}":
+        ("1.1, 0.1, 0", "1.2, 0, 0"),
+    "sensors: {s: {type: distance, bodies: [disc, ground], points: [[PLACE], [0, 0, 1]]}}":
+        ("1.1, 0.1, 0", "1.2, 0, 0"),
+    "sensors: {s: {type: relative_angle, bodies: [ground, disc], axis: [PLACE]}}":
+        ("1, 0, 0", None),
+    "sensors: {s: {type: reaction, joint: weld, axis: [0, 1, 0]PLACE}}": (", frame: disc", ""),
+    "forces: {f: {type: wrench, body: disc, at: [PLACE], force: [0, 0, 1]}}":
+        ("1.1, 0.1, 0", "1.2, 0, 0"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", SHOWN)
+def test_what_shows_how_a_disc_turned_is_refused(text):
+    beside, along = SHOWN[text]
+    base = f"{ROD} | {disc('1.1, 0, 0')}", f"{CLAMP} | {WELD % 'disc'}"
+    with pytest.raises(ModelError, match="torsion"):
+        built(scene(*base, text.replace("PLACE", beside)).replace("-9.81, 0]", OBLIQUE))
+    if along is not None:
+        built(scene(*base, text.replace("PLACE", along)).replace("-9.81, 0]", OBLIQUE))
+
+
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_needs_torsion_is_refused(name):
     with pytest.raises(ModelError, match="torsion") as caught:

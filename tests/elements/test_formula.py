@@ -1,4 +1,4 @@
-"""Formulas of sensors: values and rates, in loads, events and portraits; energies."""
+"""Formulas of sensors: values and rates, in loads, events and portraits."""
 
 import numpy as np
 import pytest
@@ -99,39 +99,6 @@ def test_in_events_and_portraits():
     r = run(text)
     times = r.events[r.events[:, EVENT_KIND] == USER][:, EVENT_TIME]
     assert times == pytest.approx([np.pi / 4 / 5], abs=1e-7)
-
-
-def test_energy_of_a_tumbling_body():
-    text = """
-planar: false
-bodies: {rod: {mass: 2, inertia: [0.02, 0.03, 0.04, 0.001, 0.002, -0.003], angle: 0.7,
-         velocity: [1, 0, 2], angular_velocity: [3, 1, -2]}}
-sensors: {k: {type: energy, of: kinetic}, s: {type: energy, of: stored}, e: {type: energy}}
-gravity: [0, 0, -9.81]
-solver: {end: 0.5, tolerance: 1e-9}
-"""
-    r = run(text)
-    assert r["k"] == pytest.approx(r["energy.kinetic"], rel=1e-12)
-    assert r["s"] == pytest.approx(r["energy.stored.gravity"], abs=1e-12)
-    assert np.ptp(r["e"]) < 1e-8
-
-
-BAR = """
-bodies: {bar: {type: ancf_cable, start: [0, 0], end: [1, 0], section: {diameter: 20 mm},
-         elements: 2, youngs_modulus: 207 GPa, density: 7850}}
-joints: {pin: {type: revolute, bodies: [ground, bar], at: [0, 0]}}
-sensors: {k: {type: energy, of: KIND}}
-gravity: [0, -9.81]
-solver: {end: 1 ms}
-"""
-
-
-def test_energy_of_flexible_bars():
-    r = run(BAR.replace("KIND", "stored"))
-    total = r["energy.stored.springs"] + r["energy.stored.gravity"]
-    assert r["k"] == pytest.approx(total, abs=1e-12)
-    with pytest.raises(TrsimError, match="energy book alone"):
-        built(BAR.replace("KIND", "total"))
 
 
 @pytest.mark.parametrize(

@@ -75,6 +75,16 @@ gravity: [0, 0, -9.81]
 solver: {end: 0.1 s, tolerance: 1e-9}
 output: {every: 0.1 ms, channels: ["*", "*.rotation"]}
 """
+SLEEVE = """
+bodies:
+  rocker: {mass: 1, inertia: 0.01, at: [0.3, 0]}
+  rod: {mass: 1, inertia: 0.01, at: [0.5, 0.1]}
+joints:
+  pin: {type: revolute, bodies: [ground, rocker], at: [0, 0]}
+  end: {type: revolute, bodies: [rocker, rod], at: [0.3, 0]}
+  sleeve: {type: inline, bodies: [rocker, rod], at: [AT, 0], axis: [1, 0, 0]}
+solver: {end: 1 ms}
+"""
 ROD = """
 gravity: [0, -9.81, 0]
 bodies:
@@ -169,6 +179,13 @@ def test_what_slides_is_on_a_rail(tmp_path):
     assert {"shaft rail", "wire rail"} <= set(drawn)
     assert list(pins(moved, sizes)) == []
     assert moved.open < 1e-6
+
+
+def test_what_slides_makes_no_link_short(tmp_path):
+    """A link is as wide as its length allows; where a sleeve was drawn says nothing of it."""
+    drawn = [motion(of(tmp_path, text=SLEEVE.replace("AT", at))).drawn for at in ("0.301", "0.6")]
+    near, far = (look(each).radius / each.size for each in drawn)
+    assert near == pytest.approx(far, rel=1e-12) == pytest.approx(0.022)
 
 
 def test_order_of_the_integral(tmp_path):

@@ -111,6 +111,32 @@ def test_every_wave_of_a_load(method):
     assert times(r) == pytest.approx(want[want < 1], abs=1e-6)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_every_wave_of_a_load_that_is_fast_for_a_while(method):
+    """Nothing moves; the phase turns by 500 rad within 1 ms."""
+    law = '"45*sin(200*atan2(t - 0.503, 1e-4))"'
+    text = STEPPED.replace("FORCE", law).replace("ACTION", "record: true")
+    r = run(text.replace("end: 1}", f"end: 1, method: {method}}}"))
+    phase = np.arcsin(40 / 45) + 2 * np.pi * np.arange(-50, 50)
+    want = 0.503 + 1e-4 * np.tan(phase / 200)
+    assert times(r) == pytest.approx(want[(want > 0) & (want < 1)], abs=1e-6)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("pulse, half", [
+    ("1/(1 + ((t - 0.503)/1e-5)**2)", 1e-5 * np.sqrt(1 / 0.8 - 1)),
+    ("(1 + ((t - 0.503)/1e-5)**2)**-1.5", 1e-5 * np.sqrt(0.8 ** (-2 / 3) - 1)),
+    ("(1 - (t - 0.503)**2)**1000000", np.sqrt(1 - 0.8**1e-6)),
+    ("exp(-((t - 0.503)/1e-5)**2)", 1e-5 * np.sqrt(-np.log(0.8))),
+])  # fmt: skip
+def test_a_pulse_within_a_step(pulse, half, method):
+    """50 N for some hundred-thousandths of a second, while nothing moves."""
+    text = STEPPED.replace("FORCE", f'"50*{pulse}"').replace("crosses: down", "crosses: both")
+    text = text.replace("ACTION", "record: true")
+    r = run(text.replace("end: 1}", f"end: 1, method: {method}}}"))
+    assert times(r) == pytest.approx([0.503 - half, 0.503 + half], abs=1e-9)
+
+
 def test_a_dip_between_two_places_that_are_looked_at():
     """Within 2 ms about its lowest place the bob pulls more than 59.999 N of its 60 N."""
     text = PENDULUM.replace("PLANAR", "true").replace("METHOD", "auto").replace("JOINT", LINK)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
+from trsim.solve.diagnose.doubts import doubts
 
 from .. import small
 from ..mechanisms import torsion_pendulum
@@ -334,6 +335,73 @@ def test_waves_of_a_load_are_not_passed_over(torque, method, planar, when):
     passed = np.flatnonzero(wave[:-1] * wave[1:] < 0.0)
     assert len(points) == len(passed)
     assert points[:, 0] == pytest.approx(t[passed], abs=1e-5)
+
+
+CHIRPED = """
+bodies: {{block: {{mass: {mass}, inertia: 1, velocity: [10, 0]}}}}
+joints: {{rail: {{type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}}}
+sensors: {{x: {{joint: rail}}}}
+forces: {{push: {{type: applied_load, body: block, direction: [1, 0], force: "sin({phase})"}}}}
+poincare: {{zero: {{when: push.magnitude, crosses: both, plot: [x, push.magnitude]}}}}
+solver: {{end: 10, tolerance: 1e-3}}
+"""
+ENDS = np.array([[-1], [1]])  # before and behind
+CHIRPS = {  # phase, and when it is a number of half turns
+    "40*(t - 5)**3": lambda f: 5 + np.cbrt(f / 40),
+    "t*t - 10*t + 26": lambda f: 5 + np.sqrt(f - 1) * ENDS,
+    "200*atan2(t - 5.05, 0.01)": lambda f: 5.05 + 0.01 * np.tan(f[abs(f) < 100 * np.pi] / 200),
+    "100*exp(-((t - 5.3)/0.1)**2)": lambda f: 5.3 + 0.1 * np.sqrt(np.log(100 / f)) * ENDS,
+    "200/(1 + ((t - 5.3)/0.02)**2)": lambda f: 5.3 + 0.02 * np.sqrt(200 / f - 1) * ENDS,
+    "200*sqrt(1e-4 + (t - 5.3)**2)": lambda f: 5.3 + np.sqrt((f[f > 0] / 200) ** 2 - 1e-4) * ENDS,
+    "20*havsin(t, 3, 0, 3.2, 7)": lambda f: 3 + 0.4 / np.pi * np.arcsin(np.sqrt(f[f > 0] / 140)),
+}
+
+
+@pytest.mark.parametrize("mass", [1, 1e9])
+@pytest.mark.parametrize("phase", CHIRPS)
+def test_waves_that_are_fast_for_a_while_only(phase, mass):
+    """Steps that hardly see the load are long, and it may be at rest at both of their ends."""
+    points = run(CHIRPED.format(phase=phase, mass=mass)).section("zero")[:, 0]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        t = CHIRPS[phase](np.pi * np.arange(-2000, 2001)).ravel()
+    t = np.sort(t[(t > 0) & (t < 10)])
+    assert len(points) == len(t) > 8
+    assert points == pytest.approx(t, abs=1e-9)
+
+
+@pytest.mark.parametrize(("step", "fast", "misses"), [(1e-3, 40, 0), (0.1, 40, 0), (1.0, 400, 1)])
+def test_a_fixed_step_in_which_too_much_happens_says_so(step, fast, misses):
+    text = CHIRPED.format(phase=f"{fast}*(t - 5)**3", mass=1)
+    r = run(text, "solver.method=rk4", f"solver.step={step}")
+    missing = 2 * int(125 * fast / np.pi) + 1 - len(r.section("zero"))
+    said = [x for x in doubts(r.scenario, r.mechanism, r.outcome) if "can follow" in x]
+    assert (missing > 0, len(said)) == (misses, misses)
+
+
+def test_a_step_that_crosses_and_ends_on_zero():
+    """The next crossing is seen from the side it ended on, not from that where the step began."""
+    for end in (0.5, 1.0, 2.0):
+        text = CHIRPED.format(phase="50*atan2(t - 0.4, 0.01)", mass=1)
+        points = run(text, f"solver.end={end}").section("zero")[:, 0]
+        t = 0.4 + 0.01 * np.tan(np.pi * np.arange(-24, 25) / 50)
+        assert points == pytest.approx(t[(t > 0) & (t < end)], abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["auto", "radau"])
+def test_what_is_spun_up_within_a_step(method):
+    """From rest to 8,000 turns, by a first step as long as that."""
+    r = run(f"""
+planar: true
+bodies: {{wheel: {{mass: 1, inertia: 1}}}}
+joints: {{pin: {{type: revolute, bodies: [ground, wheel], at: [0, 0]}}}}
+forces: {{motor: {{type: applied_load, body: wheel, direction: [0, 0, 1], torque: 1e5}}}}
+sensors: {{rim: {{type: point, body: wheel, at: [1, 0], axis: [1, 0, 0]}}, angle: {{joint: pin}}}}
+poincare: {{top: {{when: rim, crosses: both, plot: [angle, rim]}}}}
+solver: {{end: 1, first_step: 0.999, tolerance: 1e-3, method: {method}}}
+output: {{every: 0.1}}
+""")
+    t = np.sqrt(2e-5 * np.pi * (np.arange(15915) + 0.5))
+    assert r.section("top")[:, 0] == pytest.approx(t, abs=1e-6)
 
 
 def test_waves_of_a_prescribed_motion_are_not_passed_over():

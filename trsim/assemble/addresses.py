@@ -21,6 +21,7 @@ from trsim.expressions import LOW, degree, names, rebuilt
 from trsim.fields import RATE
 from trsim.frame import Frame
 from trsim.laws import functions
+from trsim.laws.waves import waves
 from trsim.scenario.load import unit_of
 from trsim.scenario.slender import ends
 from trsim.units import fits
@@ -72,7 +73,7 @@ class Addresses:
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
     packed_functions: list[Named] = field(default_factory=list)
-    waves: list[int] = field(default_factory=list)  # offsets of those that have sines
+    waves: list[tuple[int, list[float]]] = field(default_factory=list)  # that swing: laws/waves.py
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
@@ -388,8 +389,8 @@ class Addresses:
                 self.functions += found
             except ScenarioError as error:
                 raise error.at(*path) from None
-        if functions.waves(code) and not free:
-            self.waves.append(offset)
+        if waves(code) and not free:
+            self.waves.append((offset, code))
         self.tab.extend(code)
         if not free:
             self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))

@@ -104,7 +104,7 @@ def assemble(
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
         model, columns = layout(scenario, model, instances, at.switches)
-        model, shown = sections(scenario, model, instances, columns)
+        model, shown = sections(scenario, model, instances, columns, at.waves)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     if drives is None and not ideal:
@@ -364,7 +364,6 @@ def build(
         rubbed_at=rubbing.address() if rubs else 0,
         rubs_with=rubs_with.address() if rubs else 0,
         **travels(instances, contacts, at.switches),
-        wave=np.array(at.waves, np.int64),
         size=size,
         reach=min(size, max(arms[1:], default=size)),
     )

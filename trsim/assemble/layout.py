@@ -10,6 +10,7 @@ from trsim.assemble.instances import Column, Instance
 from trsim.assemble.outputs import energy_columns, hear
 from trsim.assemble.sections import N_SECTION
 from trsim.assemble.switches import CHANNEL, Switches
+from trsim.assemble.waves import followed
 from trsim.elements.contract import FIRST_ROW, Channel
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
@@ -30,6 +31,7 @@ def no_outputs(rows: int) -> dict[str, Any]:
         "n_out": 0,
         "section": none.reshape(0, N_SECTION),
         "section_at": np.zeros((0, 2)),
+        **followed([]),
         "hear": 0,
         "heard": none,
         **dict.fromkeys(("vector", "sought", "kin", "shared"), none),

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from trsim.assemble.instances import Column, Instance, Section
+from trsim.assemble.waves import followed
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS
@@ -20,9 +21,10 @@ SMOOTH = ("m", "m/s", "rad", "rad/s", "-")  # units of what loads move by its ac
 
 
 def sections(
-    scenario: Any, model: Model, instances: list[Instance], columns: list[Column]
-) -> tuple[Model, tuple[Section, ...]]:
-    """The model with its sections filled in, and their names.
+    scenario: Any, model: Model, instances: list[Instance], columns: list[Column],
+    waves: list[tuple[int, list[float]]],
+) -> tuple[Model, tuple[Section, ...]]:  # fmt: skip
+    """The model with its sections filled in, and their names; waves: see waves.followed.
 
     Sections in a bearing whose clearance is 0 are left out: a sweep may well begin with an ideal
     joint.  Raises ScenarioError for channels and contacts that do not exist.
@@ -35,8 +37,8 @@ def sections(
             continue
         x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
         kind, when = surface(scenario, name, spec, instances, there)
-        swings = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], driven)
-        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(swings)))
+        waving = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], driven)
+        rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(waving)))
         at.append((spec.after, spec.every or 0.0))
         units = [there[stored(c, there)[0]].unit for c in spec.plot]
         crosses = spec.crosses if spec.when else ""
@@ -47,7 +49,7 @@ def sections(
     section = np.array(rows, np.int64).reshape(-1, N_SECTION)
     filled = model.replaced(
         section=section,
-        wave=model.wave[: len(model.wave) if swinging or np.any(section[:, WAVES]) else 0].copy(),
+        **followed(waves if swinging or np.any(section[:, WAVES]) else []),
         section_at=np.array(at, float).reshape(-1, 2),
     )
     return filled, tuple(found)

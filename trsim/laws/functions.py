@@ -33,7 +33,6 @@ from trsim.laws.operations import (
     BELOW,
     BINARY,
     CORNERED,
-    COS,
     DIV,
     DRAWN,
     EXP,
@@ -46,18 +45,15 @@ from trsim.laws.operations import (
     NEVER_NEGATIVE,
     POW,
     QUINTIC,
-    SIN,
     SMOOTHSTEP,
     SQRT,
     SUB,
-    TAN,
     UNARY,
     beside,
     branch_at,
     branch_ends,
     operation,
     operation_rates,
-    swinging,
     switching,
 )
 from trsim.laws.ranges import ranged
@@ -69,7 +65,6 @@ N_IN, N_OP, SLOTS, RESULT, HEAD = range(1, 6)  # of an expression; HEAD: its fir
 VARIABLE, POINTS, HELD_OF_TABLE, OF_TABLE = range(1, 5)  # of a table; OF_TABLE: its first point
 WATCHED, HELD, WIDTH = 3, 4, 5  # of an operation; WIDTH: the next one
 UNWATCHED, BY_TIME, BY_SENSORS = 0, 1, 2
-BETWEEN = 1.6  # of its mean rate: the largest of half a wave is pi/2 of it
 
 
 def constant(c):
@@ -440,70 +435,42 @@ def enclosed(tab, o, stretch, S, seen, box):
         return judged(S[k, 0], in_row(seen[k]), low, high)
     inputs(tab, o, stretch[1], S)
     run(tab, o)
-    n_in, first = int(tab[o + N_IN]), o + int(tab[o + SLOTS])
-    n_op, p, _ = operations(tab, o)
-    into_row(box[0], (stretch, (1.0, 1.0)))
-    for i in range(n_in):
+    for i in range(int(tab[o + N_IN])):
         into_row(box[i + 1], in_row(seen[int(tab[o + HEAD + i])]))
-    for k in range(1 + n_in + n_op, box.shape[0]):
-        place = first + 3 * k
-        if place >= tab.size:
-            break
-        into_row(box[k], ((tab[place], tab[place]), (0.0, 0.0)))
-    worst = CLEAR
-    for k in range(1 + n_in, 1 + n_in + n_op):
+    ranges_of(tab, o, stretch, box)
+    worst, first = CLEAR, o + int(tab[o + SLOTS])
+    n_op, p, _ = operations(tab, o)
+    for _ in range(n_op):
         code, slot_a, slot_b = operands(tab, o, p)
         held = tab[p + HELD]
-        x, y = in_row(box[(slot_a - first) // 3]), in_row(box[(slot_b - first) // 3])
         if tab[p + WATCHED] == BY_SENSORS and held != FREE:
+            x, y = in_row(box[(slot_a - first) // 3]), in_row(box[(slot_b - first) // 3])
             low, high = branch_ends(code, held)
             u = switching(code, tab[slot_a], tab[slot_b])
             of_u = x if code == ATAN2 or code >= NEG else ranged(SUB, x, y, FREE)
             worst = max(worst, judged(u, of_u, low, high))
-        into_row(box[k], ranged(code, x, y, held))
         p += WIDTH
     return worst
 
 
-def waves(code):
-    """Whether a function, as numbers for `tab`, has a sine, a cosine or a tangent."""
-    if code[0] != EXPRESSION:
-        return False
-    first = HEAD + int(code[N_IN])
-    return any(code[p] in (SIN, COS, TAN) for p in range(first, int(code[SLOTS]), WIDTH))
-
-
 @internal
-def swing(tab, o, t, length, S0, rate0, S1, rate1):
-    """How fast an expression may swing from t on, in rad/s of the fastest wave in it.
-
-    Of every slot a bound m of its size, one L of its rate and the rate w of its waves: a wave of
-    the phase u has w = L_u + w_u, a product the sum of both.  So is that of waves of waves one.
-
-    Parameters
-    ----------
-    tab, o                   as in `value`
-    t, length : float        s
-    S0, rate0, S1, rate1 : (n_s,)   what the sensors show, and its rate, at t and `length` later
-    """
+def ranges_of(tab, o, stretch, box):
+    """The ranges of all slots of an expression and of their rates in a stretch of time, of which
+    box holds those of the sensors."""
     first = o + int(tab[o + SLOTS])
-    write(tab, first, (t, 1.0, 0.0))
-    for i in range(int(tab[o + N_IN])):
-        k, slot = int(tab[o + HEAD + i]), first + 3 * (i + 1)
-        mean = abs(S1[k] - S0[k]) / length
-        # what begins and ends at rest goes faster between
-        rate = max(abs(rate0[k]), abs(rate1[k]), BETWEEN * mean)
-        write(tab, slot, (S1[k], rate, 0.0))
-    run(tab, o)
     n, p, out = operations(tab, o)
+    into_row(box[0], (stretch, (1.0, 1.0)))
+    k = (out - first) // 3
+    for place in range(out + 3 * n, min(tab.size, first + 3 * box.shape[0]), 3):
+        into_row(box[(place - first) // 3], ((tab[place], tab[place]), (0.0, 0.0)))
     for _ in range(n):
-        code, a, b = operands(tab, o, p)
-        x, y = (abs(tab[a]), tab[a + 1], tab[a + 2]), (abs(tab[b]), tab[b + 1], tab[b + 2])
-        write(tab, out, swinging(code, tab[out], x, y))
+        code, slot_a, slot_b = operands(tab, o, p)
+        x, y = in_row(box[(slot_a - first) // 3]), in_row(box[(slot_b - first) // 3])
+        if code == MUL and slot_a == slot_b:  # a square is never negative
+            code, y = POW, ((2.0, 2.0), (0.0, 0.0))
+        into_row(box[k], ranged(code, x, y, tab[p + HELD]))
         p += WIDTH
-        out += 3
-    w = tab[o + int(tab[o + RESULT]) + 2]
-    return w if w < math.inf else 0.0
+        k += 1
 
 
 @internal

@@ -267,8 +267,8 @@ def ranged(code, x, y, held):
     if code == POW:
         return raised(x, y)
     if code in (MIN, MAX):
-        if held != FREE:
-            return x if (held == BELOW) == (code == MIN) else y
+        if held != FREE or b < c or a > d:
+            return x if (held == BELOW or (held == FREE and b < c)) == (code == MIN) else y
         rate = (min(x[1][0], y[1][0]), max(x[1][1], y[1][1]))
         if code == MIN:
             return (min(a, c), min(b, d)), rate

@@ -18,6 +18,7 @@ from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.march import record as rec
 from trsim.solve.march.openings import held_to, look, opened
 from trsim.solve.march.record import Record, Settings
+from trsim.solve.march.sampled import MOST_PARTS
 from trsim.solve.march.works import LEAST
 from trsim.solve.start.consistent import Start
 from trsim.statuses import Ended
@@ -68,7 +69,7 @@ LOOK_ROWS = 5.0  # and never longer than this many output intervals
 FEEDBACK = 3.0
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
-CROSSINGS = 256.0  # of a step, at most, see WHOLE of turns.py
+CROSSINGS = 2.0 * MOST_PARTS  # of a step, at most
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 FINEST = 1e-14  # of the run: the last of shorter steps would hardly move the time, or not at all
@@ -372,6 +373,7 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "redundant_open_rate": float(r.worst_open_rate),
         **rounding(r),
         **unproved(work),
+        **unfollowed(r),
         "integration_cpu": cpu,
     }
 
@@ -386,6 +388,12 @@ def unproved(work: Scene) -> dict[str, float]:
     """How often the friction found in joints was not proved to be the only one; where it was so."""
     many = int(work.status[8])
     return {"unproved_frictions": many} if many else {}
+
+
+def unfollowed(r: Record) -> dict[str, float]:
+    """How often sections and events could not follow what happened in a step; where it was so."""
+    many = int(r.unfollowed)
+    return {"unfollowed_steps": many} if many else {}
 
 
 def natural(work: Any, begun: Start) -> float:

@@ -31,6 +31,8 @@ class Solver(Statistics, total=False):
                            allows; there where it is more
     unproved_frictions     evaluations whose friction in joints was not proved to be the only one
                            that fits; there where there were some
+    unfollowed_steps       looks into a step in which more happened than sections and events can
+                           follow; there where there were some
     """
 
     method: str
@@ -46,6 +48,7 @@ class Solver(Statistics, total=False):
     force: bool
     rounding_of_tolerance: Number
     unproved_frictions: int
+    unfollowed_steps: int
 
 
 class Summary(TypedDict, total=False):

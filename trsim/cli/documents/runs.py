@@ -91,10 +91,13 @@ class RunStatistics(Statistics, total=False):
                            allows; only where that was more than 1
     unproved_frictions     evaluations whose friction in joints was not proved to be the only one
                            that fits; only where there were some
+    unfollowed_steps       looks into a step in which more happened than sections and events can
+                           follow; only where there were some
     """
 
     rounding_of_tolerance: Number
     unproved_frictions: int
+    unfollowed_steps: int
     integration_cpu: Number
 
 

@@ -322,6 +322,11 @@ def of_events(outcome: Outcome) -> Iterator[str]:
             f"solver.max_step: in {n:.0f} steps a touch or an event may have been passed over, "
             "because a gap stays next to zero all along; take a shorter `max_step`"
         )
+    if n := outcome.statistics.get("unfollowed_steps", 0):
+        yield (
+            f"solver.step: {n:.0f} times more happened within a step than sections and events can "
+            "follow; points or events may be missing: take a shorter step"
+        )
 
 
 def of_rows(mechanism: Mechanism, outcome: Outcome) -> Iterator[str]:

@@ -54,7 +54,7 @@ from trsim.solve.march.phases import change_phases, latch
 from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
-from trsim.solve.march.turns import too_far
+from trsim.solve.march.turns import too_far, unseen
 from trsim.solve.march.watch import heard, take_sides
 from trsim.solve.march.works import exchanged
 
@@ -108,6 +108,8 @@ def complete(s, r, b, setting, method):
     if s.steep > 0 and strayed(s, r, setting, h):
         return undone(r, worst, worst_rate, STRAYED)
     if s.status[4] > 0 and leaked(s, r, b, setting):
+        return undone(r, worst, worst_rate, STRAYED)
+    if s.section.shape[0] + s.heard.size > 0 and passes_unseen(s, r, b, setting, last):
         return undone(r, worst, worst_rate, STRAYED)
     if s.wound.size > 0 and too_far(s, r, b, h):
         return undone(r, worst, worst_rate, WOUND)
@@ -213,6 +215,14 @@ def strayed(s, r, setting, h):
     far = FAR * setting.step_error
     fastest = max(r.speed, r.speed_cap, s.size / setting.t_end)
     return r.off > far * s.size or r.off_rate > far * fastest
+
+
+@internal
+def passes_unseen(s, r, b, setting, last):
+    """Whether more happens in the step than sections and events can follow."""
+    if setting.fixed_step > 0.0 or b.h <= BRIEF * setting.t_end:
+        return False
+    return unseen(s, r, b, last, b.h)
 
 
 @internal

@@ -232,6 +232,7 @@ class Record(Packed):
     torn: I8  # 1 + row of the rigid drive whose place has jumped: the run ends
     slid: I8  # 1 + offset in tab of a function that holds a rate at a jump: the run ends
     unproved: I8  # searches for an event in a step that gave up
+    unfollowed: I8  # looks into a step in which more happened than is followed   sampled.py
     degree: I8  # of the polynomials in `net`
     looked: I8  # steps when rounding was looked at last  rounding.py
     next_look: I8  # steps when stiffness is to be looked at again, and how far apart  stiffness.py

@@ -9,10 +9,11 @@ output rows, and the value taken off it.
 from trsim.kernels.lazy import internal
 from trsim.solve.march.dense_output import measure_inside
 from trsim.solve.march.illinois import between, narrowed
-from trsim.solve.march.turns import MOST_WAVES, WHOLE, fastest, swings
+from trsim.solve.march.turns import fastest, waves_in
 
 PARTS = 8  # of a step that is looked at, for each TURN
 TURN, WAVE = 0.5, 2.0  # rad
+MOST_PARTS = 4096  # of a step; turns.py keeps steps to fewer, unless their length is fixed
 DIPS = 12  # looks at the bottom of a dip
 NEAR = 0.5  # of the way a channel goes in a step: so near to zero a cubic is looked at
 TRIALS = 100
@@ -32,7 +33,16 @@ def value(s, r, b, what, theta):
 def parts_of(s, r, b, last):
     """In how many parts a step is looked at."""
     fast = max(fastest(s, r.y, r.yd), fastest(s, b.y1, b.K[last]))
-    return PARTS * (1 + int(min(fast * (b.t1 - b.t), 2.0 * WHOLE) / TURN))
+    return parts_for(r, fast * (b.t1 - b.t) / TURN)
+
+
+@internal
+def parts_for(r, times):
+    """PARTS of the step, and as many again for each of `times`; counts what is too many."""
+    if times < MOST_PARTS / PARTS - 1:
+        return PARTS * (1 + int(times))
+    r.unfollowed += 1
+    return MOST_PARTS
 
 
 @internal
@@ -41,8 +51,7 @@ def waves_of(s, r, b):
     if s.wave.size == 0:
         return PARTS
     length = b.t1 - b.t
-    w = swings(s, b.t, length, r.branch, r.turning, b.branch1, b.turning1)
-    return PARTS * (1 + int(min(w * length, 2.0 * MOST_WAVES) / WAVE))
+    return parts_for(r, waves_in(s, r, b, length) * length / WAVE)
 
 
 @internal

@@ -278,6 +278,7 @@ def crossings(s, r, b, k, parts):
             r.section[k, FAR] = max(r.section[k, FAR], abs(high[1]))
             before = low
         low, side = high, new
+    r.section[k, ON] = side  # the one it is on at an end that is zero
 
 
 @internal

@@ -12,8 +12,8 @@ Angles of bodies in the plane are sums of coordinates and have no such bound.
 
 from math import sqrt
 
+from trsim.assemble.waves import call_swings
 from trsim.kernels.lazy import internal
-from trsim.laws.functions import swing
 from trsim.solve.march.spread import coordinates_of
 
 MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
@@ -41,15 +41,16 @@ def longest_turn(s, r):
     """The longest step that turns no joint by more than is sure to be counted, s.
 
     Nor is a turn passed over that is judged, as that of a bushing.  Where points of sections are
-    looked for, or channels are watched, none turns a body by more than WHOLE.  In loops none moves
-    a body further than passes.py can follow what becomes of its rows.
+    looked for, or channels are watched, none turns a body by more than WHOLE, and no wave by more
+    than MOST_WAVES, at the rates of its start; unseen() says so of its end.  In loops none moves a
+    body further than passes.py can follow what becomes of its rows.
     """
     longest = 1e300
-    if s.section.shape[0] > 0:
+    if s.section.shape[0] + s.heard.size > 0:
         longest = WHOLE / max(fastest(s, r.y, r.yd), 1e-300)
     if s.wave.size > 0:
-        w = swings(s, r.t, 1.0, r.branch, r.turning, r.branch, r.turning)
-        longest = min(longest, MOST_WAVES / max(w, 1e-300))
+        now = call_swings(s.swings_at, s, r.t, 0.0, r.branch, r.turning, r.branch, r.turning)
+        longest = min(longest, MOST_WAVES / max(now, 1e-300))
     if s.looped.size > 0:
         longest = min(longest, IN_LOOPS / max(fastest_in_loops(s, r.y), 1e-300))
     for n in range(s.judged.shape[0]):
@@ -58,6 +59,20 @@ def longest_turn(s, r):
     for n in range(s.wound.size):
         longest = min(longest, NEXT * MOST / max(abs(r.turning[s.wound[n]]), 1e-300))
     return longest
+
+
+@internal
+def unseen(s, r, b, last, h):
+    """Whether more happens in a step, just landed, than sections and events can follow."""
+    if h * fastest(s, b.y1, b.K[last]) > 2.0 * WHOLE:
+        return True
+    return s.wave.size > 0 and h * waves_in(s, r, b, h) > 2.0 * MOST_WAVES
+
+
+@internal
+def waves_in(s, r, b, h):
+    """The fastest wave, rad/s, in what makes channels swing in such a step."""
+    return call_swings(s.swings_at, s, b.t, h, r.branch, r.turning, b.branch1, b.turning1)
 
 
 @internal
@@ -85,15 +100,6 @@ def fastest_in_loops(s, y):
     for k in range(s.v_node, s.n_v):
         along = max(along, abs(y[s.n_q + k]))
     return max(along / s.size, turning)
-
-
-@internal
-def swings(s, t, length, S0, rate0, S1, rate1):
-    """The fastest wave, rad/s, in what makes channels of sections swing: between two instants."""
-    most = 0.0
-    for k in range(s.wave.size):
-        most = max(most, swing(s.tab, s.wave[k], t, length, S0, rate0, S1, rate1))
-    return most
 
 
 @internal
