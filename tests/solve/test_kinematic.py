@@ -1,6 +1,7 @@
 """Kinematic analysis: the reactions of the dynamic one from the time alone, or a refusal."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,8 +9,9 @@ import pytest
 from tests.runs import run
 from trsim.assemble.assemble import assemble
 from trsim.errors import ModelError, ScenarioError
-from trsim.scenario.load import loads
+from trsim.scenario.load import load, loads
 from trsim.solve import simulate as simulation
+from trsim.solve.methods.kinematic import beyond_simpson
 from trsim.solve.simulate import simulate
 
 FOUR_BAR = """
@@ -367,3 +369,46 @@ def test_branches_that_nearly_meet(off, planar):
     print(r.outcome.status, r.outcome.time, left.max())
     assert np.max(left * across) < 1e-9
     assert r.outcome.status == "done" or "singular" in r.outcome.reason
+
+
+@pytest.mark.parametrize("scene", [PLANE, SPACE, DOUBLE], ids=["plane", "space", "double"])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-11])
+def test_extremes_between_rows_far_apart(scene, tolerance):
+    """37 rows a turn: what the middles of steps show spares looks between rows; none is missed."""
+    more = {"scene": scene, "tolerance": tolerance}
+    found, known = (run(four_bar(every=every, **more)) for every in (8.5e-3, 1e-4))
+    if tolerance > 1e-10:  # an extreme that is known to 1e-11 is looked at twice
+        few_evaluations(found)
+    sought = found.mechanism.model.sought
+    named = {c.start + k: c.name for c in found.mechanism.columns for k in range(c.size)}
+    units = {c.start + k: c.unit for c in found.mechanism.columns for k in range(c.size)}
+    high, low = known.outcome.peaks[:, 0], known.outcome.peaks[:, 2]
+    checked = 0
+    for k in sought[sought < len(named)]:
+        if named[k].startswith("energy") or shared(known, named[k]):
+            continue
+        kinds = ("N", "N*m") if units[k] == "N*m" else (units[k],)  # 1 N at 1 m is 1 N m
+        most = max(abs(high[j] - low[j]) for j in sought if units.get(j) in kinds)
+        allowed = tolerance * max(high[k] - low[k], 0.01 * most) + 1e-11 * most
+        assert found.outcome.peaks[k, 0] == pytest.approx(high[k], abs=allowed), named[k]
+        assert found.outcome.peaks[k, 2] == pytest.approx(low[k], abs=allowed), named[k]
+        checked += 1
+    assert checked > 10
+
+
+@pytest.mark.parametrize("back", [0.3, 0.5, 1.7])
+def test_works_of_quartic_powers(back):
+    for n in range(5):
+        p0, p, p1, q, q0 = (x**n for x in (0.0, 0.5, 1.0, -back, -2.0 * back))
+        inside, whole = beyond_simpson.python((p0, p, p1, q, q0), back)
+        by_half = (5.0 * p0 + 8.0 * p - p1) / 24.0 + inside
+        assert by_half == pytest.approx(0.5 ** (n + 1) / (n + 1), abs=1e-14)
+        assert (p0 + 4.0 * p + p1) / 6.0 + whole == pytest.approx(1.0 / (n + 1), abs=1e-14)
+
+
+def test_rounding_is_no_extreme():
+    """Both outer shafts turn evenly: their accelerations are rounding, and no extreme is sought."""
+    steady = Path(__file__).parents[2] / "scenarios" / "validation" / "cardan_shaft.yaml"
+    r = run(load(steady, ["solver.method=kinematic"]))
+    assert np.abs(r["turn_out.acceleration"]).max() < 1e-10
+    assert r.outcome.statistics["evaluations"] <= 3 * len(r.t)

@@ -18,6 +18,10 @@ from trsim.errors import ScenarioError, known
 NOT_BY_DEFAULT = ("*.rotation",)
 # units of what is about an axis, and of what is along a line at a distance from it
 ALONG = {"N*m": "N", "rad": "m", "rad/s": "m/s", "rad/s^2": "m/s^2"}
+# powers of mass, size and speed
+NATURAL = {"m": (0, 1, 0), "m/s": (0, 0, 1), "m/s^2": (0, -1, 2)}
+NATURAL |= {"N": (1, -1, 2), "J": (1, 0, 2), "W": (1, -1, 3)}
+UNKNOWN = (0, 0, 0)
 WITH_PEAKS = ("joints", "drives", "forces", "sensors")  # sections whose channels' extremes are told
 
 
@@ -36,6 +40,7 @@ def no_outputs(rows: int) -> dict[str, Any]:
         "heard": none,
         **dict.fromkeys(("vector", "sought", "kin", "shared"), none),
         **dict.fromkeys(("lever", "least"), np.zeros(0)),
+        "natural": none.reshape(0, 3),
     }
 
 
@@ -193,6 +198,9 @@ def compared(columns: list[Column], told: set[str], size: float) -> dict[str, An
         "kin": np.array([kin[k] for k in sought], np.int64),
         "lever": np.array([levers[k] for k in sought]),
         "least": np.array([least[k] for k in sought]),
+        "natural": np.array([NATURAL.get(unit, UNKNOWN) for unit in units], np.int64).reshape(
+            -1, 3
+        ),
         "shared": np.array(shared, np.int64),
     }
 

@@ -110,6 +110,7 @@ class Model(Packed):
     vector: I1  # first columns of the vectors whose magnitudes have extremes
     sought: I1  # (n_k) columns, and behind all those such magnitudes, with extremes inside steps
     kin: I1  # (n_k) those of one kind have one number
+    natural: I2  # (kinds, 3) powers of mass, size and speed that make a unit of each; 0: unknown
     lever: A1  # (n_k) what brings them to one unit
     least: A1  # (n_k) what they are never below
     shared: I1  # columns of forces and moments, which rows may share between them

@@ -69,6 +69,7 @@ LOOK_ROWS = 5.0  # and never longer than this many output intervals
 FEEDBACK = 3.0
 FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
+ROUNDING = 1e-14  # of the unit of a channel: what no extreme of it is told by
 CROSSINGS = 2.0 * MOST_PARTS  # of a step, at most
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
@@ -256,6 +257,10 @@ def new_record(
         left_out=np.array(left_out, np.int64),
         **rec.zeros(Record, model, sizes),
     )
+    for kind, powers in enumerate(model.natural):
+        if powers.any():
+            mass, size, speed = np.array([np.sum(model.mass), model.size, begun.moving]) ** powers
+            record.faint[kind] = ROUNDING * mass * size * speed
     record.weakest = 1.0
     record.length, record.speed_cap = begun.length, begun.speed
     record.speed = record.top_speed = begun.moving

@@ -145,10 +145,13 @@ def complete(s, r, b, setting, method):
         evaluate(s, t1, b.y1, b.K[last])
     inside = due(r, setting, t1) and not at_end(setting.every * r.next_row, t1)
     unseen = not inside and t1 - b.t > LONG * setting.t_end
-    if b.built == 0 and (inside or unseen or method[IMPLICIT_AT] > 0):
+    if b.built == 0 and (inside or unseen or b.halved > 0 or method[IMPLICIT_AT] > 0):
         build(s, r, b, method)
     if inside and loose(s, r, b, setting, method):
         return undone(r, worst, worst_rate, LOOSE)
+    if b.halved > 0:
+        b.firm[0], b.halved = b.firm[2], 0
+        call_sample(method[SAMPLE_AT], s, r, b, setting, method, b.t + 0.5 * b.h, b.middle)
     if due(r, setting, t1):
         first = r.rows
         if not rows_until(s, r, b, setting, method):

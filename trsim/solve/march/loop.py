@@ -167,7 +167,7 @@ def march(s, r, b, setting, methods, most):
         copy_to(b.K[0], r.yd)
         for c in range(s.contact.size):
             s.left[s.contact[c]] = -1.0
-        s.status[4] = s.status[6] = 0
+        s.status[4] = s.status[6] = b.halved = 0
         r.blur = r.excess = 0.0
         r.top_acceleration = largest(s, r.yd, r.top_acceleration)
         error = call_step(method[STEP_AT], s, r, b, setting, t, h)

@@ -110,7 +110,9 @@ def between(s, r, b, setting, method, ahead):
         beyond += above - below if b.n_found > 0 else 0.0
         if above + beyond <= high and below - beyond >= low:
             continue
-        enough = share * max(high - low, SMALL * r.largest[s.kin[c]] / s.lever[c])
+        kind, lever = s.kin[c], s.lever[c]
+        enough = share * max(high - low, SMALL * r.largest[kind] / lever)
+        enough = max(enough, r.faint[kind] / lever)
         rises = above + beyond > high + enough
         falls = low > s.least[c] and below - beyond < low - enough
         if not (rises or falls):
@@ -231,13 +233,15 @@ def look_within(s, r, b, method, ahead, inner):
 
 @internal
 def guess(s, r, b, method, ahead, inner):
-    """The channels at `inner` places that part the step into equal parts, of the cubic through both
-    ends and their rates, into b.inside: what tells whether the dense output is worth building."""
+    """The channels at `inner` places that part the time between two neighbours into equal parts, of
+    the cubic through both ends of their step and its rates, into b.inside: what tells whether the
+    dense output is worth building."""
+    start, end = r.sampled[older(r, ahead + 1)], r.sampled[older(r, ahead)]
     h = length(r, b, ahead)
     y0, y1, yd0, yd1 = ends(r, b, method, before(r, ahead))
     _, _, t, work, done = either_step(r, b, before(r, ahead))
     for i in range(inner):
-        u = (i + 1.0) / (inner + 1.0)
+        u = (start + (i + 1.0) / (inner + 1.0) * (end - start) - t) / h
         v, way = 1.0 - u, u * u * (3.0 - 2.0 * u)
         for k in range(b.y2.size):
             b.y2[k] = y0[k] + way * (y1[k] - y0[k]) + h * u * v * (v * yd0[k] - u * yd1[k])

@@ -114,6 +114,7 @@ class Record(Packed):
     earlier: A2 = of("ends", "n_y")  # of the step before: both its ends, y' there  earlier.py
     stages: A2 = of("rows", "n_y")  # its stages, or its dense output
     largest: A1 = of("kin")  # size of the channels of one kind, see `kin` of the scene
+    faint: A1 = of("kin")  # what rounding makes of channels of a kind
     impact: A1  # (n_contacts) largest penetration so far
     # what implicit methods carry from step to step; w = (v, states of elements)   jacobian.py
     by_place: A2 = of("n_w", "n_dx")  # w' against displacements
@@ -268,10 +269,13 @@ class Buffers(Packed):
     pair: C1 = of("n_y")  # right-hand side of the complex system of an implicit method
     rough: A2 = of(3, "n_y")  # a state and the end of a step from it, while it is made again
     out: A1  # (n_out) channels at the end of the step
+    middle: A1 = of("n_out")  # and in its middle, of methods that evaluate there
     gap1: A2 = of("gaps", 2)
     corner1: A1 = of("contact")
     full: A1 = of("channels")  # all channels and magnitudes
-    firm: A1  # (2) the least pivot of rows where channels were measured last, and at the step's end
+    # (3) the least pivot of rows where channels were measured last, at the end of the step, in its
+    # middle
+    firm: A1
     row_firm: A1  # (n) the same of every output row
     inside: A2 = of(FOUND, "kin")  # channels where an extreme was looked for  peaks.py
     found: A1 = of(FOUND)  # when, see `n_found`
@@ -309,6 +313,7 @@ class Buffers(Packed):
     rate: I8  # of the rate of what is slow in it, 0: none                        settle.py
     soften: I8  # and of what takes away what is stiff
     built: I8  # 1: P holds it
+    halved: I8  # 1: middle holds the channels of this step
     restless: I8  # 1: what is stiff did not come to rest
     moved: I8  # 1: the end of the step was moved on along its tangent
     n_found: I8  # places between two samples that were looked at                peaks.py
@@ -345,7 +350,7 @@ def fresh_buffers(
         "seen": max(model.n_s, 1) if len(model.sensed) else 0,
     }
     out = np.zeros(max(model.n_out, 1))
-    return Buffers(**zeros(Buffers, model, sizes), out=out, firm=np.ones(2), row_firm=np.ones(rows))
+    return Buffers(**zeros(Buffers, model, sizes), out=out, firm=np.ones(3), row_firm=np.ones(rows))
 
 
 def controlled(model: Model) -> int:

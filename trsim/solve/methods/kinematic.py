@@ -8,7 +8,8 @@ Nothing is integrated but works, and the places of drives with a prescribed velo
 integrals, by quadrature.  A step of length h is taken to its middle and from there to its end:
 
     middle      q + h/2 v + h^2/8 a, of order 3; the end by the cubic of velocities through both
-    works       Simpson, with the power at the start, in the middle and at the end
+    works       the quartic through the powers at the start, in the middle and at the end, and the
+                two before these; at the start and behind a corner of a load Simpson
     places      five points of Gauss in each half; their error by five in the whole step
     inside      the quintic through three states and their rates, then brought to the rows
 
@@ -32,13 +33,16 @@ import numpy as np
 
 from trsim.assemble.equations import constraints, evaluate, forces, poses
 from trsim.assemble.linear import SINGULAR, smallest_pivot
+from trsim.assemble.outputs import measure
 from trsim.assemble.projection import NEWTON, project_positions, project_velocities
 from trsim.elements.contract import N_BOOK, compiled
+from trsim.elements.scene import N_STORED
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import all_finite, copy_to
 from trsim.solve.march.calls import BOOK, DENSE, INTERPOLATE, NO_STEP, STEP
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sides import side
+from trsim.solve.march.works import BEGAN, DONE, LONG, POWERS, SAME_TIME
 from trsim.solve.methods.displacements import turn
 
 STAGES = 5  # rows of K: rates at start, middle and end, scratch of the march, state in the middle
@@ -69,7 +73,12 @@ def step(s, r, b, setting, t, h):
     if nearly < 0.0:
         return NO_STEP
     evaluate(s, t + half, middle, K[MIDDLE])
-    inside = sqrt(firmness(s))
+    b.firm[2] = firmness(s)
+    if s.sought.size > 0:  # extremes: with these channels there is less to look for
+        measure(s, t + half, middle, r.work_projection, r.energy_0)
+        copy_to(b.middle, s.out)
+        b.halved = 1
+    inside = sqrt(b.firm[2])
     go_on(s, y, K[0], middle, K[MIDDLE], half, y1)
     corrected = close(s, t + h, y1, b.y2)
     if corrected < 0.0:
@@ -85,7 +94,8 @@ def step(s, r, b, setting, t, h):
     )
     astray = beside(s, y, middle, y1, h) / (ASTRAY * far + BESIDE)
     corrected = max(nearly, corrected) / CORRECTED
-    return max(max(error, astray), max(corrected, far / FAR), past / PAST)
+    # ways go with h, and the next step takes what it is told to go with h^ESTIMATE
+    return max(max(error, astray), corrected, max(far / FAR, past / PAST) ** ESTIMATE)
 
 
 @internal
@@ -220,11 +230,40 @@ def beside(s, y, middle, y1, h):
 @compiled(BOOK)
 def book(s, r, b, h):
     K, y, middle, y1, first = b.K, r.y, b.K[STATE], b.y1, s.n_q + s.n_v
-    for k in range(first, first + N_BOOK):  # the parabola through the three powers
+    now, before = r.worked[0], r.worked[1]
+    if now[BEGAN] != b.t:  # not the same step again
+        copy_to(before, now)
+    now[BEGAN], now[LONG] = b.t, h
+    # no step of these powers ended here: at the start, and behind a corner
+    alone = before[LONG] <= 0.0 or abs(before[BEGAN] + before[LONG] - b.t) > SAME_TIME * h
+    for k in range(first, first + N_BOOK):
+        at = k - first
         p0, p, p1 = K[0, k], K[MIDDLE, k], K[LAST, k]
-        middle[k] = y[k] + h / 24.0 * (5.0 * p0 + 8.0 * p - p1)
-        y1[k] = y[k] + h / 6.0 * (p0 + 4.0 * p + p1)
+        now[POWERS + at], now[DONE + at] = p0, p
+        inside = whole = 0.0
+        if not alone:
+            powers = (p0, p, p1, before[DONE + at], before[POWERS + at])
+            inside, whole = beyond_simpson(powers, 0.5 * before[LONG] / h)
+        middle[k] = y[k] + h * ((5.0 * p0 + 8.0 * p - p1) / 24.0 + inside)
+        y1[k] = y[k] + h * ((p0 + 4.0 * p + p1) / 6.0 + whole)
         s.z[k - first] = y1[k]  # for what is measured there
+        if b.halved > 0:  # the middle was measured with works as they were at the start
+            o = s.column_energy + 1 + N_STORED + k - first
+            b.middle[s.n_out - 1] += b.middle[o] - middle[k]
+            b.middle[o] = middle[k]
+
+
+@internal
+def beyond_simpson(powers, back):
+    """What the quartic through five powers, at 0, 1/2, 1, -back and -2 back, adds to the integrals
+    of the parabola through the first three, to 1/2 and to 1."""
+    p0, p, p1, q, q0 = powers
+    first, second = 2.0 * (p - p0), 2.0 * (p1 - p)
+    third, fourth = (p1 - q) / (1.0 + back), (q - q0) / back
+    a, b, c = second - first, (second - third) / (0.5 + back), (third - fourth) / (1.0 + 2.0 * back)
+    d, e = (a - b) / back, (b - c) / (0.5 + 2.0 * back)
+    last = (d - e) / (2.0 * back)
+    return d / 64.0 + last * (0.0036458333333333334 + back / 64.0), last / -120.0
 
 
 @compiled(DENSE)

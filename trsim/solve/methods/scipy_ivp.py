@@ -144,7 +144,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             r.h = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer)
             continue
-        b.h, b.built = h, 1
+        b.h, b.built, b.halved = h, 1, 0
         outcome = complete(s, r, b, setting, method)
         if outcome == WORTHLESS:
             status, reason = "failed", unshown(mechanism, s.out) or "a value is not finite"
