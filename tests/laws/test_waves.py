@@ -36,8 +36,8 @@ def swung(text, t, length, inputs=(), before=(), behind=()):
     code = expression(parse(text), {name: k for k, name in enumerate(inputs)})
     tab = np.array([0.0, 0.0, *code])
     box = np.zeros(((len(code) - int(code[SLOTS])) // 3, 4))
-    ends = [np.array([x[k] for x in end], float) for end in (before, behind) for k in (0, 1)]
-    return swing(tab, 2, t, length, *ends, box)
+    ends = [[np.array([x[k] for x in end], float) for k in (0, 1)] for end in (before, behind)]
+    return swing(tab, 2, (t, length), *map(tuple, ends), box)
 
 
 @pytest.mark.parametrize("text", PHASES)

@@ -24,7 +24,7 @@ def swings(s, t, length, S0, rate0, S1, rate1):
     later."""
     most = 0.0
     for k in range(s.wave.size):
-        w = swing(s.tab, s.wave[k], t, length, S0, rate0, S1, rate1, s.wave_box)
+        w = swing(s.tab, s.wave[k], (t, length), (S0, rate0), (S1, rate1), s.wave_box)
         most = max(most, w)
     return most
 

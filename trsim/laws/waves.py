@@ -52,24 +52,24 @@ def waves(code):
 
 
 @internal
-def swing(tab, o, t, length, S0, rate0, S1, rate1, box):
-    """How fast an expression may swing from t on, in rad/s of the fastest wave in it.
+def swing(tab, o, stretch, before, behind, box):
+    """How fast an expression may swing in a stretch of time, in rad/s of the fastest wave in it.
 
     Where nothing bounds it between, as beside a pole, that of both ends.
 
     Parameters
     ----------
     tab, o                   as in `value`
-    t, length : float        s
-    S0, rate0, S1, rate1 : (n_s,)   what the sensors show, and its rate, at t and `length` later
+    stretch : (float, float) when it begins, and how long it is, s
+    before, behind           (n_s,), (n_s,): what sensors show at its ends, and its rates
     box : (n_slots, 4)       scratch: ranges of the slots
     """
-    w = swing_within(tab, o, (t, length), (S0, rate0), (S1, rate1), box)
+    w = swing_within(tab, o, stretch, before, behind, box)
     if w < inf:
         return w
-    before = swing_within(tab, o, (t, 0.0), (S0, rate0), (S0, rate0), box)
-    behind = swing_within(tab, o, (t + length, 0.0), (S1, rate1), (S1, rate1), box)
-    return max(before if before < inf else 0.0, behind if behind < inf else 0.0)
+    first = swing_within(tab, o, (stretch[0], 0.0), before, before, box)
+    last = swing_within(tab, o, (stretch[0] + stretch[1], 0.0), behind, behind, box)
+    return max(first if first < inf else 0.0, last if last < inf else 0.0)
 
 
 @internal
