@@ -233,7 +233,7 @@ ELBOW = "  bend: {joint: elbow, position: '0.1*t'"
         (ELBOW + ", compliance: {stiffness: 10}}", "", "gives way"),
         (ELBOW + "}", ", stabilisation: none", "stabilisation"),
         (ELBOW + "}\nsensors: {x: {joint: hinge}}\n"
-         "events: {e: {when: x, value: 0.5, do: {end: true}}}", "", "no events"),
+         "events: {e: {when: x, value: 0.5, do: {release: [elbow]}}}", "", "record or end a run alone"),
         (ELBOW + "}\nforces: {stop: {type: limit_stop, joint: elbow, upper: 1 rad,"
          " stiffness: 100}}", "", "contact"),
     ],
@@ -412,3 +412,27 @@ def test_rounding_is_no_extreme():
     r = run(load(steady, ["solver.method=kinematic"]))
     assert np.abs(r["turn_out.acceleration"]).max() < 1e-10
     assert r.outcome.statistics["evaluations"] <= 3 * len(r.t)
+
+
+@pytest.mark.parametrize("every", [8.5e-3, 1e-3])
+def test_events(every):
+    """Of an angle, a reaction and a power: where the dynamic analysis finds them."""
+    events = """
+events:
+  swung: {when: swing, value: 0.3, crosses: both, do: {record: true}}
+  pressed: {when: d.reaction.x, value: -20, crosses: both, do: {record: true}}
+  pulled: {when: motor.power, value: 0, crosses: both, do: {record: true}}
+"""
+    text = four_bar(every=every)
+    found, known = (run(a + events) for a in (text, four_bar("dop853", every=every)))
+    assert len(found.events) == len(known.events) > 12
+    assert found.events[:, 0] == pytest.approx(known.events[:, 0], abs=1e-10)
+    end = "events: {late: {when: swing.rate, value: 12, do: {end: true}}}"
+    assert run(text + end).outcome.time == pytest.approx(0.029849010372859, abs=1e-12)
+
+
+def test_events_that_change_something_are_refused():
+    for what in ("release: [d]", "set: {motor: {position: 0.1*t}}"):
+        text = f"{four_bar()}events: {{late: {{when: swing, value: 0.3, do: {{{what}}}}}}}"
+        with pytest.raises(ScenarioError, match="record or end a run alone"):
+            run(text)

@@ -39,9 +39,10 @@ def check_driven(scenario: Any, mechanism: Mechanism) -> None:
                 (instance.section, instance.name),
             )
     for event in mechanism.stages.switches.events:
-        if event.kind != "limit":
+        if event.turned:
             raise ScenarioError(
-                f"{method} analysis knows no events: what they change may leave something free",
+                f"{event.said}, and {method} analysis knows events that record or end a run alone: "
+                "what others change may leave something free",
                 f"leave it out, {DYNAMIC}",
                 ("events", event.name),
             )
