@@ -233,7 +233,7 @@ ELBOW = "  bend: {joint: elbow, position: '0.1*t'"
         (ELBOW + ", compliance: {stiffness: 10}}", "", "gives way"),
         (ELBOW + "}", ", stabilisation: none", "stabilisation"),
         (ELBOW + "}\nsensors: {x: {joint: hinge}}\n"
-         "events: {e: {when: x, value: 0.5, do: {release: [elbow]}}}", "", "record or end a run"),
+         "events: {e: {when: x, value: 0.5, do: {release: [elbow]}}}", "", "record or end"),
         (ELBOW + "}\nforces: {stop: {type: limit_stop, joint: elbow, upper: 1 rad,"
          " stiffness: 100}}", "", "contact"),
     ],
