@@ -72,8 +72,8 @@ class UserEvent:
         return (
             f"events.{self.name}: '{self.when}' is sampled, not bounded: every step is looked at "
             "in 8 parts, and 8 more for each 0.5 rad that a body turns or 2 rad of a sine or a "
-            "pulse in a load; what passes the value and comes back between two of them may be passed "
-            "over"
+            "pulse in a load; what passes the value and comes back between two of them may be "
+            "passed over"
         )
 
     def in_words(self) -> str:
