@@ -31,13 +31,13 @@ PHASES = [
 ]
 
 
-def swung(text, t, length, inputs=(), before=(), behind=()):
+def swung(text, t, length, inputs=(), before=(), behind=(), sines=1):
     """The bound of an expression over a stretch; of each sensor a pair at its ends."""
     code = expression(parse(text), {name: k for k, name in enumerate(inputs)})
     tab = np.array([0.0, 0.0, *code])
     box = np.zeros(((len(code) - int(code[SLOTS])) // 3, 4))
     ends = [[np.array([x[k] for x in end], float) for k in (0, 1)] for end in (before, behind)]
-    return swing(tab, 2, (t, length), *map(tuple, ends), box)
+    return swing(tab, 2, (t, length), *map(tuple, ends), (sines, box))
 
 
 @pytest.mark.parametrize("text", PHASES)

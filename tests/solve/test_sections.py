@@ -422,3 +422,20 @@ def test_what_steps_follow_costs_nothing_more(when):
     assert not built(
         SPINNING.format(planar="false", torque="sin(200*x)", when=when)
     ).model.wave.size
+
+
+@pytest.mark.parametrize(("formula", "crossings"), [
+    ("sin(500*x + 1)", 318), ("sin(300*t)", 95), ("1/(1 + ((x - 1.003)/1e-4)**2) - 0.3", 2),
+])  # fmt: skip
+def test_formulas_swing_themselves(formula, crossings):
+    """Of the place of a block that flies two metres in three steps."""
+    r = run(f"""
+bodies: {{block: {{mass: 1, inertia: 1, velocity: [2, 0]}}}}
+joints: {{rail: {{type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}}}}
+sensors: {{x: {{joint: rail}}, f: {{type: formula, value: "{formula}"}}}}
+poincare: {{zero: {{when: f, crosses: both, plot: [x, f]}}}}
+solver: {{end: 1, tolerance: 1e-6}}
+output: {{every: 0.1}}
+""")
+    assert len(r.section("zero")) == crossings
+    assert np.abs(r.section("zero")[:, 2]).max() < 1e-7

@@ -74,6 +74,7 @@ class Addresses:
     functions: list[Cornered] = field(default_factory=list)  # those that have some
     packed_functions: list[Named] = field(default_factory=list)
     waves: list[tuple[int, list[float]]] = field(default_factory=list)  # that swing: laws/waves.py
+    shown: list[tuple[int, list[float]]] = field(default_factory=list)  # the same of formulas
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
@@ -438,9 +439,12 @@ class Addresses:
             own = name.removesuffix(RATE)
             indices[name] = self.sensor(name) if own == name else self.rate_of_sensor(own, path)
         try:
-            self.tab += functions.expression(node, indices)
+            code = functions.expression(node, indices)
         except ScenarioError as error:
             raise error.at(*path) from None
+        if waves(code):
+            self.shown.append((offset, code))
+        self.tab += code
         return offset
 
     def check_corners(self, found: list[Cornered]) -> None:

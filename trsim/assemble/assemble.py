@@ -60,6 +60,7 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
+from trsim.assemble.waves import pulsed
 from trsim.elements.contract import N_BOOK, Pair
 from trsim.elements.coordinates import of_joint
 from trsim.elements.rows import column_of
@@ -104,7 +105,7 @@ def assemble(
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
         model, columns = layout(scenario, model, instances, at.switches)
-        model, shown = sections(scenario, model, instances, columns, at.waves)
+        model, shown = sections(scenario, model, instances, columns, at.waves + at.shown)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     if drives is None and not ideal:
@@ -364,6 +365,7 @@ def build(
         rubbed_at=rubbing.address() if rubs else 0,
         rubs_with=rubs_with.address() if rubs else 0,
         **travels(instances, contacts, at.switches),
+        **pulsed(at.waves),
         size=size,
         reach=min(size, max(arms[1:], default=size)),
     )

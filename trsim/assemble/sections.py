@@ -30,14 +30,15 @@ def sections(
     joint.  Raises ScenarioError for channels and contacts that do not exist.
     """
     there = {column.name: column for column in columns}
-    driven = tuple(f"{i.name}." for i in instances if i.section == "drives")
+    # what a drive prescribes, and sensors that are functions themselves
+    functions = {i.name for i in instances if i.section == "drives" or i.element.stands_for}
     rows, at, found = [], [], []
     for name, spec in scenario.poincare.items():
         if without_play(scenario, (spec.when, spec.at_onset, *spec.plot)):
             continue
         x, y = (column_of(c, there, (SECTION, name, "plot", k)) for k, c in enumerate(spec.plot))
         kind, when = surface(scenario, name, spec, instances, there)
-        waving = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], driven)
+        waving = kind == CROSSING and not smooth(there[stored(spec.when, there)[0]], functions)
         rows.append((kind, when, DIRECTIONS[spec.crosses], x, y, int(waving)))
         at.append((spec.after, spec.every or 0.0))
         units = [there[stored(c, there)[0]].unit for c in spec.plot]
@@ -45,7 +46,7 @@ def sections(
         found.append(Section(name, spec.when or "", crosses, spec.every or 0.0, spec.at_onset or "",
                              spec.after, *spec.plot, *units))  # fmt: skip
     heard = (c for c in columns for o in model.heard if c.start <= o < c.start + c.size)
-    swinging = any(not smooth(column, driven) for column in heard)
+    swinging = any(not smooth(column, functions) for column in heard)
     section = np.array(rows, np.int64).reshape(-1, N_SECTION)
     filled = model.replaced(
         section=section,
@@ -55,14 +56,14 @@ def sections(
     return filled, tuple(found)
 
 
-def smooth(column: Column, driven: tuple[str, ...]) -> bool:
+def smooth(column: Column, functions: set[str]) -> bool:
     """Whether steps follow a channel: a place, a velocity or an energy, but not what is prescribed.
 
-    However fast a load swings, these are its integrals.
+    However fast a load swings, these are its integrals.  functions: what shows one itself.
     """
     if column.name.startswith("energy."):
         return True
-    return column.unit in SMOOTH and not column.name.startswith(driven)
+    return column.unit in SMOOTH and column.name.split(".")[0] not in functions
 
 
 def without_play(scenario: Any, channels: Iterable[str | None]) -> str:

@@ -12,8 +12,9 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels.calls import caller
 from trsim.kernels.signatures import A1, f8, float64
 from trsim.laws.functions import SLOTS
-from trsim.laws.waves import swing
+from trsim.laws.waves import pulses, swing
 
+Found = list[tuple[int, list[float]]]  # offset, and numbers for `tab`
 SWINGS = float64(SCENE, f8, f8, A1, A1, A1, A1)
 call_swings = caller(SWINGS)
 
@@ -24,16 +25,40 @@ def swings(s, t, length, S0, rate0, S1, rate1):
     later."""
     most = 0.0
     for k in range(s.wave.size):
-        w = swing(s.tab, s.wave[k], (t, length), (S0, rate0), (S1, rate1), s.wave_box)
+        w = swing(s.tab, s.wave[k], (t, length), (S0, rate0), (S1, rate1), (1, s.wave_box))
         most = max(most, w)
     return most
 
 
-def followed(found: list[tuple[int, list[float]]]) -> dict[str, Any]:
-    """Fields of a model, of functions that are followed: offset, and numbers for `tab`."""
-    slots = [(len(code) - int(code[SLOTS])) // 3 for _, code in found]
+@compiled(SWINGS)
+def beats(s, t, length, S0, rate0, S1, rate1):
+    """The same of pulses in loads and drives."""
+    most = 0.0
+    for k in range(s.pulse.size):
+        w = swing(s.tab, s.pulse[k], (t, length), (S0, rate0), (S1, rate1), (0, s.pulse_box))
+        most = max(most, w)
+    return most
+
+
+def followed(found: Found) -> dict[str, Any]:
+    """Fields of a model, of functions whose waves are followed."""
     return {
         "wave": np.array([offset for offset, _ in found], np.int64),
-        "wave_slots": max(slots, default=0),
+        "wave_slots": most_slots(found),
         "swings_at": swings.address() if found else 0,
     }
+
+
+def pulsed(found: Found) -> dict[str, Any]:
+    """Fields of a model, of functions that move something and whose pulses no step passes over."""
+    found = [(offset, code) for offset, code in found if pulses(code)]
+    return {
+        "pulse": np.array([offset for offset, _ in found], np.int64),
+        "pulse_slots": most_slots(found),
+        "beats_at": beats.address() if found else 0,
+    }
+
+
+def most_slots(found: Found) -> int:
+    """Of the longest of them."""
+    return max(((len(code) - int(code[SLOTS])) // 3 for _, code in found), default=0)

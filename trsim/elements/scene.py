@@ -141,6 +141,9 @@ class Model(Packed):
     wave: I1  # offsets in tab of functions with waves, where a section looks at what they move
     wave_slots: i8  # of the longest of them
     swings_at: i8  # address of how fast they swing; 0 where nothing asks for it   assemble/waves.py
+    pulse: I1  # offsets of functions of loads and drives that may have short pulses
+    pulse_slots: i8
+    beats_at: i8  # address of how fast these go
     section_at: A2  # (n_sections, 2) s: before it no points; period, or 0
     jumps: i8  # entry of z with the work done at user events, or -1
     column_energy: i8  # first output column of the energy book
@@ -205,6 +208,7 @@ class Scene(Model):
     corner: T2  # (N, 2) how far an element has left its branch, and the branch it goes to
     left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
+    pulse_box: A2  # (pulse_slots, 4) scratch: ranges of the parts of a function
     wave_box: A2  # (wave_slots, 4) scratch: ranges of the parts of one of them
     out: A1  # (n_out) one output row
     # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
@@ -269,6 +273,7 @@ def scene(model: Model) -> Scene:
         (("before_rubbing",), (n if rubs else 0, 6)),
         (("E",), (N_STORED,)),
         (("wave_box",), (model.wave_slots, 4)),
+        (("pulse_box",), (model.pulse_slots, 4)),
         (("out",), (max(model.n_out, 1),)),
     )
     made = Scene(

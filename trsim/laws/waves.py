@@ -38,13 +38,26 @@ BETWEEN = 1.6  # of its mean rate: the largest of half a wave is pi/2 of it
 
 def waves(code):
     """Whether a function, as numbers for `tab`, has something of its own that may swing."""
+    return pulses(code) or has(code, (SIN, COS, TAN))
+
+
+def has(code, operations):
+    """Whether a function has one of some operations."""
+    if code[0] != EXPRESSION:
+        return False
+    first = HEAD + int(code[N_IN])
+    return any(code[p] in operations for p in range(first, int(code[SLOTS]), WIDTH))
+
+
+def pulses(code):
+    """Whether it has something that may be short and is no wave: what divides, high powers, log."""
     if code[0] != EXPRESSION:
         return False
     slots, first = int(code[SLOTS]), HEAD + int(code[N_IN])
     constants = slots + 3 * (1 + int(code[N_IN]) + int(code[N_OP]))
     for p in range(first, slots, WIDTH):
         op, b = code[p], int(code[p + 2])
-        if op in (SIN, COS, TAN, LOG) or (op == DIV and b < constants):
+        if op == LOG or (op == DIV and b < constants):
             return True
         if op == POW and b >= constants and not 0.0 <= code[b] <= LOW:
             return True
@@ -52,7 +65,7 @@ def waves(code):
 
 
 @internal
-def swing(tab, o, stretch, before, behind, box):
+def swing(tab, o, stretch, before, behind, own):
     """How fast an expression may swing in a stretch of time, in rad/s of the fastest wave in it.
 
     Where nothing bounds it between, as beside a pole, that of both ends.
@@ -62,20 +75,21 @@ def swing(tab, o, stretch, before, behind, box):
     tab, o                   as in `value`
     stretch : (float, float) when it begins, and how long it is, s
     before, behind           (n_s,), (n_s,): what sensors show at its ends, and its rates
-    box : (n_slots, 4)       scratch: ranges of the slots
+    own                      waves: 1, or 0 where pulses alone are asked for; and
+                             (n_slots, 4) scratch: ranges of the slots
     """
-    w = swing_within(tab, o, stretch, before, behind, box)
+    w = swing_within(tab, o, stretch, before, behind, own)
     if w < inf:
         return w
-    first = swing_within(tab, o, (stretch[0], 0.0), before, before, box)
-    last = swing_within(tab, o, (stretch[0] + stretch[1], 0.0), behind, behind, box)
+    first = swing_within(tab, o, (stretch[0], 0.0), before, before, own)
+    last = swing_within(tab, o, (stretch[0] + stretch[1], 0.0), behind, behind, own)
     return max(first if first < inf else 0.0, last if last < inf else 0.0)
 
 
 @internal
-def swing_within(tab, o, stretch, before, behind, box):
+def swing_within(tab, o, stretch, before, behind, own):
     """The same; infinite where nothing bounds it."""
-    (t, length), first = stretch, o + int(tab[o + SLOTS])
+    (t, length), (sines, box), first = stretch, own, o + int(tab[o + SLOTS])
     tab[first + 2] = 0.0
     for i in range(int(tab[o + N_IN])):
         k = int(tab[o + HEAD + i])
@@ -86,7 +100,10 @@ def swing_within(tab, o, stretch, before, behind, box):
     for _ in range(n):
         code, a, b = operands(tab, o, p)
         x, y = box[(a - first) // 3], box[(b - first) // 3]
-        w = swinging(code, (tab[a + 2], in_row(x)), (tab[b + 2], in_row(y)))
+        if sines > 0 or code not in (SIN, COS, TAN):
+            w = swinging(code, (tab[a + 2], in_row(x)), (tab[b + 2], in_row(y)))
+        else:
+            w = tab[a + 2]
         f, _ = in_row(box[(out - first) // 3])
         tab[out + 2] = w if largest(f) > NOTHING else 0.0
         p += WIDTH

@@ -54,7 +54,7 @@ from trsim.solve.march.phases import change_phases, latch
 from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
-from trsim.solve.march.turns import too_far, unseen
+from trsim.solve.march.turns import BEYOND, beats_in, pulse, too_far, unseen
 from trsim.solve.march.watch import heard, take_sides
 from trsim.solve.march.works import exchanged
 
@@ -66,6 +66,7 @@ SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
 BRIEF = 1e-9  # of a run: no shorter step is asked for
 LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is looked at in
+MOST_LOOKS = 32.0  # in two parts for each rad of a pulse in a load
 # what a step is held to at most where branches of the motion meet: limits (beside.py) are known to
 # that, and shorter steps would only meet more of what they do not know
 OF_LIMITS = 1e-10
@@ -111,6 +112,9 @@ def complete(s, r, b, setting, method):
         return undone(r, worst, worst_rate, STRAYED)
     if s.section.shape[0] + s.heard.size > 0 and passes_unseen(s, r, b, setting, last):
         return undone(r, worst, worst_rate, STRAYED)
+    beat = beats_in(s, r, b) if s.pulse.size > 0 else 0.0
+    if beat > BEYOND * pulse(method[IMPLICIT_AT]) and shorter_may(setting, b.h):
+        return undone(r, worst, worst_rate, STRAYED)
     if s.wound.size > 0 and too_far(s, r, b, h):
         return undone(r, worst, worst_rate, WOUND)
     event = corner = False
@@ -144,8 +148,11 @@ def complete(s, r, b, setting, method):
     if method[LOOK_AT] > 0 and call_look(method[LOOK_AT], s, r, b, setting, t1, 1) > 0:
         evaluate(s, t1, b.y1, b.K[last])
     inside = due(r, setting, t1) and not at_end(setting.every * r.next_row, t1)
-    unseen = not inside and t1 - b.t > LONG * setting.t_end
-    if b.built == 0 and (inside or unseen or b.halved > 0 or method[IMPLICIT_AT] > 0):
+    parts = int(min(2.0 * beat, MOST_LOOKS)) if s.sought.size > 0 else 0
+    if t1 - b.t > LONG * setting.t_end:
+        parts = max(parts, LOOKS)
+    looks = not inside and parts > 1
+    if b.built == 0 and (inside or looks or b.halved > 0 or method[IMPLICIT_AT] > 0):
         build(s, r, b, method)
     if inside and loose(s, r, b, setting, method):
         return undone(r, worst, worst_rate, LOOSE)
@@ -159,9 +166,9 @@ def complete(s, r, b, setting, method):
         for k in range(first, r.rows):
             row, b.firm[0] = b.rows[k], b.row_firm[k]
             call_sample(method[SAMPLE_AT], s, r, b, setting, method, row[0], row[1:])
-    if unseen:
-        for k in range(1, LOOKS):
-            at = b.t + k / LOOKS * (t1 - b.t)
+    if looks:
+        for k in range(1, parts):
+            at = b.t + k / parts * (t1 - b.t)
             measure_inside(s, r, b, at, (at - b.t) / b.h)
             call_sample(method[SAMPLE_AT], s, r, b, setting, method, at, s.out)
     b.firm[0] = b.firm[1]
@@ -223,9 +230,13 @@ def strayed(s, r, setting, h):
 @internal
 def passes_unseen(s, r, b, setting, last):
     """Whether more happens in the step than sections and events can follow."""
-    if setting.fixed_step > 0.0 or b.h <= BRIEF * setting.t_end:
-        return False
-    return unseen(s, r, b, last, b.h)
+    return shorter_may(setting, b.h) and unseen(s, r, b, last, b.h)
+
+
+@internal
+def shorter_may(setting, h):
+    """Whether a shorter step may be asked for."""
+    return setting.fixed_step == 0.0 and h > BRIEF * setting.t_end
 
 
 @internal

@@ -89,7 +89,7 @@ from trsim.solve.march.stiffness import (
     smooth,
     stiffness_due,
 )
-from trsim.solve.march.turns import longest_turn
+from trsim.solve.march.turns import before_pulses, longest_turn, pulse
 from trsim.solve.march.watch import take_sides
 from trsim.solve.methods.auto import calm, choose
 
@@ -287,6 +287,9 @@ def next_step(s, r, b, setting, method):
         most = min(most, longest_turn(s, r))
     if method[STIFF_AT] > 0 and r.vibration > 0.0:
         most = min(most, longest_calm(r))
+    if s.pulse.size > 0:
+        ahead = min(min(STRETCH * r.h, most), left)
+        most = before_pulses(s, r, b, ahead, pulse(method[IMPLICIT_AT]))
     h = min(r.h, most)
     if min(STRETCH * h, most) >= left * (1.0 - 1e-12):
         return left

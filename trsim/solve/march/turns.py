@@ -20,6 +20,9 @@ MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
 WHOLE = 50.0  # rad: the most a body turns by in a step where points of sections are looked for
 MOST_WAVES = 200.0  # rad: the same of waves in functions that make a section's channel swing
 IN_LOOPS = 1.0  # rad, or of the mechanism's size: the most a body in a loop moves by
+# rad of a pulse in a load, 1/(1 + u^2), that a step sees: of 12 stages, and of three
+PULSE, PULSE_OF_FEW = 8.0, 4.0
+BEYOND, SHORTER = 1.5, 60  # times that in a step that was made; halvings of one that was not
 NEXT = 0.9  # of MOST: what the next step may turn a joint by at its present rate
 
 
@@ -67,6 +70,32 @@ def unseen(s, r, b, last, h):
     if h * fastest(s, b.y1, b.K[last]) > 2.0 * WHOLE:
         return True
     return s.wave.size > 0 and h * waves_in(s, r, b, h) > 2.0 * MOST_WAVES
+
+
+@internal
+def before_pulses(s, r, b, h, most):
+    """How much of a step to try, so that it passes over no pulse of a load, going on as it does."""
+    for _ in range(SHORTER):
+        for k in range(r.branch.size):
+            b.branch1[k] = r.branch[k] + h * r.turning[k]
+        w = call_swings(s.beats_at, s, r.t, h, r.branch, r.turning, b.branch1, r.turning)
+        if h * w <= most:
+            break
+        h *= 0.5
+    return h
+
+
+@internal
+def beats_in(s, r, b):
+    """How much of a pulse of a load may lie in the step that just landed, rad."""
+    w = call_swings(s.beats_at, s, b.t, b.h, r.branch, r.turning, b.branch1, b.turning1)
+    return b.h * w
+
+
+@internal
+def pulse(implicit):
+    """How much of a pulse the stages of a step see, rad."""
+    return PULSE_OF_FEW if implicit > 0 else PULSE
 
 
 @internal
