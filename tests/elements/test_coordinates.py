@@ -18,7 +18,13 @@ JOINTS = {
     for word, section in elements.ELEMENTS.items()
     if section == "joints" and (there := elements.load(word)).coordinates
 }
-KEYS = {"x_axis": "[0.8, -0.1, 0.3]", "pitch": "0.4", "clearance": "0", "contact": "law"}
+KEYS = {
+    "second_axis": "[0.6, -0.48, 0]",
+    "x_axis": "[0.8, -0.1, 0.3]",
+    "pitch": "0.4",
+    "clearance": "0",
+    "contact": "law",
+}
 LAW = """
 contact_laws: {law: {normal: hunt_crossley, stiffness: 1e6, bearing_radius: 0.2, restitution: 0.9}}
 """
@@ -33,7 +39,7 @@ RATE = 1.5
 
 
 def turns(coordinate):
-    return coordinate == "angle"
+    return coordinate.endswith("angle")
 
 
 def scene(case, more, end=0.5, rate=RATE):

@@ -157,6 +157,12 @@ def coordinates(spec, at):
     """
     there = of_joint(spec.joint, at.scenario.joints)
     thread = len(there) > 1 and lead(at.scenario.joints[spec.joint]) != 0.0
+    if len(there) > 1 and all(COORDINATES[own].kind == "angle" for own in there.values()):
+        raise ScenarioError(
+            f"each pin of '{spec.joint}' rubs by itself",
+            f"name one of them: {', '.join(there)}; and give the other a friction of its own",
+            ("joint",),
+        )
     if len(there) < 2 or thread:
         x = at.coordinate(f"{spec.joint}.angle" if thread else spec.joint)
         return [x], x
@@ -227,7 +233,7 @@ def check(spec, x, joint, at):
             "give its contact law a `friction`, or the joint no clearance",
             ("joint",),
         )
-    twin = next((n for (_, n), i in at.instances.items() if i.row.rubs == x.joint), None)
+    twin = next((n for n in at.scenario.forces if rubs_too(n, x, at)), None)
     if twin:
         raise ScenarioError(
             f"'{twin}' is friction in '{x.joint}' already, and what slides slides one way",
@@ -246,6 +252,15 @@ def check(spec, x, joint, at):
             "give a `coefficient`, a `constant` or both",
             ("friction",),
         )
+
+
+def rubs_too(name, x, at):
+    """Whether a friction that is packed already is one of the same surfaces: those of a joint, or
+    of each pin of a cross."""
+    other = at.instances.get(("forces", name))
+    if other is None or other.row.rubs != x.joint:
+        return False
+    return not x.from_drawing or Own.of(other.row).coordinate == x.entry
 
 
 def check_sizes(spec, parts, joint, at):
