@@ -188,6 +188,12 @@ def coordinates(spec, at):
             f"name one of them: {', '.join(there)}; and give the other a friction of its own",
             ("joint",),
         )
+    if len(there) > MOST:
+        raise ScenarioError(
+            f"'{spec.joint}' slides in more than {MOST} ways, and no surface does",
+            f"name one of them: {', '.join(there)}",
+            ("joint",),
+        )
     if spec.joint in at.scenario.joints and is_ball(at.elements["joints", spec.joint]):
         own = TwoPoints.of(at.packed("joints", spec.joint, ("joint",)).row)
         axes = [Turn(spec.joint, own.i, own.j, own.p_i, own.p_j, axis) for axis in UNITS]
@@ -316,7 +322,15 @@ def check_sizes(spec, parts, joint, at):
         raise ScenarioError(
             f"friction of {what} needs `radius`", "it acts at that radius", ("radius",)
         )
-    if what == "a hinge":
+    places = [held for held in joint.element.holds if held in "xyzuwa"]
+    if not places and what in ("a hinge", "a slide") and spec.friction.coefficient > 0.0:
+        if spec.length is None:
+            raise ScenarioError(
+                f"'{x.joint}' passes on moments only, and nothing says what these press",
+                "give `length`: the distance of the two ends that carry them",
+                ("length",),
+            )
+    elif places and what == "a hinge":
         check_pressed(spec, joint, x, at)
     return what
 

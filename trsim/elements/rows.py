@@ -235,9 +235,9 @@ def writer_of(coordinate):
 
 @cache
 def coordinate_of(coordinates, n_rows):
-    """The kernel of the coordinates of a joint with so many rows, three at most."""
+    """The kernel of the coordinates of a joint with so many rows, four at most."""
     own = [(writer_of(one), column_of(k, n_rows)) for k, one in enumerate(coordinates)]
-    (first, c), (second, o), (third, q) = (*own, *((own[0][0], -1),) * (3 - len(own)))
+    (first, c), (second, o), (third, q), (last, r) = (*own, *((own[0][0], -1),) * (4 - len(own)))
 
     @kernel
     def coordinate(t, scene, e):
@@ -248,6 +248,8 @@ def coordinate_of(coordinates, n_rows):
             second(scene, e, con[e, o])
         if q >= 0 and con[e, q] >= 0:
             third(scene, e, con[e, q])
+        if r >= 0 and con[e, r] >= 0:
+            last(scene, e, con[e, r])
 
     return coordinate
 
