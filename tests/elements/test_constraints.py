@@ -10,6 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from trsim import elements
 from trsim.elements.rows import ARC
@@ -148,12 +149,23 @@ def thrown(case, seed):
     b = bench(text, rng)
     assert b.mechanism.model.m == len(JOINTS[kind].rows) + bool(drive)
     counted = "lead" in JOINTS[kind].rows
-    if coordinate == "angle" or counted:
+    if coordinate in ("first_angle", "second_angle"):
+        crossed(b, rng)
+    elif coordinate == "angle" or counted:
         # an angle is one only while the axes are parallel, and its rate while they stay so
         put_right(b, PLACE, rng.uniform(-2, 2) * AXIS, np.zeros(3))
         if not counted:
             b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS)
     return b
+
+
+def crossed(b, rng):
+    """Right turned about both pins of a cross, the first on left, and turning about these."""
+    pin = np.array([0.6, -0.48, 0.0]) / np.hypot(0.6, 0.48)
+    first = Rotation.from_rotvec(rng.uniform(-2, 2) * AXIS)
+    both = first * Rotation.from_rotvec(rng.uniform(-2, 2) * pin)
+    put_right(b, PLACE, both.as_rotvec(), np.zeros(3))
+    b.V[2, 3:] = b.V[1, 3:] + rng.normal() * now(b, AXIS) + rng.normal() * now(b, first.apply(pin))
 
 
 def jacobian(w):

@@ -89,3 +89,75 @@ def test_refused():
     with pytest.raises(TrsimError, match="must not be zero") as caught:
         built(text("[0, 0, 0]", "true"))
     assert caught.value.path == ("joints", "along", "axis")
+
+
+def test_where_it_goes_and_how_it_turns():
+    """Along three axes of a base that turns about z at 2 rad/s, and about that as well."""
+    for pair, sign in (("base, lamp", 1.0), ("lamp, base", -1.0)):
+        r = run(f"""
+planar: false
+bodies:
+  base: {{mass: 1, inertia: [1, 1, 1], at: [4, 0, 0], angle: 0.3, angular_velocity: [0, 0, 2]}}
+  lamp: {{mass: 2, inertia: [{I}, {I}, {I}], at: [5, 0, 1], angle: 0.9, velocity: [1, 2, 3],
+         angular_velocity: [0, 0, -5]}}
+joints:
+  hinge: {{type: revolute, bodies: [ground, base], at: [4, 0, 0]}}
+  along: {{type: parallel, bodies: [{pair}], axis: [0, 0, 1], x_axis: [0, 7, 0], at: [5, 0, 1]}}
+sensors:
+  turn: {{joint: along.angle}}
+  up: {{joint: along.stroke}}
+  x: {{joint: along.x}}
+  y: {{joint: along.y}}
+solver: {{end: 3, tolerance: 1e-10}}
+output: {{every: 0.01, channels: ["*"]}}
+""")
+        t = r.t
+        assert r["turn"] == pytest.approx(-7 * sign * t, abs=1e-8)
+        assert r["up"] == pytest.approx(3 * sign * t, abs=1e-8)
+        mark = np.stack([4 + np.cos(2 * t), np.sin(2 * t)], 1)  # the point on the base
+        apart = sign * (np.stack([5 + t, 2 * t], 1) - mark)
+        turned = 2 * t if sign > 0 else -5 * t  # of the first body
+        x = np.stack([-np.sin(turned), np.cos(turned)], 1)
+        y = np.stack([-np.cos(turned), -np.sin(turned)], 1)
+        assert r["x"] == pytest.approx(np.sum(apart * x, 1), abs=1e-8)
+        assert r["y"] == pytest.approx(np.sum(apart * y, 1), abs=1e-8)
+
+
+RUBS = "friction: {law: modified_coulomb, coefficient: 0.2, v0: 0, v1: 1e-4}"
+
+
+def test_friction_by_its_moment():
+    """Two ends 50 mm apart carry the moment M = 2 N m across the axis: N = 2 M/l = 80 N."""
+    r = run(f"""
+planar: false
+bodies: {{lamp: {{mass: 2, inertia: [{I}, {I}, {I}], at: [0, 0, 0], velocity: [0, 0, 3],
+                angular_velocity: [0, 0, 9]}}}}
+joints: {{up: {{type: parallel, bodies: [ground, lamp], axis: [0, 0, 1]}}}}
+forces:
+  tilt: {{type: applied_load, body: lamp, frame: world, direction: [1, 0, 0], torque: 2}}
+  rub: {{type: joint_friction, joint: up.angle, radius: 10 mm, length: 50 mm, {RUBS}}}
+solver: {{end: 0.5, tolerance: 1e-10}}
+output: {{channels: ["*"]}}
+""")
+    assert r["rub.normal_force"] == pytest.approx(80.0, rel=1e-9)
+    slower = 0.2 * 0.010 * 80 / I
+    assert r["lamp.angular_velocity"][:, 2] == pytest.approx(9 - slower * r.t, abs=1e-7)
+    assert energy_error(r) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "keys, words",
+    [
+        ("joint: up.stroke", "passes on moments only"),
+        ("joint: up.angle, radius: 0.1, thrust_radius: 0.1", "passes on moments only"),
+        ("joint: up, radius: 0.1", "slides in more than 3 ways"),
+    ],
+)
+def test_friction_that_nothing_presses(keys, words):
+    with pytest.raises(TrsimError, match=words):
+        built(f"""
+planar: false
+bodies: {{lamp: {{mass: 2, inertia: [{I}, {I}, {I}]}}}}
+joints: {{up: {{type: parallel, bodies: [ground, lamp], axis: [0, 0, 1]}}}}
+forces: {{rub: {{type: joint_friction, {keys}, {RUBS}}}}}
+""")

@@ -44,6 +44,9 @@ class JointCoordinate(NamedTuple):
     place: tuple[float, ...]  # the joint's point in world axes as drawn
     curve: tuple[int, ...] = ()  # of an arc: offset in tab, entry of u, 1: of a point on it
     other_i: tuple[float, ...] = ()  # and the y axis of its plane, where axis_i is the x axis
+    # the axis is one of the joint's second body: that is i, and j the first one
+    turned: bool = False
+    from_drawing: bool = False  # an angle that is 0 as drawn
 
 
 NO_NAMES: Mapping[str, tuple[int, str]] = {}
@@ -222,16 +225,20 @@ class Addresses:
         """
         name, joint, own = named(reference, self.scenario.joints, kind, path)
         if name not in self.coordinates:
-            kind, letter = COORDINATES[own]
-            spec = self.scenario.joints[joint]
+            kind, letter, of, counts = COORDINATES[own]
+            spec, turned, zero = self.scenario.joints[joint], of == "j", counts == "drawing"
             i, j = self.bodies(spec.bodies, spec.at)
             place = self.centre(j) if spec.at is None else spec.at
             axis = triad(spec)["uwa".index(letter)]
-            drawn = self.drawn_angle(i, j, axis, spec.drawn_in) if kind == "angle" else 0.0
+            if turned:  # seen from its second body the first one turns the other way
+                i, j, axis = j, i, tuple(-c for c in axis)
+            angle = kind == "angle" and not zero
+            drawn = self.drawn_angle(i, j, axis, spec.drawn_in) if angle else 0.0
             points, s = (self.local(i, place), self.local(j, place)), self.entry()
             self.coordinates[name] = JointCoordinate(
-                name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn, tuple(place)
-            )
+                name, joint, s, kind, i, j, *points, self.axes(i, axis), axis, drawn, tuple(place),
+                turned=turned, from_drawing=zero,
+            )  # fmt: skip
         return self.coordinates[name]
 
     def turn(

@@ -215,15 +215,15 @@ def loads(at: Addresses, instances: list[Instance]) -> None:
 
 
 def resisted(at: Addresses, instances: list[Instance]) -> None:
-    """What a bushing holds of a flexible bar in space: places, no turns."""
+    """What may hold places of a flexible bar in space and no turns: bushings, rough balls."""
     for instance in instances:
         node = next(filter(at.is_node, instance.turning.held), None)
         if node is not None:
             raise ModelError(
                 f"holds the turning of '{at.owners[node]}', a flexible bar, about itself, and in "
                 "space that has no torsion",
-                "leave out its rotational stiffness and damping, let it act on a rigid body fixed "
-                "to the bar, or draw the mechanism in the x-y plane",
+                "leave out what acts against turns, as rotational stiffness, let it act on a rigid "
+                "body fixed to the bar, or draw the mechanism in the x-y plane",
                 (instance.section, instance.name),
             )
 

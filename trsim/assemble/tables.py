@@ -206,7 +206,9 @@ def turns(at: Addresses, d: int) -> dict[str, Any]:
     rows = [(x.entry, x.i, x.j, sign) for x, sign in found]
     alike = at.about_z == at.angle
     parallel = [
-        0.0 if alike[x.i] and alike[x.j] else x.drawn - sign * (at.about_z[x.j] - at.about_z[x.i])
+        0.0
+        if alike[x.i] and alike[x.j] and not x.from_drawing
+        else x.drawn - sign * (at.about_z[x.j] - at.about_z[x.i])
         for x, sign in found
     ]
     unwrapped = {x.entry for x, _ in found}

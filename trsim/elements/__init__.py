@@ -52,6 +52,7 @@ ELEMENTS = {
     "bushing": "forces",
     "torsion_spring": "forces",
     "joint_spring": "forces",
+    "ball_spring": "forces",
     "gear_mesh": "forces",
     "limit_stop": "forces",
     "joint_friction": "forces",

@@ -149,6 +149,7 @@ ELEMENT = joint(
     spec=ConstantVelocity,
     rows=(*POINT, JointRow("turn", "c", fill=twist)),
     pack=pack,
+    sways=True,
     channels=(Channel("bend", "rad", "angle between the shafts", least=0.0),),
     kernels={"gaps": gap, "measure": measure},
     doubts=doubts,

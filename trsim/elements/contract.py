@@ -320,6 +320,7 @@ class Element:
     elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
     viscous: tuple[int, ...] = ()  # and those of its material's damping
     dear: bool = False  # no joint is released to it where another choice does as well
+    sways: bool = False  # of a joint about a point: which turns it leaves is a rotation vector
     meets: bool = False  # its bodies meet at the point `at`
     welds: bool = False  # its two bodies move as one
     pin: tuple[int, ...] = ()  # dimensions, 2 or 3, in which its rows hold a point and nothing else

@@ -35,11 +35,10 @@ def named(
         raise ScenarioError(f"no joint named '{reference}'", known(reference, joints), path)
     there, word = of_joint(joint, joints), joints[joint].type
     if not there:
-        raise ScenarioError(
-            f"joint '{joint}' ({word}) has no coordinate",
-            "name a revolute or a prismatic joint",
-            path,
-        )
+        hint = "name a revolute or a prismatic joint"
+        if elements.load(word).sways:
+            hint += "; a `ball_spring` holds and damps this one"
+        raise ScenarioError(f"joint '{joint}' ({word}) has no coordinate", hint, path)
     if which and which not in there.values():
         raise ScenarioError(f"joint '{joint}' has no {which}", known(reference, there), path)
     if kind != ANY and any(COORDINATES[own].kind == ARC for own in there.values()):

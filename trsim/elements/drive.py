@@ -108,9 +108,10 @@ def pack(name, spec, at):
     k = c = 0.0
     if spec.compliance is not None:
         k = spec.compliance.stiffness
-        driven = x.j or x.i  # the ground is not driven
+        last, first = (x.i, x.j) if x.turned else (x.j, x.i)
+        driven = last or first  # the ground is not driven
         m = spec.compliance.mass or (
-            at.inertia_about(driven, x.axis, x.s_j if x.j else x.s_i)
+            at.inertia_about(driven, x.axis, x.s_j if driven == x.j else x.s_i)
             if x.kind == "angle"
             else at.mass(driven)
         )

@@ -67,8 +67,8 @@ def on_line(row):
 def reach(row, coordinates):
     """Bodies turn about the axis of an angle, and slide along that of a stroke."""
     own, axes = Axes.of(row), {"angle": [], "stroke": []}
-    for kind, letter in (COORDINATES[one] for one in coordinates):
-        axes[kind].append((own.i, getattr(own, f"{letter}_i")))
+    for one in map(COORDINATES.get, coordinates):
+        axes[one.kind].append((own.i, getattr(own, f"{one.axis}_i")))
     return Reach(hinges=tuple(axes["angle"]), slides=tuple(axes["stroke"]))
 
 

@@ -9,6 +9,7 @@ reaction of the joint's own rows, a force R and a moment M on body j at the join
 
     slide     N = |R_1| + |R_2| + 2 |M . a| / width               g = 1
     hinge     N = |R_1| + |R_2| + |R . a| thrust_radius / radius  g = radius
+    ball      N = |R|                                             g = radius  about every axis
     thread    N = |R . a| / cos l,   tan l = h / radius           g = radius / cos l  of the angle
 
     R_1,2 = (R - a a . R)/2 +- (M x a) / length      what its two ends carry across the axis
@@ -19,7 +20,9 @@ stops do along the coordinate is no part of the reaction.
 
 Of a joint that slides along several coordinates at once, as a shaft that turns in a sleeve or a
 block on a table, s' and F are vectors with a part for each, F against s', and f that of |s'|.  A
-sleeve is pressed like a hinge without collar, a plane by N = |R . a| along its normal.
+sleeve is pressed like a hinge without collar, a plane by N = |R . a| along its normal.  A ball
+turns about three axes of body i: its friction is a moment radius |F| against its angular velocity
+omega, s' = radius omega, as of a ball that its socket holds all around.
 
 Reaction and friction depend on each other.  They are solved for together, to rounding, in every
 evaluation of the equations of motion (assemble/rubbing.py).  Where large friction has no solution,
@@ -27,14 +30,15 @@ or several [Painleve1895], the run ends with the status `painleve`.
 """
 
 from math import atan, cos, pi, sin, sqrt
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, NamedTuple
 
 from annotated_types import Ge, Gt
 
-from trsim.elements.contract import Channel, Element, Reach, Row, kernel, measured
+from trsim.elements.contract import Channel, Element, Reach, Row, Turning, kernel, measured
 from trsim.elements.coordinates import named, of_joint
 from trsim.elements.frames import (
     Along,
+    TwoPoints,
     act_along,
     arm,
     at_both,
@@ -43,6 +47,7 @@ from trsim.elements.frames import (
     minus,
     on_joint,
     plus,
+    relative_spin,
     scaled,
 )
 from trsim.elements.friction_law import Friction
@@ -56,6 +61,7 @@ from trsim.laws.friction import CODES, N_PARAMETERS, friction_force, part_of_bri
 
 Length = Annotated[float, Gt(0), Unit("m")]
 MOST = 3  # coordinates of a joint
+UNITS = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
 class JointFriction(Spec):
@@ -65,13 +71,15 @@ class JointFriction(Spec):
                    slide, or the one that is named
     friction       law modified_coulomb or sticking, with its numbers; a coefficient of 0 leaves
                    `constant` alone
-    radius         of the journal of a hinge, at which it rubs; of a thread its mean radius
+    radius         of the journal of a hinge, at which it rubs; of a thread its mean radius; of a
+                   ball its radius
     thrust_radius  mean radius of the collar that carries the force along the axis of a hinge;
                    without it that force makes no friction
     length         between the two ends that carry moments across the axis; without it these make
                    no friction
     width          between the two flanks of a slide that carry the moment about its axis; the same
-    constant       friction that is always there while it slides, of a seal or a preload
+    constant       friction that is always there while it slides, of a seal or a preload; of
+                   what turns a torque
     """
 
     type: ClassVar[str] = "joint_friction"
@@ -110,6 +118,22 @@ SEVERAL = (
     Channel("normal_force", "N", "how the reaction presses what rubs together", least=0.0),
     Channel("sliding_speed", "m/s", "of the second body against the first, where it rubs"),
 )
+BALL = (*SEVERAL, Channel("moment", "N*m", "friction on the second body, world axes", 3))
+
+
+class Turn(NamedTuple):
+    """How a ball turns about an axis of its first body: no coordinate, but a rate."""
+
+    joint: str
+    i: int
+    j: int
+    s_i: tuple
+    s_j: tuple
+    axis_i: tuple
+    name: str = ""
+    kind: str = "angle"
+    entry: int = -1
+    from_drawing: bool = False
 
 
 def pack(name, spec, at):
@@ -117,7 +141,8 @@ def pack(name, spec, at):
     joint = at.packed("joints", axis.joint, ("joint",))
     check(spec, axis, joint, at)
     surface = check_sizes(spec, parts, joint, at)
-    kind = axis.kind if len(parts) == 1 else "stroke"
+    ball, alone = surface == "a ball", len(parts) == 1
+    kind = axis.kind if alone or ball else "stroke"
     at.check_units(kind, JointFriction, ("constant",), "forces", name)
     gears, along, about = zip(*(gear(spec, x, at) for x in parts), strict=True)
     mu, (law, numbers) = spec.friction.coefficient, spec.friction.numbers
@@ -133,14 +158,14 @@ def pack(name, spec, at):
         entries=filled((x.entry for x in parts), -1), states=filled(states, -1),
         gears=filled(gears), along=filled(along), about=filled(about),
         axes=filled((c for x in parts for c in x.axis_i), 0.0, 3 * MOST),
-        preload=spec.constant / (mu * (abs(gears[0]) if len(parts) == 1 else 1.0)),
+        preload=spec.constant / (mu * (abs(gears[0]) if alone or ball else 1.0)),
     )  # fmt: skip
     if sticks:
         grips = (numbers[3], numbers[4], numbers[3] / numbers[1])
     else:
         grips = (0.0, numbers[0] / (numbers[2] - numbers[1]), 0.0)
     return Row(*own, states=tuple(states), turns=kind == "angle", rubs=axis.joint, grips=grips,
-               channels=None if len(parts) == 1 else SEVERAL)  # fmt: skip
+               channels=None if alone else BALL if ball else SEVERAL)  # fmt: skip
 
 
 def filled(values, rest=0.0, number=MOST):
@@ -157,6 +182,22 @@ def coordinates(spec, at):
     """
     there = of_joint(spec.joint, at.scenario.joints)
     thread = len(there) > 1 and lead(at.scenario.joints[spec.joint]) != 0.0
+    if len(there) > 1 and all(COORDINATES[own].kind == "angle" for own in there.values()):
+        raise ScenarioError(
+            f"each pin of '{spec.joint}' rubs by itself",
+            f"name one of them: {', '.join(there)}; and give the other a friction of its own",
+            ("joint",),
+        )
+    if len(there) > MOST:
+        raise ScenarioError(
+            f"'{spec.joint}' slides in more than {MOST} ways, and no surface does",
+            f"name one of them: {', '.join(there)}",
+            ("joint",),
+        )
+    if spec.joint in at.scenario.joints and is_ball(at.elements["joints", spec.joint]):
+        own = TwoPoints.of(at.packed("joints", spec.joint, ("joint",)).row)
+        axes = [Turn(spec.joint, own.i, own.j, own.p_i, own.p_j, axis) for axis in UNITS]
+        return axes, axes[0]._replace(axis_i=(0.0, 0.0, 0.0))  # pressed along any axis alike
     if len(there) < 2 or thread:
         x = at.coordinate(f"{spec.joint}.angle" if thread else spec.joint)
         return [x], x
@@ -168,6 +209,11 @@ def coordinates(spec, at):
         _, _, a = triad(at.scenario.joints[spec.joint])
         normal = normal._replace(axis_i=at.axes(normal.i, a), axis=a)
     return [x for x in found if not (plane and x is angle and spec.radius is None)], angle or normal
+
+
+def is_ball(joint):
+    """Whether a joint holds a point and nothing else."""
+    return joint.holds == ("x", "y", "z")
 
 
 def gear(spec, x, at):
@@ -215,6 +261,7 @@ KEYS = {
     "a slide": ("length", "width"),
     "a sleeve": ("radius", "length"),
     "a plane": ("radius",),
+    "a ball": ("radius",),
 }
 
 
@@ -227,7 +274,7 @@ def check(spec, x, joint, at):
             "give its contact law a `friction`, or the joint no clearance",
             ("joint",),
         )
-    twin = next((n for (_, n), i in at.instances.items() if i.row.rubs == x.joint), None)
+    twin = next((n for n in at.scenario.forces if rubs_too(n, x, at)), None)
     if twin:
         raise ScenarioError(
             f"'{twin}' is friction in '{x.joint}' already, and what slides slides one way",
@@ -248,12 +295,23 @@ def check(spec, x, joint, at):
         )
 
 
+def rubs_too(name, x, at):
+    """Whether a friction that is packed already is one of the same surfaces: those of a joint, or
+    of each pin of a cross."""
+    other = at.instances.get(("forces", name))
+    if other is None or other.row.rubs != x.joint:
+        return False
+    return not x.from_drawing or Own.of(other.row).coordinate == x.entry
+
+
 def check_sizes(spec, parts, joint, at):
     """What rubs, in words.  Refuses sizes that it does not have, and those that are missing."""
     x, angle = parts[0], any(part.kind == "angle" for part in parts)
     what = "a hinge" if x.kind == "angle" else "a slide"
     if lead(at.scenario.joints[x.joint]) != 0.0:
         what = "a thread"
+    elif len(parts) > 1 and x.entry < 0:
+        what = "a ball"
     elif len(parts) > 1:
         what = "a plane" if sum(part.kind == "stroke" for part in parts) > 1 else "a sleeve"
     for key in dict.fromkeys(key for keys in KEYS.values() for key in keys):
@@ -264,14 +322,28 @@ def check_sizes(spec, parts, joint, at):
         raise ScenarioError(
             f"friction of {what} needs `radius`", "it acts at that radius", ("radius",)
         )
+    places = [held for held in joint.element.holds if held in "xyzuwa"]
+    if not places and what in ("a hinge", "a slide") and spec.friction.coefficient > 0.0:
+        if spec.length is None:
+            raise ScenarioError(
+                f"'{x.joint}' passes on moments only, and nothing says what these press",
+                "give `length`: the distance of the two ends that carry them",
+                ("length",),
+            )
+    elif places and what == "a hinge":
+        check_pressed(spec, joint, x, at)
+    return what
+
+
+def check_pressed(spec, joint, x, at):
+    """Refuse a hinge that is pressed by what makes no friction as it is told."""
     across, along = presses(joint, x, at)
-    if what == "a hinge" and not across and not (spec.thrust_radius and along):
+    if not across and not (spec.thrust_radius and along):
         raise ScenarioError(
             f"nothing presses '{x.joint}' together across its axis",
             "give `thrust_radius`: the mean radius of the faces that carry the force along it",
             ("thrust_radius",),
         )
-    return what
 
 
 @internal
@@ -301,7 +373,17 @@ def slides(scene, e, c):
     own = Own(scene, e)
     state = own.states[c]
     w = scene.z[state] if state >= 0 else 0.0
+    if own.entries[c] < 0:
+        return own.gears[c] * dot(axis(scene, e, c), relative_spin(scene.V, own.i, own.j)), w
     return own.gears[c] * scene.S[own.entries[c], 1], w
+
+
+@internal
+def axis(scene, e, c):
+    """The axis of the c-th coordinate, world axes."""
+    own = Own(scene, e)
+    n = (own.axes[3 * c], own.axes[3 * c + 1], own.axes[3 * c + 2])
+    return arm(scene.X, own.i, n)
 
 
 @internal
@@ -399,8 +481,7 @@ def rub(t, scene, e):
     _, d, _ = sliding(scene, e)
     for c in range(own.number):
         F = scene.rubbed[e] * (d[0] if c == 0 else (d[1] if c == 1 else d[2]))
-        n = (own.axes[3 * c], own.axes[3 * c + 1], own.axes[3 * c + 2])
-        a = arm(scene.X, own.i, n)
+        a = axis(scene, e, c)
         if own.about[c] != 0.0:
             act_along(scene, e, scaled(F * own.about[c], a), 1)
         if own.along[c] != 0.0:
@@ -410,9 +491,20 @@ def rub(t, scene, e):
 @measured
 def measure(t, scene, e, o):
     own, out = Own(scene, e), scene.out
-    _, _, slip = sliding(scene, e)
+    _, d, slip = sliding(scene, e)
     out[o] = own.gears[0] * scene.rubbed[e] if own.number == 1 else scene.rubbed[e]
     out[o + 1], out[o + 2] = pressing(scene, e), slip
+    if own.entries[0] < 0:
+        M = scene.rubbed[e] * own.about[0]
+        x, y, z = axis(scene, e, 0), axis(scene, e, 1), axis(scene, e, 2)
+        for c in range(3):
+            out[o + 3 + c] = M * (d[0] * x[c] + d[1] * y[c] + d[2] * z[c])
+
+
+def turning(row):
+    """What turns about every axis does so about that of a flexible bar too."""
+    own = Own.of(row)
+    return Turning((own.i, own.j), held=(own.i, own.j) if own.entries[0] < 0 else ())
 
 
 ELEMENT = Element(
@@ -421,6 +513,7 @@ ELEMENT = Element(
     spec=JointFriction,
     pack=pack,
     acts_at=at_both,
+    turning=turning,
     reach=lambda row: Reach(),  # acts along a coordinate, whose joint says where that leads
     channels=(
         Channel("force", "drive", "friction on the second body, along the coordinate"),

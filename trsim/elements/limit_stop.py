@@ -46,7 +46,7 @@ from trsim.elements.frames import (
 )
 from trsim.elements.frames import point as place
 from trsim.elements.on_curve import NO_CURVE, AlongCurve, along_curve, tangent
-from trsim.elements.rows import ARC, slides
+from trsim.elements.rows import ARC, COORDINATES, slides
 from trsim.errors import ScenarioError
 from trsim.fields import Spec, Unit, direction, point, vector
 from trsim.kernels.columns import f8, i8
@@ -128,8 +128,10 @@ class LimitStop(Spec):
         name, _ = split(self.joint, joints)
         if name not in joints:
             return (), None
-        own = of_joint(name, joints).get(called(self.joint, joints), "")
-        return joints[name].bodies, None if own and slides((own,)) else joints[name]
+        own, hinge = of_joint(name, joints).get(called(self.joint, joints), ""), joints[name]
+        if own and COORDINATES[own].of == "j":
+            hinge = hinge.model_copy(update={"axis": hinge.second_axis})
+        return hinge.bodies, None if own and slides((own,)) else hinge
 
 
 WITH_UNITS = ("lower", "upper", "ramp", "stiffness", "damping")
@@ -147,6 +149,7 @@ class Own(AlongCurve):
     ramp: f8
     lower: f8
     upper: f8
+    on_second: f8  # 1; -1 of a joint's coordinate whose body j is the first one of the joint
 
 
 def pack(name, spec, at):
@@ -165,7 +168,7 @@ def pack(name, spec, at):
         n = at.axes(i, direction(spec.wall.normal))
         places = points(at, i, j, spec.wall.at, spec.point.at)
         own = Own.packed(spec, **places, kind=ON_WALL, axis=n, lower=0.0, upper=0.0,
-                         **NO_CURVE)  # fmt: skip
+                         on_second=1.0, **NO_CURVE)  # fmt: skip
         return Row(*own, contact, travel="stroke")
     x = at.coordinate(spec.joint, ANY)
     at.check_units(x.kind, LimitStop, WITH_UNITS, "forces", name)
@@ -173,7 +176,10 @@ def pack(name, spec, at):
     curve = NO_CURVE if kind != ON_ARC else stopped(x)
     low = -UNBOUNDED if spec.lower is None else spec.lower
     high = UNBOUNDED if spec.upper is None else spec.upper
-    own = Own.packed(spec, **on_joint(x), kind=kind, lower=low, upper=high, **curve)
+    on_second = -1.0 if x.turned else 1.0
+    own = Own.packed(
+        spec, **on_joint(x), kind=kind, lower=low, upper=high, on_second=on_second, **curve
+    )
     turns = kind == ON_ANGLE
     return Row(*own, contact, turns=turns, travel=x.kind, kink=0.5 * (high - low))
 
@@ -274,7 +280,7 @@ def measure(t, scene, e, o):
         f = ramped_damping(d, d_dot, own.stiffness, own.damping, own.ramp)
     out[o], out[o + 1] = f, d
     for c in range(3):
-        out[o + 2 + c] = f * n[c]
+        out[o + 2 + c] = own.on_second * f * n[c]
 
 
 def reach(row):

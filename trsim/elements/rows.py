@@ -17,6 +17,8 @@ that begin with tilt or turn are those of angles.  Coordinates of a joint, of wh
 there:
 
     angle          of the triad of body j against that of body i about a_i, unwrapped
+    first_angle    the same of a cross, whose pins are a_i and u_j: of u_j against u_i about a_i
+    second_angle   of a_j against a_i about u_j
     stroke         a_i . d
     x, y           u_i . d,  w_i . d
     arc            length along a curve of body i, which its joint writes itself (on_curve.py)
@@ -32,6 +34,7 @@ from trsim.elements.frames import (
     TwoPoints,
     along_row,
     arm,
+    cross,
     dot,
     nearest_branch,
     perpendicular_row,
@@ -171,6 +174,18 @@ def write_angle(scene, e, s):
     S[s, 1] = dot(arm(X, i, own.a_i), relative_spin(V, i, j))
 
 
+@internal
+def write_second_angle(scene, e, s):
+    """The angle of the second body of a cross against its pin a_i, about its own pin u_j."""
+    X, V, S, own = scene.X, scene.V, scene.S, Axes(scene, e)
+    i, j = own.i, own.j
+    u = arm(X, j, own.u_j)
+    if scene.d == 6 or i >= scene.n_r or j >= scene.n_r:
+        a, a_j = arm(X, i, own.a_i), arm(X, j, own.a_j)
+        S[s, 0] = nearest_branch(atan2(dot(cross(u, a), a_j), dot(a, a_j)), S[s, 0])
+    S[s, 1] = dot(u, relative_spin(V, i, j))
+
+
 def write_along(letter):
     """What writes the displacement along an axis of body i and its rate, as entry s of S."""
     c = Axes.columns[f"{letter}_i"].at
@@ -188,11 +203,15 @@ class Coordinate(NamedTuple):
 
     kind: str  # angle, stroke, or ARC
     axis: str  # u, w or a, along which it is, or about which; of a curve none
+    of: str = "i"  # the body that this axis turns with
+    counts: str = "axes"  # an angle: from where the axes of its bodies agree, or from the `drawing`
 
 
 ARC = "arc"  # a length along a curve: it is watched and stopped, and nothing drives or relates it
 COORDINATES = {
     "angle": Coordinate("angle", "a"),
+    "first_angle": Coordinate("angle", "a", counts="drawing"),
+    "second_angle": Coordinate("angle", "u", "j", "drawing"),
     "stroke": Coordinate("stroke", "a"),
     "x": Coordinate("stroke", "u"),
     "y": Coordinate("stroke", "w"),
@@ -209,14 +228,16 @@ def slides(coordinates) -> bool:
 def writer_of(coordinate):
     """What writes one coordinate."""
     own = COORDINATES[coordinate]
-    return write_angle if own.kind == "angle" else write_along(own.axis)
+    if own.kind != "angle":
+        return write_along(own.axis)
+    return write_angle if own.of == "i" else write_second_angle
 
 
 @cache
 def coordinate_of(coordinates, n_rows):
-    """The kernel of the coordinates of a joint with so many rows, three at most."""
+    """The kernel of the coordinates of a joint with so many rows, four at most."""
     own = [(writer_of(one), column_of(k, n_rows)) for k, one in enumerate(coordinates)]
-    (first, c), (second, o), (third, q) = (*own, *((own[0][0], -1),) * (3 - len(own)))
+    (first, c), (second, o), (third, q), (last, r) = (*own, *((own[0][0], -1),) * (4 - len(own)))
 
     @kernel
     def coordinate(t, scene, e):
@@ -227,6 +248,8 @@ def coordinate_of(coordinates, n_rows):
             second(scene, e, con[e, o])
         if q >= 0 and con[e, q] >= 0:
             third(scene, e, con[e, q])
+        if r >= 0 and con[e, r] >= 0:
+            last(scene, e, con[e, r])
 
     return coordinate
 

@@ -21,6 +21,7 @@ ELEMENT = joint(
     key="spherical",
     spec=Spherical,
     rows=POINT,
+    sways=True,
     example="""
 planar: false
 bodies:

@@ -102,6 +102,14 @@ def carried(spec: Any, kinds: tuple[str, str], at: Any) -> Carried:
             ("joints",),
         )
     (carrier,) = common
+    for one in (x, y):
+        if one.from_drawing and one.i != carrier:
+            raise ScenarioError(
+                f"the axis of '{one.name}' does not turn with the carrier "
+                f"'{at.owners[carrier]}', and the wheel on it would not stay in its place",
+                "put a hinge there, or use a `coupler` of the two coordinates",
+                ("joints",),
+            )
     return Carried(x, y, *(1.0 if one.i == carrier else -1.0 for one in (x, y)))
 
 

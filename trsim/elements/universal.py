@@ -3,9 +3,17 @@
     Phi_1..3 = r_j + p_j - r_i - p_i = 0
     Phi_4    = a_i . b_j = 0               [Nikravesh1988]
 
-a is the axis on body i, u of its triad; b the one on body j, a of its triad: the bearings of the
-cross between them, which has no mass.  reaction is the force on body j at the point, world axes;
+a is the axis on body i, a of its triad; b the one on body j, u of its triad: the pins of the cross
+between them, which has no mass.  reaction is the force on body j at the point, world axes;
 reaction_moment is along a x b.
+
+The cross turns against body i by first_angle about a, body j against the cross by second_angle
+about b, both zero as drawn and unwrapped:
+
+    omega_j - omega_i = first_angle' a + second_angle' b,     a . b = 0
+
+They are regular however far the joint bends.  A torque T along one of them is T a, or T b, on body
+j and the opposite on body i.
 """
 
 from typing import ClassVar
@@ -24,13 +32,20 @@ SQUARE = 1e-6  # cosine of the angle between the axes as drawn
 class Universal(Joint):
     """A cross joint: both bodies turn about the axes of a cross, one on each.
 
-    axis         of the cross on the first body, as drawn; of any length
-    second_axis  on the second body, perpendicular to the first one as drawn
+    axis         of the cross on the first body, as drawn; of any length: the cross turns about it
+                 by `first_angle`, which is 0 as drawn
+    second_axis  on the second body, perpendicular to the first one as drawn: the second body turns
+                 about it by `second_angle`, against the cross
     """
 
     type: ClassVar[str] = "universal"
     axis: vector("-")
     second_axis: vector("-")
+
+    @property
+    def x_axis(self):
+        """The second axis is the x axis of its triad."""
+        return self.second_axis
 
 
 def axes(spec):
@@ -52,14 +67,15 @@ def axes(spec):
 def pack(name, spec, at):
     i, j = at.bodies(spec.bodies, spec.at)
     a, b = axes(spec)
-    places, triad = points(at, i, j, spec.at, spec.at), held(i, j, a, across(b, a), b, at)
+    places, triad = points(at, i, j, spec.at, spec.at), held(i, j, b, across(a, b), a, at)
     return Row(*Axes.packed(**places, **triad, drawn=0.0))
 
 
 ELEMENT = joint(
     key="universal",
     spec=Universal,
-    rows=(*POINT, perpendicular("u", "a", "tilt")),
+    rows=(*POINT, perpendicular("a", "u", "tilt")),
+    coordinates=("first_angle", "second_angle"),
     pack=pack,
     reach=lambda _: Reach(tilts=True),
     dear=True,
