@@ -29,6 +29,7 @@ from trsim.errors import (
     unreadable,
 )
 from trsim.numbers import Measured, angular, number, written
+from trsim.scenario.drawn import Drawings
 from trsim.scenario.merge import graft, mapping, merge, override, part
 from trsim.scenario.table import rows
 from trsim.scenario.text import LARGEST, Tree, decoded, read
@@ -126,18 +127,21 @@ class _Files:
         if names is None:
             return tree
         single = not isinstance(names, list)
-        base = Tree({})
+        base, drawings = Tree({}), Drawings()
         for k, name in enumerate([names] if single else names):
             where = ("extends",) if single else ("extends", k)
             place: Any = tree.place(where)
             try:
                 whole: Any = of_case(name)
-                found = self.file(name, place, folder, above) if whole is None else None
+                is_file = whole is None
+                if is_file:
+                    whole = self.tree(*self.file(name, place, folder, above), above)
+                drawings.agree(name, whole.data, is_file)
             except (ScenarioError, FileError) as error:
                 if error.place is not None:
                     raise
                 raise ScenarioError(error.what, error.hint, where, place) from None
-            merge(base, self.tree(*found, above) if found else whole)
+            merge(base, whole)
         merge(base, tree)
         return base
 
