@@ -29,6 +29,7 @@ from trsim.errors import (
     unreadable,
 )
 from trsim.numbers import Measured, angular, number, written
+from trsim.scenario import wide_table
 from trsim.scenario.drawn import Drawings
 from trsim.scenario.merge import graft, mapping, merge, override, part
 from trsim.scenario.table import rows
@@ -238,7 +239,10 @@ class _Files:
                     )
                     shown = _beside(value, place)
                     columns = data.get("columns") if isinstance(data, dict) else None
-                    data[key], bare = rows(self.content(real, shown), shown, columns)
+                    of_kind = wide_table.rows if path[-1] == "components" else rows
+                    if of_kind is wide_table.rows:
+                        data.pop("columns", None)  # they are chosen: of rows there are none
+                    data[key], bare = of_kind(self.content(real, shown), shown, columns)
                     if bare:
                         tree.bare[here] = f"{' and '.join(bare)} of {shown}"
                 except (ScenarioError, FileError) as error:
