@@ -469,7 +469,7 @@ class Spec(BaseModel):
 
     @property
     def drawn_in(self) -> Frame | None:
-        """The frame of its instance; None: the world's."""
+        """The frame of its instance or of the scenario; None: the world's."""
         return self._drawn_in
 
     @model_validator(mode="wrap")

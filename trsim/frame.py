@@ -22,7 +22,13 @@ def across(a: Any, b: Any) -> Vector:
 
 
 class Frame(NamedTuple):
-    """An origin (m) and orthonormal right-handed axes, all in world axes."""
+    """An origin and orthonormal right-handed axes, all in world axes.
+
+    at  the origin, m
+    x   unit vectors
+    y   across x
+    z   x cross y
+    """
 
     at: Vector
     x: Vector

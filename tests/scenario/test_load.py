@@ -236,9 +236,9 @@ solver: {end: 1}
             "a.yaml:2:1: unknown key 'solvr'\n"
             "    solvr: {end: 1}\n"
             "    ^\n"
-            "  Did you mean 'solver'?  Known: title, planar, gravity, parameters, points, bodies,"
-            " joints, drives, sensors, forces, contact_laws, initial, solver, output"
-            " ... (14 more)",
+            "  Did you mean 'solver'?  Known: title, planar, gravity, frame, parameters, points,"
+            " bodies, joints, drives, sensors, forces, contact_laws, initial, solver"
+            " ... (15 more)",
         ),
     ],
 )

@@ -146,7 +146,7 @@ def of_bodies(at: Addresses) -> Iterator[Out]:
         if spec.flexible is not None:
             continue
         if spec.drawn_in is not None and not spec.drawn_in.flat:
-            yield Out(f"bodies.{name}", "is turned out of the x-y plane by its instance", MOVES)
+            yield Out(f"bodies.{name}", "is turned out of the x-y plane by its frame", MOVES)
         I, known = spec.tensor
         if known and max(abs(I[2]), abs(I[5])) > NOTHING * I[8]:
             yield Out(f"bodies.{name}", "has products of inertia Ixz or Iyz", TURNS)

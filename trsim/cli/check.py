@@ -90,7 +90,9 @@ def described(scenario: Any, mechanism: Any) -> dict[str, Any]:
     from trsim.scenario.weights import weights
 
     model = mechanism.model
+    frame = scenario.frame and scenario.frame.moved
     return {
+        "frame": frame._asdict() if frame else None,
         "bodies": list(scenario.bodies),
         "weights": [weight._asdict() for weight in weights(scenario)],
         "joints": {name: spec.type for name, spec in scenario.joints.items()},
@@ -192,6 +194,7 @@ def lines(found: dict[str, Any]) -> list[str]:
     space = ": ".join(["spatial", *filter(None, ["; ".join(found["spatial_because"])])])
     return [
         f"{found['file']}: {found['title']}" if found["title"] else found["file"],
+        *frame_lines(found["frame"]),
         f"  bodies      {len(found['bodies'])}: {words(found['bodies'])}",
         *weight_lines(found["weights"]),
         f"  joints      {len(found['joints'])}: {typed('joints')}",
@@ -214,6 +217,17 @@ def lines(found: dict[str, Any]) -> list[str]:
 
 def words(names: Any) -> str:
     return ", ".join(names) or "-"
+
+
+def frame_lines(frame: dict[str, Any] | None) -> list[str]:
+    """In which frame the scenario is drawn, where that is not the world's."""
+    if frame is None:
+        return []
+    x, y, z = (numbers([c + 0.0 for c in frame[key]]) for key in "xyz")  # no -0
+    return [
+        f"  frame       drawn in a frame at {numbers(frame['at'])} m, x {x}, y {y}, z {z}",
+        "              gravity, channels and the places below are in world axes",
+    ]
 
 
 def weight_lines(found: list[dict[str, Any]]) -> list[str]:

@@ -2,9 +2,9 @@
 
     m r'' = F,    I omega' + omega x I omega = M          omega and I in body axes
 
-Its axes are at t = 0 those of the frame it is drawn in, the world's or its instance's, unless
-`angle` turns them about the z axis of that frame.  There is no force kernel: the
-equations of motion hold the masses (assemble/equations.py).
+Its axes are at t = 0 those of the frame it is drawn in, the world's, its file's or its instance's,
+unless `angle` turns them about the z axis of that frame.  There is no force kernel: the equations
+of motion hold the masses (assemble/equations.py).
 """
 
 from math import dist
@@ -48,7 +48,7 @@ class RigidBody(Spec):
     angle             turns the body axes about z; those of an instance about the z of its frame
     velocity          of the centre of mass at the start; where any body has a velocity, clearance
                       joints start free, otherwise as ideal ones
-    angular_velocity  at the start, world axes
+    angular_velocity  at the start, world axes, or those in which it is drawn
     flexible          what makes it an ancf_cable: a straight bar between the two of its joints that
                       lie farthest apart; its mass is the body's unless a density is given, its
                       inertia that of the bar; `false` in a file that extends makes it rigid again

@@ -8,6 +8,7 @@ from trsim.arrays import Array
 from trsim.elements.joint import triad
 from trsim.elements.solid import Solid
 from trsim.errors import ScenarioError
+from trsim.frame import Frame
 from trsim.laws import solids
 from trsim.laws.solids import Bulk
 
@@ -79,6 +80,10 @@ def turned(body: Any, tensor: Array, into_body: bool = False) -> Array:
     """A tensor (3, 3) from the axes of a rigid body into those of the world; or back."""
     c, s = np.cos(body.angle), np.sin(body.angle)
     R = np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
-    if body.drawn_in is not None:
-        R = np.array((body.drawn_in.x, body.drawn_in.y, body.drawn_in.z)).T @ R
+    R = axes_of(body.drawn_in) @ R
     return R.T @ tensor @ R if into_body else R @ tensor @ R.T
+
+
+def axes_of(frame: Frame | None) -> Array:
+    """The axes of a frame, or the world's, as columns."""
+    return np.eye(3) if frame is None else np.array((frame.x, frame.y, frame.z)).T

@@ -4,15 +4,17 @@
     M = m_x e_x + m_y e_y + m_z e_z        about p
     P = F . v_p + M . omega                its power, booked under loads
 
-f and m are numbers, expressions or tables of t and sensors.  The axes e are those of the world (of
-an instance those of its frame), of a body, or of a named point, with which they turn.  The same
-wrench at another point q of the body has M_q = M + (p - q) x F.
+f and m are numbers, expressions or tables of t and sensors, or the six columns of one table
+(components.py).  The axes e are those of the world (of a file or an instance with a frame those of
+it), of a body, or of a named point, with which they turn.  The same wrench at another point q of
+the body has M_q = M + (p - q) x F.
 """
 
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, WithJsonSchema, model_validator
 
+from trsim.elements.components import TITLES, Components
 from trsim.elements.contract import (
     LOADS,
     Channel,
@@ -40,7 +42,7 @@ def _three(given: Any) -> Any:
     return [*given, 0.0] if isinstance(given, list | tuple) and len(given) == 2 else given
 
 
-def components(*units: str) -> Any:
+def three_functions(*units: str) -> Any:
     """The type of three functions; two in a plane."""
     of: Any = Function(*units)
     one = {"anyOf": [{"type": word} for word in ("number", "string", "object")]}
@@ -54,22 +56,30 @@ NOTHING = (FunctionSpec("constant"),) * 3
 class Wrench(Load):
     """Six components of a load at a point of a body.
 
-    body    the body it acts on
-    at      the point, as drawn; unless given that of `frame`, or the centre of mass
-    frame   whose axes the components are along: `world`, a body, or a named point
-    force   along x, y, z: three functions, two in a plane
-    moment  about x, y, z
+    body        the body it acts on
+    at          the point, as drawn; unless given that of `frame`, or the centre of mass
+    frame       whose axes the components are along: `world`, a body, or a named point
+    force       along x, y, z: three functions, two in a plane
+    moment      about x, y, z
+    components  all six in one table, instead of `force` and `moment`
     """
 
     type: ClassVar[str] = "wrench"
     body: str
     at: point("m") | None = None
     frame: str = "world"
-    force: components("N") | None = None
-    moment: components("N*m") | None = None
+    force: three_functions("N") | None = None
+    moment: three_functions("N*m") | None = None
+    components: Components | None = None
 
     @model_validator(mode="after")
     def something(self):
+        if self.components is not None:
+            if self.force is not None or self.moment is not None:
+                what = "give `components`, or `force` and `moment`"
+                raise ScenarioError(what, "the table has all six", ("components",))
+            six = self.components.functions
+            self.__dict__.update(force=six[:3], moment=six[3:])
         if not any(map(varies, (*(self.force or ()), *(self.moment or ())))):
             what = "all six components are zero"
             raise ScenarioError(what, "give `force` or `moment`, three functions each")
@@ -107,7 +117,7 @@ def pack(name, spec, at):
     place = at.centre(i) if place is None else place
     given = {"force": spec.force or NOTHING, "moment": spec.moment or NOTHING}
     parts = {
-        f"{key[0]}_{axis}": at.function(f, key, k)
+        f"{key[0]}_{axis}": at.function(f, *told(spec, key, k))
         for key, functions in given.items()
         for k, (axis, f) in enumerate(zip("xyz", functions, strict=True))
     }
@@ -119,6 +129,13 @@ def pack(name, spec, at):
     )  # fmt: skip
     reads = frozenset().union(*(f.sensors for functions in given.values() for f in functions))
     return Row(*own, reads=reads)
+
+
+def told(spec, key, k):
+    """Where a component is written."""
+    if spec.components is None:
+        return key, k
+    return "components", TITLES[k if key == "force" else 3 + k]
 
 
 def axes_of(spec, at):

@@ -29,6 +29,8 @@ from trsim.errors import (
     unreadable,
 )
 from trsim.numbers import Measured, angular, number, written
+from trsim.scenario import wide_table
+from trsim.scenario.drawn import Drawings
 from trsim.scenario.merge import graft, mapping, merge, override, part
 from trsim.scenario.table import rows
 from trsim.scenario.text import LARGEST, Tree, decoded, read
@@ -126,18 +128,21 @@ class _Files:
         if names is None:
             return tree
         single = not isinstance(names, list)
-        base = Tree({})
+        base, drawings = Tree({}), Drawings()
         for k, name in enumerate([names] if single else names):
             where = ("extends",) if single else ("extends", k)
             place: Any = tree.place(where)
             try:
                 whole: Any = of_case(name)
-                found = self.file(name, place, folder, above) if whole is None else None
+                is_file = whole is None
+                if is_file:
+                    whole = self.tree(*self.file(name, place, folder, above), above)
+                drawings.agree(name, whole.data, is_file)
             except (ScenarioError, FileError) as error:
                 if error.place is not None:
                     raise
                 raise ScenarioError(error.what, error.hint, where, place) from None
-            merge(base, self.tree(*found, above) if found else whole)
+            merge(base, whole)
         merge(base, tree)
         return base
 
@@ -234,7 +239,10 @@ class _Files:
                     )
                     shown = _beside(value, place)
                     columns = data.get("columns") if isinstance(data, dict) else None
-                    data[key], bare = rows(self.content(real, shown), shown, columns)
+                    of_kind = wide_table.rows if path[-1] == "components" else rows
+                    if of_kind is wide_table.rows:
+                        data.pop("columns", None)  # they are chosen: of rows there are none
+                    data[key], bare = of_kind(self.content(real, shown), shown, columns)
                     if bare:
                         tree.bare[here] = f"{' and '.join(bare)} of {shown}"
                 except (ScenarioError, FileError) as error:

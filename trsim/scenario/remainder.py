@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from trsim.elements.inertia import tensor_of, written
-from trsim.elements.weighing import of_body, turned
+from trsim.elements.weighing import axes_of, of_body, turned
 from trsim.errors import ScenarioError, known
 from trsim.laws.solids import Bulk, moved, possible, together
 from trsim.scenario.totals import Total
@@ -98,7 +98,8 @@ def inertia_left(total: Total, remainder: Any, others: list[Any], about: Any) ->
     wanted, whole = tensor_of(total.inertia)
     used = sum((moved(of_body(one), about) for one in others), np.zeros((3, 3)))
     empty = Bulk(remainder.mass, np.array(remainder.at), np.zeros((3, 3)))
-    left = np.reshape(wanted, (3, 3)) - used - moved(empty, about)
+    R = axes_of(total.drawn_in)
+    left = np.reshape(wanted, (3, 3)) - R.T @ (used + moved(empty, about)) @ R
     known_all = all(one.tensor[1] for one in others)
     if whole and not known_all:
         what = "one of its bodies has an inertia about z only"
@@ -110,4 +111,6 @@ def inertia_left(total: Total, remainder: Any, others: list[Any], about: Any) ->
             "check the total and the inertias and places of the other bodies",
             ("inertia",),
         )
-    return written(turned(remainder, left, into_body=True)) if whole else float(left[2, 2])
+    if not whole:
+        return float(left[2, 2])
+    return written(turned(remainder, R @ left @ R.T, into_body=True))

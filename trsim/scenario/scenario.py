@@ -24,7 +24,7 @@ from trsim.scenario.limits import Limits
 from trsim.scenario.load_sets import Level, LoadSet, scaled
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.sections import PhasePortrait, PoincareSection
-from trsim.scenario.template import Instance, Template
+from trsim.scenario.template import Instance, Placement, Template
 from trsim.scenario.text import Tree
 from trsim.scenario.totals import Total
 from trsim.scenario.unfolded import Entry, Unfolded
@@ -90,11 +90,16 @@ def word(section: str, data: dict) -> str:
     return other if key and any(edits(one, key) <= 1 for one in data) else named
 
 
-def _event(data: Any, info: Any) -> Any:
-    """The event of an instance, read as it is meant there; others as they are."""
-    if not isinstance(data, Entry):
-        return data
-    return Event.model_validate(data.data, context={**(info.context or {}), **data.scope._asdict()})
+def _Scoped(spec: type[Spec]) -> BeforeValidator:
+    """Makes an entry that has a scope a spec, read as it is meant there; others are as they are."""
+
+    def read(data: Any, info: Any) -> Any:
+        if not isinstance(data, Entry):
+            return data
+        context = {**(info.context or {}), **data.scope._asdict()}
+        return spec.model_validate(data.data, context=context)
+
+    return BeforeValidator(read)
 
 
 # --- sections --------------------------------------------------------------------------------
@@ -206,7 +211,9 @@ class Scenario(Spec):
 
     title            a line for figures and tables
     planar           whether the motion stays in the x-y plane; found out unless given
-    gravity          acceleration of a free fall
+    gravity          acceleration of a free fall, world axes
+    frame            in which all places, directions and velocities are given: the world's unless
+                     given
     parameters       named numbers that every number may use: `velocity: 2*speed`
     points           places on bodies or on the ground that others name, with their motion recorded
     bodies           what has mass
@@ -236,6 +243,7 @@ class Scenario(Spec):
     title: str = ""
     planar: Flag | None = None
     gravity: vector("m/s^2", named=False) = (0.0, 0.0, 0.0)  # type: ignore[valid-type]
+    frame: Placement | None = None
     parameters: dict[str, Any] = EMPTY  # numbers, Measured where they were written with a unit
     points: dict[str, Annotated[Any, _Element("points")]] = EMPTY  # first: all others may name them
     bodies: dict[str, Annotated[Any, _Element("bodies")]] = EMPTY
@@ -249,12 +257,12 @@ class Scenario(Spec):
     output: OutputSpec = OutputSpec()
     phase_portraits: dict[str, PhasePortrait] = EMPTY
     poincare: dict[str, PoincareSection] = EMPTY
-    events: dict[str, Annotated[Event, BeforeValidator(_event)]] = EMPTY
+    events: dict[str, Annotated[Event, _Scoped(Event)]] = EMPTY
     templates: dict[str, Template] = EMPTY
     instances: dict[str, Instance] = EMPTY
     load_sets: dict[str, LoadSet] = EMPTY
     loads: dict[str, Level] | None = None
-    totals: dict[str, Total] = EMPTY
+    totals: dict[str, Annotated[Total, _Scoped(Total)]] = EMPTY
     limits: Limits = Limits()
     phases: Any = None
     cases: dict[str, Any] = EMPTY

@@ -6,14 +6,15 @@ instances:
   left: {template: chain, frame: {at: [0, 0.3, 0.4], y_axis: [0, 0.6, 0.8]}}
 """
 
+from math import cos, sin
 from typing import Annotated, Any, ClassVar
 
 from pydantic import WrapValidator, model_validator
 
 from trsim.elements.placed import Placed
 from trsim.errors import ScenarioError, check_keys
-from trsim.fields import EMPTY, Spec
-from trsim.frame import Frame
+from trsim.fields import EMPTY, Spec, Unit, direction, vector
+from trsim.frame import Frame, across
 
 SECTIONS = ("points", "bodies", "joints", "drives", "sensors", "forces", "events")  # of a template
 
@@ -25,9 +26,37 @@ def _later(value: Any, _: Any) -> Any:
 
 
 class Placement(Placed):
-    """Where an instance stands."""
+    """Where an instance, or all that a scenario describes, stands.
+
+    angle  by which these axes are turned
+    about  the direction about which they are turned, seen like `x_axis`; the z axis unless given
+    """
 
     type: ClassVar[str] = "placement"
+    angle: Annotated[float, Unit("rad")] = 0.0
+    about: vector("-", named=False) | None = None  # type: ignore[valid-type]
+
+    @model_validator(mode="after")
+    def turn(self) -> "Placement":
+        if self.about is None:
+            return self
+        if not any(self.about):
+            raise ScenarioError("an axis must not be zero", "for example [0, 1, 0]", ("about",))
+        if "angle" not in self.model_fields_set:
+            raise ScenarioError(
+                "`about` needs an `angle`", "for example `angle: 5 deg`", ("about",)
+            )
+        return self
+
+    @property
+    def frame(self) -> Frame:
+        """The place with its axes, turned."""
+        straight = super().frame
+        if not self.angle:
+            return straight
+        n = straight.z if self.about is None else direction(self.about)
+        x, y = (rotated(v, n, self.angle) for v in (straight.x, straight.y))
+        return Frame(self.at, x, y, across(x, y))
 
     @property
     def moved(self) -> Frame | None:
@@ -36,6 +65,14 @@ class Placement(Placed):
 
 
 WORLD = Placed().frame
+
+
+def rotated(v: Any, n: Any, angle: float) -> tuple[float, float, float]:
+    """A vector turned about a unit vector n: cos v + sin n x v + (1 - cos) (n . v) n."""
+    c, s, turned = cos(angle), sin(angle), across(n, v)
+    along = 2.0 * sin(0.5 * angle) ** 2 * sum(p * q for p, q in zip(n, v, strict=True))
+    x, y, z = (c * v[k] + s * turned[k] + along * n[k] for k in range(3))
+    return x, y, z
 
 
 class Template(Spec):

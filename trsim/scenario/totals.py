@@ -14,9 +14,9 @@ class Total(Spec):
     bodies     which they are, the remainder among them; all unless given
     mass       of all of them
     at         their common centre of mass, as drawn; the remainder stays where it is unless given
-    inertia    of all of them about that centre, along the world's axes as drawn: one about z, three
-               without products or Ixx, Iyy, Izz, Ixy, Ixz, Iyz; the remainder keeps its own unless
-               given
+    inertia    of all of them about that centre, along the axes in which the scenario is drawn:
+               one about z, three without products or Ixx, Iyy, Izz, Ixy, Ixz, Iyz; the remainder
+               keeps its own unless given
     remainder  the body whose own numbers are replaced, so that the total is as it says
     """
 

@@ -4,6 +4,8 @@
 
 What an entry says stays as written.  Its Scope tells what it means there: the numbers of its
 parameters, its frame, and that `door` is left_door.  An instance overrides its template key by key.
+Where the scenario has a frame, all other entries have a Scope with it, and the frames of instances
+are seen from it.
 """
 
 import re
@@ -33,6 +35,8 @@ def unfold(
     found when the sections `templates` and `instances` are validated.
     """
     whole, faults = Unfolded(tree), list[Fault]()
+    outer = of_all(tree.data.get("frame"), values)
+    whole.framed = Scope(values, outer, {}) if outer else None
     templates, instances = mapping(tree.data, "templates"), mapping(tree.data, "instances")
     for name, template in templates.items():
         if isinstance(template, dict):
@@ -56,6 +60,16 @@ def unfold(
         if of is not None:
             faults += _put(whole, name, given, of, values, merge)
     return whole, faults
+
+
+def of_all(given: Any, values: dict[str, float]) -> Frame | None:
+    """The frame of the whole scenario; what is wrong with it the scenario itself says."""
+    if given is None:
+        return None
+    try:
+        return Placement.model_validate(given, context={"parameters": values}).moved
+    except ValueError:
+        return None
 
 
 def _template(name: str, given: Any, templates: dict[str, Any]) -> dict[str, Any] | None:
@@ -83,7 +97,8 @@ def _put(
         view["parameters"] = {**mapping(of, "parameters"), **mapping(given, "parameters")}
     own = {entry: f"{name}_{entry}" for section in SECTIONS for entry in mapping(of, section)}
     here = {key: value for key, value in values.items() if key not in own} | local
-    frame, faults = _frame(name, given, of, view, here, merge)
+    outer = whole.framed.frame if whole.framed else None
+    frame, faults = _frame(name, given, of, view, here, merge, outer)
     yield from faults
     whole.scopes[name] = Scope(here, frame, own)
     put: set[str] = set()
@@ -148,15 +163,23 @@ def _numbers(
 
 
 def _frame(
-    name: str, given: dict, of: dict, view: dict, values: dict[str, float], merge: Merge
+    name: str,
+    given: dict,
+    of: dict,
+    view: dict,
+    values: dict[str, float],
+    merge: Merge,
+    outer: Frame | None,
 ) -> tuple[Frame | None, list[Fault]]:
-    """The frame of an instance; that of the template where it says nothing."""
+    """The frame of an instance, seen from that of the scenario; of its template where it says
+    nothing."""
     written = [one["frame"] for one in (of, given) if one.get("frame") is not None]
     if not written:
-        return None, []
+        return outer, []
     both = len(written) > 1 and all(isinstance(one, dict) for one in written)
     view["frame"] = merge(written[0], written[1]) if both else written[-1]
     try:
-        return Placement.model_validate(view["frame"], context={"parameters": values}).moved, []
+        context = {"parameters": values, "frame": outer}
+        return Placement.model_validate(view["frame"], context=context).moved, []
     except ValueError as error:  # as pydantic has it, or one of ours
         return None, [(error, ("instances", name, "frame"))]

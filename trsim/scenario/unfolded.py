@@ -49,16 +49,17 @@ class Unfolded(Tree):
         super().__init__(dict(tree.data), tree.marks, tree.keys, tree.files)
         self.origins: dict[Path, Origin] = {}  # (section, name) -> where it comes from
         self.scopes: dict[str, Scope] = {}  # of the instances
+        self.framed: Scope | None = None  # of all other entries, where the scenario has a frame
 
     def scope(self, path: Path) -> Scope | None:
         """What an entry, and all in it, is read with; None: as the scenario itself."""
         origin = self.origins.get(tuple(path[:2]))
-        return self.scopes[origin.instance] if origin else None
+        return self.scopes[origin.instance] if origin else self.framed
 
     def entries(self) -> dict[str, Any]:
         """The data, ready to be validated."""
         found = dict(self.data)
-        for section in SECTIONS:
+        for section in (*SECTIONS, "totals"):
             if isinstance(found.get(section), dict):
                 found[section] = {
                     name: Entry(data, scope) if (scope := self.scope((section, name))) else data

@@ -6,6 +6,7 @@ from typing_extensions import TypedDict  # pydantic wants this one before Python
 
 from trsim.assemble import release
 from trsim.cli.documents.common import Document, Number, Subject, of
+from trsim.frame import Frame
 from trsim.scenario.weights import Weight
 from trsim.solve.diagnose.bar_scales import BarScale
 from trsim.solve.diagnose.mesh_error import MeshError
@@ -66,6 +67,7 @@ class Checked(Subject):
     """What a scenario is once assembled, and what a run of it will meet.
 
     file               as given
+    frame              in which all of it is drawn; null: the world's
     bodies             names
     weights            mass, centre and inertia of each body, and where they come from
     joints             name -> type
@@ -95,6 +97,7 @@ class Checked(Subject):
     skipped            what a run leaves out, and why
     """
 
+    frame: of(Frame) | None
     bodies: list[str]
     weights: list[of(Weight)]
     joints: dict[str, str]
