@@ -68,7 +68,7 @@ def test_a_roller_touches_its_cam(tmp_path):
 def test_a_flat_face_touches_its_cam(tmp_path):
     """It stands at the support function of the ellipse, and reaches to the touch."""
     run = validation(tmp_path, "cam_flat")
-    moved, _, things = made(run, curves.curves)
+    moved, sizes, things = made(run, curves.curves)
     a, b, angle = 0.040, 0.030, 9.0 * moved.time
     height = np.hypot(a * np.sin(angle), b * np.cos(angle))
     ((bar, _),) = things["lobe face"].pieces
@@ -83,6 +83,7 @@ def test_a_flat_face_touches_its_cam(tmp_path):
     assert np.abs(slope).max() > 5e-3
     assert (corners[..., 0].min(axis=1) < slope - 1e-3).all()
     assert (corners[..., 0].max(axis=1) > slope + 1e-3).all()
+    assert np.ptp(corners[0, :, 0]) < np.ptp(slope) + 4.1 * sizes.radius
 
 
 def test_a_pin_stays_in_its_slot(tmp_path):
@@ -109,9 +110,13 @@ def test_a_pin_stays_in_its_slot(tmp_path):
 
 def test_a_roller_inside_of_a_moving_ring(tmp_path):
     """The ring is beyond the curve; the roller touches it from inside, wherever both go."""
-    moved, _, things = made(of(tmp_path, text=INSIDE), curves.curves)
+    moved, sizes, things = made(of(tmp_path, text=INSIDE), curves.curves)
     ((ring, _),) = things["lobe curve"].pieces
     closed(ring)
+    # both in the layer of the ring, which is not that of the tappet
+    assert sizes.height("ring") != sizes.height("tappet")
+    for mesh in (ring, things["lobe roller"].pieces[0][0]):
+        assert mesh.points[:, 2].mean() == pytest.approx(sizes.height("ring"), abs=1e-12)
     middle = moved.places["ring"]
     corners = seen(things["lobe curve"], ring.points) - middle[:, None]
     size = np.linalg.norm(corners[..., :2], axis=2)
@@ -143,12 +148,20 @@ def test_a_bead_on_a_wire_in_space(tmp_path):
     assert np.ptp(own[:, 0]) > 0.02
 
 
-@pytest.mark.parametrize("name", ["cam_flat", "cam_roller", "whitworth", "geneva"])
-def test_a_start_that_is_not_the_drawing(name, tmp_path):
+ELSEWHERE = [
+    ("cam_flat", "initial={shaft: 100 deg}"),
+    ("cam_flat", "drives.motor={joint: shaft, position: 1.2 + 9*t}"),
+    ("cam_roller", "initial={shaft: 100 deg}"),
+    ("whitworth", "initial={shaft: 130 deg}"),
+    ("whitworth", "drives.motor={joint: shaft, position: 5*t - 2}"),
+    ("geneva", "initial={shaft: 15 deg}"),
+]
+
+
+@pytest.mark.parametrize(("name", "start"), ELSEWHERE)
+def test_a_start_that_is_not_the_drawing(name, start, tmp_path):
     """Attitudes follow from the curve and from the joint that was given; they are those recorded."""
-    turn = {"cam_flat": 100, "cam_roller": 100, "whitworth": 130, "geneva": 15}[name]
-    sets = (f"initial={{shaft: {turn} deg}}", 'output.channels=["*", "*.rotation"]')
-    run = validation(tmp_path, name, *sets)
+    run = validation(tmp_path, name, start, 'output.channels=["*", "*.rotation"]')
     units = {key: unit for key, unit in run.units.items() if not key.endswith(".rotation")}
     without = motion(type(run)(**{**vars(run), "units": units}))
     for body, turned in motion(run).turns.items():

@@ -159,6 +159,12 @@ def test_drawn_teeth_stand_where_they_are_counted(tmp_path):
                 tips = (size > wheel.radius) & (size < 1.05 * wheel.radius)
             else:
                 tips = size > 1.02 * wheel.radius
+            if wheel.apex is not None:  # a cone is cut off on the side of its apex
+                apex = moved.point(wheel.carrier, wheel.apex)
+                away = np.linalg.norm(seen(thing, mesh.points) - apex[:, None], axis=2)
+                length = np.linalg.norm(mesh_of(moved, k).at - wheel.apex)
+                assert away.max() < 1.2 * length
+                assert np.sort(size[away[0] < 0.8 * length])[-1] < wheel.radius
             there = seen(thing, mesh.points[tips][:3])
             for corner in range(3):
                 at = tooth(moved, wheel, there[:, corner])
@@ -167,6 +173,10 @@ def test_drawn_teeth_stand_where_they_are_counted(tmp_path):
             assert 0.5 * (size[tips].max() + roots(wheel, size)) == pytest.approx(
                 wheel.radius, rel=0.02
             )
+
+
+def mesh_of(moved, k):
+    return next(mesh for mesh in moved.drawn.moving.meshes if k in (mesh.first, mesh.second))
 
 
 def roots(wheel, size):

@@ -9,6 +9,7 @@ from trsim.fields import direction
 from trsim.report.animation.drawing import GUIDES, Array, Drawing, Guide, Touch
 from trsim.report.animation.plates import anticlockwise
 
+END = 1e-3  # of u, which grows by 1 where a curve turns by BEND: beyond an end
 BEHIND = 0.1  # of the way from a face to the centre of its body: what the body reaches to
 
 
@@ -61,21 +62,30 @@ def touch(guide: Guide, seen: Array, normals: Array | None) -> Touch:
 
     seen: places of the follower in the coordinates of the curve (n, 3); normals: those of a face.
     """
-    curve = guide.curve
-    places, off = [], []
-    for k, p in enumerate(seen[:, :2]):
-        if normals is None:
-            near = int(np.sum((curve.place - p) ** 2, axis=1).argmin())
-            _, _, c, t = settled(curve, float(curve.u[near]), p.tolist(), 0)
-            gap = aside(guide, float(np.dot(t, t)) ** -0.5 * np.array(t), p - c) - guide.radius
-        else:
-            m = normals[k, :2]
-            near = int((curve.place @ m).argmax())
-            _, _, c, _ = settled(curve, float(curve.u[near]), m.tolist(), 1)
-            gap = float(m @ (p - c))
-        places.append(c)
-        off.append(gap)
+    found = [on_curve(guide, p, None if normals is None else normals[k, :2])
+             for k, p in enumerate(seen[:, :2])]  # fmt: skip
+    places, off = zip(*found, strict=True)
     return Touch(seen[:, :2], np.array(places), np.array(off))
+
+
+def on_curve(guide: Guide, p: Array, m: Array | None) -> tuple[Array, float]:
+    """Where a pin or a roller at p, or a face with the normal m, is next to a curve, and how far off.
+
+    An open curve ends at its ends, whatever a joint makes of what is beyond them.
+    """
+    curve = guide.curve
+    far = np.sum((curve.place - p) ** 2, axis=1) if m is None else -(curve.place @ m)
+    near = int(far.argmin())
+    wanted, line = (p, 0) if m is None else (m, 1)
+    u, _, c, t = settled(curve, float(curve.u[near]), wanted.tolist(), line)
+    beyond = not curve.closed and not -END <= u <= curve.u[-1] + END
+    place = curve.place[near] if beyond else np.array(c)
+    if m is not None:
+        return place, float(m @ (p - place))
+    if beyond:
+        return place, float(np.hypot(*(p - place))) - guide.radius
+    tangent = np.array(t) / float(np.hypot(*t))
+    return place, aside(guide, tangent, p - place) - guide.radius
 
 
 def left(guide: Guide) -> float:

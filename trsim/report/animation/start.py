@@ -31,6 +31,7 @@ from trsim.report.animation.guides import touch
 from trsim.report.animation.turns import STILL, back, of_vector, product, shortest, turned
 
 CLOSED = 1e-9  # residual, of the size of the mechanism
+QUARTERS = (0.5 * np.pi, np.pi, -0.5 * np.pi)  # rad: of other guesses
 MOST = 30  # steps
 SMALL = 1e-5  # rad: of differences
 FREE = 1e-8  # singular values, of the largest: directions the joints leave free
@@ -51,7 +52,14 @@ def attitudes(drawn: Drawing, places: Mapping[str, Array], plays: Mapping[str, A
     still = {name: STILL for name in drawn.bodies}
     if np.max(np.abs(problem.residual(fixed | still)), initial=0.0) < CLOSED:
         return still, 0.0
-    found, left = problem.solved(fixed, problem.passed_on(fixed))
+    guess = problem.passed_on(fixed)
+    found, left = problem.solved(fixed, guess)
+    for angle in QUARTERS if drawn.guides else ():
+        if left < CLOSED:
+            break
+        # a follower may be on the other side of what has its curve
+        other = problem.solved(fixed, problem.turned_round(guess, angle))
+        found, left = min((found, left), other, key=lambda one: one[1])
     return found, left * drawn.size
 
 
@@ -173,6 +181,15 @@ class Problem:
             arm = self.arm(b, joint.at)
             there = self.base(a, joint.at) + turned(known[a], self.arm(a, joint.at))
             known[b] = shortest(arm, there - self.places[b])
+
+    def turned_round(self, guess: Mapping[str, Array], angle: float) -> dict[str, Array]:
+        """A guess with all bodies that have curves turned by an angle about their normals."""
+        made = dict(guess)
+        for guide in self.drawn.guides:
+            if guide.i in made:
+                axis = turned(guess[guide.i], guide.axes[2])
+                made[guide.i] = product(of_vector(angle * axis), guess[guide.i])
+        return made
 
     def reach(self, joint: Joint, _: str, body: str) -> float:
         return float(np.linalg.norm(self.arm(body, joint.at))) / self.drawn.size
