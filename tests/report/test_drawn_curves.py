@@ -45,7 +45,7 @@ def test_a_roller_touches_its_cam(tmp_path):
     """Its centre is as far from that of the eccentric circle as both radii; the plate's corners
     are on the circle."""
     run = validation(tmp_path, "cam_roller")
-    moved, sizes, things = made(run, curves.curves)
+    moved, _, things = made(run, curves.curves)
     a, r, e = 0.040, 0.012, 0.015
     angle = 9.0 * moved.time
     middle = e * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -160,7 +160,7 @@ ELSEWHERE = [
 
 @pytest.mark.parametrize(("name", "start"), ELSEWHERE)
 def test_a_start_that_is_not_the_drawing(name, start, tmp_path):
-    """Attitudes follow from the curve and from the joint that was given; they are those recorded."""
+    """Attitudes follow from the curve and the joint that was given; they are those recorded."""
     run = validation(tmp_path, name, start, 'output.channels=["*", "*.rotation"]')
     units = {key: unit for key, unit in run.units.items() if not key.endswith(".rotation")}
     without = motion(type(run)(**{**vars(run), "units": units}))

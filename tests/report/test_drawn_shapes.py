@@ -43,7 +43,7 @@ output: {every: 4 ms, channels: ["*", "*.rotation"]}
 
 @pytest.mark.parametrize("given", SOLIDS)
 def test_a_solid_is_drawn_where_it_weighs(given):
-    """Closed; its centroid is the centre of mass; round ones lack what is outside of their corners."""
+    """Closed; its centroid is the centre of mass; round ones lack what is beyond their corners."""
     solid = Solid(**given, **PLACED)
     mesh, bulk = shapes.mesh(solid), of_solid(solid, 1.0)
     closed(mesh)
@@ -95,7 +95,9 @@ def test_what_a_shape_holds_outside_is_linked(tmp_path):
 
 def test_holes_are_lines(tmp_path):
     """Dark rings around both ends, as far from the axis as the hole is wide; nothing is cut."""
-    hole = "      - {cylinder: 40 mm, length: 0.1, at: [0.3, 0, 0.1], axis: [0, 1, 0], hole: true}\n"
+    hole = (
+        "      - {cylinder: 40 mm, length: 0.1, at: [0.3, 0, 0.1], axis: [0, 1, 0], hole: true}\n"
+    )
     text = BOX.replace("    angular", hole + "    angular")
     moved, sizes, things = made(of(tmp_path, text=text), bodies.links)
     (_, _), (rings, colour) = things["part"].pieces
@@ -121,7 +123,7 @@ solver: {end: 0.2 s}
 
 def test_plates_of_a_flat_mechanism_pass_each_other(tmp_path):
     """Their places in the plane are those drawn; their layers have room for them."""
-    moved, sizes, things = made(of(tmp_path, text=FLAT), bodies.links)
+    _, sizes, things = made(of(tmp_path, text=FLAT), bodies.links)
     assert sizes.normal.tolist() == [0.0, 0.0, 1.0]
     heights = []
     for name in ("one", "two"):

@@ -261,22 +261,22 @@ def test_a_screw_goes_through_its_nut(tmp_path):
     ((mesh, _),) = things["thread screw"].pieces
     closed(mesh)
     points = seen(things["thread screw"], mesh.points)
-    k = len(moved.time) // 2
-    for frame_ in (0, k):
-        d = points[frame_]
+    k, starts = len(moved.time) // 2, []
+    for row in (0, k):
+        d = points[row]
         radius = np.hypot(d[:, 0], d[:, 1])
         crest = radius > 0.98 * radius.max()
         angle = np.arctan2(d[crest, 1], d[crest, 0])
-        start = d[crest, 2] - 0.006 * angle / (2.0 * np.pi)
-        over = (start - start[0]) / 0.006
+        start = d[crest, 2] / 0.006 - angle / (2.0 * np.pi)
+        over = start - start[0]
         assert np.abs(over - np.round(over)).max() < 0.02
-        if frame_:  # a spindle that stays in its height carries its thread up or down by turning
-            before = first / 0.006
-            turn = moved.turn("spindle")
-            turned = np.unwrap(2.0 * np.arctan2(turn[:, 2], turn[:, 3]))[k]
-            moves = start[0] / 0.006 - before + turned / (2.0 * np.pi)
-            assert abs(moves - np.round(moves)) < 0.02
-        first = start[0]
+        starts.append(start[0])
+    # a spindle that stays in its height carries its thread up or down by turning
+    turn = moved.turn("spindle")
+    turned = np.unwrap(2.0 * np.arctan2(turn[:, 2], turn[:, 3]))[k]
+    moves = starts[1] - starts[0] + turned / (2.0 * np.pi)
+    assert abs(moves - np.round(moves)) < 0.02
+    assert abs(turned) > 1.0
     nut = things["thread nut"]
     assert nut.place[:, 2] == pytest.approx(0.4 + moved.places["table"][:, 2] - 0.5, abs=1e-9)
 
@@ -298,7 +298,7 @@ def test_teeth_of_a_start_elsewhere_are_told(tmp_path):
 
 
 def test_wheels_that_are_alike_share_a_mesh(tmp_path):
-    moved, _, things = made(run_of(tmp_path, "planetary_gear"), wheels.wheels)
+    _, _, things = made(run_of(tmp_path, "planetary_gear"), wheels.wheels)
     of_planets = {id(things[name].pieces[0][0]) for name in things if name.startswith("pin")}
     assert len(of_planets) == 1
     for thing in things.values():

@@ -45,8 +45,8 @@ def belts(moved: Motion, look: Look) -> Iterator[Thing]:
             carrier = moved.turn(belt.carrier)
             middle = moved.point(belt.carrier, first.at) + turns.turned(carrier, place)
             middle = middle + look.level(first.train)
-            yield Thing(f"{belt.name} mark {k}", ((mark, PIN),), middle,
-                        turns.steady(turns.product(np.broadcast_to(carrier, turn.shape), turn)))  # fmt: skip
+            whole = turns.steady(turns.product(np.broadcast_to(carrier, turn.shape), turn))
+            yield Thing(f"{belt.name} mark {k}", ((mark, PIN),), middle, whole)
 
 
 def pulleys(moved: Motion, belt: Belt) -> tuple[Wheel, Wheel]:
@@ -61,7 +61,10 @@ def course(belt: Belt, first: Wheel, second: Wheel) -> Path:
     bends = [first.radius, -second.radius if belt.crossed else second.radius]
     (go,), (come,) = parts(bends, centres), parts(bends[::-1], centres[::-1])
     places, lefts, steps = [], [], [0.0]
-    for bend, centre, begin, end in ((bends[0], centres[0], come, go), (bends[1], centres[1], go, come)):
+    for bend, centre, begin, end in (
+        (bends[0], centres[0], come, go),
+        (bends[1], centres[1], go, come),
+    ):
         sense = np.sign(bend)
         sweep = float(sense * (end.angle[0] - begin.angle[0])) % (2.0 * np.pi)
         start = begin.angle[0] - sense * 0.5 * np.pi  # of the place on the pulley

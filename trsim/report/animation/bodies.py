@@ -65,7 +65,8 @@ def shapes(drawn: Drawing, look: Look, body: str) -> list[Mesh]:
 def has_own(drawn: Drawing, body: str) -> bool:
     """Whether a body is seen by a wheel, a rack, a thread, the plate of a cam, or a sheave."""
     moving = drawn.moving
-    seen = {one.body for one in (*moving.wheels, *moving.racks, *moving.worms)}
+    seen = {wheel.body for wheel in moving.wheels} | {rack.body for rack in moving.racks}
+    seen |= {worm.body for worm in moving.worms}
     seen |= {guide.i for guide in drawn.guides if plated(guide)}
     seen |= {place.body for rope in drawn.ropes for place in rope.places if place.bend}
     return body in seen or any(slid(drawn, joint) for joint in slides(drawn, body))

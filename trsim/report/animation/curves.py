@@ -1,4 +1,4 @@
-"""Curves of bodies as plates, walls of a slot, or wires, and the pins, rollers and faces on them."""
+"""Curves of bodies as plates, slots or wires, and the pins, rollers and faces on them."""
 
 from collections.abc import Iterator
 
@@ -86,8 +86,8 @@ def slot(guide: Guide, flat: Array, look: Look) -> Mesh:
         return solids.joined(
             strip(guide, flat, low, high, look), strip(guide, flat, -high, -low, look)
         )
-    rings = [around(guide, flat, by) for by in (high, low)]
-    return annulus(*rings, look.thick, guide.axes)
+    outer, inner = (around(guide, flat, by) for by in (high, low))
+    return annulus(outer, inner, look.thick, guide.axes)
 
 
 def around(guide: Guide, flat: Array, by: float) -> Array:
@@ -109,7 +109,7 @@ def follower(moved: Motion, look: Look, guide: Guide, colour: str) -> Thing:
     place, turn = moved.point(guide.j, guide.at), moved.turn(guide.j)
     axis, lift = guide.axes[2], look.lift(guide.i)
     if guide.face is not None:
-        mesh = face(moved, look, guide).moved(lift)
+        mesh = face(moved, look, guide, guide.face).moved(lift)
         return Thing(f"{guide.name} face", ((mesh, colour),), place, turn, label=guide.name)
     if look.normal is None and guide.radius == 0.0:
         ball = solids.ball(1.2 * look.radius)
@@ -126,15 +126,14 @@ def follower(moved: Motion, look: Look, guide: Guide, colour: str) -> Thing:
     return Thing(f"{guide.name} {word}", tuple(pieces), place, turn, label=guide.name)
 
 
-def face(moved: Motion, look: Look, guide: Guide) -> Mesh:
+def face(moved: Motion, look: Look, guide: Guide, normal: Array) -> Mesh:
     """A bar whose side towards the curve is the face; as long as the touch goes along it."""
-    assert guide.face is not None
-    along = np.cross(guide.axes[2], guide.face)
+    along = np.cross(guide.axes[2], normal)
     flat = moved.touches[guide.name].place @ guide.axes[:2]
     touched = moved.point(guide.i, guide.origin) + turns.turned(moved.turn(guide.i), flat)
     way = (moved.on(guide.j, touched) - guide.at) @ along
     low, high = min(way.min(), 0.0) - 2.0 * look.radius, max(way.max(), 0.0) + 2.0 * look.radius
     thick = 1.2 * look.radius
-    axes = np.stack([along, -guide.face, guide.axes[2]])
-    middle = 0.5 * (low + high) * along + 0.5 * thick * guide.face
+    axes = np.stack([along, -normal, guide.axes[2]])
+    middle = 0.5 * (low + high) * along + 0.5 * thick * normal
     return solids.box(np.array([high - low, thick, look.thick]), axes).moved(middle)

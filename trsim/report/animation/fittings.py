@@ -101,7 +101,7 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
         if GROUND not in (joint.i, joint.j) or joint.picture in SLIDES:
             continue
         if look.normal is not None:
-            mesh = stand(look)
+            mesh = stand(look, look.normal)
         elif joint.picture in SPATIAL:
             post = solids.cylinder(0.9 * r, 3.0 * r, look.up).moved(-2.2 * r * look.up)
             foot = solids.cylinder(2.4 * r, 0.6 * r, look.up).moved(-3.8 * r * look.up)
@@ -111,14 +111,13 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
         yield Thing(f"{joint.name} support", ((mesh, SUPPORT),), joint.at[None], turns.STILL[None])
 
 
-def stand(look: Look) -> Mesh:
+def stand(look: Look, normal: Array) -> Mesh:
     """What carries a hinge of a flat mechanism, behind all bodies."""
-    assert look.normal is not None
     r = look.radius
     outline = r * np.array([[-2.0, -3.4], [2.0, -3.4], [0.8, 0.6], [-0.8, 0.6]])
     base = r * np.array([[-3.6, -4.2], [3.6, -4.2], [3.6, -3.4], [-3.6, -3.4]])
-    parts = [solids.prism(shape, look.thick, look.normal) for shape in (outline, base)]
-    return solids.joined(*parts).moved(-look.pitch * look.normal)
+    parts = [solids.prism(shape, look.thick, normal) for shape in (outline, base)]
+    return solids.joined(*parts).moved(-look.pitch * normal)
 
 
 def stops(moved: Motion, look: Look) -> Iterator[Thing]:

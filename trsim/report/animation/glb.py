@@ -129,9 +129,7 @@ def node(thing: Thing, mesh: int) -> Any:
     return made
 
 
-def animate(
-    animation: Any, store: Store, times: Array, thing: Thing, k: int, size: float
-) -> None:
+def animate(animation: Any, store: Store, times: Array, thing: Thing, k: int, size: float) -> None:
     """Channels of what changes; size: of all that there is, m."""
     from pygltflib import AnimationChannel, AnimationChannelTarget, AnimationSampler
 

@@ -1,4 +1,4 @@
-"""Curves of bodies and what stays on them: which there are, and where they touch over the frames."""
+"""Curves of bodies and what stays on them: which there are, and where they touch in each frame."""
 
 import numpy as np
 
@@ -27,7 +27,8 @@ def guides(drawn: Drawing) -> tuple[Guide, ...]:
             Guide(
                 name,
                 picture,
-                *spec.bodies,
+                spec.bodies[0],
+                spec.bodies[1],
                 np.array(spec.at),
                 np.array(plane.at),
                 np.array([plane.x, plane.y, plane.z]),
@@ -51,8 +52,9 @@ def near(drawn: Drawing, guide: Guide) -> Array:
 
 
 def behind(drawn: Drawing, guide: Guide) -> Array:
-    """A point behind a face, on the way to the centre of its body, as drawn."""
-    assert guide.face is not None
+    """The centre of a roller or a pin; of a face what is behind it, towards its body, as drawn."""
+    if guide.face is None:
+        return guide.at
     away = (drawn.bodies.get(guide.j, guide.at) - guide.at) @ guide.face
     return np.asarray(guide.at + BEHIND * max(float(away), 0.0) * guide.face)
 
@@ -69,7 +71,7 @@ def touch(guide: Guide, seen: Array, normals: Array | None) -> Touch:
 
 
 def on_curve(guide: Guide, p: Array, m: Array | None) -> tuple[Array, float]:
-    """Where a pin or a roller at p, or a face with the normal m, is next to a curve, and how far off.
+    """Where a pin or a roller at p, or a face of normal m, is next to a curve, and how far off.
 
     An open curve ends at its ends, whatever a joint makes of what is beyond them.
     """

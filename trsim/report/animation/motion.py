@@ -100,8 +100,13 @@ def motion(run: Run) -> Motion:
     plays = {joint.name: play(moved, joint, recorded) for joint in drawn.joints
              if joint.picture == "journal"}  # fmt: skip
     touches = {guide.name: touched(moved, guide) for guide in drawn.guides}
-    moved = replace(moved, plays=plays, touches=touches, recorded=turning(run, drawn),
-                    begun=any(abs(angle) > BEGAN for angle in angles(run, drawn).values()))
+    moved = replace(
+        moved,
+        plays=plays,
+        touches=touches,
+        recorded=turning(run, drawn),
+        begun=any(abs(angle) > BEGAN for angle in angles(run, drawn).values()),
+    )
     apart = opened(moved)
     return replace(moved, open=apart, warnings=warnings(moved, left, apart, unknown))
 

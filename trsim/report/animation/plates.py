@@ -16,8 +16,10 @@ def anticlockwise(outline: Array) -> Array:
 
 
 def plate(outline: Array, thickness: float, axes: Array) -> Mesh:
-    """A simple outline (n, 2) along the first two rows of right-handed axes, either way round, thick
-    to both sides of its plane."""
+    """A simple outline (n, 2), either way round, thick to both sides of its plane.
+
+    axes: right-handed, (3, 3) rows; the outline lies along the first two.
+    """
     flat = anticlockwise(np.asarray(outline, dtype=float))
     half = 0.5 * thickness
     ring, ears = flat @ axes[:2], triangles(flat)

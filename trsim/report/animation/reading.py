@@ -109,7 +109,7 @@ def held(drawn: Drawing) -> tuple[Spot, ...]:
     """Points that bodies reach to, beside those of joints and lines."""
     found = []
     for guide in drawn.guides:
-        found.append((guide.j, guide.at if guide.face is None else behind(drawn, guide)))
+        found.append((guide.j, behind(drawn, guide)))
         found += [] if plated(guide) else [(guide.i, near(drawn, guide))]
     for joint in drawn.joints:
         found += [(body, joint.at) for body in (joint.i, joint.j) if joint.picture == "thread"]

@@ -1,6 +1,7 @@
 """Ropes: straight parts, arcs on wheels, the wheels themselves, eyes, and ends."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
@@ -91,13 +92,13 @@ def chords(name: str, look: Look, bend: float, centre: Array, before: Part, wrap
     count = max(int(np.ceil(wrap.max() / (2.0 * STEP))), 1)
     sense, radius = np.sign(bend), abs(bend)
     begin = before.angle - sense * 0.5 * np.pi
-    for k in range(count):
-        ends = []
-        for share in (k / count, (k + 1) / count):
-            angle = begin + sense * share * wrap
-            ends.append(centre + radius * np.stack([np.cos(angle), np.sin(angle),
-                                                    np.zeros_like(angle)], axis=1))  # fmt: skip
-        yield straight(f"{name} {k}", Part(*ends, before.angle), look, "")
+    places = []
+    for k in range(count + 1):
+        angle = begin + sense * k / count * wrap
+        out = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=1)
+        places.append(centre + radius * out)
+    for k, (begins, ends) in enumerate(pairwise(places)):
+        yield straight(f"{name} {k}", Part(begins, ends, before.angle), look, "")
 
 
 def fitting(moved: Motion, look: Look, name: str, place: Place, last: bool, lift: Array
@@ -106,9 +107,11 @@ def fitting(moved: Motion, look: Look, name: str, place: Place, last: bool, lift
     at, turn = moved.point(place.body, place.at), moved.turn(place.body)
     colour, r = colours(moved.drawn)[place.body], look.radius
     reach = float(np.linalg.norm(lift)) - look.height(place.body) + 0.6 * look.pitch
-    middle = lift - (0.5 * reach - 0.6 * look.pitch) * (look.normal if look.normal is not None else Z)
+    middle = lift - (0.5 * reach - 0.6 * look.pitch) * (
+        look.normal if look.normal is not None else Z
+    )
     if place.body == GROUND and look.normal is not None and (place.bend or last):
-        yield Thing(f"{name} support", ((stand(look), SUPPORT),), at, turn)
+        yield Thing(f"{name} support", ((stand(look, look.normal), SUPPORT),), at, turn)
     axle = solids.cylinder(0.5 * r, max(reach, r), Z if look.normal is None else look.normal)
     if not place.bend:
         ring = solids.ball(0.6 * r) if last else solids.ring(0.35 * r, 0.75 * r, 0.5 * r, X)
@@ -134,4 +137,3 @@ def sheave(look: Look, radius: float) -> Mesh:
         [high, -half, 0.0, -1.0], [0.0, -half, 0.0, -1.0],
     ])  # fmt: skip
     return solids.turned_profile(profile[::-1], Z, 48)
-

@@ -34,8 +34,8 @@ def mesh(of: Solid) -> Mesh:
 
 
 def edges(of: Solid) -> list[tuple[Array, Array]]:
-    """The closed lines around the ends of a solid in its place as drawn, (n, 3) each, and the normal
-    of their plane; of a sphere its three great circles."""
+    """The closed lines around the ends of a solid as drawn, (n, 3) each, and the normals of their
+    planes; of a sphere three great circles."""
     at, axes = np.array(of.at), np.array(triad(of))
     if of.sphere is not None:
         ring = solids.circle(0.5 * of.sphere)

@@ -102,9 +102,7 @@ def bar(a: Array, b: Array, radius: float, thickness: float, axis: Array) -> Mes
     return prism(outline, thickness, axis, smooth=True).moved((axes[2] @ a) * axes[2])
 
 
-def ring(
-    inner: float, outer: float, length: float, axis: Array, corners: int = ROUND
-) -> Mesh:
+def ring(inner: float, outer: float, length: float, axis: Array, corners: int = ROUND) -> Mesh:
     """A tube about its middle."""
     axes = frame(axis)
     spokes = circle(1.0, corners) @ axes[:2]

@@ -37,8 +37,13 @@ SMALL = 1e-5  # rad: of differences
 FREE = 1e-8  # singular values, of the largest: directions the joints leave free
 
 
-def attitudes(drawn: Drawing, places: Mapping[str, Array], plays: Mapping[str, Array],
-              nodes: Mapping[str, Array], angles: Mapping[str, float]) -> tuple[dict[str, Array], float]:  # fmt: skip
+def attitudes(
+    drawn: Drawing,
+    places: Mapping[str, Array],
+    plays: Mapping[str, Array],
+    nodes: Mapping[str, Array],
+    angles: Mapping[str, float],
+) -> tuple[dict[str, Array], float]:
     """The turn of every rigid body since it was drawn, (4), and the residual left, m.
 
     places: centres of mass (3); plays: eccentricity of clearance joints, world axes as drawn (3);

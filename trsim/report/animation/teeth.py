@@ -1,7 +1,7 @@
 """Teeth of wheels that are drawn: how many, and where they stand so that they mesh.
 
-All wheels of a train have one pitch p = 2 pi r/z.  Without numbers of teeth they are taken such that
-they are whole; where that cannot be, or there were too many, the wheels are smooth.
+All wheels of a train have one pitch p = 2 pi r/z.  Where no numbers of teeth are known they are
+taken such that they are whole; where that cannot be, or there were too many, the wheels are smooth.
 
 Two wheels that touch share their outline there: what stands out of the one is a gap of the other.
 """
@@ -55,7 +55,7 @@ def numbers(wheels: Sequence[Wheel], known: Sequence[int]) -> list[int]:
     tried = [count / radius for count, radius in given] or [z / radii.min() for z in USUAL]
     for per_length in tried[:1] if given else tried:
         teeth = np.round(radii * per_length)
-        if np.abs(radii * per_length - teeth).max() < WHOLE and 4 <= teeth.min():
+        if np.abs(radii * per_length - teeth).max() < WHOLE and teeth.min() >= 4:
             return [int(z) for z in teeth] if teeth.max() <= MOST else [0] * len(wheels)
     return [0] * len(wheels)
 

@@ -9,7 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trsim.report.animation.drawing import GROUND, SLIDES, SPATIAL, Array, Drawing
+from trsim.report.animation.drawing import (
+    GROUND,
+    SLIDES,
+    SPATIAL,
+    Array,
+    Drawing,
+    Guide,
+    Joint,
+)
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.shapes import boxed
 from trsim.report.animation.solids import Mesh
@@ -130,8 +138,8 @@ def plane(drawn: Drawing) -> Array | None:
     slides = [joint.axis for joint in drawn.joints if joint.picture in SLIDES]
     heights = [joint.at @ normal for joint in drawn.joints]
     heights += [end @ normal for line in drawn.lines for end in line.ends]
-    heights += [at @ normal for _, at in drawn.held]
-    heights += [guide.origin @ normal for guide in drawn.guides]
+    heights += [at @ normal for guide in drawn.guides for at in (guide.at, guide.origin)]
+    heights += [place.at @ normal for rope in drawn.ropes for place in rope.places]
     hinges += [guide.axes[2] for guide in drawn.guides]
     hinges += [wheel.axis for wheel in drawn.moving.wheels]
     level = np.ptp(heights) < 1e-6 * drawn.size if heights else True
@@ -143,8 +151,9 @@ def plane(drawn: Drawing) -> Array | None:
 def layers(drawn: Drawing) -> dict[str, int]:
     """A layer for each body: the lowest that no body hinged to it has."""
     found: dict[str, int] = {}
+    joined: list[Joint | Guide] = [*drawn.joints, *drawn.guides]
     for body in (*drawn.bars, *drawn.bodies):
-        pairs = [(one.i, one.j) for one in (*drawn.joints, *drawn.guides) if body in (one.i, one.j)]
+        pairs = [(one.i, one.j) for one in joined if body in (one.i, one.j)]
         taken = {found.get(name) for pair in pairs for name in pair}
         found[body] = next(k for k in range(len(found) + 1) if k not in taken)
     return found

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trsim.report.animation import solids, turns
+from trsim.report.animation import solids
 from trsim.report.animation.drawing import Array, Joint, Wheel, Worm
 from trsim.report.animation.motion import Motion
 from trsim.report.animation.solids import Mesh, frame

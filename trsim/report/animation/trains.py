@@ -65,8 +65,10 @@ class Found:
         """The number of a wheel on a hinge; one that is there already is not made again."""
         for k, one in enumerate(self.wheels):
             same = (one.joint, one.body, one.hollow) == (hinge.name, hinge.body, hollow)
-            if same and (one.apex is None) == (apex is None) and (
-                abs(one.radius - radius) < SAME * radius
+            if (
+                same
+                and (one.apex is None) == (apex is None)
+                and (abs(one.radius - radius) < SAME * radius)
             ):
                 return k
         self.wheels.append(Wheel(hinge.name, hinge.body, hinge.carrier, at, hinge.axis, radius,
@@ -181,7 +183,7 @@ def bevel(found: Found, name: str, spec: Any, x: Hinge, y: Hinge) -> str:
         at = apex + length * cosine * way * one.axis
         radius = length * float(np.sqrt(max(1.0 - cosine**2, 0.0)))
         numbers.append(found.wheel(one, radius, at, apex=apex))
-    found.meshes.append(Mesh(name, x.carrier, *numbers, apex + length * along))
+    found.meshes.append(Mesh(name, x.carrier, numbers[0], numbers[1], apex + length * along))
     count(found, spec, numbers)
     return ""
 

@@ -30,7 +30,9 @@ def wire(line: Array, radius: float, normal: Array, closed: bool = False) -> Mes
     return Mesh(points.reshape(-1, 3), normals.reshape(-1, 3), skin(len(line), SIDES))
 
 
-def arc(middle: Array, radius: float, first: float, sweep: float, axes: Array, step: float) -> Array:
-    """Points of an arc (n, 3) about the third of the axes, rad; no further apart than `step` rad."""
+def arc(
+    middle: Array, radius: float, first: float, sweep: float, axes: Array, step: float
+) -> Array:
+    """Points of an arc (n, 3) about the third of the axes, at most `step` rad apart."""
     angle = first + sweep * np.linspace(0.0, 1.0, max(int(np.ceil(abs(sweep) / step)), 1) + 1)
     return middle + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) @ axes[:2]
