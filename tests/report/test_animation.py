@@ -16,9 +16,9 @@ from trsim.report.animation.lines import lines
 from trsim.report.animation.motion import FRAMES, frames, motion
 from trsim.report.animation.page import arrow_scale
 from trsim.report.animation.things import colours, look
-from trsim.store.read import read
 
 from .browser import CHROMIUM, browser
+from .filmed import of
 
 SPINNING = """
 planar: false
@@ -119,11 +119,6 @@ forces:
 solver: {end: 0.5 s}
 output: {every: 5 ms}
 """
-
-
-def of(folder, *sets, text=small.SLIDER_CRANK):
-    small.run(folder / "run.h5", *sets, text=text)
-    return read(folder / "run.h5")
 
 
 @pytest.fixture(scope="module")

@@ -77,6 +77,7 @@ ELEMENT = transmission(
     key="belt",
     spec=Belt,
     pack=pack,
+    picture="band",
     units=("N*m", "N*m"),
     example="""
 bodies:

@@ -337,6 +337,7 @@ ELEMENT = Element(
     reach=reach,
     turning=turning,
     holds_twist=False,
+    picture="lobe",
     kernels={
         "constraint": constraint_of(ROWS),
         "coordinate": coordinate,

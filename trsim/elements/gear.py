@@ -130,6 +130,7 @@ ELEMENT = transmission(
     key="gear",
     spec=Gear,
     pack=pack,
+    picture="wheels",
     units=("N*m", "N*m"),
     example="""
 bodies:

@@ -193,6 +193,7 @@ ELEMENT = Element(
         Channel("torque_2", "N*m", "on the second body of joint 2, about its axis"),
     ),
     loads={"force": "force"},
+    picture="wheels",
     kernels={"coordinate": coordinate, "force": force, "energy": energy, "measure": measure},
     example="""
 bodies:

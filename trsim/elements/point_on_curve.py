@@ -104,7 +104,7 @@ ELEMENT = Element(
     reach=reach,
     turning=turning,
     holds_twist=False,
-    picture="bead",
+    picture="slot",
     kernels={
         "constraint": constraint_of(ROWS),
         "coordinate": coordinate,

@@ -84,6 +84,7 @@ ELEMENT = transmission(
     key="rack_and_pinion",
     spec=RackAndPinion,
     pack=pack,
+    picture="rack",
     units=("N*m", "N"),
     example="""
 bodies:

@@ -330,6 +330,7 @@ ELEMENT = Element(
     turning=turning,
     holds_twist=False,
     in_plane=lambda row: Own.of(row).angle >= 0,
+    picture="strand",
     kernels={
         "constraint": constraint,
         "coordinate": coordinate,

@@ -98,6 +98,7 @@ ELEMENT = joint(
     rows=(*ACROSS, *TILTS, JointRow("lead", "h", fill=lead)),
     coordinates=("angle", "stroke"),
     pack=pack,
+    picture="thread",
     example="""
 planar: false
 bodies:

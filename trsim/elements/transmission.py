@@ -287,7 +287,9 @@ def reach(row):
     return Reach(hinges=tuple(hinges), slides=tuple(slides))
 
 
-def transmission(key: str, spec: type, pack: Any, units: tuple[str, ...], example: str) -> Element:
+def transmission(
+    key: str, spec: type, pack: Any, units: tuple[str, ...], example: str, picture: str = ""
+) -> Element:
     """The element of a relation; units: of its channels, for explanations."""
     return Element(
         key=key,
@@ -299,6 +301,7 @@ def transmission(key: str, spec: type, pack: Any, units: tuple[str, ...], exampl
         channels=tuple(channel(k, unit) for k, unit in enumerate(units)),
         acts_at=acts_at,
         reach=reach,
+        picture=picture,
         kernels={"constraint": constraint, "measure": measure},
         example=example,
     )

@@ -94,6 +94,7 @@ ELEMENT = transmission(
     key="worm",
     spec=Worm,
     pack=pack,
+    picture="helix",
     units=("N*m", "N*m"),
     example="""
 planar: false

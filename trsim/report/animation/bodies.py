@@ -7,22 +7,47 @@ import numpy as np
 
 from trsim.report.animation import solids, turns
 from trsim.report.animation.drawing import SLIDES, Array, Drawing, Joint, Line
+from trsim.report.animation.guides import plated
 from trsim.report.animation.motion import Motion
+from trsim.report.animation.shapes import edges, mesh, nearest
 from trsim.report.animation.solids import Mesh
-from trsim.report.animation.things import SUPPORT, Look, Thing, colours, origin, points, pose
+from trsim.report.animation.things import PIN, SUPPORT, Look, Thing, colours, origin, points, pose
+from trsim.report.animation.wires import wire
 
+LINE = 0.12  # half widths of a link: radius of the lines of holes
 LONG = 4.5  # half widths of a link: what a rail is longer than the stroke, at each end
 MANY = 4  # points of a body, of which a star is still understood
 SEGMENTS = 48  # of a bar that is shown: more nodes than that are passed over
 
 
 def links(moved: Motion, look: Look) -> Iterator[Thing]:
-    """Every rigid body as a solid between its joints and lines."""
+    """Every rigid body as it is made, or as a solid between its joints and lines."""
     drawn = moved.drawn
     colour = colours(drawn)
     for body in drawn.bodies:
-        mesh = solids.joined(*shapes(drawn, look, body))
-        yield Thing(body, ((mesh, colour[body]),), *pose(moved, body))
+        if drawn.shape(body):
+            yield made_of_solids(moved, look, body, colour[body])
+            continue
+        parts = shapes(drawn, look, body)
+        if parts:
+            yield Thing(body, ((solids.joined(*parts), colour[body]),), *pose(moved, body))
+
+
+def made_of_solids(moved: Motion, look: Look, body: str, colour: str) -> Thing:
+    """Its solids, thin links to what it holds outside of them, and lines for its holes."""
+    drawn = moved.drawn
+    centre, solid = drawn.bodies[body], drawn.shape(body)
+    parts = [mesh(one).moved(-centre) for one in solid if not one.hole]
+    for at in points(drawn, body):
+        foot = nearest(solid, at)
+        if np.linalg.norm(at - foot) > 0.5 * look.radius:
+            parts.append(link(foot - centre, at - centre, 0.4 * look.radius, look))
+    pieces = [(solids.joined(*parts).moved(look.lift(body)), colour)]
+    rings = [wire(line - centre, LINE * look.radius, across, closed=True)
+             for one in solid if one.hole for line, across in edges(one)]  # fmt: skip
+    if rings:
+        pieces.append((solids.joined(*rings).moved(look.lift(body)), PIN))
+    return Thing(body, tuple(pieces), *pose(moved, body))
 
 
 def shapes(drawn: Drawing, look: Look, body: str) -> list[Mesh]:
@@ -30,9 +55,26 @@ def shapes(drawn: Drawing, look: Look, body: str) -> list[Mesh]:
     centre = drawn.bodies[body]
     parts = [link(a - centre, b - centre, look.radius, look)
              for a, b in skeleton(drawn, look, body)]  # fmt: skip
-    parts += [slider(joint, look).moved(joint.at - centre) for joint in slides(drawn, body)]
-    parts = parts or [block(np.zeros(3), np.array([1.0, 0.0, 0.0]), look)]
+    parts += [slider(joint, look).moved(joint.at - centre) for joint in slides(drawn, body)
+              if not slid(drawn, joint)]  # fmt: skip
+    if not parts and not has_own(drawn, body):
+        parts = [block(np.zeros(3), np.array([1.0, 0.0, 0.0]), look)]
     return [lifted(part, look, body) for part in parts]
+
+
+def has_own(drawn: Drawing, body: str) -> bool:
+    """Whether a body is seen by a wheel, a rack, a thread, the plate of a cam, or a sheave."""
+    moving = drawn.moving
+    seen = {wheel.body for wheel in moving.wheels} | {rack.body for rack in moving.racks}
+    seen |= {worm.body for worm in moving.worms}
+    seen |= {guide.i for guide in drawn.guides if plated(guide)}
+    seen |= {place.body for rope in drawn.ropes for place in rope.places if place.bend}
+    return body in seen or any(slid(drawn, joint) for joint in slides(drawn, body))
+
+
+def slid(drawn: Drawing, joint: Joint) -> bool:
+    """Whether something else is drawn in the place of a block: a rack, a thread."""
+    return joint.picture == "thread" or joint.name in {rack.joint for rack in drawn.moving.racks}
 
 
 def slides(drawn: Drawing, body: str) -> list[Joint]:
@@ -44,17 +86,39 @@ def skeleton(drawn: Drawing, look: Look, body: str) -> list[tuple[Array, Array]]
 
     Two points: one between them; more: from their middle to each; one: to the centre of mass.  Of
     many points a star is a web: they are joined from neighbour to neighbour, as along a shell.
+    What turns about the line of its two points, as a door does, reaches to its centre of mass, too.
     """
     held = points(drawn, body)
     if len(held) == 2:
-        return [(held[0], held[1])]
+        foot, centre = held[0] + on_line(drawn, body, *held), drawn.bodies[body]
+        leaf = hung(drawn, body, *held) and np.linalg.norm(centre - foot) > look.radius
+        return [(held[0], held[1]), *([(foot, centre)] if leaf else [])]
     if len(held) == 1:
         centre = drawn.bodies[body]
-        far = np.linalg.norm(held[0] - centre) > look.radius or not slides(drawn, body)
-        return [(held[0], centre)] if far else []
+        far = np.linalg.norm(held[0] - centre) > look.radius
+        seen = slides(drawn, body) or has_own(drawn, body)
+        return [(held[0], centre)] if far or not seen else []
     if len(held) > MANY:
         return tree(held)
     return [(np.mean(held, axis=0), point) for point in held]
+
+
+def on_line(drawn: Drawing, body: str, first: Array, second: Array) -> Array:
+    """From the first of two points to the place between them that is nearest to the centre."""
+    d = second - first
+    share = float((drawn.bodies[body] - first) @ d) / max(float(d @ d), 1e-300)
+    return min(max(share, 0.0), 1.0) * d
+
+
+def hung(drawn: Drawing, body: str, first: Array, second: Array) -> bool:
+    """Whether a hinge of a body has the line through two points as its axis."""
+    d = second - first
+    return any(
+        joint.picture in ("pin", "journal")
+        and body in (joint.i, joint.j)
+        and np.linalg.norm(np.cross(joint.axis, d)) < 1e-6 * np.linalg.norm(d)
+        for joint in drawn.joints
+    )
 
 
 def tree(points: list[Array]) -> list[tuple[Array, Array]]:
@@ -107,13 +171,13 @@ def block(at: Array, axis: Array, look: Look) -> Mesh:
 
 def lifted(mesh: Mesh, look: Look, body: str) -> Mesh:
     """The mesh in the layer of its body."""
-    return mesh if look.normal is None else mesh.moved(look.height(body) * look.normal)
+    return mesh.moved(look.lift(body))
 
 
 def rails(moved: Motion, look: Look) -> Iterator[Thing]:
     """What slides run on, and bushings that are free along one axis."""
     for joint in moved.drawn.joints:
-        if joint.picture in SLIDES:
+        if joint.picture in SLIDES and joint.picture != "thread":
             yield rail(moved, look, joint, joint.at, joint.axis)
     for line in moved.drawn.lines:
         axis = np.zeros(3) if line.slide is None else line.axes[line.slide]

@@ -10,6 +10,7 @@ from trsim.report.animation import solids, turns
 from trsim.report.animation.bodies import arm, lifted
 from trsim.report.animation.drawing import GROUND, SLIDES, SPATIAL, Array, Joint
 from trsim.report.animation.motion import Motion
+from trsim.report.animation.solids import Mesh
 from trsim.report.animation.things import (
     JOURNAL,
     PIN,
@@ -100,10 +101,7 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
         if GROUND not in (joint.i, joint.j) or joint.picture in SLIDES:
             continue
         if look.normal is not None:
-            outline = r * np.array([[-2.0, -3.4], [2.0, -3.4], [0.8, 0.6], [-0.8, 0.6]])
-            base = r * np.array([[-3.6, -4.2], [3.6, -4.2], [3.6, -3.4], [-3.6, -3.4]])
-            parts = [solids.prism(shape, look.thick, look.normal) for shape in (outline, base)]
-            mesh = solids.joined(*parts).moved(-look.pitch * look.normal)
+            mesh = stand(look, look.normal)
         elif joint.picture in SPATIAL:
             post = solids.cylinder(0.9 * r, 3.0 * r, look.up).moved(-2.2 * r * look.up)
             foot = solids.cylinder(2.4 * r, 0.6 * r, look.up).moved(-3.8 * r * look.up)
@@ -111,6 +109,15 @@ def supports(moved: Motion, look: Look) -> Iterator[Thing]:
         else:
             mesh = solids.cylinder(1.3 * r, 1.6 * r, joint.axis)
         yield Thing(f"{joint.name} support", ((mesh, SUPPORT),), joint.at[None], turns.STILL[None])
+
+
+def stand(look: Look, normal: Array) -> Mesh:
+    """What carries a hinge of a flat mechanism, behind all bodies."""
+    r = look.radius
+    outline = r * np.array([[-2.0, -3.4], [2.0, -3.4], [0.8, 0.6], [-0.8, 0.6]])
+    base = r * np.array([[-3.6, -4.2], [3.6, -4.2], [3.6, -3.4], [-3.6, -3.4]])
+    parts = [solids.prism(shape, look.thick, normal) for shape in (outline, base)]
+    return solids.joined(*parts).moved(-look.pitch * normal)
 
 
 def stops(moved: Motion, look: Look) -> Iterator[Thing]:

@@ -13,6 +13,7 @@ from trsim.report.animation.things import Thing
 FLOAT, WORD, LONG = 5126, 5123, 5125  # component types
 VERTICES, INDICES = 34962, 34963  # what a buffer view is for
 KINDS = {1: "SCALAR", 3: "VEC3", 4: "VEC4"}
+RESTS = 1e-9  # of the size: what moves by less does not; a turn in parts of its quaternion
 METALLIC, ROUGH = 0.1, 0.6
 
 
@@ -91,10 +92,11 @@ def glb(things: Sequence[Thing], time: Array, extras: dict[str, Any]) -> bytes:
     store = Store(gltf)
     animation = Animation(name="motion")
     times = (time - time[0]).astype(np.float32)
+    size = max((float(np.abs(thing.place).max()) for thing in things), default=0.0)
     for k, thing in enumerate(things):
         gltf.nodes.append(node(thing, store.mesh(thing)))
         if len(time) > 1:
-            animate(animation, store, times, thing, k)
+            animate(animation, store, times, thing, k, size)
     if animation.channels:
         gltf.animations = [animation]
     gltf.buffers = [Buffer(byteLength=store.size)]
@@ -127,13 +129,15 @@ def node(thing: Thing, mesh: int) -> Any:
     return made
 
 
-def animate(animation: Any, store: Store, times: Array, thing: Thing, k: int) -> None:
-    """Channels of what changes."""
+def animate(animation: Any, store: Store, times: Array, thing: Thing, k: int, size: float) -> None:
+    """Channels of what changes; size: of all that there is, m."""
     from pygltflib import AnimationChannel, AnimationChannelTarget, AnimationSampler
 
     tracks = {"translation": thing.place, "rotation": thing.turn, "scale": thing.scale}
     for path, values in tracks.items():
-        if values is None or len(values) == 1 or not np.ptp(values, axis=0).any():
+        if values is None or len(values) == 1:
+            continue
+        if np.ptp(values, axis=0).max() <= RESTS * (size if path == "translation" else 1.0):
             continue
         sampler = AnimationSampler(
             input=store.add(times, bounds=True),

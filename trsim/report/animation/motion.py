@@ -13,11 +13,22 @@ from numpy.typing import NDArray
 
 from trsim.errors import UsageError
 from trsim.report.animation import turns
-from trsim.report.animation.drawing import GROUND, IDEAL_POINTS, Array, Drawing, Joint, drawing
+from trsim.report.animation.drawing import (
+    GROUND,
+    IDEAL_POINTS,
+    Array,
+    Drawing,
+    Guide,
+    Joint,
+    Touch,
+)
+from trsim.report.animation.guides import touch
+from trsim.report.animation.reading import drawing
 from trsim.report.animation.start import attitudes
 from trsim.store.read import Run
 
 FRAMES = 600
+BEGAN = 1e-6  # of that size: what is farther from its place as drawn began elsewhere
 OPEN = 0.01  # of the size of the mechanism: joints that are seen to be apart
 FASTEST = 1.6  # rad between two frames: more looks slower than it is
 
@@ -33,6 +44,9 @@ class Motion:
     turns: Mapping[str, Array]  # rigid body -> (n, 4)
     nodes: Mapping[str, Array]  # bar -> (n, nodes, 3)
     plays: Mapping[str, Array] = field(default_factory=dict)  # joint -> journal from bearing (n, 3)
+    touches: Mapping[str, Touch] = field(default_factory=dict)  # of guides
+    recorded: bool = True  # whether all attitudes were
+    begun: bool = False  # whether hinges are known to have been turned at the start
     open: float = 0.0  # m: what ideal joints come apart by
     warnings: tuple[str, ...] = ()
 
@@ -48,6 +62,13 @@ class Motion:
             away = np.linalg.norm(self.drawn.bars[body] - at, axis=1)
             return self.nodes[body][:, int(away.argmin())]
         return self.places[body] + turns.turned(self.turns[body], at - self.drawn.bodies[body])
+
+    def on(self, body: str, place: Array) -> Array:
+        """Where on a rigid body, as drawn, it has places (n, 3): the way back of `point`."""
+        if body not in self.places:
+            return place
+        own = turns.turned(turns.back(self.turns[body]), place - self.places[body])
+        return self.drawn.bodies[body] + own
 
 
 def motion(run: Run) -> Motion:
@@ -65,7 +86,8 @@ def motion(run: Run) -> Motion:
     recorded = eccentricities(run, drawn)
     first = {name: place[0] for name, place in places.items()}
     start, left = attitudes(drawn, first, {name: play[0] for name, play in recorded.items()},
-                            {name: line[0] for name, line in nodes.items()})  # fmt: skip
+                            {name: line[0] for name, line in nodes.items()},
+                            angles(run, drawn))  # fmt: skip
     found, unknown = attitudes_over_time(run, drawn, time, start)
     moved = Motion(
         drawn,
@@ -77,7 +99,14 @@ def motion(run: Run) -> Motion:
     )
     plays = {joint.name: play(moved, joint, recorded) for joint in drawn.joints
              if joint.picture == "journal"}  # fmt: skip
-    moved = replace(moved, plays=plays)
+    touches = {guide.name: touched(moved, guide) for guide in drawn.guides}
+    moved = replace(
+        moved,
+        plays=plays,
+        touches=touches,
+        recorded=turning(run, drawn),
+        begun=any(abs(angle) > BEGAN for angle in angles(run, drawn).values()),
+    )
     apart = opened(moved)
     return replace(moved, open=apart, warnings=warnings(moved, left, apart, unknown))
 
@@ -126,11 +155,71 @@ def attitudes_over_time(
     return found, tuple(unknown)
 
 
+def angles(run: Run, drawn: Drawing) -> dict[str, float]:
+    """How far hinges had turned at the start since they were drawn, where that is known, rad.
+
+    Known are values that the scenario gives, and those of drives that are recorded.
+    """
+    scenario, found = drawn.scenario, {}
+    given = dict(scenario.initial.values)
+    for name, drive in scenario.drives.items():
+        channel, rigid = f"{name}.position", getattr(drive, "compliance", None) is None
+        if run.units.get(channel) == "rad" and rigid and getattr(drive, "joint", None):
+            given[drive.joint] = float(run.channel(channel)[0])
+    for joint in drawn.joints:
+        value = given.get(joint.name, given.get(f"{joint.name}.angle"))
+        if joint.picture == "pin" and value is not None:
+            found[joint.name] = value - as_drawn(drawn, joint)
+    return found
+
+
+def as_drawn(drawn: Drawing, joint: Joint) -> float:
+    """The angle of a hinge as drawn: that of bodies whose axes are turned about its own."""
+    bodies, spec = drawn.scenario.bodies, drawn.scenario.joints[joint.name]
+    frame, axis = spec.drawn_in, joint.axis
+    along = (frame.inside(tuple(axis)) if frame else axis)[2]
+    if abs(along) <= 0.999:
+        return 0.0
+    own = [0.0, 0.0]
+    for k, name in enumerate((joint.i, joint.j)):
+        if name in drawn.bodies:
+            spec = bodies[name]
+            about = spec.drawn_in.about_z if spec.drawn_in is not None and frame is None else 0.0
+            own[k] = spec.angle + about
+    return float((own[1] - own[0]) * along)
+
+
+def turning(run: Run, drawn: Drawing) -> bool:
+    """Whether all attitudes were recorded."""
+    return all(f"{name}.rotation" in run.units for name in drawn.bodies)
+
+
+def elsewhere(moved: Motion) -> bool:
+    """Whether a run did not begin as drawn, and how bodies were turned then is not recorded."""
+    initial, drawn = moved.drawn.scenario.initial, moved.drawn
+    went = max((float(np.linalg.norm(moved.places[name][0] - at))
+                for name, at in drawn.bodies.items()), default=0.0)  # fmt: skip
+    return not moved.recorded and (bool(initial.values) or initial.settles or moved.begun
+                                   or went > BEGAN * drawn.size)  # fmt: skip
+
+
 def play(moved: Motion, joint: Joint, recorded: Mapping[str, Array]) -> Array:
     """Journal from bearing, (n, 3): as recorded, which is exact, or from the poses."""
     if joint.name in recorded:
         return turns.turned(moved.turn(joint.i), recorded[joint.name][moved.rows])
     return moved.point(joint.j, joint.at) - moved.point(joint.i, joint.at)
+
+
+def touched(moved: Motion, guide: Guide) -> Touch:
+    """Where on its curve a follower is."""
+    there = moved.on(guide.i, np.broadcast_to(moved.point(guide.j, guide.at),
+                                              (len(moved.time), 3)))  # fmt: skip
+    normals = None
+    if guide.face is not None:
+        turned = turns.turned(moved.turn(guide.j), guide.face)
+        own = turns.turned(turns.back(moved.turn(guide.i)), turned)
+        normals = np.broadcast_to(own, there.shape) @ guide.axes.T
+    return touch(guide, guide.seen(there), normals)
 
 
 def opened(moved: Motion) -> float:
@@ -146,12 +235,15 @@ def opened(moved: Motion) -> float:
             axis = turns.turned(moved.turn(joint.i), joint.axis)
             d = d - np.sum(d * axis, axis=-1, keepdims=True) * axis
         largest = max(largest, float(np.linalg.norm(d, axis=1).max()))
+    for guide in moved.drawn.guides:
+        if not guide.comes_apart:
+            largest = max(largest, float(np.abs(moved.touches[guide.name].off).max()))
     return largest
 
 
 def warnings(moved: Motion, left: float, apart: float, unknown: tuple[str, ...]) -> tuple[str, ...]:
     """What a viewer has to know, in words."""
-    told, size = [], moved.drawn.size
+    told, size = [f"not drawn: {what}" for what in moved.drawn.skipped], moved.drawn.size
     if moved.drawn.lost:
         names = ", ".join(moved.drawn.lost)
         told.append(f"not drawn, for their positions were not recorded: {names}")
@@ -163,6 +255,11 @@ def warnings(moved: Motion, left: float, apart: float, unknown: tuple[str, ...])
         told.append(
             f"attitudes are integrals of recorded velocities, and joints come {apart:.2g} m "
             "apart: record more often, or `*.rotation`"
+        )
+    if moved.drawn.moving.wheels and elsewhere(moved):
+        told.append(
+            "teeth and marks of wheels stand as they were drawn at the start, though it began "
+            "elsewhere: record `*.rotation`"
         )
     fast = {name: float(2.0 * np.arccos(np.clip(np.abs(np.sum(q[1:] * q[:-1], axis=1)), 0, 1))
                         .max(initial=0.0)) for name, q in moved.turns.items()}  # fmt: skip

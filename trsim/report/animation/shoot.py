@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 
 from trsim.errors import UsageError
-from trsim.report.animation import bodies, fittings, lines
+from trsim.report.animation import belts, bodies, curves, fittings, lines, ropes, threads, wheels
 from trsim.report.animation.bodies import LONG
 from trsim.report.animation.drawing import SLIDES, Array, Drawing
 from trsim.report.animation.forces import arrows
@@ -34,6 +34,13 @@ def shoot(run: Run, magnified: float) -> Film:
         *bodies.links(moved, sizes),
         *bodies.bars(moved, sizes),
         *lines.lines(moved, sizes),
+        *curves.curves(moved, sizes),
+        *wheels.wheels(moved, sizes),
+        *wheels.racks(moved, sizes),
+        *threads.worms(moved, sizes),
+        *threads.screws(moved, sizes),
+        *belts.belts(moved, sizes),
+        *ropes.ropes(moved, sizes),
         *fittings.stops(moved, sizes),
         *fittings.pins(moved, sizes),
         *fittings.bearings(moved, sizes, magnified),
@@ -94,6 +101,11 @@ def outermost(moved: Motion, sizes: Look) -> Array:
         places += [first, second]
         if line.slide is not None:
             places += beyond(second, line.axes[line.slide], sizes)
+    places += [moved.point(body, at) for body, at in moved.drawn.corners]
+    for rack in moved.drawn.moving.racks:
+        along = np.cross(moved.drawn.moving.wheels[rack.wheel].axis, rack.out)
+        places += [moved.point(rack.body, rack.at + way * along)
+                   for way in wheels.ends(moved, rack)]  # fmt: skip
     every = np.concatenate(places)
     ways = np.array(list(product((-1.0, 0.0, 1.0), repeat=3)))
     return every[np.unique(np.argmax(every @ ways.T, axis=0))]

@@ -102,21 +102,21 @@ def bar(a: Array, b: Array, radius: float, thickness: float, axis: Array) -> Mes
     return prism(outline, thickness, axis, smooth=True).moved((axes[2] @ a) * axes[2])
 
 
-def ring(inner: float, outer: float, length: float, axis: Array) -> Mesh:
+def ring(inner: float, outer: float, length: float, axis: Array, corners: int = ROUND) -> Mesh:
     """A tube about its middle."""
     axes = frame(axis)
-    spokes = circle(1.0) @ axes[:2]
-    up = np.tile(axes[2], (ROUND, 1))
-    corners = [(outer, -1.0), (outer, 1.0), (inner, 1.0), (inner, -1.0)]
-    edges = [r * spokes + 0.5 * side * length * up for r, side in corners]
+    spokes = circle(1.0, corners) @ axes[:2]
+    up = np.tile(axes[2], (corners, 1))
+    profile = [(outer, -1.0), (outer, 1.0), (inner, 1.0), (inner, -1.0)]
+    edges = [r * spokes + 0.5 * side * length * up for r, side in profile]
     outward = [spokes, up, -spokes, -up]
     parts = []
-    after = np.roll(np.arange(ROUND), -1)
+    after = np.roll(np.arange(corners), -1)
     for k, normal in enumerate(outward):
         low, high = edges[k], edges[(k + 1) % 4]
         points = np.stack([low, low[after], high[after], high], axis=1).reshape(-1, 3)
         normals = np.stack([normal, normal[after], normal[after], normal], axis=1).reshape(-1, 3)
-        parts.append(Mesh(points, normals, quads(ROUND)))
+        parts.append(Mesh(points, normals, quads(corners)))
     return joined(*parts)
 
 
@@ -175,17 +175,22 @@ def arrow(head: float = 0.28, shaft: float = 0.42) -> Mesh:
     return turned_profile(profile, np.array([1.0, 0.0, 0.0]), 16)
 
 
-def coil(length: float, radius: float, wire: float, turns: int) -> Mesh:
-    """A spring from the origin along x: a wire by its radius, wound by another about the axis."""
-    along = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, WINDING * turns + 1)
+def coil(length: float, radius: float, wire: float, turns: float, winding: int = WINDING,
+         sides: int = WIRE) -> Mesh:  # fmt: skip
+    """A spring from the origin along x: a wire by its radius, wound by another about the axis.
+
+    winding, sides: corners of a turn, and of the wire.
+    """
+    corners = int(np.ceil(winding * turns))
+    along = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, corners + 1)
     # at both ends the wire closes to a point
     thick = np.pad(np.full(len(along), wire), 1)[:, None, None]
-    corners = 2.0 * np.pi * np.linspace(0.0, 1.0, WIRE + 1)
-    t, around = np.meshgrid(np.pad(along, 1, mode="edge"), corners, indexing="ij")
+    angle = 2.0 * np.pi * np.linspace(0.0, 1.0, sides + 1)
+    t, around = np.meshgrid(np.pad(along, 1, mode="edge"), angle, indexing="ij")
     pitch, level = length / (2.0 * np.pi * turns), np.zeros_like(t)
     out = np.stack([level, np.cos(t), np.sin(t)], axis=2)
     heading = np.stack([level + pitch, -radius * np.sin(t), radius * np.cos(t)], axis=2)
     aside = np.cross(heading / np.hypot(pitch, radius), out)
     normals = np.cos(around)[..., None] * out + np.sin(around)[..., None] * aside
     points = np.stack([pitch * t, level, level], axis=2) + radius * out + thick * normals
-    return Mesh(points.reshape(-1, 3), normals.reshape(-1, 3), skin(len(t), WIRE))
+    return Mesh(points.reshape(-1, 3), normals.reshape(-1, 3), skin(len(t), sides))

@@ -7,6 +7,8 @@ Gauss-Newton on
     x_i + Q_i (s_i + e) - x_j - Q_j s_j = 0         points, e the recorded eccentricity
     Q_i a - Q_j a = 0                               axes of hinges and sleeves; all of slides, welds
     Q_i a . Q_j w = 0                               axes of universal joints
+    n . (p - c) - r = 0                             followers of curves, see guides.py
+    angle of Q_j against Q_i about a = phi          hinges whose angle is known
 
 with Q the turn of a body since it was drawn; what the joints leave free stays as drawn.
 """
@@ -15,30 +17,54 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from trsim.report.animation.drawing import GROUND, LOOSE, SLIDES, STIFF, Array, Drawing, Joint
-from trsim.report.animation.turns import STILL, of_vector, product, shortest, turned
+from trsim.report.animation.drawing import (
+    GROUND,
+    LOOSE,
+    SLIDES,
+    STIFF,
+    Array,
+    Drawing,
+    Guide,
+    Joint,
+)
+from trsim.report.animation.guides import touch
+from trsim.report.animation.turns import STILL, back, of_vector, product, shortest, turned
 
 CLOSED = 1e-9  # residual, of the size of the mechanism
+QUARTERS = (0.5 * np.pi, np.pi, -0.5 * np.pi)  # rad: of other guesses
 MOST = 30  # steps
+SMALL = 1e-5  # rad: of differences
 FREE = 1e-8  # singular values, of the largest: directions the joints leave free
 
 
-def attitudes(drawn: Drawing, places: Mapping[str, Array], plays: Mapping[str, Array],
-              nodes: Mapping[str, Array]) -> tuple[dict[str, Array], float]:  # fmt: skip
+def attitudes(
+    drawn: Drawing,
+    places: Mapping[str, Array],
+    plays: Mapping[str, Array],
+    nodes: Mapping[str, Array],
+    angles: Mapping[str, float],
+) -> tuple[dict[str, Array], float]:
     """The turn of every rigid body since it was drawn, (4), and the residual left, m.
 
     places: centres of mass (3); plays: eccentricity of clearance joints, world axes as drawn (3);
-    nodes: those of bars (k, 3).
+    nodes: those of bars (k, 3); angles: of hinges since they were drawn, where they are known.
     """
     fixed = {GROUND: STILL}
     for name, line in nodes.items():
         chord = drawn.bars[name][-1] - drawn.bars[name][0]
         fixed[name] = shortest(chord, line[-1] - line[0])
-    problem = Problem(drawn, places, plays, nodes)
+    problem = Problem(drawn, places, plays, nodes, angles)
     still = {name: STILL for name in drawn.bodies}
     if np.max(np.abs(problem.residual(fixed | still)), initial=0.0) < CLOSED:
         return still, 0.0
-    found, left = problem.solved(fixed, problem.passed_on(fixed))
+    guess = problem.passed_on(fixed)
+    found, left = problem.solved(fixed, guess)
+    for angle in QUARTERS if drawn.guides else ():
+        if left < CLOSED:
+            break
+        # a follower may be on the other side of what has its curve
+        other = problem.solved(fixed, problem.turned_round(guess, angle))
+        found, left = min((found, left), other, key=lambda one: one[1])
     return found, left * drawn.size
 
 
@@ -46,9 +72,11 @@ class Problem:
     """The equations of one mechanism; lengths in units of its size."""
 
     def __init__(self, drawn: Drawing, places: Mapping[str, Array], plays: Mapping[str, Array],
-                 nodes: Mapping[str, Array]) -> None:  # fmt: skip
+                 nodes: Mapping[str, Array], angles: Mapping[str, float]) -> None:  # fmt: skip
         self.drawn, self.places, self.plays, self.nodes = drawn, places, plays, nodes
         self.names = list(drawn.bodies)
+        self.hinges = [(joint, angles[joint.name]) for joint in drawn.joints
+                       if joint.name in angles]  # fmt: skip
 
     def arm(self, body: str, at: Array) -> Array:
         """From the centre of mass to a point as drawn; none on bars and the ground."""
@@ -81,6 +109,8 @@ class Problem:
         parts = [c + turned(turn[joint.i], a) - turned(turn[joint.j], b)
                  for joint in self.drawn.joints for c, a, b in self.equations(joint)]  # fmt: skip
         parts += [np.array([a @ b]) for _, a, b in self.crosses(turn)]
+        parts += [np.array([self.beside(guide, turn)]) for guide in self.drawn.guides]
+        parts += [np.array([self.ahead(joint, angle, turn)]) for joint, angle in self.hinges]
         return np.concatenate(parts) if parts else np.zeros(0)
 
     def jacobian(self, turn: Mapping[str, Array]) -> Array:
@@ -89,10 +119,14 @@ class Problem:
                  for joint in self.drawn.joints for _, a, b in self.equations(joint)]  # fmt: skip
         parts += [(joint, np.cross(a, b)[None], -np.cross(a, b)[None])
                   for joint, a, b in self.crosses(turn)]  # fmt: skip
+        parts += [(guide, *self.along(guide, turn)) for guide in self.drawn.guides]
+        for joint, _ in self.hinges:
+            axis = turned(turn[joint.i], joint.axis)[None]
+            parts.append((joint, -axis, axis))
         rows = []
-        for joint, of_i, of_j in parts:
+        for one, of_i, of_j in parts:
             row = np.zeros((len(of_i), 3 * len(self.names)))
-            for body, part in ((joint.i, of_i), (joint.j, of_j)):
+            for body, part in ((one.i, of_i), (one.j, of_j)):
                 if body in self.drawn.bodies:
                     k = 3 * self.names.index(body)
                     row[:, k : k + 3] = part
@@ -106,6 +140,34 @@ class Problem:
             for joint in self.drawn.joints
             if joint.picture == "cross"
         ]
+
+    def beside(self, guide: Guide, turn: Mapping[str, Array]) -> float:
+        """How far a follower is from its curve."""
+        i, j = guide.i, guide.j
+        there = self.base(j, guide.at) + turned(turn[j], self.arm(j, guide.at))
+        there = there - self.base(i, guide.origin) - turned(turn[i], self.arm(i, guide.origin))
+        seen = guide.axes @ turned(back(turn[i]), there)
+        face = None
+        if guide.face is not None:
+            face = (guide.axes @ turned(back(turn[i]), turned(turn[j], guide.face)))[None]
+        return float(touch(guide, seen[None], face).off[0]) / self.drawn.size
+
+    def ahead(self, joint: Joint, angle: float, turn: Mapping[str, Array]) -> float:
+        """By how much a hinge has turned more than it is known to have, rad."""
+        q = product(back(turn[joint.i]), turn[joint.j])
+        over = 2.0 * np.arctan2(q[:3] @ joint.axis, q[3]) - angle
+        return float((over + np.pi) % (2.0 * np.pi) - np.pi)
+
+    def along(self, guide: Guide, turn: Mapping[str, Array]) -> tuple[Array, Array]:
+        """Derivatives of that against small turns of both bodies, by differences."""
+        found = []
+        for body in (guide.i, guide.j):
+            both = []
+            for sign in (1.0, -1.0):
+                turns = [product(of_vector(sign * SMALL * axis), turn[body]) for axis in np.eye(3)]
+                both.append(np.array([self.beside(guide, {**turn, body: q}) for q in turns]))
+            found.append((both[0] - both[1])[None] / (2.0 * SMALL))
+        return found[0], found[1]
 
     def passed_on(self, fixed: Mapping[str, Array]) -> dict[str, Array]:
         """First guesses, from bodies that are known to those they are joined to."""
@@ -124,6 +186,15 @@ class Problem:
             arm = self.arm(b, joint.at)
             there = self.base(a, joint.at) + turned(known[a], self.arm(a, joint.at))
             known[b] = shortest(arm, there - self.places[b])
+
+    def turned_round(self, guess: Mapping[str, Array], angle: float) -> dict[str, Array]:
+        """A guess with all bodies that have curves turned by an angle about their normals."""
+        made = dict(guess)
+        for guide in self.drawn.guides:
+            if guide.i in made:
+                axis = turned(guess[guide.i], guide.axes[2])
+                made[guide.i] = product(of_vector(angle * axis), guess[guide.i])
+        return made
 
     def reach(self, joint: Joint, _: str, body: str) -> float:
         return float(np.linalg.norm(self.arm(body, joint.at))) / self.drawn.size
