@@ -15,6 +15,7 @@ from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.solve.diagnose.poles import at_pole
 from trsim.solve.march import record as rec
 from trsim.solve.march.openings import held_to, look, opened
 from trsim.solve.march.record import Record, Settings
@@ -172,6 +173,10 @@ def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
         from trsim.solve.march.heard import sound
 
         found["sound"] = sound.address()
+    if len(model.pole):
+        from trsim.solve.march.poles import poles_ahead
+
+        found["poles"] = poles_ahead.address()
     if model.feature[:, READS].any():
         from trsim.solve.march.sensed import beyond, corners_ahead, turn
 
@@ -321,6 +326,8 @@ def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
         return leapt(mechanism, r)
     if r.slid:
         return slid(mechanism, r)
+    if r.pole:
+        return at_pole(scenario, mechanism, int(r.pole) - 1, float(r.pole_t))
     if r.opened:
         return opened(scenario, mechanism, r)
     return lost_its_way(scenario, mechanism, r) if r.lost else ""
