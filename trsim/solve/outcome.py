@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.equations import largest_wrench, poses
 from trsim.assemble.features import READS
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import largest_reaction
@@ -72,6 +73,8 @@ FEWEST_ROWS = 1024  # of the buffer of rows, see record.py
 MOST_POINTS = 1e6
 CROSSINGS = 2.0 * MOST_PARTS  # of a step, at most
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
+CLOSED = 1e-7  # of the largest energy: forces are not asked for where what is open is less
+ROUNDED = 1e-12  # of forces that balance, times the size: an energy that rounding of them makes
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 FINEST = 1e-14  # of the run: the last of shorter steps would hardly move the time, or not at all
 MOST_ROWS = 10_000  # output rows one fixed step may span
@@ -351,6 +354,12 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
     """Counts, residuals and the energy book's error."""
     book, least = float(r.largest_energy), NOTHING * natural(work, begun)
     scale = max(book, of_what_is_locked(r, work, begun), least, 1e-300)
+    lost, projected = float(r.largest_residual), abs(float(r.work_projection))
+    balance = of_what_balances(r, work) if max(lost, projected) > CLOSED * scale else 0.0
+
+    def relative(energy: float) -> float:
+        return energy / (scale if energy > ROUNDED * balance else max(scale, balance))
+
     redundant = float(r.worst_open)
     held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
     unprojected = 0.0 if held else float(r.worst_phi) / work.size
@@ -371,10 +380,10 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "start_position_residual": begun.moved,
         "start_force_residual": begun.residual,
         "energy_residual": float(r.largest_residual),
-        "energy_residual_relative": float(r.largest_residual) / scale,
+        "energy_residual_relative": relative(lost),
         "work_error_relative": float(r.work_error / max(r.exchanged, 1e-300)),
         "work_of_projection": float(r.work_projection),
-        "work_of_projection_relative": abs(float(r.work_projection)) / scale,
+        "work_of_projection_relative": relative(projected),
         "joints_open_relative": max(redundant, unprojected),
         "redundant_open_relative": redundant,
         "redundant_open_rate": float(r.worst_open_rate),
@@ -422,3 +431,11 @@ def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
     driven = np.any(r.peak[[rec.PEAK_MAX, rec.PEAK_MIN], drives])
     still = r.peak[rec.PEAK_MAX, kinetic] <= AT_REST * there
     return there if still and not driven else 0.0
+
+
+def of_what_balances(r: Record, work: Scene) -> float:
+    """The energy of the largest force along the mechanism's size, J.  Of what rests on forces that
+    balance each other, though it could move, rounding of them is all that moves."""
+    poses(work, r.y)
+    force = max(largest_reaction(work), largest_wrench(work, float(r.t)))
+    return float(force * work.size)
