@@ -201,7 +201,9 @@ solver: {end: 1}
 def test_a_lead_screw_has_one_branch(pitch, rate):
     """Four of its rows are redundant everywhere: (m + J/h^2) z'' = -m g."""
     made = run(LEAD_SCREW.replace("PITCH", str(pitch)).replace("RATE", str(rate)))
-    assert not any("branches" in line for line in doubts(made.scenario, made.mechanism, made.outcome))
+    assert not any(
+        "branches" in line for line in doubts(made.scenario, made.mechanism, made.outcome)
+    )
     h = pitch / (2 * np.pi)
     way = -h * rate - 0.5 * 2 * 9.81 / (2 + 0.001 / h**2)  # the nut goes back on what turns in it
     assert made["nut.position"][-1, 2] - 0.3 == pytest.approx(way, abs=1e-7)

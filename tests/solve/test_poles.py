@@ -116,7 +116,8 @@ def test_a_spring_whose_force_has_a_pole():
 bodies: {b: {mass: 1, inertia: 0.01, at: [1, 0], velocity: [1, 0]}}
 joints: {g: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0]}}
 forces:
-  s: {type: spring, bodies: [ground, b], points: [[0, 0], [1, 0]], elastic: "1e-9/(stretch - 0.5003)"}
+  s: {type: spring, bodies: [ground, b], points: [[0, 0], [1, 0]],
+      elastic: "1e-9/(stretch - 0.5003)"}
 gravity: [0, 0, 0]
 solver: {end: 1, method: rk4, step: 1e-3}
 """
