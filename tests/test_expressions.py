@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trsim.errors import ScenarioError
-from trsim.expressions import DEEPEST, degree, evaluate, names, parse, substitute
+from trsim.expressions import DEEPEST, degree, evaluate, names, parse, substitute, written
 
 
 def test_a_name_may_be_that_of_a_function():
@@ -131,6 +131,18 @@ def test_refused(text):
 def test_not_an_expression(text):
     with pytest.raises(ScenarioError, match="not an expression"):
         parse(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1/(x - 1)", "a - (b - c)", "a/(b*c)", "(-x)**2", "-x**2", "2**-1.5*x", "(a < b) < c",
+        "a < b + c", "x*(y > 2)", "step(t, 0, 0.1, 1, 2e-7)", "(a**b)**c", "a**b**c", "-(a + b)",
+        "B.angle - 2*(a + 1e-30)",
+    ],
+)  # fmt: skip
+def test_written_is_read_as_the_same(text):
+    assert parse(written(parse(text))) == parse(text)
 
 
 def test_misspelt_function():

@@ -1,5 +1,7 @@
 """Interval arithmetic: between which numbers an expression of t, and its rate, surely lie.
 
+A sensor in it may show any number.
+
     F = [a, b], F' = [c, d]         f(t) in F and f'(t) in F' for every t of an interval T
 
 Each of the four is an array, one entry for each interval, so that thousands are enclosed at once.
@@ -137,15 +139,17 @@ def power(a: Interval, n: int) -> Interval:
 
 
 def enclosure(node: Node, T: Interval) -> Enclosure:
-    """The enclosure of an expression of t alone, over intervals of t."""
+    """The enclosure of an expression over intervals of t, whatever the sensors in it show."""
     zero, one = exactly(0.0, T.low), exactly(1.0, T.low)
     match node:
         case ("number", value):
             return Enclosure(exactly(value, T.low), zero)
         case ("name", "t"):
             return Enclosure(T, one)
-        case ("name", _):
+        case ("name", "pi"):
             return Enclosure(exactly(math.pi, T.low), zero)
+        case ("name", _):
+            return Enclosure(everything(T.low), everything(T.low))
         case ("unary", _, operand):
             a = enclosure(operand, T)
             return Enclosure(minus(zero, a.value), minus(zero, a.rate))

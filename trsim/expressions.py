@@ -106,6 +106,7 @@ _BINARY: dict[str, tuple[type, Callable[[float, float], float]]] = {
 }
 OPERATORS = {sign: function for sign, (_, function) in _BINARY.items()}
 _SIGNS = {kind: sign for sign, (kind, _) in _BINARY.items()}
+BINDS = {"+": 1, "-": 1, "*": 2, "/": 2, "**": 4}  # more strongly than comparisons
 COMPARISONS = ("<", "<=", ">", ">=", "==", "!=")
 
 _REFUSED: dict[type, str] = {
@@ -230,6 +231,28 @@ def rebuilt(node: Node, change: Callable[[Node], Node]) -> Node:
         case ("unary" | "binary" as kind, sign, *operands):
             return (kind, sign, *map(change, operands))
     return node
+
+
+def written(node: Node, within: int = 0) -> str:
+    """An expression as a user would write it.
+
+    within: how strongly what it stands in binds, see BINDS.
+    """
+    match node:
+        case ("number", value):
+            text, binds = f"{value:.10g}", 5 if value >= 0.0 else 3
+        case ("name", name):
+            return str(name)
+        case ("call", word, arguments):
+            return f"{word}({', '.join(map(written, arguments))})"
+        case ("unary", sign, operand):
+            text, binds = sign + written(operand, 3), 3
+        case ("binary", sign, left, right):
+            binds = BINDS.get(sign, 0)
+            first = sign == "**" or binds == 0
+            between = sign if sign == "**" else f" {sign} " if binds < 2 else sign
+            text = f"{written(left, binds + first)}{between}{written(right, binds + 1)}"
+    return f"({text})" if binds < within else text
 
 
 def names(node: Node) -> set[str]:

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from trsim.assemble.tables import masses_and_arms
 from trsim.errors import TrsimError
 from trsim.scenario.load import loads
 
-from ..runs import run
+from ..runs import built, run
 
 METHODS = ["dop853", "radau", "generalized_alpha", "scipy:RK45", "scipy:Radau"]
 ENGINE = """
@@ -242,3 +243,14 @@ def test_an_event_that_leaves_a_light_body_open_ends_the_run(joints):
 def test_an_event_may_leave_a_light_body_on_what_moves_it():
     r = run(loads(TORN_OFF.replace("release: [%s]", "release: [c], lock: [b]")))
     assert r.outcome.status == "done"
+
+
+@pytest.mark.parametrize("rod", [ROD, "  rod: {mass: 0.1, inertia: 0.001, at: [0.25, 0.05]}"])
+def test_what_stands_for_a_mass_is_asked_for_by_light_bodies_only(rod, monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        "trsim.assemble.tables.masses_and_arms",
+        lambda at: asked.append(at) or masses_and_arms(at),
+    )
+    built(ENGINE.format(rod, PINS, "method: dop853"))
+    assert bool(asked) == (rod == ROD)

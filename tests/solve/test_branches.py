@@ -179,3 +179,31 @@ def test_rest_where_branches_meet_is_told():
     assert "not determined" in said(torque)[0]
     assert not said(torque, *turning(2, 1.0))
     assert not said("")  # they are moved alike
+
+
+LEAD_SCREW = """
+planar: false
+bodies:
+  shaft: {mass: 1, inertia: [0.001, 0.001, 0.001], at: [0, 0, 0.2]}
+  nut: {mass: 2, inertia: [0.01, 0.01, 0.02], at: [0.1, 0, 0.3]}
+joints:
+  bearing: {type: revolute, bodies: [ground, shaft], at: [0, 0, 0], axis: [0, 0, 1]}
+  guide: {type: prismatic, bodies: [ground, nut], at: [0.1, 0, 0.3], axis: [0, 0, 1]}
+  thread: {type: screw, bodies: [shaft, nut], at: [0, 0, 0.3], axis: [0, 0, 1], pitch: PITCH}
+initial: {bearing.rate: RATE}
+gravity: [0, 0, -9.81]
+solver: {end: 1}
+"""
+
+
+@pytest.mark.parametrize("pitch", [0.02, -0.3])
+@pytest.mark.parametrize("rate", [0.0, 50.0])
+def test_a_lead_screw_has_one_branch(pitch, rate):
+    """Four of its rows are redundant everywhere: (m + J/h^2) z'' = -m g."""
+    made = run(LEAD_SCREW.replace("PITCH", str(pitch)).replace("RATE", str(rate)))
+    assert not any(
+        "branches" in line for line in doubts(made.scenario, made.mechanism, made.outcome)
+    )
+    h = pitch / (2 * np.pi)
+    way = -h * rate - 0.5 * 2 * 9.81 / (2 + 0.001 / h**2)  # the nut goes back on what turns in it
+    assert made["nut.position"][-1, 2] - 0.3 == pytest.approx(way, abs=1e-7)

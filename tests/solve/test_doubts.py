@@ -191,3 +191,35 @@ def test_a_fixed_step_that_a_body_turns_far_in_is_told(step, says):
 
 def test_a_method_that_chooses_its_steps_has_no_such_doubt():
     assert told(SPUN.format(method="method: dop853, tolerance: 1e-2")) == ()
+
+
+RESTS = """
+planar: PLANAR
+bodies:
+  a: {mass: 2, inertia: [0.01, 0.02, 0.03], at: [0.31, 0.2]}
+  b: {mass: 3, inertia: [0.01, 0.02, 0.03], at: [0.7, 0.2]}
+joints:
+  h: {type: prismatic, bodies: [ground, a], axis: [1, 0.3, 0]}
+  k: {type: revolute, bodies: [a, b], at: [0.45, 0.2]}
+gravity: [0, 0]
+forces:
+  p: {type: applied_load, body: a, direction: [0.3, -1, 0], force: 1e3}
+  q: {type: applied_load, body: b, at: [0.77, 0.13], direction: [0.13, -0.27, 0], force: 1e3}
+  r: {type: applied_load, body: b, at: [0.77, 0.13], direction: [-0.13, 0.27, 0], force: FORCE}
+events: {e: {when: t, value: 0.3, do: {DO}}}
+solver: {end: 1 s}
+"""
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("does", ["record: true", "lock: [h]"])
+def test_what_rests_on_forces_that_balance_has_no_open_book(planar, does):
+    text = RESTS.replace("PLANAR", planar).replace("DO", does)
+    balanced = run(text.replace("FORCE", "1e3"))
+    assert np.abs(balanced["b.velocity"]).max() < 1e-9  # rounding of the forces
+    assert not doubts(balanced.scenario, balanced.mechanism, balanced.outcome)
+    numbers = balanced.outcome.statistics
+    assert numbers["energy_residual"] < 1e-12 * 1e3  # N m
+    moved = run(text.replace("FORCE", "999.9"))  # what moves is held to what it exchanges
+    assert moved.outcome.statistics["energy_residual_relative"] < 1e-6
+    assert np.abs(moved["b.velocity"]).max() > 1e-6

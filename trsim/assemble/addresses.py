@@ -13,6 +13,7 @@ from trsim.assemble.instances import Named
 from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
+from trsim.assemble.poles import Guard, guards
 from trsim.elements.coordinates import ANY, named, split
 from trsim.elements.joint import triad
 from trsim.elements.rows import ARC, COORDINATES
@@ -78,6 +79,7 @@ class Addresses:
     packed_functions: list[Named] = field(default_factory=list)
     waves: list[tuple[int, list[float]]] = field(default_factory=list)  # that swing: laws/waves.py
     shown: list[tuple[int, list[float]]] = field(default_factory=list)  # the same of formulas
+    guards: list[Guard] = field(default_factory=list)  # of functions that may have no value
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
     def __post_init__(self) -> None:
@@ -400,6 +402,8 @@ class Addresses:
         if waves(code) and not free:
             self.waves.append((offset, code))
         self.tab.extend(code)
+        if spec.kind == "expression" and self.end is not None and not free:
+            self.guards += guards(self, spec.node, offset, indices)
         if not free:
             self.packed_functions.append(Named(".".join(map(str, path)), offset, spec))
         return offset

@@ -25,6 +25,7 @@ from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
 from trsim.assemble.pattern import Hubs, lines, no_pattern, pattern
 from trsim.assemble.planar import Planarity, listed, planarity
+from trsim.assemble.poles import poles
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -135,6 +136,7 @@ def assemble(
         notes=(*verdict.notes(), *notes(scenario), *at.notes, *sampled(at.switches)),
         stages=stages(scenario, at, instances, Choice(model, kept, dropped(rows, found)), planar),
         functions=tuple(at.packed_functions),
+        guards=tuple(at.guards),
         sections=shown,
     )
 
@@ -361,6 +363,7 @@ def build(
         **watched(at.switches, size),
         **features(at, instances),
         steep=steep(at, instances),
+        **poles(at, instances),
         rubbing=np.array(rubs, np.int64).reshape(-1, 4),
         rubbed_at=rubbing.address() if rubs else 0,
         rubs_with=rubs_with.address() if rubs else 0,

@@ -196,6 +196,21 @@ def call_one(s, kernels, t, e):
             call_kernel(kernels[k, 0], t, s, e, e + 1)
 
 
+@compiled(float64(SCENE, f8))
+def largest_wrench(s, t):
+    """The largest force, or moment by the mechanism's size, that one element puts on one frame."""
+    most = 0.0
+    for k in range(s.force.shape[0]):
+        for e in range(s.force[k, 1], s.force[k, 2]):
+            clear_table(s.F)
+            call_kernel(s.force[k, 0], t, s, e, e + 1)
+            for f in range(1, s.n):
+                for c in range(6):
+                    most = max(most, abs(s.F[f, c]) / (1.0 if c < 3 else s.size))
+    forces(s, t)
+    return most
+
+
 @compiled(AT)
 def constraints(s, t):
     """Phi, Phi_t, J and gamma of all rows."""

@@ -43,22 +43,28 @@ LEAST = 1e-9  # of M + E: of a motion left free that has less the arithmetic kno
 # --- tables ----------------------------------------------------------------------------------
 
 
-def lacking(name: str, spec: Any, reference: tuple[float, float], planar: bool) -> Array:
+def lacking(
+    name: str, spec: Any, reference: Callable[[], tuple[float, float]], planar: bool
+) -> Array:
     """E of a body: a mass, and an inertia (9) along its axes; all zero where it lacks nothing.
 
-    reference: what stands for a mass of the mechanism, and an arm.  Raises ModelError for a mass
-    or a moment below zero.
+    reference: what stands for a mass of the mechanism, and an arm; asked for where it lacks one.
+    Raises ModelError for a mass or a moment below zero.
     """
-    found, (mass, arm) = np.zeros(10), reference
+    found = np.zeros(10)
+
+    def moment() -> float:
+        mass, arm = reference()
+        return SHARE * mass * arm * arm
+
     if spec.mass == 0.0:
-        found[0] = SHARE * mass
+        found[0] = SHARE * reference()[0]
     tensor, complete = spec.tensor
     I = np.reshape(tensor, (3, 3))
-    moment = SHARE * mass * arm * arm
     if planar or not complete:
         if tensor[8] < 0.0:
             raise below_zero(name)
-        found[9] = moment if tensor[8] == 0.0 else 0.0
+        found[9] = moment() if tensor[8] == 0.0 else 0.0
         if not complete:
             found[[1, 5]] = found[9]
         return found
@@ -67,7 +73,8 @@ def lacking(name: str, spec: Any, reference: tuple[float, float], planar: bool) 
     if values[0] < -none:
         raise below_zero(name)
     light = axes[:, values <= none]
-    found[1:] = (moment * light @ light.T).ravel()
+    if light.shape[1]:
+        found[1:] = (moment() * light @ light.T).ravel()
     return found
 
 

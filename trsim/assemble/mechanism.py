@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from trsim.assemble.instances import Column, Instance, Named, Section
 from trsim.assemble.members import Beam
+from trsim.assemble.poles import Guard
 from trsim.assemble.stages import Stages
 from trsim.elements.scene import Model
 
@@ -41,6 +42,7 @@ class Mechanism:
     notes: tuple[str, ...]
     stages: Stages  # what user events make of it
     functions: tuple[Named, ...] = ()  # of loads and motions
+    guards: tuple[Guard, ...] = ()  # what of them may have no value, as in model.pole
     sections: tuple[Section, ...] = ()  # in the order of model.section
     ahead: Mapping[int, float] = field(default_factory=dict)  # state -> how far from its coordinate
 

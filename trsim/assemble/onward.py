@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 DEPENDENT = 1e-9  # singular values, of the largest
 HOLDS = 1e-9  # of the largest term of gamma
-ROUNDING = 1e-14  # of the largest gamma, of rows of length one
+ROUNDING = 1e-14  # of the products of rates that gamma is made of
 PLAINLY = 1e-3  # the same, and of what forces do to free bodies: more than a rounded drawing's
 TAKES_PART = 0.1  # of the largest entry of a self-stress
 MOST = 40  # motions that are looked at
@@ -53,7 +53,7 @@ def undecided(work: Scene, y: Array) -> list[int]:
     if not branches.stresses.shape[1]:
         return []
     off, largest = np.max(np.abs(branches.left(a))), np.max(np.abs(work.gamma))
-    if off <= PLAINLY * largest * np.max(np.abs(branches.stresses)):
+    if off <= max(PLAINLY * largest * np.max(np.abs(branches.stresses)), branches.noise(a)):
         return []
     part = np.max(np.abs(branches.stresses) * branches.length[:, None], axis=1)[: work.m]
     return np.flatnonzero(part > TAKES_PART * part.max(initial=0.0)).tolist()
@@ -120,9 +120,14 @@ class Branches:
         off = self.left(v)
         gamma = np.abs(self.work.gamma[self.rows])
         terms = float(np.max(np.abs(self.stresses) * gamma[:, None]))
-        # rows across a motion in a plane have no gamma but what rounding leaves of the others'
-        rounding = ROUNDING * float(np.max(gamma / self.length))
-        return bool(np.all(np.abs(off) <= max(HOLDS * terms, rounding, 1e-300)))
+        return bool(np.all(np.abs(off) <= max(HOLDS * terms, self.noise(v), 1e-300)))
+
+    def noise(self, v: Array) -> float:
+        """What rounding leaves of w . gamma where it is zero, as along a screw: gamma is made of
+        products of rates, which may cancel in all rows."""
+        along, turning = (np.max(np.abs(v.reshape(-1, 6)[:, k])) for k in (slice(3), slice(3, 6)))
+        most = turning * (along + turning * max(self.work.size, 1.0))
+        return float(ROUNDING * most * np.max(np.abs(self.stresses), initial=0.0))
 
     def quadratic(self, v: Array) -> tuple[Array, Array, Array]:
         """c (w), b (w, n), B (w, n, n) of w . gamma(v + N z) = c + b z + z B z."""

@@ -1,6 +1,7 @@
 """The arrays of a model, one function for each group of them."""
 
 from collections.abc import Sequence
+from functools import cache, partial
 from math import sqrt
 from typing import Any, NamedTuple
 
@@ -99,7 +100,7 @@ def masses(at: Addresses, d: int) -> Masses:
     """Those of all frames.  Raises ModelError for what no body has."""
     n = len(at.frames)
     light: dict[int, Array] = {}
-    arms, mean = levers(at, 0.0), mean_mass(at)
+    stand_ins = cache(partial(masses_and_arms, at))  # asked for by light bodies only
     mass, inertia = np.zeros(n), np.zeros((n, 9))
     mass_inverse, inertia_inverse = np.zeros(n), np.zeros((n, 9))
     for beam in at.beams.values():
@@ -113,7 +114,7 @@ def masses(at: Addresses, d: int) -> Masses:
         if spec.mass != 0.0 and not LIGHTEST <= spec.mass <= HEAVIEST:
             raise ModelError(f"no body of a mechanism has a mass of {spec.mass:.3g} kg",
                              "check its unit", ("bodies", name, "mass"))  # fmt: skip
-        more = lacking(name, spec, (mean, arms[f] or extent(at)), d == 3)
+        more = lacking(name, spec, lambda f=f: stand_ins()[f], d == 3)
         inertia[f], complete = spec.tensor
         mass[f], inertia[f] = spec.mass + more[0], inertia[f] + more[1:]
         known = inertia[f].reshape(3, 3)
@@ -132,10 +133,12 @@ def masses(at: Addresses, d: int) -> Masses:
     return Masses(mass, inertia, mass_inverse, inertia_inverse, which, more)
 
 
-def mean_mass(at: Addresses) -> float:
-    """What stands for a mass of the mechanism: between its largest and its smallest, kg."""
+def masses_and_arms(at: Addresses) -> list[tuple[float, float]]:
+    """Of every frame what stands for a mass of the mechanism, between its largest and its smallest,
+    kg, and for an arm, m."""
     found = [one for name in at.members if (one := at.members[name].as_rigid().mass) > 0.0]
-    return sqrt(min(found)) * sqrt(max(found)) if found else 1.0
+    mean, size = sqrt(min(found)) * sqrt(max(found)) if found else 1.0, extent(at)
+    return [(mean, arm or size) for arm in levers(at, 0.0)]
 
 
 def unequal(at: Addresses, mass: Array, inertia: Array, d: int) -> bool:

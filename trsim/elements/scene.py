@@ -138,6 +138,8 @@ class Model(Packed):
     travel: I2  # (n_contacts + n_w, 2) kind of each gap, the instance it lies at   travel.py
     kink: A1  # (n_contacts + n_w) |gap| from which on it may be on another branch
     section: I2  # (n_sections, 6) Poincare sections              assemble/sections.py
+    pole: I2  # (n, 4) what of functions may have no value                 assemble/poles.py
+    pole_slots: i8  # the most that one of them has
     wave: I1  # offsets in tab of functions with waves, where a section looks at what they move
     wave_slots: i8  # of the longest of them
     swings_at: i8  # address of how fast they swing; 0 where nothing asks for it   assemble/waves.py

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.assemble.equations import largest_wrench, poses
 from trsim.assemble.features import READS
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.reduce import largest_reaction
@@ -15,6 +16,7 @@ from trsim.elements.scene import N_STORED, PROJECTION, Scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
+from trsim.solve.diagnose.poles import at_pole
 from trsim.solve.march import record as rec
 from trsim.solve.march.openings import held_to, look, opened
 from trsim.solve.march.record import Record, Settings
@@ -72,6 +74,8 @@ MOST_POINTS = 1e6
 ROUNDING = 1e-14  # of the unit of a channel: what no extreme of it is told by
 CROSSINGS = 2.0 * MOST_PARTS  # of a step, at most
 NOTHING = 1e-20  # of the energy at the speeds a run expects: rounding of what is at rest
+CLOSED = 1e-7  # of the largest energy: forces are not asked for where what is open is less
+ROUNDED = 1e-12  # of forces that balance, times the size: an energy that rounding of them makes
 AT_REST = 1e-9  # of the energy that goes with its forces: kinetic energy of what rounding moves
 FINEST = 1e-14  # of the run: the last of shorter steps would hardly move the time, or not at all
 MOST_ROWS = 10_000  # output rows one fixed step may span
@@ -173,6 +177,10 @@ def called_by(mechanism: Mechanism, setting: Settings) -> dict[str, int]:
         from trsim.solve.march.heard import sound
 
         found["sound"] = sound.address()
+    if len(model.pole):
+        from trsim.solve.march.poles import poles_ahead
+
+        found["poles"] = poles_ahead.address()
     if model.feature[:, READS].any():
         from trsim.solve.march.sensed import beyond, corners_ahead, turn
 
@@ -326,6 +334,8 @@ def untrue(scenario: Any, mechanism: Mechanism, r: Record) -> str:
         return leapt(mechanism, r)
     if r.slid:
         return slid(mechanism, r)
+    if r.pole:
+        return at_pole(scenario, mechanism, int(r.pole) - 1, float(r.pole_t))
     if r.opened:
         return opened(scenario, mechanism, r)
     return lost_its_way(scenario, mechanism, r) if r.lost else ""
@@ -349,6 +359,12 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
     """Counts, residuals and the energy book's error."""
     book, least = float(r.largest_energy), NOTHING * natural(work, begun)
     scale = max(book, of_what_is_locked(r, work, begun), least, 1e-300)
+    lost, projected = float(r.largest_residual), abs(float(r.work_projection))
+    balance = of_what_balances(r, work) if max(lost, projected) > CLOSED * scale else 0.0
+
+    def relative(energy: float) -> float:
+        return energy / (scale if energy > ROUNDED * balance else max(scale, balance))
+
     redundant = float(r.worst_open)
     held = work.stabilisation == PROJECTION  # residuals are those before it, and gone after it
     unprojected = 0.0 if held else float(r.worst_phi) / work.size
@@ -369,10 +385,10 @@ def statistics(r: Record, work: Scene, begun: Start, cpu: float) -> dict[str, fl
         "start_position_residual": begun.moved,
         "start_force_residual": begun.residual,
         "energy_residual": float(r.largest_residual),
-        "energy_residual_relative": float(r.largest_residual) / scale,
+        "energy_residual_relative": relative(lost),
         "work_error_relative": float(r.work_error / max(r.exchanged, 1e-300)),
         "work_of_projection": float(r.work_projection),
-        "work_of_projection_relative": abs(float(r.work_projection)) / scale,
+        "work_of_projection_relative": relative(projected),
         "joints_open_relative": max(redundant, unprojected),
         "redundant_open_relative": redundant,
         "redundant_open_rate": float(r.worst_open_rate),
@@ -420,3 +436,11 @@ def of_what_is_locked(r: Record, work: Scene, begun: Start) -> float:
     driven = np.any(r.peak[[rec.PEAK_MAX, rec.PEAK_MIN], drives])
     still = r.peak[rec.PEAK_MAX, kinetic] <= AT_REST * there
     return there if still and not driven else 0.0
+
+
+def of_what_balances(r: Record, work: Scene) -> float:
+    """The energy of the largest force along the mechanism's size, J.  Of what rests on forces that
+    balance each other, though it could move, rounding of them is all that moves."""
+    poses(work, r.y)
+    force = max(largest_reaction(work), largest_wrench(work, float(r.t)))
+    return float(force * work.size)

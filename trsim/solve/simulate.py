@@ -238,7 +238,7 @@ def ending(
     if reason == rec.DONE:
         text = collapsed(scenario, mechanism, float(r.t), r.y)
         return ("failed", text) if text else ("done", "")
-    if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT, rec.SLIDES):
+    if reason in (rec.OPEN, rec.ADRIFT, rec.LEAPT, rec.SLIDES, rec.POLE):
         return "failed", untrue(scenario, mechanism, r)
     whose, text = undecided(mechanism, work)
     if whose is not None and reason != NO_STEPS_LEFT:

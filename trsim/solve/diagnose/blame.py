@@ -12,6 +12,7 @@ from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
 from trsim.solve.diagnose.locked import locked
+from trsim.solve.diagnose.poles import pole_near
 from trsim.solve.diagnose.singular import singular
 from trsim.solve.diagnose.strained import ALMOST, NEARLY, collapsed
 from trsim.solve.march.record import Record
@@ -102,6 +103,7 @@ def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     t = float(r.t)
     return (
         collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
+        or pole_near(scenario, mechanism, r)
         or end_of_law(scenario, mechanism, r)
         or drawn_in(scenario, mechanism, r.y)
         or (singular(mechanism, r) if r.driven else locked(mechanism, t, r.y))

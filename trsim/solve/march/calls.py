@@ -83,14 +83,14 @@ FIELDS = (
     "inside",  # what tells the error of accelerations inside a step, as `step` does that of its end
     "rate", "soften",  # what brings to rest what is stiff in a state             settle.py
     "book",  # what books works at the end of a step
+    "poles",  # what finds where a function has no value
     "stiff",  # what looks at how stiff the mechanism is, for methods that ask     stiffness.py
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, SOUND_AT,
     CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, RATE_AT, SOFTEN_AT,
-    BOOK_AT,
-    STIFF_AT,
+    BOOK_AT, POLES_AT, STIFF_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 

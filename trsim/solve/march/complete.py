@@ -27,6 +27,7 @@ from trsim.solve.march.calls import (
     MEET_AT,
     NO_STEP,
     PASSES_AT,
+    POLES_AT,
     RATE_AT,
     SAMPLE_AT,
     SEARCH_AT,
@@ -60,7 +61,7 @@ from trsim.solve.march.works import exchanged
 
 # what `complete` made of a trial step
 SMOOTH_STEP, WITH_EVENT, WITH_CORNER, WORTHLESS = range(4)
-AT_INSTANT, STRAYED, WOUND, LOOSE, AT_ROW = range(4, 9)
+AT_INSTANT, STRAYED, WOUND, LOOSE, AT_ROW, AT_POLE = range(4, 10)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
@@ -94,7 +95,8 @@ def complete(s, r, b, setting, method):
     AT_INSTANT (as long as was planned, to where the time meets a corner of a function) or WORTHLESS
     (values not finite; nothing was changed) or STRAYED (so long that a motion or
     a corner may be passed over, or that the step to an event is not right; the same), or LOOSE
-    (accelerations inside it are not right; the same) or AT_ROW (to end b.until after its start).
+    (accelerations inside it are not right; the same) or AT_ROW (to end b.until after its start) or
+    AT_POLE (a function has no value at r.pole_t, within it; the same).
     """
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
@@ -140,6 +142,8 @@ def complete(s, r, b, setting, method):
                 copy_to(b.y1, b.y2)
                 b.t1 = reached(setting, b.t + theta * h)
                 b.projected = land(s, r, b, b.t1, b.y1, b.K[last])
+    if method[POLES_AT] > 0 and call_search(method[POLES_AT], s, r, b, setting, method) < NONE:
+        return undone(r, worst, worst_rate, AT_POLE if r.pole > 0 else STRAYED)
     t1 = b.t1
     b.firm[1] = firmness(s)
     limits_to_measure(s, t1, b.y1, b.firm[1], b.rough[0])

@@ -27,6 +27,7 @@ from trsim.solve.march.calls import (
     method_row,
 )
 from trsim.solve.march.complete import (
+    AT_POLE,
     AT_ROW,
     LOOSE,
     OF_LIMITS,
@@ -64,6 +65,7 @@ from trsim.solve.march.record import (
     PAUSE,
     PEAK_MAX,
     PEAK_MIN,
+    POLE,
     RECORD,
     REJECTED,
     SETTINGS,
@@ -143,7 +145,7 @@ def march(s, r, b, setting, methods, most):
     methods: rows as `method_table` makes them; with two, an explicit and an implicit one, the
     march changes between them; the implicit one is asked for (LOAD) when it is first needed.
     Returns DONE, FULL, PAUSE, LOAD, ACT, STEP_TOO_SMALL, NOT_FINITE, CHATTER, TOO_FAST, OPEN,
-    ADRIFT, CRAWL, LEAPT, SLIDES or WINDS.
+    ADRIFT, CRAWL, LEAPT, SLIDES, POLE or WINDS.
     """
     accepted = tried = 0
     while r.t < setting.t_end:
@@ -197,6 +199,8 @@ def march(s, r, b, setting, methods, most):
             continue
         if outcome == WOUND and setting.fixed_step > 0.0:
             return WINDS
+        if outcome == AT_POLE:
+            return POLE
         if outcome == AT_ROW:
             r.rejected += 1
             r.after_rejection, r.h = TO_ROW, b.until

@@ -28,6 +28,7 @@ ADRIFT = 13  # without projection, where branches of the motion meet
 OPEN = 10  # a row that was dropped as redundant is not
 WINDS = 12  # a fixed step turns a joint by more than is sure to be counted, see turns.py
 LEAPT = 11  # the place of a rigid drive jumps, see TORN
+POLE = 15  # a load or a motion has no value, or grows without bound, within the next step
 SLIDES = 14  # a load jumps where a rate passes a value, and drives it back from both sides
 ACT = 9  # a user event happened: the caller does what it says
 
@@ -198,6 +199,7 @@ class Record(Packed):
     vibration: F8  # 1/s^2, w^2 of the fastest vibration there could be; 0: not known  stiffness.py
     decay: F8  # 1/s, of the fastest decay
     step_turn: F8  # rad, the most a body turned by in a fixed step  rk4.py
+    pole_t: F8  # s, when
     side: F8  # sign of det J where rows alone tell places  kinematic.py
     least_pivot: F8  # of rows at y, 1 in open chains  kinematic.py
     count: I1  # and the whole ones
@@ -232,6 +234,7 @@ class Record(Packed):
     lost: I8  # 1: without projection, rows are open by as much as branches are apart  adrift.py
     torn: I8  # 1 + row of the rigid drive whose place has jumped: the run ends
     slid: I8  # 1 + offset in tab of a function that holds a rate at a jump: the run ends
+    pole: I8  # 1 + row of `pole`, what of a function has no value at `pole_t`: the run ends
     unproved: I8  # searches for an event in a step that gave up
     unfollowed: I8  # looks into a step in which more happened than is followed   sampled.py
     degree: I8  # of the polynomials in `net`
@@ -299,6 +302,9 @@ class Buffers(Packed):
     seen: A2 = of("seen", 4)  # ranges of sensors and of their rates, where they meet corners
     shown: A2 = of("sensed", 2)  # what they show at both ends of a part of a step
     box: A2 = of("slots", 4)  # ranges of the parts of a function
+    pole_box: A2 = of("pole_slots", 4)  # the same where a function may have no value
+    pole_first: A2 = of("at_poles", 2)  # S at both ends of a part of a step
+    pole_last: A2 = of("at_poles", 2)
     before: A1 = of("held")  # what functions were held on in the last step
     met: A2 = of("feature", 3)  # the first corner of a step: theta, place in tab, what follows
     clock: A1  # the numbers that change
@@ -347,6 +353,7 @@ def fresh_buffers(
         "channels": model.n_out + len(model.vector),
         "angles": max(model.n_s, 1),
         "watched": controlled(model),
+        "at_poles": max(model.n_s, 1) if len(model.pole) else 0,
         "seen": max(model.n_s, 1) if len(model.sensed) else 0,
     }
     out = np.zeros(max(model.n_out, 1))

@@ -36,7 +36,7 @@ from trsim.solve.march.accelerations import (
 )
 from trsim.solve.march.anew import anew, begun_with
 from trsim.solve.march.calls import INTERPOLATE, method_row
-from trsim.solve.march.complete import SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
+from trsim.solve.march.complete import AT_POLE, SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
 from trsim.solve.march.features import next_time
 from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
@@ -153,7 +153,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             r.h = 0.3 * h
             solver = restarted(scenario, s, r, b, setting, finer, float(r.h))
             continue
-        if untrue(scenario, mechanism, r):
+        if outcome == AT_POLE or untrue(scenario, mechanism, r):
             status = "failed"
             break
         crawled = crawled + 1 if solver.step_size < rec.CRAWLING * setting.t_end else 0
