@@ -335,6 +335,7 @@ FIXED = {
     "spring_damper": EXPECTED["spring"],
     "wrench": {"force": "N", "moment": "N*m"},
     "spring": {"force": "N", "elastic": "N", "length": "m"},
+    "ball_spring": {"moment": "N*m", "rotation_vector": "rad"},
     "bushing": {"force": "N", "moment": "N*m", "displacement": "m", "rotation_vector": "rad"},
     "torsion_spring": EXPECTED["coil"],
     "clearance_joint": {"normal_force": "N", "friction_force": "N", "contact_force": "N",
