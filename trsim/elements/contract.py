@@ -231,6 +231,7 @@ class Row:
     relates: tuple[int, ...] = ()  # entries of S with the coordinates a joint relates
     named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
     rubs: str = ""  # the joint whose reaction makes its friction
+    said: str = ""  # what `check` says of it beside its words in the scenario
     # of what rubs, for a load of 1: stiffness and damping at rest, 1/m and s/m; the rate at which
     # bristles follow a speed of 1, 1/m
     grips: tuple[float, float, float] = (0.0, 0.0, 0.0)

@@ -14,7 +14,7 @@ other axes are zero, as those of joints are.
 """
 
 from math import sqrt
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, NamedTuple
 
 from annotated_types import Ge
 from pydantic import model_validator
@@ -48,6 +48,7 @@ from trsim.kernels.columns import V3, f8, run
 from trsim.kernels.lazy import internal
 
 IN_PLANE = 1e-9  # of the size of a body: so near to the section nobody knows the side
+ROUNDED = 1e-12  # of a place: rounding
 LEAST = -1e-9  # of its inertia: what rounding may leave of the rest of a body
 
 
@@ -58,7 +59,7 @@ class BodySection(Spec):
     at       the station, as drawn
     axis     normal of the section, as drawn; it points to the part beyond
     x_axis   direction of the first components, as drawn; made perpendicular to the normal
-    mass     of the part beyond
+    mass     of the part beyond; of a body with a `shape` the part of that unless given
     centre   its centre of mass, as drawn
     inertia  about its centre of mass, given like that of a body and in the same axes
     beyond   joints, drives and forces that act on the part beyond; what acts along the coordinate
@@ -70,16 +71,30 @@ class BodySection(Spec):
     at: point("m")
     axis: vector("-")
     x_axis: vector("-") | None = None
-    mass: Annotated[float, Ge(0), Unit("kg")]
+    mass: Annotated[float, Ge(0), Unit("kg")] | None = None
     centre: point("m") | None = None
     inertia: Inertia | None = None
     beyond: tuple[str, ...] | None = None
 
     @model_validator(mode="after")
     def whole(self):
-        if self.mass > 0.0 and (self.centre is None or self.inertia is None):
+        given = self.centre is not None or self.inertia is not None
+        if self.mass is None and given:
+            what = "`centre` and `inertia` go with the `mass` of the part beyond"
+            raise ScenarioError(what, "give all three, or none of a body with a `shape`")
+        if self.mass and (self.centre is None or self.inertia is None):
             raise ValueError("a part with mass needs its `centre` and its `inertia`")
         return self
+
+
+class Part(NamedTuple):
+    """What lies beyond a section."""
+
+    mass: float
+    centre: tuple[float, ...]  # m, as drawn
+    tensor: tuple[float, ...]  # kg m^2, row by row, about the centre in the axes of the body
+    whole: bool  # whether the tensor is known in all directions
+    origin: str  # where these are from
 
 
 class Own(Acted):
@@ -103,41 +118,74 @@ def pack(name, spec, at):
         raise ScenarioError(f"'{spec.body}' is flexible", hint, ("body",))
     i = at.body(spec.body, "body")
     u, w, a = triad(spec)
-    centre = spec.at if spec.centre is None else spec.centre
-    tensor = check_part(spec, at, i)
+    part = given(spec) if spec.mass is not None else of_shape(spec, at, a)
+    check_part(spec, at, i, part)
+    acts = beyond(spec, at, i, a)
     own = Own.packed(
-        i=i, j=i, coordinate=-1, **acting(beyond(spec, at, i, a)),
+        i=i, j=i, coordinate=-1, **acting(acts),
         station=at.looked_at(i, spec.at), x=at.axes(i, u), y=at.axes(i, w), z=at.axes(i, a),
-        centre=at.looked_at(i, centre), weight=[spec.mass * g for g in at.scenario.gravity],
-        mass=spec.mass, inertia=tensor,
+        centre=at.looked_at(i, part.centre), weight=[part.mass * g for g in at.scenario.gravity],
+        mass=part.mass, inertia=part.tensor,
     )  # fmt: skip
-    return Row(*own)
+    return Row(*own, said=said(spec, part, acts))
 
 
-def check_part(spec, at, i):
-    """The inertia tensor of the part beyond, row by row.
-
-    Raises ScenarioError where it is no part of the body: what is left of that has a mass, and
-    moments of inertia about its own centre of mass, which are not negative.
-    """
-    body = at.members[spec.body]
-    if spec.mass > body.mass:
-        what = f"the part beyond has {spec.mass:g} kg, and the body {body.mass:g} kg"
-        raise ScenarioError(what, "give the mass beyond the section alone", ("mass",))
+def given(spec):
+    """The part beyond as it is written."""
     tensor, whole = tensor_of(0.0 if spec.inertia is None else spec.inertia)
+    centre = spec.at if spec.centre is None else spec.centre
+    return Part(spec.mass, centre, tensor, whole or spec.inertia is None, "given")
+
+
+def of_shape(spec, at, a):
+    """The part of the shape of the body on that side of the station to which the normal points."""
+    body = at.members[spec.body]
+    if body.shape is None:
+        what = "nothing tells what lies beyond the section"
+        hint = f"give its `mass`, `centre` and `inertia`, or '{spec.body}' a `shape`"
+        raise ScenarioError(what, hint)
+    from trsim.elements.weighing import beyond, turned  # needs numpy
+
+    found, differs = beyond(body, (spec.at, a))
+    if differs:
+        at.notes.append(
+            f"body: {' and '.join(differs)} of '{spec.body}' are not those of its shape, from "
+            "which the part beyond is cut: the other part has what is left"
+        )
+    tensor = turned(body, found.inertia, into_body=True).ravel().tolist()
+    return Part(found.mass, tuple(found.centre.tolist()), tuple(tensor), True, "from its shape")
+
+
+def said(spec, part, acts):
+    """What lies beyond and what acts there, in words."""
+    names = dict.fromkeys(instance.name for _, instance in acts)
+    least = ROUNDED * max(map(abs, part.centre))
+    centre = ", ".join(f"{c:.6g}" if abs(c) > least else "0" for c in part.centre)
+    what = f"{part.mass:.6g} kg of {spec.body} beyond it"
+    what += f", centre at [{centre}] m, {part.origin}" if part.mass else ""
+    return f"{what}; acted on by {', '.join(names) or 'nothing'}"
+
+
+def check_part(spec, at, i, part):
+    """Refuse what is no part of the body: what is left of that has a mass, and moments of inertia
+    about its own centre of mass, which are not negative."""
+    body = at.members[spec.body]
+    if part.mass > body.mass:
+        what = f"the part beyond has {part.mass:g} kg, and the body {body.mass:g} kg"
+        raise ScenarioError(what, "give the mass beyond the section alone", ("mass",))
     total, known_whole = body.tensor
-    if known_whole and not whole and spec.inertia is not None:
+    if known_whole and not part.whole:
         what = "one moment of inertia is enough for a body in the plane only"
         raise ScenarioError(what, "give three or six numbers, as of the body", ("inertia",))
-    if spec.mass == 0.0:
-        return tensor
+    if part.mass == 0.0:
+        return
     import numpy as np  # checking text needs none
 
-    I, part = np.array(total).reshape(3, 3), np.array(tensor).reshape(3, 3)
-    c, rest = np.array(at.looked_at(i, spec.centre)), body.mass - spec.mass
+    I, own = np.array(total).reshape(3, 3), np.array(part.tensor).reshape(3, 3)
+    c, rest = np.array(at.looked_at(i, part.centre)), body.mass - part.mass
     # both parts have their centres on a line through that of the body
-    share = spec.mass * body.mass / rest if rest > 0.0 else 0.0
-    left = I - part - share * (c @ c * np.eye(3) - np.outer(c, c))
+    share = part.mass * body.mass / rest if rest > 0.0 else 0.0
+    left = I - own - share * (c @ c * np.eye(3) - np.outer(c, c))
     if rest <= 0.0 and np.linalg.norm(c) > IN_PLANE * at.size_of(i):
         raise ScenarioError(
             "the part beyond has all the mass of the body, and its centre is elsewhere",
@@ -153,7 +201,6 @@ def check_part(spec, at, i):
             "give mass, centre and inertia of the part alone, the inertia about its own centre",
             ("inertia",),
         )
-    return tensor
 
 
 def beyond(spec, at, i, a):

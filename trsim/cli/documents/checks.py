@@ -76,6 +76,7 @@ class Checked(Subject):
     load_sets          load set -> the factor it acts with and its loads, in words
     contacts           names of joints and stops
     events             user event -> when it happens and what it does, in words
+    sections           section of a body -> what lies beyond it and what acts there, in words
     tables             load or motion -> its variable, its curve, and what it is outside, in words
     planar             whether the motion stays in a plane
     planar_assumed     whether nothing but the start says so
@@ -106,6 +107,7 @@ class Checked(Subject):
     load_sets: dict[str, str]
     contacts: list[str]
     events: dict[str, str]
+    sections: dict[str, str]
     tables: dict[str, str]
     planar: bool
     planar_assumed: bool
