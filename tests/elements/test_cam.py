@@ -313,3 +313,35 @@ def test_nothing_stops_it_by_the_place_of_a_face():
     more = "forces: {stop: {type: limit_stop, joint: lobe, upper: 0.1, stiffness: 1e5}}"
     with pytest.raises(TrsimError, match="no point that stays"):
         built(tappet("face: [0, 1]", ELLIPSE, [0, B], more=more))
+
+
+FALLS = """
+planar: PLANAR
+bodies:
+  disc: {mass: 1, inertia: [0.01, 0.01, 0.01], at: [0, 0]}
+  tappet: {mass: 0.5, inertia: [0.01, 0.01, 0.01], at: [0, 0.12]}
+joints:
+  shaft: {type: revolute, bodies: [ground, disc], at: [0, 0]}
+  guide: {type: prismatic, bodies: [ground, tappet], axis: [0, 1, 0]}
+  lobe: {JOINT, bodies: [disc, tappet],
+         curve: {x: "0.1*cos(s)", y: "0.1*sin(s)", range: [0, 2*pi], closed: true}}
+gravity: [0, -9.81, 0]
+events: {off: {when: t, value: 0.1, do: {release: [lobe]}}}
+solver: {end: 0.5, method: METHOD}
+"""
+FOLLOWERS = (
+    "type: cam, radius: 20 mm, at: [0, 0.12]",
+    "type: cam, face: [0, 1, 0], at: [0, 0.1]",
+    "type: point_on_curve, at: [0, 0.1]",
+)
+
+
+@pytest.mark.parametrize("planar", ["true", "false"])
+@pytest.mark.parametrize("method", ["auto", "radau"])
+@pytest.mark.parametrize("joint", FOLLOWERS)
+def test_what_was_released_falls_through_the_centre(joint, method, planar):
+    """It falls freely from 0.1 s on, past the centre of the disc, and the place stays told."""
+    r = run(FALLS.replace("PLANAR", planar).replace("METHOD", method).replace("JOINT", joint))
+    fallen = 0.5 * 9.81 * np.maximum(r.t - 0.1, 0) ** 2
+    assert r["tappet.position"][:, 1] == pytest.approx(0.12 - fallen, abs=1e-7)
+    assert r["lobe.arc"] == pytest.approx(np.full(len(r.t), 0.05 * np.pi), abs=1e-7)

@@ -306,3 +306,44 @@ output: {every: 0.01}
     for r in (one, other):
         assert np.abs(r["energy.residual"]).max() < 1e-6
     assert one["tip.force"][0] == pytest.approx(30 * 0.2 + 100 * 0.2**3, rel=1e-9)
+
+
+HELD_AT_A_JUMP = """
+bodies: {b: {mass: 1, inertia: 0.01, at: [0, -1]}}
+joints: {g: {type: prismatic, bodies: [ground, b], axis: [0, 1, 0]}}
+gravity: [0, -9.81]
+forces:
+  s: {type: spring, bodies: [ground, b], points: [[0, 0], [0, -1]],
+      elastic: LAW, tension_only: true}
+solver: {end: 1, METHOD}
+"""
+
+
+@pytest.mark.parametrize("method", ["radau", "dop853", "auto"])
+@pytest.mark.parametrize(
+    "law",
+    ["50 + 100*stretch", "50", "50*(stretch > 0)", "{table: [[-1, 50], [0, 50], [1, 90]]}"],
+)
+def test_what_rests_where_a_rope_jumps_names_it(law, method):
+    """50 N against a weight of 9.81 N, at once: it goes up and down about a stretch of 0."""
+    quoted = law if law.startswith("{") else f'"{law}"'
+    text = HELD_AT_A_JUMP.replace("LAW", quoted).replace("METHOD", f"method: {method}")
+    r = run(text.replace("solver: {", "solver: {max_steps: 5000, "), fails=True)
+    assert "forces.s (" in r.outcome.reason
+    assert "its force jumps from 0 to 50 N" in r.outcome.reason
+    assert "50*step(stretch, 0, 0, 0.001, 1)" in r.outcome.reason
+
+
+@pytest.mark.parametrize(
+    "law", ["50*step(stretch, 0, 0, 0.001, 1)", "9e3*stretch", "40*max(stretch, 0)**0.5"]
+)
+def test_a_rope_that_rises_holds(law):
+    r = run(HELD_AT_A_JUMP.replace("LAW", f'"{law}"').replace("METHOD", "method: auto"))
+    assert not next(i.row for i in r.mechanism.instances if i.name == "s").leaps
+
+
+def test_a_constant_pull_that_is_taut_all_along():
+    """A weight of 9.81 N on 5 N, from a stretch of 10 mm on."""
+    text = HELD_AT_A_JUMP.replace("LAW", "5, free_length: 0.99").replace("METHOD", "method: auto")
+    r = run(text)
+    assert r["b.position"][-1, 1] == pytest.approx(-1 - 0.5 * (9.81 - 5), abs=1e-9)

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 from trsim.instants import distinct, instants
 from trsim.laws.functions import (
     BY_SENSORS,
+    CONSTANT,
     HEAD,
     HELD,
     HELD_OF_TABLE,
@@ -32,7 +33,7 @@ class Cornered(NamedTuple):
 
 def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Cornered]:
     """A function, if it has corners.  Raises ScenarioError where they cannot be told."""
-    if spec.kind == "constant":
+    if code[0] == CONSTANT:  # as it is written, or once its constant parts are folded
         return []
     if spec.kind == "table":
         of_t, held = spec.of == "t", [offset + HELD_OF_TABLE]

@@ -51,6 +51,7 @@ from trsim.elements.on_curve import (
     frames,
     inside,
     settled,
+    stay,
     stored,
     write_place,
 )
@@ -266,7 +267,9 @@ def contact(scene, e, k):
 @kernel
 def coordinate(t, scene, e):
     own = Own(scene, e)
-    if own.follower == FACE:
+    if own.contact < 0:
+        stay(scene, own)
+    elif own.follower == FACE:
         follow_face(scene, e)
     else:
         follow(scene, e, own)

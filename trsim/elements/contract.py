@@ -230,6 +230,7 @@ class Row:
     length: float = 0.0  # m, as drawn, of the line it drives the ends of apart
     relates: tuple[int, ...] = ()  # entries of S with the coordinates a joint relates
     named: tuple[tuple[int, ...], ...] = ()  # frames of each of its rows, where not those of `con`
+    leaps: float = 0.0  # N, by how much its force jumps where its coordinate passes zero
     rubs: str = ""  # the joint whose reaction makes its friction
     said: str = ""  # what `check` says of it beside its words in the scenario
     # of what rubs, for a load of 1: stiffness and damping at rest, 1/m and s/m; the rate at which

@@ -187,6 +187,13 @@ def write_place(scene, own, u, c1, rate):
 
 
 @internal
+def stay(scene, own):
+    """What has come off its curve is at no place along it: it is told where it left."""
+    u = scene.S[own.parameter, 0]
+    write_place(scene, own, u, place(scene.tab, own.curve, u)[1], 0.0)
+
+
+@internal
 def follow(scene, e, own):
     """The footpoint of the point of body j."""
     p, v = seen(scene, e, own)

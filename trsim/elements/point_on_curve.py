@@ -20,6 +20,7 @@ from trsim.elements.on_curve import (
     ends_of,
     follow,
     frames,
+    stay,
     stored,
 )
 from trsim.elements.rows import ARC, Axes, JointRow, along, constraint_of
@@ -66,7 +67,11 @@ def normal(scene, e, k):
 
 @kernel
 def coordinate(t, scene, e):
-    follow(scene, e, Own(scene, e))
+    own = Own(scene, e)
+    if own.normal < 0:
+        stay(scene, own)
+    else:
+        follow(scene, e, own)
 
 
 @kernel

@@ -15,7 +15,16 @@ from annotated_types import Ge
 
 from trsim.elements.contract import DAMPERS, Channel, Element, Reach, Row, kernel, measured
 from trsim.elements.frames import at_both, between_points, line, points, push_apart, scaled
-from trsim.elements.sprung import RATE, Law, Sprung, X, packed_law, store, tension
+from trsim.elements.sprung import (
+    RATE,
+    Law,
+    Sprung,
+    X,
+    jump_at_zero,
+    packed_law,
+    store,
+    tension,
+)
 from trsim.fields import Flag, Function, Unit, point
 from trsim.kernels.columns import f8
 
@@ -53,7 +62,8 @@ def pack(name, spec, at):
     free = drawn if spec.free_length is None else spec.free_length
     law = packed_law(spec, at, at.entry(), turns=False, pulls=spec.tension_only)
     along = points(at, i, j, p, q) | law | {"axis": (0.0, 0.0, 0.0)}
-    return Row(*Own.packed(spec, **along, free_length=free), travel="distance")
+    leaps = jump_at_zero(spec) if spec.tension_only else 0.0
+    return Row(*Own.packed(spec, **along, free_length=free), travel="distance", leaps=leaps)
 
 
 @kernel

@@ -11,6 +11,7 @@ met by steps like those of all functions of sensors.  What is not elastic of T i
 
 from typing import Literal
 
+import numpy as np
 from pydantic import model_validator
 
 from trsim.elements.contract import SPRINGS
@@ -26,6 +27,7 @@ from trsim.laws.quadrature import integral
 X, RATE = "stretch", "rate"  # the words for x and x'
 ZERO, ONE = FunctionSpec("constant", 0.0), FunctionSpec("constant", 1.0)
 SPEEDS = tuple(sign * 10.0**k for k in range(-6, 4) for sign in (-1.0, 1.0))  # looked at
+TAUT = (1e-12, 1e-6)  # m: a force that is half as large at the first as at the second jumps at 0
 NOTHING = 1e-9  # of a force: rounding of one that is zero
 
 
@@ -144,6 +146,22 @@ def only_pulling(spec, elastic, damper, way):
     d = ("binary", "*", node_of(way), node_of(damper))
     both = ("call", "max", (zero, ("binary", "+", f, d)))
     return pulled, FunctionSpec("expression", node=both)
+
+
+def jump_at_zero(spec):
+    """What a spring that only pulls does at once where it becomes taut, N; 0 where its force begins
+    at zero, or cannot be told."""
+    f = spec.elastic
+    if f is None:
+        return 0.0
+    if f.kind == "table":
+        there = f.x[0] <= 0.0 <= f.x[-1] or f.ends == "hold"
+        return max(0.0, float(np.interp(0.0, f.x, f.y))) if there else 0.0
+    try:
+        at_once, soon = (of_number(f, X, x) for x in TAUT)
+    except ScenarioError:
+        return 0.0
+    return at_once if at_once > 0.5 * max(soon, 0.0) else 0.0
 
 
 def node_of(f):

@@ -12,7 +12,7 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
-from trsim.solve.diagnose.blame import undecided, why
+from trsim.solve.diagnose.blame import on_a_jump, undecided, why
 from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.diagnose.no_number import refuse_no_number, unshown
@@ -251,7 +251,9 @@ def ending(
     elif reason == rec.NOT_FINITE and work.status[3] > 0:
         reason = CONTRADICTORY
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
+    at = mechanism.in_stage(r.stage, r.left_out)
     if reason != NO_STEPS_LEFT:
-        at = mechanism.in_stage(r.stage, r.left_out)
         text = why(scenario, at, r) or text
+    elif jump := on_a_jump(scenario, at, r.y):
+        text = f"{text}; {jump}"
     return "failed", text

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.mechanism import Mechanism
+from trsim.elements.contract import Pair
 from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import workspace
 from trsim.errors import ModelError
@@ -20,6 +21,7 @@ from trsim.solve.start.angles import posed
 
 Array = NDArray[np.float64]
 
+ON = 1e-6  # of the mechanism's size: so near to a jump a spring swings about it
 SHORT = 0.01  # of its length as drawn: an actuator that ends at nothing
 AHEAD = (1e-12, 1e-9, 1e-6, 1e-3)  # of the run: how far beyond a failure to look
 PLACES = ("F", "zd", "phi", "phi_t", "gamma")
@@ -82,6 +84,24 @@ def end_of_law(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     return ""
 
 
+def on_a_jump(scenario: Any, mechanism: Mechanism, y: Array) -> str:
+    """Which spring is just where its force jumps, in words; empty where none is."""
+    w = posed(mechanism.model, y)
+    for instance in mechanism.instances:
+        if not instance.row.leaps:
+            continue
+        stretch = float(w.S[Pair.of(instance.row).coordinate, 0])
+        if abs(stretch) < ON * mechanism.model.size:
+            return (
+                f"{scenario.entry(instance.section, instance.name)}: where it becomes taut, at a "
+                f"stretch of 0, its force jumps from 0 to {instance.row.leaps:.4g} N; what is held "
+                "there by less is driven back to the jump from both sides, in ever shorter steps: "
+                "let `elastic` be 0 at a stretch of 0 and rise in a short way, as "
+                f"{instance.row.leaps:.4g}*step(stretch, 0, 0, 0.001, 1) does"
+            )
+    return ""
+
+
 def drawn_in(scenario: Any, mechanism: Mechanism, y: Array) -> str:
     """Which actuator has next to no length left, in words; empty where none is so short."""
     w = posed(mechanism.model, y)
@@ -104,6 +124,7 @@ def why(scenario: Any, mechanism: Mechanism, r: Record) -> str:
     return (
         collapsed(scenario, mechanism, t, r.y, NEARLY, ALMOST)
         or pole_near(scenario, mechanism, r)
+        or on_a_jump(scenario, mechanism, r.y)
         or end_of_law(scenario, mechanism, r)
         or drawn_in(scenario, mechanism, r.y)
         or (singular(mechanism, r) if r.driven else locked(mechanism, t, r.y))
