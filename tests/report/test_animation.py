@@ -18,7 +18,7 @@ from trsim.report.animation.page import arrow_scale
 from trsim.report.animation.things import colours, look
 
 from .browser import CHROMIUM, browser
-from .filmed import of
+from .filmed import of, validation
 
 SPINNING = """
 planar: false
@@ -232,6 +232,13 @@ def test_what_was_not_recorded_is_told(tmp_path):
 def test_released_joints_may_open(tmp_path):
     text = FOUR_BAR + "events:\n  go: {when: t, value: 20 ms, do: {release: [c]}}\n"
     assert motion(of(tmp_path, text=text)).warnings == ()
+
+
+def test_a_bar_alone_that_begins_bent(tmp_path):
+    """There is no attitude to be found."""
+    run = validation(tmp_path, "cantilever_tip_force", "solver.end=10 ms")
+    assert motion(run).turns == {}
+    assert film(run).warnings == ()
 
 
 @pytest.mark.parametrize("rows", [1, 2, FRAMES, FRAMES + 1, 10001])

@@ -11,7 +11,7 @@ from trsim.report.animation.solids import circle
 from trsim.report.animation.things import PIN
 from trsim.report.animation.wires import wire
 
-from .filmed import closed, made, of, seen, volume
+from .filmed import closed, made, of, seen, staged, validation, volume
 
 L = [[0, 0], [0.3, 0], [0.3, 0.1], [0.1, 0.1], [0.1, 0.3], [0, 0.3]]
 PLACED = {"at": [1, 2, 3], "axis": [1, 2, -1], "x_axis": [0, 1, 3]}
@@ -204,3 +204,34 @@ def test_rings_and_wires_are_closed():
         length = 2.0 * np.pi * (1.0 if is_closed else 59.0 / 60.0)
         hexagon = 1.5 * 3.0**0.5 * 0.05**2
         assert volume(mesh)[0] == pytest.approx(hexagon * length, rel=0.01)
+
+
+# --- bodies without a shape ------------------------------------------------------------------
+
+
+def test_a_body_reaches_to_its_load(tmp_path):
+    """What a force acts on is a part of the body: the bucket of an excavator has its tip."""
+    moved, sizes = staged(validation(tmp_path, "excavator_arm"))
+    ends = {tuple(at) for pair in bodies.skeleton(moved.drawn, sizes, "bucket") for at in pair}
+    assert (6.4, -1.6, 0.0) in ends
+
+
+def test_a_door_has_a_leaf(tmp_path):
+    """What hangs on one line would be seen as that line, which does not turn."""
+    moved, sizes = staged(validation(tmp_path, "kitchen_door"))
+    found = bodies.skeleton(moved.drawn, sizes, "door")
+    wanted = [[[0, 0, 0.2], [0, 0, 1.6]], [[0, 0, 0.9], [0.3, 0, 0.9]]]
+    assert np.array(found) == pytest.approx(np.array(wanted), abs=1e-12)
+
+
+def test_what_rests_takes_no_room(tmp_path):
+    """What stays where it is, but for rounding, has no motion in the file: the cam only turns."""
+    from pygltflib import GLTF2
+
+    gltf = GLTF2.load_from_bytes(film(validation(tmp_path, "cam_flat")).glb)
+    (animation,) = gltf.animations
+    moving = {"translation": set(), "rotation": set()}
+    for channel in animation.channels:
+        moving[channel.target.path].add(gltf.nodes[channel.target.node].name)
+    assert moving["translation"] == {"tappet", "lobe face"}
+    assert moving["rotation"] == {"lobe curve", "shaft pin"}

@@ -64,13 +64,14 @@ def touch(guide: Guide, seen: Array, normals: Array | None) -> Touch:
 
     seen: places of the follower in the coordinates of the curve (n, 3); normals: those of a face.
     """
-    found = [on_curve(guide, p, None if normals is None else normals[k, :2])
+    side = left(guide)
+    found = [on_curve(guide, side, p, None if normals is None else normals[k, :2])
              for k, p in enumerate(seen[:, :2])]  # fmt: skip
     places, off = zip(*found, strict=True)
     return Touch(seen[:, :2], np.array(places), np.array(off))
 
 
-def on_curve(guide: Guide, p: Array, m: Array | None) -> tuple[Array, float]:
+def on_curve(guide: Guide, side: float, p: Array, m: Array | None) -> tuple[Array, float]:
     """Where a pin or a roller at p, or a face of normal m, is next to a curve, and how far off.
 
     An open curve ends at its ends, whatever a joint makes of what is beyond them.
@@ -87,7 +88,8 @@ def on_curve(guide: Guide, p: Array, m: Array | None) -> tuple[Array, float]:
     if beyond:
         return place, float(np.hypot(*(p - place))) - guide.radius
     tangent = np.array(t) / float(np.hypot(*t))
-    return place, aside(guide, tangent, p - place) - guide.radius
+    d = p - place
+    return place, side * float(tangent[0] * d[1] - tangent[1] * d[0]) - guide.radius
 
 
 def left(guide: Guide) -> float:
@@ -100,11 +102,6 @@ def left(guide: Guide) -> float:
     k = int(np.sum((curve.place - at) ** 2, axis=1).argmin())
     t, d = curve.tangent[k], at - curve.place[k]
     return 1.0 if t[0] * d[1] - t[1] * d[0] >= 0.0 else -1.0
-
-
-def aside(guide: Guide, t: Array, d: Array) -> float:
-    """How far d leads away from a curve of tangent t, to the side of the follower."""
-    return float(t[0] * d[1] - t[1] * d[0]) * left(guide)
 
 
 def plated(guide: Guide) -> bool:

@@ -49,6 +49,8 @@ def attitudes(
     places: centres of mass (3); plays: eccentricity of clearance joints, world axes as drawn (3);
     nodes: those of bars (k, 3); angles: of hinges since they were drawn, where they are known.
     """
+    if not drawn.bodies:
+        return {}, 0.0
     fixed = {GROUND: STILL}
     for name, line in nodes.items():
         chord = drawn.bars[name][-1] - drawn.bars[name][0]
