@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trsim.expressions import parse
-from trsim.laws.functions import SLOTS, expression, motion
+from trsim.laws.functions import expression, motion, slots_of
 from trsim.laws.waves import swing, waves
 
 PHASES = [
@@ -35,7 +35,7 @@ def swung(text, t, length, inputs=(), before=(), behind=(), sines=1):
     """The bound of an expression over a stretch; of each sensor a pair at its ends."""
     code = expression(parse(text), {name: k for k, name in enumerate(inputs)})
     tab = np.array([0.0, 0.0, *code])
-    box = np.zeros(((len(code) - int(code[SLOTS])) // 3, 4))
+    box = np.zeros((slots_of(code), 4))
     ends = [[np.array([x[k] for x in end], float) for k in (0, 1)] for end in (before, behind)]
     return swing(tab, 2, (t, length), *map(tuple, ends), (sines, box))
 

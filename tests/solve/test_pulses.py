@@ -84,3 +84,26 @@ def test_what_is_smooth_costs_nothing_more():
     for law in ("1/(2 + X)", "(1 + X)**-2", "log(3 + X)"):
         found = pulsed(f"cos(X - A)*{law}", "dop853").outcome.statistics["steps"]
         assert found <= plain + 5
+
+
+@pytest.mark.parametrize("at, steps", [(0.31, 100), (2.0, 0)])
+def test_of_a_motion_that_an_event_sets(at, steps):
+    """Its clock begins at the event; one that nothing ever follows takes no steps."""
+    text = """
+planar: true
+bodies: {wheel: {mass: 1, inertia: 1}}
+joints: {pin: {type: revolute, bodies: [ground, wheel], at: [0, 0]}}
+drives: {motor: {joint: pin, velocity: "0*t"}}
+sensors: {angle: {joint: pin}}
+events:
+  go:
+    {when: t, value: AT, do: {set: {motor: {velocity: "1e5/(1 + ((t - 0.2022)/1e-5)**8)"}}}}
+solver: {end: 1, tolerance: 1e-7, method: dop853}
+output: {every: 0.1}
+"""
+    r = run(text.replace("AT", str(at)))
+    plain = run(text[: text.index("events")] + text[text.index("solver") :])
+    more = r.outcome.statistics["steps"] - plain.outcome.statistics["steps"]
+    assert more > steps if steps else more == 0
+    turned = np.pi / 4 / np.sin(np.pi / 8) if steps else 0.0
+    assert r["angle"][-1] == pytest.approx(turned, abs=1e-6)

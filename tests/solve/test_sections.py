@@ -439,3 +439,23 @@ output: {{every: 0.1}}
 """)
     assert len(r.section("zero")) == crossings
     assert np.abs(r.section("zero")[:, 2]).max() < 1e-7
+
+
+def test_waves_of_a_motion_that_an_event_sets():
+    """Its clock begins at the event; before it, what it would do then says nothing."""
+    r = run("""
+planar: true
+bodies: {wheel: {mass: 1, inertia: 1e6}}
+joints: {pin: {type: revolute, bodies: [ground, wheel], at: [0, 0]}}
+drives: {motor: {joint: pin, velocity: "0*t"}}
+sensors: {angle: {joint: pin}}
+events:
+  go:
+    {when: t, value: 0.31,
+     do: {set: {motor: {velocity: "1e-9*sin(100*atan2(t - 0.2022, 1e-4))"}}}}
+poincare: {zero: {when: motor.velocity, crosses: both, plot: [angle, angle.rate]}}
+solver: {end: 1, tolerance: 1e-3, method: dop853}
+output: {every: 0.1}
+""")
+    t = 0.5122 + 1e-4 * np.tan(np.pi * np.arange(-49, 50) / 100)
+    assert r.section("zero")[:, 0] == pytest.approx(t[(t > 0.31) & (t < 1)], abs=1e-9)

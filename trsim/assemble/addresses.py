@@ -14,6 +14,7 @@ from trsim.assemble.members import AT_A_NODE, Beam, beams, off_the_nodes
 from trsim.assemble.orientation import orientations
 from trsim.assemble.overshoot import overshoot
 from trsim.assemble.poles import Guard, guards
+from trsim.assemble.waves import Swinging
 from trsim.elements.coordinates import ANY, named, split
 from trsim.elements.joint import triad
 from trsim.elements.rows import ARC, COORDINATES
@@ -77,8 +78,8 @@ class Addresses:
     end: float | None = None  # s, of the run, where its functions are wanted with their corners
     functions: list[Cornered] = field(default_factory=list)  # those that have some
     packed_functions: list[Named] = field(default_factory=list)
-    waves: list[tuple[int, list[float]]] = field(default_factory=list)  # that swing: laws/waves.py
-    shown: list[tuple[int, list[float]]] = field(default_factory=list)  # the same of formulas
+    waves: list[Swinging] = field(default_factory=list)
+    shown: list[Swinging] = field(default_factory=list)  # formulas
     guards: list[Guard] = field(default_factory=list)  # of functions that may have no value
     jumped: dict[int, Any] = field(default_factory=dict)  # of drives: offset -> jumps at each
 
@@ -400,7 +401,7 @@ class Addresses:
             except ScenarioError as error:
                 raise error.at(*path) from None
         if waves(code) and not free:
-            self.waves.append((offset, code))
+            self.waves.append(Swinging(offset, code))
         self.tab.extend(code)
         if spec.kind == "expression" and self.end is not None and not free:
             self.guards += guards(self, spec.node, offset, indices)
@@ -454,7 +455,7 @@ class Addresses:
         except ScenarioError as error:
             raise error.at(*path) from None
         if waves(code):
-            self.shown.append((offset, code))
+            self.shown.append(Swinging(offset, code))
         self.tab += code
         return offset
 

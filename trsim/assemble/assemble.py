@@ -61,7 +61,7 @@ from trsim.assemble.tables import (
 )
 from trsim.assemble.torsion import check_torsion
 from trsim.assemble.travel import travels
-from trsim.assemble.waves import pulsed
+from trsim.assemble.waves import pulsed, swinging
 from trsim.elements.contract import N_BOOK, Pair
 from trsim.elements.coordinates import of_joint
 from trsim.elements.rows import column_of
@@ -106,7 +106,8 @@ def assemble(
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
         model, columns = layout(scenario, model, instances, at.switches)
-        model, shown = sections(scenario, model, instances, columns, at.waves + at.shown)
+        waves = swinging(at, instances, at.waves + at.shown)
+        model, shown = sections(scenario, model, instances, columns, waves)
     names = [f"{r.element}.{r.axis}" for r in rows]
     unique, not_unique = reactions(full, y6, planar)
     if drives is None and not ideal:
@@ -368,7 +369,7 @@ def build(
         rubbed_at=rubbing.address() if rubs else 0,
         rubs_with=rubs_with.address() if rubs else 0,
         **travels(instances, contacts, at.switches),
-        **pulsed(at.waves),
+        **pulsed(swinging(at, instances, at.waves)),
         size=size,
         reach=min(size, max(arms[1:], default=size)),
     )

@@ -11,11 +11,11 @@ from trsim.laws.functions import (
     HELD_OF_TABLE,
     N_IN,
     N_OP,
-    SLOTS,
     UNWATCHED,
     VARIABLE,
     WATCHED,
     WIDTH,
+    slots_of,
 )
 
 
@@ -49,5 +49,5 @@ def cornered(spec: Any, code: list[float], offset: int, end: float) -> list[Corn
     by_sensors = any(code[p + WATCHED] == BY_SENSORS for p in watched)
     sensed = tuple(int(k) for k in inputs) if by_sensors else ()
     held = [offset + p + HELD for p in watched]
-    slots = (len(code) - int(code[SLOTS])) // 3
+    slots = slots_of(code)
     return [Cornered(offset, instants(spec.node, end), held, sensed, end, slots, n_in > 0)]

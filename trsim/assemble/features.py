@@ -22,7 +22,7 @@ import numpy as np
 from trsim.assemble.jumps import NOBODY, driven
 from trsim.assemble.travel import of_instance, of_rate
 from trsim.elements.contract import SCENE, Pair, compiled
-from trsim.elements.prescribed import AnyDrive
+from trsim.elements.prescribed import began
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import f8, i8, void
@@ -92,14 +92,11 @@ call_hold = caller(HOLD)
 @internal
 def passed(s, n, t):
     """How many instants of feature n lie at or before t; 0 where it is not in force."""
-    e, first = s.feature[n, DRIVE], s.feature[n, FIRST]
+    first, since = s.feature[n, FIRST], began(s, s.feature[n, DRIVE], s.feature[n, OFFSET])
     low, high = first, s.feature[n, BEHIND]
-    if e >= 0:
-        own = AnyDrive(s, e)
-        if own.motion != s.feature[n, OFFSET]:
-            return 0
-        t -= own.since
-    reached = t + SAME * s.instant[high - 1]
+    if since < 0.0:
+        return 0
+    reached = t - since + SAME * s.instant[high - 1]
     while low < high:
         middle = (low + high) // 2
         if s.instant[middle] <= reached:

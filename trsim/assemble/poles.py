@@ -20,7 +20,7 @@ from trsim.assemble.jumps import NOBODY, driven
 from trsim.enclosures import Interval, enclosure
 from trsim.expressions import Node, names, parts, rebuilt, written
 from trsim.laws import functions
-from trsim.laws.functions import SLOTS
+from trsim.laws.functions import slots_of
 
 POLE, DOMAIN = 0, 1
 AT, OF, KIND, DRIVE, N_POLE = range(5)  # offsets of u and of the function, kind, row of a drive
@@ -94,7 +94,7 @@ def guards(at: Any, node: Node, of: int, indices: dict[str, int]) -> list[Guard]
         if doubt.u in found or certain(doubt, at.end):
             continue
         code = functions.expression(doubt.u, indices)
-        slots = (len(code) - int(code[SLOTS])) // 3
+        slots = slots_of(code)
         found[doubt.u] = Guard(len(at.tab), of, doubt.kind, doubt.text, slots)
         at.tab.extend(code)
     return list(found.values())

@@ -1,12 +1,12 @@
 """Poincare sections packed: the surface of each, and the output columns it shows."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 
 from trsim.assemble.instances import Column, Instance, Section
-from trsim.assemble.waves import followed
+from trsim.assemble.waves import Swinging, followed
 from trsim.elements.scene import COMPONENTS, Model
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS
@@ -22,7 +22,7 @@ SMOOTH = ("m", "m/s", "rad", "rad/s", "-")  # units of what loads move by its ac
 
 def sections(
     scenario: Any, model: Model, instances: list[Instance], columns: list[Column],
-    waves: list[tuple[int, list[float]]],
+    waves: Sequence[Swinging],
 ) -> tuple[Model, tuple[Section, ...]]:  # fmt: skip
     """The model with its sections filled in, and their names; waves: see waves.followed.
 

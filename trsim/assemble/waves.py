@@ -4,17 +4,32 @@ Whatever they move swings as they do: a force, an acceleration, a reaction.  Ste
 through it in as many parts as the fastest of their waves asks for (march/sampled.py).
 """
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from trsim.assemble.jumps import NOBODY, driven
 from trsim.elements.contract import SCENE, compiled
+from trsim.elements.prescribed import began
 from trsim.kernels.calls import caller
+from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, f8, float64
-from trsim.laws.functions import SLOTS
+from trsim.laws.functions import slots_of
 from trsim.laws.waves import pulses, swing
 
-Found = list[tuple[int, list[float]]]  # offset, and numbers for `tab`
+AT, DRIVE = range(2)  # columns of wave and pulse
+
+
+class Swinging(NamedTuple):
+    """A function that may swing."""
+
+    offset: int
+    code: list[float]  # numbers for `tab`
+    drive: int = -1  # the row of the drive it is a motion of
+
+
+Found = Sequence[Swinging]
 SWINGS = float64(SCENE, f8, f8, A1, A1, A1, A1)
 call_swings = caller(SWINGS)
 
@@ -23,27 +38,38 @@ call_swings = caller(SWINGS)
 def swings(s, t, length, S0, rate0, S1, rate1):
     """The fastest wave, rad/s, from t on: what the sensors show, and its rate, at t and `length`
     later."""
-    most = 0.0
-    for k in range(s.wave.size):
-        w = swing(s.tab, s.wave[k], (t, length), (S0, rate0), (S1, rate1), (1, s.wave_box))
-        most = max(most, w)
-    return most
+    return fastest_of(s, s.wave, 1, (t, length), (S0, rate0), (S1, rate1))
 
 
 @compiled(SWINGS)
 def beats(s, t, length, S0, rate0, S1, rate1):
     """The same of pulses in loads and drives."""
+    return fastest_of(s, s.pulse, 0, (t, length), (S0, rate0), (S1, rate1))
+
+
+@internal
+def fastest_of(s, table, waves, stretch, before, behind):
+    """The fastest of the functions in force; waves: 0 where pulses alone count."""
     most = 0.0
-    for k in range(s.pulse.size):
-        w = swing(s.tab, s.pulse[k], (t, length), (S0, rate0), (S1, rate1), (0, s.pulse_box))
-        most = max(most, w)
+    for k in range(table.shape[0]):
+        since = began(s, table[k, DRIVE], table[k, AT])
+        if since >= 0.0:
+            own = (stretch[0] - since, stretch[1])
+            w = swing(s.tab, table[k, AT], own, before, behind, (waves, s.swing_box))
+            most = max(most, w)
     return most
+
+
+def swinging(at: Any, instances: list[Any], found: Found) -> list[Swinging]:
+    """Functions with the drives whose motions they are."""
+    own = driven(at, instances) if found else {}
+    return [one._replace(drive=own.get(one.offset, NOBODY).e) for one in found]
 
 
 def followed(found: Found) -> dict[str, Any]:
     """Fields of a model, of functions whose waves are followed."""
     return {
-        "wave": np.array([offset for offset, _ in found], np.int64),
+        "wave": rows(found),
         "wave_slots": most_slots(found),
         "swings_at": swings.address() if found else 0,
     }
@@ -51,14 +77,19 @@ def followed(found: Found) -> dict[str, Any]:
 
 def pulsed(found: Found) -> dict[str, Any]:
     """Fields of a model, of functions that move something and whose pulses no step passes over."""
-    found = [(offset, code) for offset, code in found if pulses(code)]
+    found = [one for one in found if pulses(one.code)]
     return {
-        "pulse": np.array([offset for offset, _ in found], np.int64),
+        "pulse": rows(found),
         "pulse_slots": most_slots(found),
         "beats_at": beats.address() if found else 0,
     }
 
 
+def rows(found: Found) -> Any:
+    """(n, 2) offset, and the row of the drive it is a motion of, or -1."""
+    return np.array([(one.offset, one.drive) for one in found], np.int64).reshape(-1, 2)
+
+
 def most_slots(found: Found) -> int:
     """Of the longest of them."""
-    return max(((len(code) - int(code[SLOTS])) // 3 for _, code in found), default=0)
+    return max((slots_of(one.code) for one in found), default=0)

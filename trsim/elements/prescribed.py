@@ -29,6 +29,18 @@ class AnyDrive(Along):
     sign: f8
 
 
+@internal
+def began(scene, e, offset):
+    """When the clock of a function began, s: of the motion of drive e, unless that is negative.
+
+    Less than 0 where no drive follows it.
+    """
+    if e < 0:
+        return 0.0
+    own = AnyDrive(scene, e)
+    return own.since if own.motion == offset else -1.0
+
+
 @compiled(void(A1, i8, f8, A1))
 def write_rates(tab, offset, t, out):
     """out = f, f', f'' of a function of tab at t."""

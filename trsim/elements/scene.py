@@ -140,10 +140,12 @@ class Model(Packed):
     section: I2  # (n_sections, 6) Poincare sections              assemble/sections.py
     pole: I2  # (n, 4) what of functions may have no value                 assemble/poles.py
     pole_slots: i8  # the most that one of them has
-    wave: I1  # offsets in tab of functions with waves, where a section looks at what they move
+    # (n, 2) functions with waves, where a section looks at what they move: offset in tab, row of
+    # the drive whose motion it is, or -1
+    wave: I2
     wave_slots: i8  # of the longest of them
     swings_at: i8  # address of how fast they swing; 0 where nothing asks for it   assemble/waves.py
-    pulse: I1  # offsets of functions of loads and drives that may have short pulses
+    pulse: I2  # (n, 2) the same of loads and drives that may have short pulses
     pulse_slots: i8
     beats_at: i8  # address of how fast these go
     section_at: A2  # (n_sections, 2) s: before it no points; period, or 0
@@ -210,8 +212,7 @@ class Scene(Model):
     corner: T2  # (N, 2) how far an element has left its branch, and the branch it goes to
     left: A1  # (N) the largest such value since it was cleared
     E: A1  # (N_STORED) stored energy
-    pulse_box: A2  # (pulse_slots, 4) scratch: ranges of the parts of a function
-    wave_box: A2  # (wave_slots, 4) scratch: ranges of the parts of one of them
+    swing_box: A2  # (slots, 4) scratch: ranges of the parts of one of them
     out: A1  # (n_out) one output row
     # [0] how the last factorisation went, [1] evaluations, [2] factorisations,
     # [3] evaluations with contradictory constraints since the last accepted step,
@@ -274,8 +275,7 @@ def scene(model: Model) -> Scene:
         (("rub_room",), (rubs + 4, max(rubs, 6) if rubs else 0)),
         (("before_rubbing",), (n if rubs else 0, 6)),
         (("E",), (N_STORED,)),
-        (("wave_box",), (model.wave_slots, 4)),
-        (("pulse_box",), (model.pulse_slots, 4)),
+        (("swing_box",), (max(model.wave_slots, model.pulse_slots), 4)),
         (("out",), (max(model.n_out, 1),)),
     )
     made = Scene(

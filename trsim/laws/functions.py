@@ -222,6 +222,11 @@ def expression(node, sensors):
     return [float(x) for x in out]
 
 
+def slots_of(code):
+    """How many slots an expression has, as numbers for `tab`."""
+    return (len(code) - int(code[SLOTS])) // 3
+
+
 @internal
 def operations(tab, o):
     """How many operations an expression has, where the first of them stands, and its slot."""

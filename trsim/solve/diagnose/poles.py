@@ -7,7 +7,7 @@ import numpy as np
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.poles import AT, DRIVE, KIND, OF, POLE
 from trsim.elements.contract import compiled
-from trsim.elements.prescribed import AnyDrive
+from trsim.elements.prescribed import began
 from trsim.kernels.signatures import A1, A2, f8, i8, void
 from trsim.laws.functions import value_and_rate
 from trsim.solve.march.record import Record
@@ -44,10 +44,8 @@ def pole_near(scenario: Any, mechanism: Mechanism, r: Record) -> str:
         return ""
     w = posed(model, r.y)
     for k, row in enumerate(model.pole):
-        e, own_t = int(row[DRIVE]), t
-        if e >= 0:
-            own = AnyDrive(w, e)
-            own_t -= float(own.since) if own.motion == row[OF] else np.nan
+        since = began.python(w, int(row[DRIVE]), row[OF])
+        own_t = t - since if since >= 0.0 else np.nan
         u, rate = value_at(w, row[AT], own_t, 0.0)
         reach = max(NEAR[row[KIND]] * solver.end, solver.step or 0.0)
         if rate * u >= 0.0 > u or not abs(u) <= abs(rate) * reach:

@@ -55,7 +55,7 @@ from trsim.solve.march.phases import change_phases, latch
 from trsim.solve.march.record import BEHIND, BUFFERS, RECORD, SETTINGS, SLOPE
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.sensed import UNCERTAIN, call_beyond, call_turn
-from trsim.solve.march.turns import BEYOND, beats_in, pulse, too_far, unseen
+from trsim.solve.march.turns import BEYOND, BRIEF, beats_in, pulse, too_far, unseen
 from trsim.solve.march.watch import heard, take_sides
 from trsim.solve.march.works import exchanged
 
@@ -65,7 +65,6 @@ AT_INSTANT, STRAYED, WOUND, LOOSE, AT_ROW, AT_POLE = range(4, 10)
 ORIGIN = 1e-6  # of the weight's potential: what counts though it does not change
 SMALLEST = 16.0  # ulp of t: a smaller step is no step
 FAR = 100.0  # times the error allowed: what a step that saw its motion does not leave
-BRIEF = 1e-9  # of a run: no shorter step is asked for
 LONG, LOOKS = 0.1, 3  # of a run: parts that a step without a row inside is looked at in
 MOST_LOOKS = 32.0  # in two parts for each rad of a pulse in a load
 # what a step is held to at most where branches of the motion meet: limits (beside.py) are known to
@@ -112,7 +111,8 @@ def complete(s, r, b, setting, method):
         return undone(r, worst, worst_rate, STRAYED)
     if s.status[4] > 0 and leaked(s, r, b, setting):
         return undone(r, worst, worst_rate, STRAYED)
-    if s.section.shape[0] + s.heard.size > 0 and passes_unseen(s, r, b, setting, last):
+    watching = s.section.shape[0] + s.heard.size > 0
+    if watching and shorter_may(setting, h) and unseen(s, r, b, last, h):
         return undone(r, worst, worst_rate, STRAYED)
     beat = beats_in(s, r, b) if s.pulse.size > 0 else 0.0
     if beat > BEYOND * pulse(method[IMPLICIT_AT]) and shorter_may(setting, b.h):
@@ -217,24 +217,18 @@ def landed(s, r, b, method, t, h):
 @internal
 def restless(b, setting, h):
     """Whether what is stiff did not come to rest at the end of a step that may be shorter."""
-    return b.restless > 0 and setting.fixed_step == 0.0 and h > BRIEF * setting.t_end
+    return b.restless > 0 and shorter_may(setting, h)
 
 
 @internal
 def strayed(s, r, setting, h):
     """Whether a smooth prescribed motion went on between the stages of a step as none of them saw:
     its end is far from the constraints."""
-    if setting.fixed_step > 0.0 or h <= BRIEF * setting.t_end:
+    if not shorter_may(setting, h):
         return False
     far = FAR * setting.step_error
     fastest = max(r.speed, r.speed_cap, s.size / setting.t_end)
     return r.off > far * s.size or r.off_rate > far * fastest
-
-
-@internal
-def passes_unseen(s, r, b, setting, last):
-    """Whether more happens in the step than sections and events can follow."""
-    return shorter_may(setting, b.h) and unseen(s, r, b, last, b.h)
 
 
 @internal
@@ -246,7 +240,7 @@ def shorter_may(setting, h):
 @internal
 def loose(s, r, b, setting, method):
     """Whether accelerations inside the step are not right, though those at its end are."""
-    if method[INSIDE_AT] == 0 or setting.fixed_step > 0.0 or b.h <= BRIEF * setting.t_end:
+    if method[INSIDE_AT] == 0 or not shorter_may(setting, b.h):
         return False
     return held(s, r, b.h) and call_step(method[INSIDE_AT], s, r, b, setting, b.t, b.h) > 1.0
 

@@ -6,10 +6,19 @@ longer than the time to the next.
 """
 
 from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
-from trsim.assemble.features import BEHIND, DRIVE, FIRST, PISTON, RATE_JUMP, call_hold, passed
+from trsim.assemble.features import (
+    BEHIND,
+    DRIVE,
+    FIRST,
+    OFFSET,
+    PISTON,
+    RATE_JUMP,
+    call_hold,
+    passed,
+)
 from trsim.assemble.projection import project_positions, project_velocities
 from trsim.elements.contract import SCENE, compiled
-from trsim.elements.prescribed import AnyDrive
+from trsim.elements.prescribed import AnyDrive, began
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
@@ -46,7 +55,7 @@ def next_instant(s, t, end):
         k = passed(s, n, t)
         at = s.feature[n, FIRST] + k
         if k > 0 and at < s.feature[n, BEHIND]:
-            since = AnyDrive(s, s.feature[n, DRIVE]).since if s.feature[n, DRIVE] >= 0 else 0.0
+            since = began(s, s.feature[n, DRIVE], s.feature[n, OFFSET])
             first = min(first, since + s.instant[at])
     return first
 

@@ -91,7 +91,7 @@ from trsim.solve.march.stiffness import (
     smooth,
     stiffness_due,
 )
-from trsim.solve.march.turns import before_pulses, longest_turn, pulse
+from trsim.solve.march.turns import BRIEF, before_pulses, longest_turn, pulse
 from trsim.solve.march.watch import take_sides
 from trsim.solve.methods.auto import calm, choose
 
@@ -293,7 +293,8 @@ def next_step(s, r, b, setting, method):
         most = min(most, longest_calm(r))
     if s.pulse.size > 0:
         ahead = min(min(STRETCH * r.h, most), left)
-        most = before_pulses(s, r, b, ahead, pulse(method[IMPLICIT_AT]))
+        seen, brief = pulse(method[IMPLICIT_AT]), BRIEF * setting.t_end
+        most = before_pulses(s, r, b, ahead, seen, brief)
     h = min(r.h, most)
     if min(STRETCH * h, most) >= left * (1.0 - 1e-12):
         return left

@@ -16,7 +16,7 @@ from math import isfinite
 from trsim.assemble.equations import evaluate, poses
 from trsim.assemble.poles import AT, DOMAIN, DRIVE, KIND, OF
 from trsim.elements.contract import compiled
-from trsim.elements.prescribed import AnyDrive
+from trsim.elements.prescribed import began
 from trsim.kernels.lazy import internal
 from trsim.kernels.vectors import copy_table
 from trsim.laws.functions import HEAD, N_IN, RESULT, SLOTS, in_row, ranges_of, value
@@ -62,12 +62,9 @@ def poles_ahead(s, r, b, setting, method):
 @internal
 def first_of(s, r, b, method, k):
     """The same of one u; NONE too of a motion that no drive follows now."""
-    e, since = s.pole[k, DRIVE], 0.0
-    if e >= 0:
-        own = AnyDrive(s, e)
-        if own.motion != s.pole[k, OF]:
-            return NONE
-        since = own.since
+    since = began(s, s.pole[k, DRIVE], s.pole[k, OF])
+    if since < 0.0:
+        return NONE
     for c in range(b.pole_first.shape[0]):
         b.pole_first[c, 0], b.pole_first[c, 1] = r.branch[c], r.turning[c]
         b.pole_last[c, 0], b.pole_last[c, 1] = b.branch1[c], b.turning1[c]

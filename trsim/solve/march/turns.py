@@ -22,7 +22,8 @@ MOST_WAVES = 200.0  # rad: the same of waves in functions that make a section's 
 IN_LOOPS = 1.0  # rad, or of the mechanism's size: the most a body in a loop moves by
 # rad of a pulse in a load, 1/(1 + u^2), that a step sees: of 12 stages, and of three
 PULSE, PULSE_OF_FEW = 8.0, 4.0
-BEYOND, SHORTER = 1.5, 60  # times that in a step that was made; halvings of one that was not
+BEYOND = 1.5  # times that in a step that was made
+BRIEF = 1e-9  # of a run: no shorter step is asked for
 NEXT = 0.9  # of MOST: what the next step may turn a joint by at its present rate
 
 
@@ -73,9 +74,13 @@ def unseen(s, r, b, last, h):
 
 
 @internal
-def before_pulses(s, r, b, h, most):
-    """How much of a step to try, so that it passes over no pulse of a load, going on as it does."""
-    for _ in range(SHORTER):
+def before_pulses(s, r, b, h, most, brief):
+    """How much of a step to try, so that it passes over no pulse of a load, going on as it does.
+
+    Not less than `brief`, s: towards a pole that the rest of a function takes away, as in
+    1/(1 + 1/u^2), pulses get ever shorter.
+    """
+    while h > brief:
         for k in range(r.branch.size):
             b.branch1[k] = r.branch[k] + h * r.turning[k]
         w = call_swings(s.beats_at, s, r.t, h, r.branch, r.turning, b.branch1, r.turning)

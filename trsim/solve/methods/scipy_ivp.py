@@ -75,6 +75,7 @@ SLOWLY = 5_000  # vanishing steps in a row that are followed: each costs a thous
 # middle of a step, between its third and its fourth stage, to be 15 to 50 times less than it is
 ADDING = {"scipy:BDF": 0.05, "scipy:RK45": 0.05}
 EASED = 1.2  # times the part allowed before, at most: restarts cost BDF its order
+LONGER = 1.2  # a step: what a bound made shorter may be again
 BLIND = 1e-12  # of the mechanism's size: of differences, what rounding leaves
 SHOWN = 0.5  # of the error allowed: what Newton's method leaves of it in third derivatives
 NOISE = 25.0  # of rates, in third derivatives: as what Newton's method leaves, a fiftieth of that
@@ -169,6 +170,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             of_what_is_stiff(s, r, b, solver, h)
             nudge(solver, r)
             r.h = h
+            solver.max_step = min(LONGER * solver.max_step, longest(setting, b))
             if r.speed_cap > 0.0:
                 solver.atol = allowed(scenario, s, r, b, setting, finer)
             solver.atol[books(s)] = unit_of_works(r, setting)
@@ -215,6 +217,11 @@ def stopped(solver: Any) -> str:
     return f"scipy stopped: {message}" if solver.status == "failed" else ""
 
 
+def longest(setting: Settings, b: Buffers) -> float:
+    """The longest step that may be asked for, s."""
+    return float(min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every))
+
+
 def restarted(
     scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, finer: float,
     most: float = np.inf,
@@ -246,9 +253,9 @@ def restarted(
     t = float(r.t)
     until = next_time(s, t, setting.t_end)
     first = min(float(r.h), until - t)
-    longest = min(most, setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every)
+    most = min(most, longest(setting, b))
     return make(right_hand_side, t, r.y.copy(), until, first_step=first or None,
-                max_step=longest, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
+                max_step=most, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
 
 
 def allowed(
