@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from ..runs import run
 
 # of the time or of the place X, at A, about W wide: its integral in units of W, and W
-AT = 0.50217
+AT, FIFTH = 0.50217, "((X - A)/W)**5"
+STEEP = 2.0 * quad(lambda u: (np.arctan(10 * (u**5 + 1)) - np.arctan(10 * (u**5 - 1))) / 2
+                   / np.arctan(10), 0, np.inf, limit=1000)[0]  # fmt: skip
 PULSES = {
     "1/(1 + ((X - A)/W)**2)": (np.pi, 1e-5),
     "1/(1 + ((X - A)/W)**8)": (np.pi / 4 / np.sin(np.pi / 8), 1e-5),
@@ -14,6 +17,7 @@ PULSES = {
     "(1 - (X - A)**2)**10000000": (np.sqrt(np.pi), 1e-7**0.5),
     "cos(X - A)**20000000": (np.sqrt(np.pi), 1e-7**0.5),
     "exp(-((X - A)/W)**2)": (np.sqrt(np.pi), 1e-5),
+    f"(atan2(0.1, {FIFTH} - 1) - atan2(0.1, {FIFTH} + 1))/(2*atan2(10, 1))": (STEEP, 1e-5),
 }
 BLOCK = """
 planar: true

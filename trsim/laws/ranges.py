@@ -46,6 +46,7 @@ from trsim.laws.operations import (
 ROUNDING = 1e-15  # of each operation
 WHOLE = 64.0  # the largest whole power taken as a product
 ALL = (-inf, inf)  # without bounds
+FURTHEST = 1.7976931348623157e308  # what is no less is a number or infinite
 
 
 @internal
@@ -53,7 +54,8 @@ def widened(l, h):
     """An interval made larger by rounding; without bounds where it is no number."""
     if not (l <= h):
         return ALL
-    return l - ROUNDING * abs(l), h + ROUNDING * abs(h)
+    low = l - ROUNDING * abs(l) if l < inf else FURTHEST
+    return low, h + ROUNDING * abs(h) if h > -inf else -FURTHEST
 
 
 @internal

@@ -4,12 +4,14 @@
     w = w_a + w_b                    of a product
     w = w_a + max(w_b, sup |b'| / inf |b|)     of a/b: 1/(1 + u^2) is a pulse 1/|u'| long
     w = max(w_a, sup |a'| / inf |a|)           of log a
+    w = max(w_a, w_b, sup |f'|)      of an angle f = atan2(a, b): two of them may cancel out
     w = n max(w_a, sup |a'| / sup |a|)         of a^n from the 9th power on; inf |a| of n < 0
     w = n w_a                        of lower powers, which have few turns of their own
     w = max(w_a, w_b)                of all else; what else may be short has corners (operations.py)
 
-in rad/s.  Ranges are those of interval arithmetic (ranges.py), so that what is fast anywhere in a
-stretch of time counts, not only what is so at its ends.  What is nothing there does not swing.
+in rad/s; of quotients, logarithms and high powers only where these may turn back.  Ranges are those
+of interval arithmetic (ranges.py), so that what is fast anywhere in a stretch of time counts, not
+only what is so at its ends.  What is nothing there does not swing.
 """
 
 from math import inf
@@ -29,7 +31,7 @@ from trsim.laws.functions import (
     operations,
     ranges_of,
 )
-from trsim.laws.operations import COS, DIV, LOG, MUL, POW, SIN, TAN
+from trsim.laws.operations import ATAN2, COS, DIV, LOG, MUL, POW, SIN, TAN
 
 LOW = 8.0  # power: those that have few turns
 NOTHING = 1e-100  # what is smaller throughout does not swing
@@ -50,14 +52,15 @@ def has(code, operations):
 
 
 def pulses(code):
-    """Whether it has something that may be short and is no wave: what divides, high powers, log."""
+    """Whether it has something that may be short and is no wave: what divides, high powers, log,
+    angles."""
     if code[0] != EXPRESSION:
         return False
     slots, first = int(code[SLOTS]), HEAD + int(code[N_IN])
     constants = slots + 3 * (1 + int(code[N_IN]) + int(code[N_OP]))
     for p in range(first, slots, WIDTH):
         op, b = code[p], int(code[p + 2])
-        if op == LOG or (op == DIV and b < constants):
+        if op in (LOG, ATAN2) or (op == DIV and b < constants):
             return True
         if op == POW and b >= constants and not 0.0 <= code[b] <= LOW:
             return True
@@ -101,7 +104,8 @@ def swing_within(tab, o, stretch, before, behind, own):
         code, a, b = operands(tab, o, p)
         x, y = box[(a - first) // 3], box[(b - first) // 3]
         if sines > 0 or code not in (SIN, COS, TAN):
-            w = swinging(code, (tab[a + 2], in_row(x)), (tab[b + 2], in_row(y)))
+            f_rate = in_row(box[(out - first) // 3])[1]
+            w = swinging(code, (tab[a + 2], in_row(x)), (tab[b + 2], in_row(y)), f_rate)
         else:
             w = tab[a + 2]
         f, _ = in_row(box[(out - first) // 3])
@@ -112,22 +116,25 @@ def swing_within(tab, o, stretch, before, behind, own):
 
 
 @internal
-def swinging(code, x, y):
-    """w of an operation, from w and the ranges of a and b."""
+def swinging(code, x, y, f_rate):
+    """w of an operation, from w and the ranges of a and b, and that of its rate."""
     (w_a, (a, a_rate)), (w_b, (b, b_rate)) = x, y
+    turns = f_rate[0] < 0.0 < f_rate[1]  # what rises or falls throughout is no pulse
     if code in (SIN, COS, TAN):
         return largest(a_rate) + w_a
     if code == MUL:
         return w_a + w_b
     if code == DIV:
-        return w_a + max(w_b, ratio(largest(b_rate), least(b)))
+        return w_a + max(w_b, ratio(largest(b_rate), least(b)) if turns else 0.0)
     if code == LOG:
-        return max(w_a, ratio(largest(a_rate), least(a)))
+        return max(w_a, ratio(largest(a_rate), least(a)) if turns else 0.0)
+    if code == ATAN2:
+        return max(max(w_a, w_b), largest(f_rate))
     if code == POW and largest(b_rate) == 0.0:
         if 0.0 <= b[0] <= LOW:
             return w_a * max(b[0], 1.0)
         size = largest(a) if b[0] > 0.0 else least(a)
-        return abs(b[0]) * max(w_a, ratio(largest(a_rate), size))
+        return abs(b[0]) * max(w_a, ratio(largest(a_rate), size) if turns else 0.0)
     return max(w_a, w_b)
 
 
