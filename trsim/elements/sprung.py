@@ -11,7 +11,6 @@ met by steps like those of all functions of sensors.  What is not elastic of T i
 
 from typing import Literal
 
-import numpy as np
 from pydantic import model_validator
 
 from trsim.elements.contract import SPRINGS
@@ -156,6 +155,8 @@ def jump_at_zero(spec):
         return 0.0
     if f.kind == "table":
         there = f.x[0] <= 0.0 <= f.x[-1] or f.ends == "hold"
+        import numpy as np  # checking text needs none
+
         return max(0.0, float(np.interp(0.0, f.x, f.y))) if there else 0.0
     try:
         at_once, soon = (of_number(f, X, x) for x in TAUT)

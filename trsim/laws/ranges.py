@@ -46,7 +46,7 @@ from trsim.laws.operations import (
 ROUNDING = 1e-15  # of each operation
 WHOLE = 64.0  # the largest whole power taken as a product
 ALL = (-inf, inf)  # without bounds
-FURTHEST = 1.7976931348623157e308  # what is no less is a number or infinite
+FURTHEST = 1e15  # what is infinite is more, and that is all that is said of it
 
 
 @internal
