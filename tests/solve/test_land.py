@@ -36,7 +36,7 @@ def landed(s, r, b, t, y, yd, out):
     """The energy of a state, what `land` says it gave, and the energy behind it."""
     evaluate(s, t, y, yd)
     out[0] = kinetic(s, y) + stored_energy(s, t)
-    out[1] = land(s, r, b, t, y, yd)
+    out[1] = land(s, r, b, t, y, yd, 0)
     out[2] = kinetic(s, y) + stored_energy(s, t)
 
 

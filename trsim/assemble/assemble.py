@@ -11,7 +11,7 @@ from trsim import elements
 from trsim.assemble.addresses import Addresses
 from trsim.assemble.band import band_tables
 from trsim.assemble.beside import beside, near, near_rows
-from trsim.assemble.equations import derivative, without_feedback
+from trsim.assemble.equations import derivative, poses, without_feedback
 from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
 from trsim.assemble.instances import Column, Instance, RowName, Section
@@ -23,9 +23,11 @@ from trsim.assemble.loops import looped
 from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.members import members
 from trsim.assemble.on_beams import addresses
+from trsim.assemble.outputs import measured
 from trsim.assemble.pattern import Hubs, lines, no_pattern, pattern
 from trsim.assemble.planar import Planarity, listed, planarity
 from trsim.assemble.poles import poles
+from trsim.assemble.projection import on_rows, poses_and_rows, project_positions
 from trsim.assemble.rows import (
     all_rows,
     check_inertias,
@@ -340,6 +342,11 @@ def build(
         shared_out=least_norm.address() if redundant else 0,
         **band_tables(list(at.beams.values()), frames, n),
         derivative=derivative.address(),
+        poses=poses.address(),
+        poses_and_rows=poses_and_rows.address(),
+        newton_step=project_positions.address(),
+        on_rows=on_rows.address(),
+        measured=measured.address(),
         beside=beside.address(),
         plain=without_feedback.address() if solver.stabilisation == "baumgarte" else 0,
         near=0.0 if len(of.light) else near(solver, rows, spans(at)),

@@ -42,8 +42,8 @@ from trsim.assemble.equations import (
     constraints,
     free_accelerations,
     in_world,
-    poses,
     right_hand_side,
+    set_poses,
 )
 from trsim.assemble.instances import RowName
 from trsim.assemble.linear import (
@@ -56,7 +56,7 @@ from trsim.assemble.linear import (
     smallest_pivot,
     solve,
 )
-from trsim.assemble.projection import move_all, project_positions, project_velocities
+from trsim.assemble.projection import move_all, newton_step, project_velocities
 from trsim.assemble.schur import plain_rows, pull
 from trsim.elements.contract import DRIVES, compiled
 from trsim.kernels.lazy import internal
@@ -136,7 +136,7 @@ def beside(s, t, y, yd):
     best, scale = 1e300, 0.0
     if went == SINGULAR or plain_pivot(s) <= SMALL:
         best, scale = look_beside(s, t, y, yd, fastest, own)
-        poses(s, y)
+        set_poses(s, y)
         constraints(s, t)
     refactorise(s)  # other factors have taken its place
     s.status[2] = counted
@@ -289,21 +289,21 @@ def at(s, t, y, d):
         place[s.n_q + s.n_v + k] += d * s.zd[k]
     worst = 0.0
     for _ in range(NEWTON):
-        worst = project_positions(s, t + d, place)
+        worst = newton_step(s, t + d, place)
         if s.status[0] == SINGULAR:
             return 0.0
         if not worst > CLOSED * s.size:
             break
     if not worst <= REACHED * s.size:
         return -1.0  # the mechanism locks between
-    poses(s, place)
+    set_poses(s, place)
     constraints(s, t + d)
     refactorise(s)
     if s.status[0] == SINGULAR:
         return 0.0
     pivot = smallest_pivot(s)
     project_velocities(s, place)
-    poses(s, place)
+    set_poses(s, place)
     constraints(s, t + d)
     free_accelerations(s)
     right_hand_side(s, False)

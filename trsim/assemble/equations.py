@@ -41,6 +41,8 @@ from trsim.laws.sine import sine_cosine
 #                        scene  t   y   y'
 DERIVATIVE = void(SCENE, f8, A1, A1)
 call_derivative = caller(DERIVATIVE)
+POSES_OF = void(SCENE, A1)
+call_poses = caller(POSES_OF)
 AT = void(SCENE, f8)
 
 
@@ -115,7 +117,13 @@ def evaluate(s, t, y, yd):
     call_derivative(s.derivative, s, t, y, yd)
 
 
-@compiled(void(SCENE, A1))
+@internal
+def set_poses(s, y):
+    """`poses` called by its address: compiled once, not into every caller."""
+    call_poses(s.poses, s, y)
+
+
+@compiled(POSES_OF)
 def poses(s, y):
     """X, V, S and z from the state: the only place that knows the generalised coordinates."""
     X, V, S, branch, turn = s.X, s.V, s.S, s.branch, s.turn

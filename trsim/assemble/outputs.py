@@ -30,9 +30,20 @@ def energy_columns(jumps):
     )
 
 
+#                     scene  t   y   work of projections  energy at the start
+MEASURED = void(SCENE, f8, A1, f8, f8)
+call_measured = caller(MEASURED)
+
+
 @internal
 def measure(s, t, y, work_projection, energy_0):
-    """Fill s.out; uses the last evaluation, which was at (t, y)."""
+    """Fill s.out; uses the last evaluation, which was at (t, y).  Called by its address."""
+    call_measured(s.measured, s, t, y, work_projection, energy_0)
+
+
+@compiled(MEASURED)
+def measured(s, t, y, work_projection, energy_0):
+    """`measure`, compiled once."""
     if s.plain != 0:
         call_derivative(s.plain, s, t, y, s.aside[0])
     if s.shared_out != 0:

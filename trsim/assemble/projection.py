@@ -10,6 +10,7 @@ from trsim.assemble.linear import refactorise, smallest_pivot, solve
 from trsim.assemble.on_beams import PULL, call_beams
 from trsim.assemble.schur import pull, velocity_residual
 from trsim.elements.contract import SCENE, compiled
+from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
 from trsim.kernels.signatures import A1, f8, float64, i8, void
 from trsim.kernels.vectors import clear, clear_table
@@ -60,7 +61,19 @@ def normalise(s, y):
                 y[q + a] /= length
 
 
-@compiled(float64(SCENE, f8, A1))
+POSITIONS = float64(SCENE, f8, A1)
+call_positions = caller(POSITIONS)
+STATE = void(SCENE, f8, A1)
+call_state = caller(STATE)
+
+
+@internal
+def newton_step(s, t, y):
+    """`project_positions` called by its address: compiled once, not into every caller."""
+    return call_positions(s.newton_step, s, t, y)
+
+
+@compiled(POSITIONS)
 def project_positions(s, t, y):
     """One Newton step of Phi(q, t) = 0, nearest in the metric of M.  Returns the largest |Phi|.
 
@@ -96,7 +109,7 @@ def close_positions(s, t, y, near, steps):
     """
     worst = 0.0
     for _ in range(steps):
-        worst = project_positions(s, t, y)
+        worst = newton_step(s, t, y)
         if not worst > near:
             break
     return worst
@@ -130,7 +143,13 @@ def onto_rows(s, w):
     brought_back(s, w, 0)
 
 
-@compiled(void(SCENE, f8, A1))
+@internal
+def set_poses_and_rows(s, t, y):
+    """`poses_and_rows` called by its address."""
+    call_state(s.poses_and_rows, s, t, y)
+
+
+@compiled(STATE)
 def poses_and_rows(s, t, y):
     """The poses of y, for its velocities; where rows nearly depend on each other its rows too.
 
@@ -150,8 +169,14 @@ def poses_and_rows(s, t, y):
 @internal
 def put_on_rows(s, t, y):
     """Bring a state to the rows, its velocities too, as closely as rounding lets."""
+    call_state(s.on_rows, s, t, y)
+
+
+@compiled(STATE)
+def on_rows(s, t, y):
+    """`put_on_rows`, compiled once."""
     close_positions(s, t, y, CLOSED * s.size, NEWTON)
-    poses_and_rows(s, t, y)
+    set_poses_and_rows(s, t, y)
     project_velocities(s, y)
 
 

@@ -88,7 +88,12 @@ class Model(Packed):
     row: I1  # (places) their unknowns, that of the diagonal first: m rows, then d of each hub
     target: I1  # (updates) the place that two entries of one column of L are taken from
     derivative: i8  # address of the equations of motion
-    beside: i8  # address of what finds limits where rows depend on each other     beside.py
+    poses: i8  # of what fills X, V, S and z, and of what fills the rows too where velocities ask
+    poses_and_rows: i8
+    newton_step: i8  # of what takes a place nearer to the rows, and a state onto them
+    on_rows: i8
+    measured: i8  # of what measures all channels                     outputs.py
+    beside: i8  # of what finds limits where rows depend on each other     beside.py
     near: f8  # pivot below which it is asked; 0: where rows do depend on each other only
     near_rows: f8  # the same of what is measured
     looped: I1  # rigid bodies in kinematic loops    assemble/loops.py

@@ -78,19 +78,21 @@ FIELDS = (
     "search",  # what finds events
     "sound",  # and those that watch channels
     "corners", "beyond", "turn",  # what finds corners that sensors meet, how far, and goes on
-    "sample", "finish",  # what keeps extremes, and what does where samples end
+    # what keeps extremes, what does where samples end, and what looks between two of them
+    "sample", "finish", "between",
     "passes",  # what notes steps past places where branches of the motion may meet
     "inside",  # what tells the error of accelerations inside a step, as `step` does that of its end
     "rate", "soften",  # what brings to rest what is stiff in a state             settle.py
     "book",  # what books works at the end of a step
     "poles",  # what finds where a function has no value
+    "land", "measure_in",  # what brings an end to the rows, what measures inside a step
     "stiff",  # what looks at how stiff the mechanism is, for methods that ask     stiffness.py
 )  # fmt: skip
 (
     STEP_AT, DENSE_AT, INTERPOLATE_AT, COMPLETE_AT, LAST_AT, ESTIMATE_AT, IMPLICIT_AT, STAGES_AT,
     DEGREE_AT, CONTROL_AT, SECTIONS_AT, MEET_AT, LOOK_AT, ROUNDING_AT, SEARCH_AT, SOUND_AT,
-    CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, PASSES_AT, INSIDE_AT, RATE_AT, SOFTEN_AT,
-    BOOK_AT, POLES_AT, STIFF_AT,
+    CORNERS_AT, BEYOND_AT, TURN_AT, SAMPLE_AT, FINISH_AT, BETWEEN_AT, PASSES_AT, INSIDE_AT,
+    RATE_AT, SOFTEN_AT, BOOK_AT, POLES_AT, LAND_AT, MEASURE_IN_AT, STIFF_AT,
 ) = range(len(FIELDS))  # fmt: skip
 
 

@@ -22,8 +22,10 @@ from trsim.solve.march.calls import (
     IMPLICIT_AT,
     INSIDE_AT,
     INTERPOLATE_AT,
+    LAND_AT,
     LAST_AT,
     LOOK_AT,
+    MEASURE_IN_AT,
     MEET_AT,
     NO_STEP,
     PASSES_AT,
@@ -46,7 +48,7 @@ from trsim.solve.march.dense_output import build, measure_inside, move_end
 from trsim.solve.march.earlier import keep_step
 from trsim.solve.march.events import NONE, ROUNDING, SAME
 from trsim.solve.march.features import call_meet, next_instant
-from trsim.solve.march.land import land, limits_to_measure
+from trsim.solve.march.land import call_land, limits_to_measure
 from trsim.solve.march.norm import grow
 from trsim.solve.march.output_rows import at_end, due, rows_until
 from trsim.solve.march.passes import call_passes
@@ -100,6 +102,7 @@ def complete(s, r, b, setting, method):
     last, h = method[LAST_AT], b.h
     b.t, b.interpolate, b.moved = r.t, method[INTERPOLATE_AT], 0
     b.rate, b.soften, b.restless = method[RATE_AT], method[SOFTEN_AT], 0
+    b.land, b.measure_in = method[LAND_AT], method[MEASURE_IN_AT]
     b.t1 = reached(setting, b.t + h)
     worst, worst_rate = r.worst_phi, r.worst_phi_dot
     b.projected = landed(s, r, b, method, b.t1, h)
@@ -141,7 +144,7 @@ def complete(s, r, b, setting, method):
                 call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
                 b.t1 = reached(setting, b.t + theta * h)
-                b.projected = land(s, r, b, b.t1, b.y1, b.K[last])
+                b.projected = call_land(b.land, s, r, b, b.t1, b.y1, b.K[last], 0)
     if method[POLES_AT] > 0 and call_search(method[POLES_AT], s, r, b, setting, method) < NONE:
         return undone(r, worst, worst_rate, AT_POLE if r.pole > 0 else STRAYED)
     t1 = b.t1
@@ -208,7 +211,7 @@ def complete(s, r, b, setting, method):
 @internal
 def landed(s, r, b, method, t, h):
     """`land` of the end of a step of length h that was just made."""
-    done = land(s, r, b, t, b.y1, b.K[method[LAST_AT]], b.rate)
+    done = call_land(b.land, s, r, b, t, b.y1, b.K[method[LAST_AT]], b.rate)
     if method[BOOK_AT] > 0:
         call_book(method[BOOK_AT], s, r, b, h)
     return done
@@ -348,7 +351,7 @@ def exact(s, r, b, setting, method, theta):
         near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting.step_error) * h1
         if near and gap_of < s.contact.size:
             move_end(b, last, late)
-            projected += land(s, r, b, t + h1 - late, b.y1, b.K[last])
+            projected += call_land(b.land, s, r, b, t + h1 - late, b.y1, b.K[last], 0)
             if abs(b.gap1[gap_of, 0]) <= close:
                 return h1, -late, projected
             b.moved = 0

@@ -5,7 +5,7 @@ smooth functions; where the element leaves its branch is an event like a touch. 
 where the branch is left at the end of a step or at any stage of it.
 """
 
-from trsim.assemble.equations import call_one, poses
+from trsim.assemble.equations import call_one, set_poses
 from trsim.elements.contract import CONTACT, WHOLE, Memory
 from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import call_interpolate
@@ -30,7 +30,7 @@ def any_left(s, r, b):
 def show(s, r, b, theta):
     """The poses at theta of the step, whose state is left in b.y2."""
     call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
-    poses(s, b.y2)
+    set_poses(s, b.y2)
 
 
 @internal

@@ -3,11 +3,16 @@
 from trsim.assemble.least_norm import firmness_of_all
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.outputs import measure
+from trsim.elements.contract import SCENE, compiled
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
+from trsim.kernels.packed import f8, i8
 from trsim.kernels.vectors import clear_table, copy_to
 from trsim.solve.march.calls import DENSE_AT, LAST_AT, call_dense, call_interpolate
-from trsim.solve.march.earlier import this_step
+from trsim.solve.march.earlier import either_step
 from trsim.solve.march.land import evaluate_inside
+from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.march.samples import firmness
 from trsim.solve.march.settle import answered, at_rest
 
@@ -16,6 +21,10 @@ NOISE, PLAIN = 1e-12, 1e-2  # 100 times that; a pivot that always serves
 NEAREST, FURTHEST = 1e-3, 0.1  # of a step
 # weights of values at 1, 2 and 3 times a distance to either side
 OF_FOUR, OF_SIX = (0.0, 2.0 / 3.0, -1.0 / 6.0, 0.0), (0.0, 0.75, -0.3, 0.05)
+
+#                        scene  record  buffers earlier at theta
+MEASURE_IN = types.void(SCENE, RECORD, BUFFERS, i8, f8, f8)
+call_measure_in = caller(MEASURE_IN)
 
 
 @internal
@@ -56,18 +65,20 @@ def move_end(b, last, late):
 @internal
 def measure_inside(s, r, b, at, theta):
     """`measure_in` of the step at hand."""
-    measure_in(s, r, b, this_step(r, b), at, theta)
+    call_measure_in(b.measure_in, s, r, b, 0, at, theta)
 
 
-@internal
-def measure_in(s, r, b, step, at, theta):
+@compiled(MEASURE_IN)
+def measure_in(s, r, b, earlier, at, theta):
     """All channels at the time `at`, theta of a step, into s.out; the state is in b.y2.
 
-    step: as earlier.py hands it on.  Where some rows are redundant, those of the solve may depend
-    on each other at a place where all of them together do not: what is shared between them is
-    chance there.  A force is then that of the polynomial through six places around it, unless its
-    own value is nearer to that than the one through four is.
+    earlier: 1 in the step that was kept, 0 in the one at hand (earlier.py).  Where some rows are
+    redundant, those of the solve may depend on each other at a place where all of them together do
+    not: what is shared between them is chance there.  A force is then that of the polynomial
+    through six places around it, unless its own value is nearer to that than the one through four
+    is.
     """
+    step = either_step(r, b, earlier)
     measure_at(s, r, b, step, at, theta)
     b.firm[0] = firmness(s)
     if s.redundant.shape[0] == 0 or theta == 0.0:

@@ -5,7 +5,7 @@ step sees smooth functions.  Corners that the time alone meets are known before 
 longer than the time to the next.
 """
 
-from trsim.assemble.equations import evaluate, kinetic, poses, stored_energy
+from trsim.assemble.equations import evaluate, kinetic, set_poses, stored_energy
 from trsim.assemble.features import (
     BEHIND,
     DRIVE,
@@ -16,7 +16,7 @@ from trsim.assemble.features import (
     call_hold,
     passed,
 )
-from trsim.assemble.projection import project_positions, project_velocities
+from trsim.assemble.projection import newton_step, project_velocities
 from trsim.elements.contract import SCENE, compiled
 from trsim.elements.prescribed import AnyDrive, began
 from trsim.kernels import signatures as types
@@ -25,7 +25,7 @@ from trsim.kernels.lazy import internal
 from trsim.kernels.packed import f8
 from trsim.kernels.vectors import copy_to
 from trsim.laws.functions import BY_TIME
-from trsim.solve.march.land import land
+from trsim.solve.march.land import call_land
 from trsim.solve.march.record import (
     BUFFERS,
     EVENT_IMPULSE,
@@ -79,7 +79,7 @@ def meet(s, r, b, t, t1):
     if not met:
         return 0
     jumped = looked_at(s, r, t, t1)
-    poses(s, r.y)
+    set_poses(s, r.y)
     before = kinetic(s, r.y) + stored_energy(s, t1) if jumped else 0.0
     call_hold(s.on_features[0], s, t1, BY_TIME)
     keep(s, r)
@@ -89,10 +89,10 @@ def meet(s, r, b, t, t1):
     first = r.event_rows
     if jumped:
         jolt(s, r, b, t, t1)
-    done = land(s, r, b, t1, b.y1, r.yd)
+    done = call_land(b.land, s, r, b, t1, b.y1, r.yd, 0)
     copy_to(r.y, b.y1)
     if jumped and s.jumps >= 0:
-        poses(s, r.y)
+        set_poses(s, r.y)
         done = kinetic(s, r.y) + stored_energy(s, t1) - before
         r.y[s.n_q + s.n_v + s.jumps] += done
         evaluate(s, t1, r.y, r.yd)
@@ -135,8 +135,8 @@ def jolt(s, r, b, t, t1):
                 rate = s.jump[s.feature[n, FIRST] + k, RATE_JUMP]
                 b.y1[s.n_q + s.n_v + s.feature[n, PISTON]] -= rate
     if s.m > 0:
-        project_positions(s, t1, b.y1)
-        poses(s, b.y1)
+        newton_step(s, t1, b.y1)
+        set_poses(s, b.y1)
         project_velocities(s, b.y1)
     for n in range(s.feature.shape[0]):
         e, rate = s.feature[n, DRIVE], 0.0

@@ -2,24 +2,29 @@
 
 from math import nan
 
-from trsim.assemble.equations import constraints, corners, evaluate, kinetic, poses
+from trsim.assemble.equations import constraints, corners, evaluate, kinetic, set_poses
 from trsim.assemble.linear import SINGULAR, SOUND, smallest_pivot
 from trsim.assemble.on_beams import WORK, call_beams
 from trsim.assemble.projection import (
     CLOSED,
     DOUBTFUL,
     NEWTON,
+    newton_step,
     normalise,
-    poses_and_rows,
-    project_positions,
     project_velocities,
     put_on_rows,
+    set_poses_and_rows,
 )
 from trsim.assemble.schur import velocity_residual
+from trsim.elements.contract import SCENE, compiled
 from trsim.elements.scene import NONE, PROJECTION
+from trsim.kernels import signatures as types
+from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
+from trsim.kernels.packed import A1, f8, i8
 from trsim.kernels.vectors import copy_to
 from trsim.solve.march.own_rows import ends_in, keep_roots, keep_rows, look_at
+from trsim.solve.march.record import BUFFERS, RECORD
 from trsim.solve.march.settle import AT_END, at_rest
 from trsim.solve.march.watch import see
 from trsim.solve.methods.displacements import quaternion, turned_by
@@ -35,8 +40,13 @@ UNKNOWN = 1e-15  # of the diagonal: rounding of a pivot
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
-@internal
-def land(s, r, b, t, y, yd, rest=0):
+#                    scene  record  buffers  t   y   y'  rest
+LAND = types.float64(SCENE, RECORD, BUFFERS, f8, A1, A1, i8)
+call_land = caller(LAND)
+
+
+@compiled(LAND)
+def land(s, r, b, t, y, yd, rest):
     """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
 
     Returns the work done by the projection (J): the change of kinetic energy, and minus the work
@@ -50,7 +60,7 @@ def land(s, r, b, t, y, yd, rest=0):
         copy_to(b.y2, y)
         first, at_hand = 0.0, False
         for k in range(NEWTON):
-            worst = project_positions(s, t, y)
+            worst = newton_step(s, t, y)
             if k == 0:
                 first = worst
             if not worst > (PHI_SMALL if s.status[0] == SOUND else CLOSED) * s.size:
@@ -69,7 +79,7 @@ def land(s, r, b, t, y, yd, rest=0):
         r.off = first
         T0 = kinetic(s, y)
         if not at_hand:
-            poses_and_rows(s, t, y)
+            set_poses_and_rows(s, t, y)
         worst = r.off_rate = project_velocities(s, y)
         r.worst_phi_dot = max(r.worst_phi_dot, worst)
         done += kinetic(s, y) - T0
@@ -102,7 +112,7 @@ def land(s, r, b, t, y, yd, rest=0):
 @internal
 def still_open(s, t, y):
     """The largest |Phi| at y, whose rows take the place of the last ones; the factors stay."""
-    poses(s, y)
+    set_poses(s, y)
     constraints(s, t)
     worst = 0.0
     for k in range(s.m):

@@ -40,10 +40,11 @@ from trsim.solve.march.complete import (
     call_complete,
     complete,
 )
+from trsim.solve.march.dense_output import measure_in
 from trsim.solve.march.features import next_instant
-from trsim.solve.march.land import limits_to_measure
+from trsim.solve.march.land import land, limits_to_measure
 from trsim.solve.march.norm import units, weights
-from trsim.solve.march.peaks import call_finish, finish, sample
+from trsim.solve.march.peaks import between, call_finish, finish, sample
 from trsim.solve.march.phases import evaluate_all
 from trsim.solve.march.record import (
     ACT,
@@ -133,6 +134,9 @@ def method_table(method, **called):
         rounding=look_closer.address(),
         sample=sample.address(),
         finish=finish.address(),
+        between=between.address(),
+        land=land.address(),
+        measure_in=measure_in.address(),
         **called,
     )
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.assemble.equations import constraints, poses
+from trsim.assemble.equations import constraints, poses, set_poses
 from trsim.assemble.instances import Instance
 from trsim.assemble.linear import smallest_pivot
 from trsim.assemble.mechanism import Mechanism
@@ -101,7 +101,7 @@ def closed(s, t, y):
     """Bring y to the rows of the solve, as close as rounding lets it; what they stay open by."""
     counted = (s.status[0], s.status[1], s.status[2], s.status[3])
     close_positions(s, t, y, CLOSED * s.size, NEWTON)
-    poses(s, y)
+    set_poses(s, y)
     constraints(s, t)
     s.status[0], s.status[1], s.status[2], s.status[3] = counted
     worst = 0.0

@@ -8,7 +8,7 @@ share of the diagonal of S.
 
 from math import sqrt
 
-from trsim.assemble.equations import constraints, poses
+from trsim.assemble.equations import constraints, set_poses
 from trsim.assemble.linear import diagonal, eliminate
 from trsim.assemble.schur import rows
 from trsim.kernels.lazy import internal
@@ -24,7 +24,7 @@ PLAINLY = 0.5
 @internal
 def look_at(s, t, y):
     """The rows at a place, and their factors."""
-    poses(s, y)
+    set_poses(s, y)
     constraints(s, t)
     rows(s)
     diagonal(s)

@@ -22,8 +22,9 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
-from trsim.kernels.packed import A1, I1, f8
-from trsim.solve.march.dense_output import build, measure_in
+from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.solve.march.calls import BETWEEN_AT
+from trsim.solve.march.dense_output import build, call_measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
 from trsim.solve.march.land import evaluate_inside
 from trsim.solve.march.polynomials import SURE, apart, one_way, polynomial, reach, settled, top
@@ -54,6 +55,9 @@ call_sample = caller(SAMPLE)
 #                   scene  record  buffers  settings method
 FINISH = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1)
 call_finish = caller(FINISH)
+#                    scene  record  buffers  settings method ahead
+BETWEEN = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1, i8)
+call_between = caller(BETWEEN)
 
 
 @compiled(SAMPLE)
@@ -70,7 +74,7 @@ def sample(s, r, b, setting, method, at, values):
     known_extremes(s, r, b, at)
     if own:
         if r.unseen > 0 and r.n_samples > 2:
-            between(s, r, b, setting, method, 1)
+            call_between(method[BETWEEN_AT], s, r, b, setting, method, 1)
         r.unseen = 1
 
 
@@ -79,11 +83,11 @@ def finish(s, r, b, setting, method):
     """Take what lies between the two newest samples into the extremes: no sample follows that they
     have to do with."""
     if r.unseen > 0 and r.n_samples > 1:
-        between(s, r, b, setting, method, 0)
+        call_between(method[BETWEEN_AT], s, r, b, setting, method, 0)
     r.unseen = 0
 
 
-@internal
+@compiled(BETWEEN)
 def between(s, r, b, setting, method, ahead):
     """Look for the extremes of all channels between two neighbours among the samples.
 
@@ -208,15 +212,14 @@ def search(s, r, b, method, ahead, c, sign, enough):
 def look(s, r, b, method, ahead, place):
     """Evaluate all channels at a place inside the step, and keep them in b.inside and b.found."""
     earlier, h = before(r, ahead), length(r, b, ahead)
-    step = either_step(r, b, earlier)
     if not ready(r, b, ahead):
         if earlier:
             build_earlier(s, r, b, method)
         else:
             build(s, r, b, method)
-    k, t = b.n_found, step[2]
+    k, t = b.n_found, r.earlier_t if earlier else r.t
     place = min(place, t + h)
-    measure_in(s, r, b, step, place, (place - t) / h)
+    call_measure_in(b.measure_in, s, r, b, int(earlier), place, (place - t) / h)
     gather(s, b.full, s.out, b.inside[k])
     known_extremes(s, r, b, place)
     b.n_found, b.found[k] = k + 1, place

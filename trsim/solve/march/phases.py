@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from trsim.assemble.equations import corners, evaluate, poses
+from trsim.assemble.equations import corners, evaluate, set_poses
 from trsim.assemble.features import call_hold
 from trsim.elements.contract import CONTACT, FLIGHT, SCENE, ContactNumbers, Memory, Pair, compiled
 from trsim.kernels.lazy import internal
@@ -42,7 +42,7 @@ def change_phases(s, r, b, setting, t1):
         first = min(first, b.root[c])
     for c in range(s.contact.size):
         first = min(first, b.corner_root[c])
-    poses(s, r.y)
+    set_poses(s, r.y)
     corners(s, t1)
     for c in range(s.contact.size):
         if b.corner_root[c] <= first + SAME:

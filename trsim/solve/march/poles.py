@@ -13,7 +13,7 @@ shorter until it begins just before, and then the run ends there.
 
 from math import isfinite
 
-from trsim.assemble.equations import evaluate, poses
+from trsim.assemble.equations import evaluate, set_poses
 from trsim.assemble.poles import AT, DOMAIN, DRIVE, KIND, OF
 from trsim.elements.contract import compiled
 from trsim.elements.prescribed import began
@@ -55,7 +55,7 @@ def poles_ahead(s, r, b, setting, method):
     if s.status[1] > evaluations:
         evaluate(s, b.t1, b.y1, b.K[method[LAST_AT]])
     else:
-        poses(s, b.y1)
+        set_poses(s, b.y1)
     return NONE
 
 

@@ -318,6 +318,8 @@ class Buffers(Packed):
     interpolate: I8  # address of what evaluates the dense output
     rate: I8  # of the rate of what is slow in it, 0: none                        settle.py
     soften: I8  # and of what takes away what is stiff
+    land: I8  # of what brings an end to the rows                                 land.py
+    measure_in: I8  # and of what measures channels inside a step        dense_output.py
     built: I8  # 1: P holds it
     halved: I8  # 1: middle holds the channels of this step
     restless: I8  # 1: what is stiff did not come to rest

@@ -3,7 +3,7 @@
 Called by its address, which is 0 where nothing can happen: such a run compiles nothing of it.
 """
 
-from trsim.assemble.equations import evaluate, poses
+from trsim.assemble.equations import evaluate, set_poses
 from trsim.elements.contract import compiled
 from trsim.kernels.lazy import internal
 from trsim.solve.march.calls import LAST_AT, SEARCH, SOUND_AT, STAGES_AT, call_sound
@@ -31,7 +31,7 @@ def search(s, r, b, setting, method):
         if s.status[1] > evaluations:
             evaluate(s, b.t + b.h, b.y1, b.K[method[LAST_AT]])
         else:
-            poses(s, b.y1)
+            set_poses(s, b.y1)
     return first
 
 

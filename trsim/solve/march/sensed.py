@@ -22,7 +22,7 @@ taken again, shorter: the stages of what is accepted lie on the piece, and its e
 
 from math import inf, isfinite
 
-from trsim.assemble.equations import evaluate, poses
+from trsim.assemble.equations import evaluate, set_poses
 from trsim.assemble.features import (
     ENTRY,
     HELD_FROM,
@@ -115,7 +115,7 @@ def corners_ahead(s, r, b, setting, method):
         if s.status[1] > evaluations:
             evaluate(s, b.t + b.h, b.y1, b.K[method[LAST_AT]])
         else:
-            poses(s, b.y1)
+            set_poses(s, b.y1)
     return first
 
 
@@ -285,7 +285,7 @@ def turn(s, r, b, setting, method, t1, changed):
 
     changed: not 0 where what was held has changed already, by the time or by an event.
     """
-    poses(s, r.y)
+    set_poses(s, r.y)
     turned = 0
     for n in range(s.feature.shape[0]):
         if s.feature[n, SENSED] > 0:
@@ -326,7 +326,7 @@ def slides(s, r, b, n, t1):
     slope_next = slope_on(s, r, b, n, place, (b.met[n, NEXT], t1, ahead)) - near
     s.tab[place] = before
     evaluate(s, t1, r.y, r.yd)
-    poses(s, r.y)
+    set_poses(s, r.y)
     return slope_before > 0.0 > slope_next if above else slope_before < 0.0 < slope_next
 
 
@@ -337,7 +337,7 @@ def slope_on(s, r, b, n, place, held):
     evaluate(s, t1, r.y, b.K[1])
     for c in range(r.y.size):
         b.y2[c] = r.y[c] + ahead * b.K[1, c]
-    poses(s, b.y2)
+    set_poses(s, b.y2)
     return corner_at(s, n, place, t1 + ahead)[0]
 
 

@@ -6,7 +6,7 @@ are those of jacobian.py.
 
 from math import sqrt
 
-from trsim.assemble.equations import evaluate, poses, stiffnesses
+from trsim.assemble.equations import evaluate, set_poses, stiffnesses
 from trsim.assemble.linear import substitute
 from trsim.assemble.schur import velocity_residual
 from trsim.elements.contract import Pair
@@ -81,7 +81,7 @@ def elastic(s, r, b, t):
         if b.in_group[k] < 0:
             for e in range(b.column_start[k], b.column_start[k + 1]):
                 r.at_place[e], r.at_rate[e] = 0.0, 0.0
-    poses(s, r.y)
+    set_poses(s, r.y)
     stiffnesses(s, t)
     for n in range(b.entry_beam.shape[0]):
         for i in range(12):

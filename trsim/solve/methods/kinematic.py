@@ -31,10 +31,10 @@ from math import inf, sqrt
 
 import numpy as np
 
-from trsim.assemble.equations import constraints, evaluate, forces, poses
+from trsim.assemble.equations import constraints, evaluate, forces, set_poses
 from trsim.assemble.linear import SINGULAR, smallest_pivot
 from trsim.assemble.outputs import measure
-from trsim.assemble.projection import NEWTON, project_positions, project_velocities
+from trsim.assemble.projection import NEWTON, newton_step, project_velocities
 from trsim.elements.contract import N_BOOK, compiled
 from trsim.elements.scene import N_STORED
 from trsim.kernels.lazy import internal
@@ -188,11 +188,11 @@ def close(s, t, y, before):
     method did not get there.  before: room for y."""
     copy_to(before, y)
     for _ in range(NEWTON):
-        off = project_positions(s, t, y) / s.size
+        off = newton_step(s, t, y) / s.size
         if s.status[0] == SINGULAR:
             return -1.0
         if off * off <= SQUARED * smallest_pivot(s):
-            poses(s, y)
+            set_poses(s, y)
             constraints(s, t)
             project_velocities(s, y)
             return way(s, before, y)

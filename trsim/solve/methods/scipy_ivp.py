@@ -37,10 +37,12 @@ from trsim.solve.march.accelerations import (
 from trsim.solve.march.anew import anew, begun_with
 from trsim.solve.march.calls import INTERPOLATE, method_row
 from trsim.solve.march.complete import AT_POLE, SMOOTH_STEP, STRAYED, WORTHLESS, WOUND, complete
+from trsim.solve.march.dense_output import measure_in
 from trsim.solve.march.features import next_time
+from trsim.solve.march.land import land
 from trsim.solve.march.loop import begin
 from trsim.solve.march.norm import weigh
-from trsim.solve.march.peaks import finish, sample
+from trsim.solve.march.peaks import between, finish, sample
 from trsim.solve.march.record import Buffers, Record, Settings, crowded, fresh_buffers
 from trsim.solve.march.rounding import EPS, MARGIN
 from trsim.solve.march.works import ROUNDING
@@ -120,6 +122,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         degree=NODES.size - 1,
         sample=sample.address(),
         finish=finish.address(),
+        between=between.address(),
+        land=land.address(),
+        measure_in=measure_in.address(),
         **called_by(mechanism, setting),
     )
     clock0 = time.process_time()
