@@ -12,8 +12,9 @@ from trsim.assemble.instances import Instance
 from trsim.assemble.switches import CHANNEL, LIMITS, TIME, Switches
 
 # UNKNOWN: what depends on more than places has no bound; CLOCK: the time
-# TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius
-UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN = range(7)
+# TWIST: an angle about axes that may lean apart; TRAIN: two angles, each times a radius; SURFACE:
+# the distance from a surface
+UNKNOWN, CLOCK, ANGLE, STROKE, DISTANCE, TWIST, TRAIN, SURFACE = range(8)
 RATE_OF = 8  # added to a kind: the rate of such a quantity
 KINDS = {
     "": UNKNOWN,
@@ -23,8 +24,9 @@ KINDS = {
     "distance": DISTANCE,
     "twist": TWIST,
     "train": TRAIN,
+    "surface": SURFACE,
 }
-UNBOUNDED = (UNKNOWN, TWIST, TRAIN)  # kinds whose rates have no bound
+UNBOUNDED = (UNKNOWN, TWIST, TRAIN, SURFACE)  # kinds whose rates have no bound
 
 
 def travels(instances: list[Instance], contacts: list[int], switches: Switches) -> dict[str, Any]:

@@ -42,6 +42,14 @@ class TwoAngles(Pair):
     c_2: f8
 
 
+class OnSurface(TwoPoints):
+    """Of an element between a surface of body i and a ball around a point of body j."""
+
+    ball: f8  # m, its radius; 0 of a point
+    sharp: f8  # m: how its distance from the surface bends, see laws/surfaces.py
+    reach: f8
+
+
 def points(at, i, j, p, q, coordinate=-1):
     """These columns, of the points p of body i and q of body j as drawn."""
     return {

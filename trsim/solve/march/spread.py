@@ -10,6 +10,8 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
                                                      + k^2 (1 + k) Omega^2 / 2
                Omega = omega_i + omega_j,  k = 1 / cos(tilt / 2) of its axes  relative_angle.py
     train      |c_1| and |c_2| times those of two angles                      gear_mesh.py
+    surface    |g'| <= |u'|                 -|u''| - |u'|^2 / (sharp + s) <= g''
+               g = ball - s                      g'' <= |u''| + |u'|^2 / (reach - s)   surfaces.py
 
     |u''| <= |d''| + 2 omega_i |d'| + (alpha_i + omega_i^2) |d|
     |d''| <= |r_j'' - r_i''| + (alpha_i + omega_i^2) |p_i| + (alpha_j + omega_j^2) |p_j|
@@ -28,9 +30,11 @@ from math import acos, comb, cos, inf, pi, sqrt
 import numpy as np
 
 from trsim.assemble.dense import inverse
-from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, TRAIN, TWIST, UNKNOWN
+from trsim.assemble.equations import call_one
+from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, SURFACE, TRAIN, TWIST, UNKNOWN
 from trsim.elements.contract import Pair
 from trsim.elements.frames import (
+    OnSurface,
     TwoAngles,
     arm,
     centripetal,
@@ -53,6 +57,7 @@ from trsim.solve.march.calls import (
 from trsim.solve.methods.displacements import first_of
 
 CUBIC, MOST = 3, 8  # degrees of dense outputs whose methods do not tell their control points
+NARROW = 0.1  # of how far a place is from where another is as near: for bounds of how it bends
 MOST_LEAN = 1.5  # rad: half of what axes may lean apart by where their angle has bounds
 SAFETY, SAFE_RATE = 2.0, 1.25  # of accelerations and of rates taken from the stages
 SEEN = (0, 4, 8, 10, 12)  # which of DOP853's: at 0, 0.28, 0.65, 0.86 and 1 of the step
@@ -280,6 +285,15 @@ def from_points(s, what, sign, length, bend, of_i):
         if least <= 0.1 * size:
             return fastest, inf
         curved += fastest * fastest / least
+    if kind == SURFACE:
+        own, way = OnSurface(s, e), fastest * length
+        call_one(s, s.gaps, 0.0, e)
+        away = own.ball - s.gap[e, 0]
+        far = own.reach - away if sign < 0.0 else own.sharp + away  # from where it has no bend
+        if far < inf:
+            if far - way <= NARROW * far:
+                return fastest, inf
+            curved += fastest * fastest / (far - way)
     return fastest, curved
 
 
