@@ -338,6 +338,37 @@ output: {every: 0.01}
     assert x[-1] > 0.12  # it went over the corner
 
 
+def test_a_roller_on_a_cam():
+    """An eccentric disc given by 60 points lifts a roller by
+    e cos + sqrt((R + r)^2 - e^2 sin^2)."""
+    R, r, e, w = 0.05, 0.01, 0.015, 10.0
+    u = np.arange(60) * tau / 60
+    points = np.column_stack([e + R * np.cos(u), R * np.sin(u)]).tolist()
+    text = f"""
+bodies:
+  cam: {{mass: 1, inertia: 1e-3}}
+  rod: {{mass: 0.3, inertia: 1e-4, at: [0, {e + R + r}]}}
+joints:
+  shaft: {{type: revolute, bodies: [ground, cam], at: [0, 0]}}
+  guide: {{type: prismatic, bodies: [ground, rod], at: [0, {e + R + r}], axis: [0, 1, 0]}}
+drives: {{motor: {{joint: shaft, position: "{w}*t"}}}}
+forces:
+  follows: {{type: surface_contact, ball: {{body: rod, at: [0, {e + R + r}], radius: {r}}},
+            surface: {{body: cam, shape: profile, closed: true, smooth: true,
+                      x_axis: [0, 1, 0], y_axis: [-1, 0, 0], points: {points}}}}}
+contact_laws: {{steel: {{normal: impact, stiffness: 1e10, damping: 3000, ramp: 1e-7}}}}
+gravity: [0, {-G}]
+solver: {{end: 1, tolerance: 1e-7}}
+output: {{every: 5 ms}}
+"""
+    got = run(text)
+    turn = w * got.t
+    want = e * np.cos(turn) + np.sqrt((R + r) ** 2 - (e * np.sin(turn)) ** 2)
+    late = got.t > 0.05
+    assert got["rod.position"][late, 1] == pytest.approx(want[late], abs=2e-6)
+    assert got["follows.normal_force"][late].min() > 0.0  # e w^2 < g
+
+
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("space", [False, True])
 def test_no_touch_is_passed_over(seed, space):
@@ -433,6 +464,7 @@ BENT = "shape: profile, points: [[-1, 0], [0, 0], [1, 1]]"
 
 @pytest.mark.parametrize("surface, ball, law, what", [
     ("shape: sphere", "radius: 0.1", HARD, "needs `radius`"),
+    (BENT + ", smooth: true, corner_radius: 0.1", "radius: 0.1", HARD, "has no corners"),
     ("shape: plane, radius: 1", "radius: 0.1", HARD, "radius is no number of a plane"),
     ("shape: sphere, radius: 0.1, hollow: true", "radius: 0.2", HARD, "does not fit"),
     ("shape: profile, points: [[0, 0], [1, 0]], hollow: true", "radius: 1", HARD, "has an inside"),

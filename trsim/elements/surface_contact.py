@@ -69,7 +69,7 @@ from trsim.laws.friction import (
     on_branch,
     part_of_bristle,
 )
-from trsim.laws.profiles import Flaw, profile
+from trsim.laws.profiles import Flaw, profile, smooth
 from trsim.laws.surfaces import CYLINDER, PLANE, SHAPES, SPHERE, away
 
 CORNERED, STICKING = CODES["modified_coulomb"], CODES["sticking"]
@@ -82,7 +82,9 @@ ONLY_OF = {
     "points": ("profile",),
     "closed": ("profile",),
     "corner_radius": ("profile",),
+    "smooth": ("profile",),
 }
+SPLINE = 1e-7  # of its size: how far arcs are from a spline through points
 
 
 class Surface(Placed):
@@ -96,9 +98,10 @@ class Surface(Placed):
     y_axis         direction of its y axis, made perpendicular to x
     radius         of a sphere or a cylinder
     hollow         whether it is free inside: a bowl, a hole, a slot
-    points         places [x, y] that a profile goes through, straight from one to the next
+    points         places [x, y] that a profile goes through
     closed         whether a profile goes on from the last point to the first
-    corner_radius  by which its corners are rounded; 0: edges
+    smooth         whether it is a cubic spline, or straight from one point to the next
+    corner_radius  by which its corners are rounded where it is straight; 0: edges
     """
 
     type: ClassVar[str] = "surface"
@@ -111,6 +114,7 @@ class Surface(Placed):
     hollow: Flag = False
     points: tuple[Annotated[tuple[float, float], Unit("m")], ...] | None = None
     closed: Flag = False
+    smooth: Flag = False
     corner_radius: Annotated[float, Ge(0), Unit("m")] = 0.0
 
     @model_validator(mode="after")
@@ -121,6 +125,9 @@ class Surface(Placed):
         for key, shapes in ONLY_OF.items():
             if key in self.model_fields_set and self.shape not in shapes:
                 raise ScenarioError(f"{key} is no number of a {self.shape}", "", (key,))
+        if self.smooth and self.corner_radius:
+            what = "a smooth profile has no corners"
+            raise ScenarioError(what, "leave out `corner_radius` or `smooth`", ("corner_radius",))
         if self.hollow and self.shape == "profile" and not self.closed:
             raise ScenarioError("only a closed profile has an inside", "closed: true", ("hollow",))
         return self
@@ -253,7 +260,10 @@ def shape_of(spec, at, centre) -> tuple[dict[str, Any], float | None]:
         return {**shaped, **bends}, free / R if code == SPHERE else None
     side = int(free) if surface.closed else side_of(surface, centre)
     try:
-        found = profile(surface.points, surface.corner_radius, surface.closed, side)
+        if surface.smooth:
+            found = smooth(surface.points, surface.closed, side, SPLINE)
+        else:
+            found = profile(surface.points, surface.corner_radius, surface.closed, side)
     except Flaw as flaw:
         where = ("points",) if flaw.point is None else ("points", flaw.point)
         raise ScenarioError(flaw.what, flaw.hint, ("surface", *where)) from None
@@ -469,7 +479,7 @@ def doubts(name, spec, largest):
     """A ball that was pressed in so deep that it might come out on the other side."""
     if spec.ball.radius == 0.0:
         return
-    depth, when = largest(f"{name}.penetration")
+    depth, when = largest(f"{name}.penetration", signed=True)
     if depth > DEEP * spec.ball.radius:
         yield (
             f"forces.{name}: the surface was pressed {depth:.3g} m deep into a ball of radius "

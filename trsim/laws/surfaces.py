@@ -16,7 +16,11 @@ s is 1-Lipschitz, and as long as one place alone is nearest its second derivativ
 with `sharp` the least radius by which the surface is round towards the free side, 0 at an edge, and
 `reach` the radius of the largest ball that touches no second place anywhere.
 
-A profile in a flat array is, from its offset: how many pieces, and SIZE numbers of each,
+A profile in a flat array is, from its offset: how many groups of neighbours, GROUP numbers of each,
+
+    x, y of its middle, how far from there its pieces reach, where they begin, how many they are
+
+and SIZE numbers of each piece,
 
     STRAIGHT    x, y of its start, unit vector along it, length         the free side is on its left
     ROUND       x, y of its centre, R, unit vector to its middle, cosine of half its angle
@@ -31,7 +35,7 @@ from trsim.kernels.lazy import internal
 PLANE, SPHERE, CYLINDER, PROFILE = range(4)
 SHAPES = {"plane": PLANE, "sphere": SPHERE, "cylinder": CYLINDER, "profile": PROFILE}
 STRAIGHT, ROUND, HOLLOW, EDGE = range(4)
-SIZE = 7
+SIZE, GROUP = 7, 5
 ROUNDING = 1e-12  # of the length of a piece: what lies so little beyond its end lies on it
 
 
@@ -69,30 +73,49 @@ def away(tab, own, p):
 
 @internal
 def beside(tab, o, closed, x, y):
-    """s and n of a point of the plane of a profile, n two numbers."""
+    """s and n of a point of the plane of a profile, n two numbers.
+
+    Groups that are further away than another one at most is are not looked at.
+    """
+    groups, surely = int(tab[o]), inf
+    if groups > 1:
+        for g in range(groups):
+            place = o + 1 + GROUP * g
+            a, b = x - tab[place], y - tab[place + 1]
+            surely = min(surely, sqrt(a * a + b * b) + tab[place + 2])
     nearest, s, n = inf, inf, (1.0, 0.0)
-    for k in range(int(tab[o])):
-        place = o + 1 + SIZE * k
-        kind, a, b = tab[place], x - tab[place + 1], y - tab[place + 2]
-        if kind == STRAIGHT:
-            t, m, length = tab[place + 3], tab[place + 4], tab[place + 5]
-            along, aside = t * a + m * b, t * b - m * a
-            near = abs(aside)
-            if near < nearest and -ROUNDING * length <= along <= (1.0 + ROUNDING) * length:
-                sign = 1.0 if closed == 1 or aside >= 0.0 else -1.0
-                nearest, s, n = near, sign * aside, (-sign * m, sign * t)
+    for g in range(groups):
+        place = o + 1 + GROUP * g
+        a, b = x - tab[place], y - tab[place + 1]
+        if groups > 1 and sqrt(a * a + b * b) - tab[place + 2] > min(surely, nearest):
             continue
-        far = sqrt(a * a + b * b)
-        if kind == EDGE:
-            if far < nearest and far > 0.0:
-                nearest, s, n = far, far, (a / far, b / far)
-            continue
-        R = tab[place + 3]
-        near = abs(far - R)
-        turned = a * tab[place + 4] + b * tab[place + 5]
-        if near < nearest and far > 0.0 and turned >= (tab[place + 6] - ROUNDING) * far:
-            out = 1.0 if kind == ROUND else -1.0
-            if closed == 0 and out * (far - R) < 0.0:
-                out = -out
-            nearest, s, n = near, out * (far - R), (out * a / far, out * b / far)
+        first = o + int(tab[place + 3])
+        for k in range(int(tab[place + 4])):
+            near, away_by, along, across = off_piece(tab, first + SIZE * k, closed, x, y)
+            if near < nearest:
+                nearest, s, n = near, away_by, (along, across)
     return s, n
+
+
+@internal
+def off_piece(tab, place, closed, x, y):
+    """How far a point is from a piece, inf where it is beside its ends; s and the two of n."""
+    kind, a, b = tab[place], x - tab[place + 1], y - tab[place + 2]
+    if kind == STRAIGHT:
+        t, m, length = tab[place + 3], tab[place + 4], tab[place + 5]
+        along, aside = t * a + m * b, t * b - m * a
+        if not -ROUNDING * length <= along <= (1.0 + ROUNDING) * length:
+            return inf, inf, 1.0, 0.0
+        sign = 1.0 if closed == 1 or aside >= 0.0 else -1.0
+        return abs(aside), sign * aside, -sign * m, sign * t
+    far = sqrt(a * a + b * b)
+    if far == 0.0:
+        return inf, inf, 1.0, 0.0
+    if kind == EDGE:
+        return far, far, a / far, b / far
+    if a * tab[place + 4] + b * tab[place + 5] < (tab[place + 6] - ROUNDING) * far:
+        return inf, inf, 1.0, 0.0
+    out, off = 1.0 if kind == ROUND else -1.0, far - tab[place + 3]
+    if closed == 0 and out * off < 0.0:
+        out = -out
+    return abs(off), out * off, out * a / far, out * b / far
