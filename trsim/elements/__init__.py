@@ -56,6 +56,7 @@ ELEMENTS = {
     "gear_mesh": "forces",
     "limit_stop": "forces",
     "surface_contact": "forces",
+    "seal": "forces",
     "joint_friction": "forces",
     "sync_shaft": "forces",
     "reaction": "sensors",

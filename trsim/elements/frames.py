@@ -50,6 +50,12 @@ class OnSurface(TwoPoints):
     reach: f8
 
 
+class Edge(TwoPoints):
+    """Of an element between a plane of body i and a straight line of body j from its point on."""
+
+    length: f8  # m
+
+
 def points(at, i, j, p, q, coordinate=-1):
     """These columns, of the points p of body i and q of body j as drawn."""
     return {

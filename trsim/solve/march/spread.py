@@ -12,6 +12,8 @@ With d the separation of their points p_i and p_j, and u = R_i^T d what frame i 
     train      |c_1| and |c_2| times those of two angles                      gear_mesh.py
     surface    |g'| <= |u'|                 -|u''| - |u'|^2 / (sharp + s) <= g''
                g = ball - s                      g'' <= |u''| + |u'|^2 / (reach - s)   surfaces.py
+    edge       |g'| <= that of one end + Omega l         g'' >= likewise; it may turn round at once,
+               and has no bound above                                                  seal.py
 
     |u''| <= |d''| + 2 omega_i |d'| + (alpha_i + omega_i^2) |d|
     |d''| <= |r_j'' - r_i''| + (alpha_i + omega_i^2) |p_i| + (alpha_j + omega_j^2) |p_j|
@@ -31,9 +33,10 @@ import numpy as np
 
 from trsim.assemble.dense import inverse
 from trsim.assemble.equations import call_one
-from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, SURFACE, TRAIN, TWIST, UNKNOWN
+from trsim.assemble.travel import ANGLE, CLOCK, DISTANCE, EDGE, SURFACE, TRAIN, TWIST, UNKNOWN
 from trsim.elements.contract import Pair
 from trsim.elements.frames import (
+    Edge,
     OnSurface,
     TwoAngles,
     arm,
@@ -232,7 +235,18 @@ def spread(s, r, b, what, sign, part):
     _, p_i, _, p_j = two_points(s, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))
-    return from_points(s, what, sign, length, bend, of_i)
+    return over_edge(s, what, sign, from_points(s, what, sign, length, bend, of_i), of_i, of_j)
+
+
+@internal
+def over_edge(s, what, sign, bounds, of_i, of_j):
+    """The bounds of one end of a line, for both; of anything else as they are."""
+    if what[0] != EDGE:
+        return bounds
+    turn, bend = of_angle(of_i, of_j)
+    length = Edge(s, what[1]).length
+    once = bounds[0] + turn * length
+    return once, inf if sign < 0.0 else bounds[1] + (bend + turn * turn) * length
 
 
 @internal
@@ -426,4 +440,5 @@ def spread_at_stages(s, r, b, what, sign):
         two = TwoAngles(s, e)
         of_2 = of_angle(at_stages(s, r, b, two.i_2), at_stages(s, r, b, two.j_2))
         return of_train(s, e, of_angle(of_i, of_j), of_2)
-    return from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)
+    bounds = from_points(s, what, sign, b.h, apart_at_stages(s, b, e, of_i, of_j), of_i)
+    return over_edge(s, what, sign, bounds, of_i, of_j)
