@@ -78,15 +78,15 @@ class ContactLaw(Spec):
 
         c: radial clearance, m.
         """
-        E_i, nu_i = self.youngs_modulus, self.poisson
-        E_j = self.journal_youngs_modulus or E_i
+        E_i, nu_i = bearing = self.youngs_modulus, self.poisson
         nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
+        journal = self.journal_youngs_modulus or E_i, nu_j
         chi = damping_factor(self.normal, self.restitution)
         if isinstance(self.stiffness, float):
             return self.stiffness, self.exponent, 0, chi, self.stiffness
         if self.stiffness == "cylinder":
-            K = cylinder_stiffness(self.width, E_i, nu_i, E_j, nu_j)
+            K = cylinder_stiffness(self.width, bearing, journal)
             return K, 1.5, 1, chi, K / c**0.5
         R_i: Any = self.bearing_radius
-        K = hertz_stiffness(R_i, R_i - c, E_i, nu_i, E_j, nu_j, self.stiffness)
+        K = hertz_stiffness(R_i, R_i - c, bearing, journal, self.stiffness)
         return K, self.exponent, 0, chi, K
