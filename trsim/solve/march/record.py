@@ -264,6 +264,7 @@ class Buffers(Packed):
     events: A2 = of("events", N_EVENT)
     points: A2 = of("points", N_POINT)  # of Poincare sections; empty without any
     K: A2 = of("stages", "n_y")  # stages of the integrator
+    ends: A2 = of(2, "n_y")  # both ends of a step whose dense output is made
     P: A2 = of("dense_rows", "n_y")  # dense output
     P_earlier: A2 = of("dense_rows", "n_y")  # that of the step before, while it is made
     y1: A1 = of("n_y")
@@ -312,6 +313,7 @@ class Buffers(Packed):
     h: F8  # s, its length; what its dense output is made with
     t1: F8  # s, its end
     projected: F8  # J, what the projection there gave
+    sampled_t: F8  # s, when the channels were measured that are sampled next     peaks.py
     until: F8  # s, after its start: the row that it is to end at, 0: none     output_rows.py
     doubt: F8  # what stands for the last divided difference in the error of a polynomial
     count: I1  # and the whole ones

@@ -197,8 +197,8 @@ def of_works(scene, r, b, setting, h):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    scratch = P[0]
+def dense(scene, K, t, h, ends, P):
+    y, y1, scratch = ends[0], ends[1], P[0]
     for s in range(13, 16):
         stage(K, y, h, s, scratch)
         evaluate_stage(scene, t + C[s] * h, scratch, K[s])

@@ -232,7 +232,7 @@ def accelerated(s, r, b, setting, h, further):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    hermite.build(K[0], K[LAST], h, y, y1, P)
-    for c in range(y.size):  # not for the dense output: for the next step
+def dense(scene, K, t, h, ends, P):
+    hermite.build(K[0], K[LAST], h, ends, P)
+    for c in range(ends.shape[1]):  # not for the dense output: for the next step
         P[FILTERED, c], P[BEFORE, c] = K[B1, c], K[0, c]

@@ -390,8 +390,8 @@ def norm(e, weight):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    collocation(K, y, y1, P)
+def dense(scene, K, t, h, ends, P):
+    collocation(K, ends[0], ends[1], P)
 
 
 @internal

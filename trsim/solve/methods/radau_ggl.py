@@ -315,8 +315,8 @@ def soften(s, r, b, c):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
+def dense(scene, K, t, h, ends, P):
     """The collocation polynomial, and behind it lam of the stages for the next step."""
-    collocation(K, y, y1, P)
+    collocation(K, ends[0], ends[1], P)
     for i in range(3):
         copy_to(P[KEPT + i], K[LAM + i])
