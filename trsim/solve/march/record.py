@@ -298,6 +298,7 @@ class Buffers(Packed):
     corner_root: A1 = of("contact")  # and where it meets a corner
     branch1: A1 = of("angles")
     turning1: A1 = of("angles")
+    at_ends: A2 = of(4, "angles")  # what sensors show at both ends of a stretch, and rates turns.py
     net: A2 = of(9, "watched")  # control points of q, or of q and v, over a step  spread.py
     curve: T14 = of(9, 14)  # those of two frames on a part of it
     seen: A2 = of("seen", 4)  # ranges of sensors and of their rates, where they meet corners
@@ -323,6 +324,7 @@ class Buffers(Packed):
     land: I8  # of what brings an end to the rows                                 land.py
     measure_in: I8  # and of what measures channels inside a step        dense_output.py
     built: I8  # 1: P holds it
+    parts: I8  # in how many parts events look at channels in it, 0: not asked yet         heard.py
     halved: I8  # 1: middle holds the channels of this step
     restless: I8  # 1: what is stiff did not come to rest
     moved: I8  # 1: the end of the step was moved on along its tangent

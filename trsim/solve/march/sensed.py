@@ -59,7 +59,7 @@ from trsim.solve.march.corners import NONE, show
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.events import FINEST, LOOKS, SAME, hidden_depth
 from trsim.solve.march.features import keep, other_side
-from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.illinois import TRIALS, between, is_narrow, narrowed
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 from trsim.solve.march.spread_rates import rate_at_stages, spread_of_rate
@@ -254,8 +254,8 @@ def root(s, r, b, corner, above, part):
     if (f_low > 0.0) == above and f_low != 0.0:
         return low  # outside as it begins: to rounding on the corner, and on its way out
     bracket = (low, f_low, high, f_high, 0.0)
-    for k in range(200):
-        if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
+    for k in range(TRIALS):
+        if is_narrow(bracket):
             break
         middle = between(bracket, k)
         show(s, r, b, middle)
