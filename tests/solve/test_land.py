@@ -50,7 +50,7 @@ def test_what_projection_gives_is_the_change_of_energy(planar, joint, z):
     model, r = ended.mechanism.model, ended.outcome.record
     s, rng = scene(model), np.random.default_rng(1)
     s.mem[:], s.branch[:] = r.mem, r.branch
-    b = rec.fresh_buffers(model, r.y.size, 16, 16, 16)
+    b = rec.fresh_buffers(model, r.y.size, 16, 16)
     changes = []
     for _ in range(20):
         y, yd, out = r.y.copy(), np.empty(r.y.size), np.empty(3)
@@ -73,7 +73,7 @@ def test_places_and_velocities_keep_to_the_rows(planar, joint, z, torn):
     model, r = ended.mechanism.model, ended.outcome.record
     s, rng = scene(model), np.random.default_rng(2)
     s.mem[:], s.branch[:] = r.mem, r.branch
-    b = rec.fresh_buffers(model, r.y.size, 16, 16, 16)
+    b = rec.fresh_buffers(model, r.y.size, 16, 16)
     for _ in range(5):
         y, yd, out = r.y.copy(), np.empty(r.y.size), np.empty(3)
         y[: model.n_q] += torn * rng.normal(size=model.n_q)

@@ -336,9 +336,8 @@ SETTINGS, RECORD, BUFFERS = Settings.kind, Record.kind, Buffers.kind
 
 
 def fresh_buffers(
-    model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0,
-    points: int = 0,
-) -> Buffers:  # fmt: skip
+    model: Model, n_y: int, stages: int, dense_rows: int, step_rows: int = 0, points: int = 0
+) -> Buffers:
     """Buffers for a model and a method.
 
     step_rows: output rows a fixed step may span; points: of sections, the most in one step.
@@ -350,7 +349,7 @@ def fresh_buffers(
         "rows": rows,
         "row": 1 + model.n_out,
         "steps": max(1024, 8 * contacts),
-        "step": n_steps,
+        "step": 2 + int(np.max(model.contact_width, initial=0)),
         "events": max(256, 8 * (contacts + watched)),
         "points": max(1024, 2 * points + 16) if points else 0,
         "stages": stages,
