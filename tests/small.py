@@ -8,7 +8,7 @@ from typing import Any
 from trsim.assemble.assemble import assemble
 from trsim.scenario.load import loads
 from trsim.solve.simulate import simulate
-from trsim.store.hdf5 import write
+from trsim.store.hdf5 import Around, write
 
 SLIDER_CRANK = """\
 title: Slider-crank with play
@@ -41,7 +41,7 @@ def run(path: Path, *sets: str, text: str = SLIDER_CRANK) -> dict[str, Any]:
     """Simulate into a file; the summary."""
     scenario = loads(text, sets)
     mechanism = assemble(scenario)
-    return write(path, scenario, mechanism, simulate(scenario, mechanism), "test")
+    return write(path, scenario, mechanism, simulate(scenario, mechanism), Around("test"))
 
 
 @cache

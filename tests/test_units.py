@@ -113,7 +113,7 @@ def test_a_motion_in_degrees_runs_in_radians(tmp_path):
         "drives: {motor: {joint: hinge, position: {table: turn.csv}}}\nsolver: {end: 0.1 s}\n"
     )
     scenario = loads(text, folder=tmp_path)
-    run = write(tmp_path / "x.h5", scenario, (m := assemble(scenario)), simulate(scenario, m), "-")
+    run = write(tmp_path / "x.h5", scenario, (m := assemble(scenario)), simulate(scenario, m))
     assert run["status"] == "done"
     assert read(tmp_path / "x.h5").channel("q2")[-1] == pytest.approx(np.pi / 2, rel=1e-9)
 
@@ -375,7 +375,7 @@ def every(tmp_path_factory):
     path = tmp_path_factory.mktemp("units") / "every.h5"
     scenario = loads(ALL)
     mechanism = assemble(scenario)
-    told = write(path, scenario, mechanism, simulate(scenario, mechanism), "-")
+    told = write(path, scenario, mechanism, simulate(scenario, mechanism))
     assert told["status"] == "done"
     assert told["contacts"]["on_angle"]["impacts"] and told["contacts"]["on_wall"]["impacts"] == 0
     return path

@@ -187,7 +187,7 @@ joints:
 """)
     at, instances = pack(scenario, frozenset(), None, ())
     assert at.coordinates["first"].drawn == 9.0
-    work, y = as_drawn(scenario, at, instances, all_rows(instances))
+    work, y = as_drawn(at, instances, all_rows(instances))
     assert np.abs(jacobian(work, 0.0, y)[0]).max() < 1e-15
 
 

@@ -54,7 +54,7 @@ def without(scenario, mechanism, gone):
     """Rows left dependent, mobility and uniqueness of a mechanism with some rows let go."""
     at, instances = pack(scenario, frozenset(), None, ())
     rows = [r for r in all_rows(instances) if f"{r.element}.{r.axis}" not in gone]
-    full, y = build(scenario, at, instances, rows, 6), drawn(at, 6)
+    full, y = build(at, instances, rows, 6), drawn(at, 6)
     keep = np.flatnonzero(moves(full, mechanism.planar))
     J = jacobian(full, 0.0, y)[2][:, keep]
     inside = np.flatnonzero(np.abs(J).max(axis=1) > 1e-9).tolist()

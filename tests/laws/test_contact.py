@@ -36,7 +36,7 @@ DATA = Path(__file__).parents[1] / "data"
 HERTZ_BALL = json.loads((DATA / "contact_analytic.json").read_text())["hertz"]
 LAWS = ("lankarani_nikravesh", "hunt_crossley", "flores", "identified")
 C = 3e-4  # m, radial clearance
-STEEL = (207e9, 0.29, 207e9, 0.29)
+STEEL = ((207e9, 0.29), (207e9, 0.29))
 # K, n, c, form of an impact of 0.2 kg
 HERTZ_PAIR = Pair(1.05e10, 1.5, C, HERTZ)
 CYLINDER_PAIR = Pair(cylinder_stiffness(15e-3, *STEEL), 1.5, C, CYLINDER)
@@ -170,7 +170,7 @@ def test_hertz_stiffness(c, K_paper, K_internal):
 def test_sphere_on_plane_is_the_limit_of_a_large_socket():
     K = HERTZ_BALL["K_steel_on_steel"]
     E, nu, R = HERTZ_BALL["E"], HERTZ_BALL["nu"], HERTZ_BALL["R"]
-    assert hertz_stiffness(1e9 * R, R, E, nu, E, nu) == pytest.approx(K, rel=1e-8)
+    assert hertz_stiffness(1e9 * R, R, (E, nu), (E, nu)) == pytest.approx(K, rel=1e-8)
 
 
 def test_cylinder_law_is_the_half_angle_formula():

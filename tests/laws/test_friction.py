@@ -55,7 +55,7 @@ def test_power_of_speed_laws_is_never_positive(F_n, v):
 def test_bristle_is_passive_and_bounded(F_n, v, share, mu_k, ratio, sigma1):
     mu_s, sigma0 = mu_k * ratio, 1e5
     w = share * mu_s / sigma0
-    F, w_dot = bristle(F_n, v, w, mu_s, mu_k, 0.01, sigma0, sigma1)
+    F, w_dot = bristle(F_n, v, w, (mu_s, mu_k, 0.01, sigma0, sigma1))
     lost = -F * v - F_n * sigma0 * w * w_dot
     assert lost >= -1e-12 * F_n * (abs(v) * mu_s)
     assert abs(F) <= mu_s * F_n * (1 + 1e-12)
@@ -67,7 +67,7 @@ def test_bristle_is_passive_and_bounded(F_n, v, share, mu_k, ratio, sigma1):
 def test_bristle_steady_sliding_is_the_stribeck_curve(s, sign):
     mu_s, mu_k, v_s, sigma0, _ = BRISTLE.values()
     g = mu_k + (mu_s - mu_k) * np.exp(-((s / v_s) ** 2))
-    force, w_dot = bristle(20.0, sign * s, sign * g / sigma0, **BRISTLE)
+    force, w_dot = bristle(20.0, sign * s, sign * g / sigma0, tuple(BRISTLE.values()))
     assert w_dot == pytest.approx(0.0, abs=1e-12 * s)
     assert force == pytest.approx(-sign * 20.0 * g)
 
@@ -78,11 +78,11 @@ def test_bristle_is_the_documented_equation():
     g = mu_k + (mu_s - mu_k) * np.exp(-((v / v_s) ** 2))
     w_dot = v - sigma0 * v * w / g
     F = -F_n * (sigma0 * w + sigma1 / (1 + sigma1 * v / g) * w_dot)
-    assert bristle(F_n, v, w, **BRISTLE) == pytest.approx((F, w_dot), rel=1e-13)
+    assert bristle(F_n, v, w, tuple(BRISTLE.values())) == pytest.approx((F, w_dot), rel=1e-13)
 
 
 def test_bristle_without_load_is_frozen():
-    assert bristle(0.0, 1.0, 1e-6, **BRISTLE) == (0.0, 0.0)
+    assert bristle(0.0, 1.0, 1e-6, tuple(BRISTLE.values())) == (0.0, 0.0)
 
 
 def slide(angle, end):
@@ -93,7 +93,7 @@ def slide(angle, end):
     F_n = 2.0 * G * cos(angle)
 
     def rates(t, y):
-        F, w_dot = bristle(F_n, y[1], y[2], **BRISTLE)
+        F, w_dot = bristle(F_n, y[1], y[2], tuple(BRISTLE.values()))
         return [y[1], G * sin(angle) + F / 2.0, w_dot]
 
     run = solve_ivp(rates, (0, end), [0, 0, 0], "LSODA", [end / 2, end], rtol=1e-9, atol=1e-14)
@@ -132,7 +132,7 @@ def test_dispatch_reads_the_parameters_of_a_scenario():
         "none": (0.0, 0.0),
         "coulomb": (coulomb(F_n, v, MU), 0.0),
         "modified_coulomb": (modified_coulomb(F_n, v, MU, V0, V1), 0.0),
-        "sticking": bristle(F_n, v, w, **BRISTLE),
+        "sticking": bristle(F_n, v, w, tuple(BRISTLE.values())),
     }
     assert {*expected} == {*CODES}
     for law, force in expected.items():

@@ -36,7 +36,7 @@ def test_dense_output_is_that_of_the_end_as_it_was(late):
     ended = run(text)
     r, s = ended.outcome.record, scene(ended.mechanism.model)
     setting, t, h = settings(ended.scenario, ended.mechanism), r.t, 0.02
-    b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
+    b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS)
     method = method_row(dense=dop853.dense.address(), last=dop853.LAST)
     b.weight[:] = 1.0
     b.t, b.h = t, h

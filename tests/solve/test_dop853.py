@@ -82,7 +82,7 @@ def test_the_error_at_the_limit_of_stability_is_not_hidden_by_a_slower_motion(z,
     ended = run(APART.format(v=v, k=SLOW**2, rate=RATE))
     s, r = scene(ended.mechanism.model), ended.outcome.record
     setting, h = settings(ended.scenario, ended.mechanism), z / RATE
-    b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS, 16)
+    b = rec.fresh_buffers(s, r.y.size, dop853.STAGES, dop853.DENSE_ROWS)
     r.y[:] = ended.outcome.start.y
     r.t, r.top_acceleration = 0.0, SLOW
     r.vibration, r.decay = SLOW**2, RATE

@@ -39,7 +39,7 @@ def tried(formulation, h, weight, again):
     ended = run(scenario)
     mechanism, r = ended.mechanism, ended.outcome.record
     s, setting = scene(mechanism.model), settings(scenario, mechanism)
-    b = rec.fresh_buffers(s, r.y.size, method.STAGES, method.DENSE_ROWS, 16)
+    b = rec.fresh_buffers(s, r.y.size, method.STAGES, method.DENSE_ROWS)
     if method is radau_ggl:
         b = ggl_tables.buffers(b, mechanism, mechanism.model)
     b.weight[:] = 0.0

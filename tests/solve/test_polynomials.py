@@ -42,7 +42,7 @@ class Drawn:
 
     def __init__(self, seed, n):
         rng = np.random.default_rng(seed)
-        self.n, self.b = n, rec.fresh_buffers(built(SLIDER_CRANK).model, 1, 1, 1, 1)
+        self.n, self.b = n, rec.fresh_buffers(built(SLIDER_CRANK).model, 1, 1, 1)
         more = np.concatenate((rng.uniform(-0.5, 0.2, POINTS), rng.uniform(0.8, 1.5, POINTS)))
         self.times = np.array([0.7, 0.3, *rng.permutation(more)[: n - 2]])
         self.p = Polynomial(rng.normal(size=n))

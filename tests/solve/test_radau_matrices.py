@@ -61,7 +61,7 @@ def stopped(steps):
     r, s = ended.outcome.record, scene(ended.mechanism.model)
     s.mem[:], s.branch[:] = r.mem, r.branch
     setting = settings(scenario, ended.mechanism)
-    b = rec.fresh_buffers(s, r.y.size, radau.STAGES, radau.DENSE_ROWS, 16)
+    b = rec.fresh_buffers(s, r.y.size, radau.STAGES, radau.DENSE_ROWS)
     weighed(s, r, b, setting)
     derivative(s, r.t, r.y, r.yd)
     return Stopped(s, r, b, setting)

@@ -86,7 +86,7 @@ def test_nothing_goes_beyond_its_bounds(planar, seed):
     at.record.y[:] = at.state(0.0)
     at.record.degree = DEGREE
     s = scene(model)
-    b = fresh_buffers(model, at.y.size, 13, 8, 10)
+    b = fresh_buffers(model, at.y.size, 13, 8)
     b.h, b.net[...] = H, at.control_points()
     found = set()
     for entry, kind, e in model.sensed:

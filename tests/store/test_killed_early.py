@@ -101,7 +101,7 @@ def test_the_first_bytes_of_a_part_file(scene, tmp_path):
     """As HDF5 writes them: a superblock, room, then the first object with its attribute."""
     (tmp_path / "here").mkdir()
     path = tmp_path / "here" / "x.h5"
-    running = hdf5.Running(path, *scene, hdf5.points.plan(*scene), 0.0)
+    running = hdf5.Running(path, *scene)
     with instants(path.parent, tmp_path / "kept"):
         running.begun(running.part).close()
     left = [folder / "x.h5.part" for folder in sorted((tmp_path / "kept").iterdir())]
@@ -130,7 +130,8 @@ def begun(folder, scene, ends=None):
             if k + 1 == ends:
                 raise KeyboardInterrupt
 
-    return hdf5.write(folder / "x.h5", *scene, some() if ends else blocks, every=1e-9)
+    around = hdf5.Around(every=1e-9)
+    return hdf5.write(folder / "x.h5", *scene, some() if ends else blocks, around)
 
 
 def again(folder, scene):
@@ -139,7 +140,7 @@ def again(folder, scene):
     if checkpoint.waiting(path):
         kept = checkpoint.load(checkpoint.beside(path))
     blocks = solver.simulate(*scene, kept.state if kept else None)
-    return hdf5.write(path, *scene, blocks, kept=kept)
+    return hdf5.write(path, *scene, blocks, hdf5.Around(kept=kept))
 
 
 def test_a_run_killed_at_any_instant(scene, tmp_path, monkeypatch):

@@ -48,7 +48,7 @@ def cut(path, scenario, mechanism, blocks, closed=False):
         if not closed:
             patch.setattr(hdf5.Running, "finish", lambda run, *_: run.abandon())
         with pytest.raises(KeyboardInterrupt):
-            write(path, scenario, mechanism, some(), every=1e9)
+            write(path, scenario, mechanism, some(), hdf5.Around(every=1e9))
 
 
 @pytest.fixture
@@ -69,7 +69,7 @@ def resumed(path, scenario, mechanism):
     """The rest of a run; its summary."""
     kept = checkpoint.load(checkpoint.beside(path))
     running = solver.simulate(scenario, mechanism, kept.state)
-    return write(path, scenario, mechanism, running, kept=kept)
+    return write(path, scenario, mechanism, running, hdf5.Around(kept=kept))
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -91,7 +91,7 @@ def test_bit_identical_from_every_cut(kind, tmp_path, monkeypatch, at_once):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        write(path, scenario, mechanism, some(), every=ALWAYS)
+        write(path, scenario, mechanism, some(), hdf5.Around(every=ALWAYS))
     for k in range(CUTS):
         left = Path(f"{tmp_path}.{k}/run.h5")
         assert resumed(left, scenario, mechanism)["content_sha256"] == unbroken, k
@@ -114,7 +114,7 @@ def test_cut_again_and_again(tmp_path, monkeypatch, scenario, mechanism):
             raise KeyboardInterrupt
 
         with pytest.raises(KeyboardInterrupt):
-            write(path, scenario, mechanism, some(), every=ALWAYS, kept=kept)
+            write(path, scenario, mechanism, some(), hdf5.Around(every=ALWAYS, kept=kept))
         assert read(tmp_path / "run.h5.part").attributes["status"] == "interrupted"
     assert resumed(path, scenario, mechanism)["content_sha256"] == unbroken
     assert verify(path)
@@ -184,7 +184,8 @@ def test_a_disk_without_room_to_go_on(tmp_path, monkeypatch, scenario, mechanism
         running = solver.simulate(scenario, mechanism, kept.state)
         with monkeypatch.context() as patch, pytest.raises(FileError) as error:
             patch.setattr(module, name, full)
-            write(path, scenario, mechanism, running, "trsim run x.yaml", ALWAYS, kept)
+            around = hdf5.Around("trsim run x.yaml", ALWAYS, kept)
+            write(path, scenario, mechanism, running, around)
         assert "No space left on device" in error.value.what and error.value.file
         assert re.search(left, error.value.hint), error.value.hint
     resumed(path, scenario, mechanism)

@@ -87,7 +87,7 @@ def assemble(
     """
     at, instances = pack(scenario, ideal, drives, coordinates, stiff)
     rows = all_rows(instances)
-    full, y6 = as_drawn(scenario, at, instances, rows)  # one workspace for all
+    full, y6 = as_drawn(at, instances, rows)  # one workspace for all
     verdict = (
         planarity(scenario, full, y6, at, instances, rows) if planar is None else Planarity(planar)
     )
@@ -102,7 +102,7 @@ def assemble(
         check_shaky(full, y6, instances, planar, rows, found)
     d = 3 if planar else 6
     own = hubs(full, y6, rows, kept, planar, spans(at))
-    model = build(scenario, at, instances, kept, d, own, dropped(rows, found))
+    model = build(at, instances, kept, d, own, dropped(rows, found))
     y0 = drawn(at, d)
     columns: list[Column] = []
     shown: tuple[Section, ...] = ()
@@ -137,7 +137,7 @@ def assemble(
         frames=at.frames,
         beams=at.beams,
         notes=(*verdict.notes(), *notes(scenario), *at.notes, *sampled(at.switches)),
-        stages=stages(scenario, at, instances, Choice(model, kept, dropped(rows, found)), planar),
+        stages=stages(at, instances, Choice(model, kept, dropped(rows, found)), planar),
         functions=tuple(at.packed_functions),
         guards=tuple(at.guards),
         sections=shown,
@@ -145,19 +145,17 @@ def assemble(
 
 
 def as_drawn(
-    scenario: Any, at: Addresses, instances: list[Instance], rows: list[RowName]
+    at: Addresses, instances: list[Instance], rows: list[RowName]
 ) -> tuple[Scene, NDArray[np.float64]]:
     """The scene with some rows in space, its angles on the turns of the drawing (from others a row
     that relates angles is far from closed), and its state."""
-    full = scene(build(scenario, at, instances, rows, 6))
+    full = scene(build(at, instances, rows, 6))
     for x in at.coordinates.values():
         full.branch[x.entry] = x.drawn
     return full, drawn(at, 6)
 
 
-def stages(
-    scenario: Any, at: Addresses, instances: list[Instance], first: Choice, planar: bool
-) -> Stages:
+def stages(at: Addresses, instances: list[Instance], first: Choice, planar: bool) -> Stages:
     """What user events make of the mechanism; planarity is that of the start.
 
     Of joints that are proved to move to first order only nothing is asked: each stage has joints of
@@ -166,17 +164,17 @@ def stages(
     d = 3 if planar else 6
 
     def built(instances: list[Instance], rows: list[RowName]) -> Choice:
-        full, y6 = as_drawn(scenario, at, instances, rows)
+        full, y6 = as_drawn(at, instances, rows)
         kept, found = choose_rows(full, y6, instances, planar, rows)
         check_rubbing(instances, rows, reactions(full, y6, planar)[1], found)
         own, left = hubs(full, y6, rows, kept, planar, spans(at)), dropped(rows, found)
-        return Choice(build(scenario, at, instances, kept, d, own, left), kept, left)
+        return Choice(build(at, instances, kept, d, own, left), kept, left)
 
     def rebuilt(instances: list[Instance], kept: list[RowName], left: list[RowName]) -> Model:
         rows = [*kept, *left]
-        full, y6 = as_drawn(scenario, at, instances, rows)
+        full, y6 = as_drawn(at, instances, rows)
         own = hubs(full, y6, rows, kept, planar, spans(at))
-        return build(scenario, at, instances, kept, d, own, left)
+        return build(at, instances, kept, d, own, left)
 
     angles = {} if planar else {x.entry: x for x in at.coordinates.values() if x.kind == "angle"}
     rigid = [i for i in instances if i.section in ("drives", SECTION) and not i.row.is_force]
@@ -275,7 +273,6 @@ def spans(at: Addresses) -> list[tuple[int, int]]:
 
 
 def build(
-    scenario: Any,
     at: Addresses,
     instances: list[Instance],
     rows: list[RowName],
@@ -292,7 +289,7 @@ def build(
     con, par = tables(instances, [*rows, *redundant])
     of = masses(at, d)
     mass, inertia = of.mass, of.inertia
-    solver = scenario.solver
+    solver = at.scenario.solver
     size = extent(at)
     n_z = N_BOOK + len(at.states)
     d_node = 4 if d == 3 else 6

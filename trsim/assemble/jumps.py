@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from trsim.elements.contract import compiled
 from trsim.elements.prescribed import AnyDrive
 from trsim.errors import ScenarioError, some
-from trsim.kernels.signatures import A1, A2, f8, i8, void
+from trsim.kernels.signatures import A1, A2, i8, void
 from trsim.laws.functions import BY_TIME, EXPRESSION, HEAD, N_IN, N_OP, WIDTH, hold, motion
 from trsim.laws.operations import ATAN2, COS, DIV, EXP, LOG, POW, SIN, SQRT, TAN
 
@@ -53,13 +53,13 @@ def driven(at: Any, instances: list[Any]) -> dict[int, Driven]:
     return found
 
 
-@compiled(void(A1, i8, f8, f8, f8, A2, A1))
-def sides(tab, offset, before, at, after, sensors, out):
-    """out = f, f' at a time on the piece of a time before, and on that of a time after."""
-    hold(tab, offset, before, sensors, BY_TIME)
-    out[0], out[1], _ = motion(tab, offset, at)
-    hold(tab, offset, after, sensors, BY_TIME)
-    out[2], out[3], _ = motion(tab, offset, at)
+@compiled(void(A1, i8, A1, A2, A1))
+def sides(tab, offset, times, sensors, out):
+    """out = f, f' at the second of three times: on the piece of the first, on that of the last."""
+    hold(tab, offset, times[0], sensors, BY_TIME)
+    out[0], out[1], _ = motion(tab, offset, times[1])
+    hold(tab, offset, times[2], sensors, BY_TIME)
+    out[2], out[3], _ = motion(tab, offset, times[1])
 
 
 def jumps_of(tab: Array, offset: int, instants: list[float], by_velocity: bool) -> Array:
@@ -71,7 +71,8 @@ def jumps_of(tab: Array, offset: int, instants: list[float], by_velocity: bool) 
     rates = np.zeros(len(instants))
     middle = 0.5 * (np.array(instants[1:]) + np.array(instants[:-1]))
     for k in range(1, len(instants) - 1):
-        sides(tab, offset, middle[k - 1], instants[k], middle[k], none, out)
+        times = np.array([middle[k - 1], instants[k], middle[k]])
+        sides(tab, offset, times, none, out)
         if by_velocity:
             jumps[k, 1], rates[k] = out[2] - out[0], max(abs(out[0]), abs(out[2]))
         else:

@@ -46,7 +46,7 @@ def undecided(work: Scene, y: Array) -> list[int]:
     push = np.abs(work.F[1:]).ravel() * weights(work) ** 2 / np.repeat(work.mass[1:], 6)
     a = np.nan_to_num(work.A[1:].ravel())
     rows = list(range(work.m + len(work.redundant)))
-    branches = Branches(work, y, all_rows(work, y), rows)
+    branches = Branches(work, y, rows)
     a = branches.motions @ (branches.free.T @ (a / branches.scale))
     if not np.max(np.abs(a) / unit) > PLAINLY * np.max(push / unit, initial=0.0):
         return []
@@ -63,12 +63,13 @@ class Branches:
     """What rows of a workspace allow at one position."""
 
     def __init__(
-        self, work: Scene, y: Array, J: Array, rows: list[int], wishes: Array | None = None,
+        self, work: Scene, y: Array, rows: list[int], wishes: Array | None = None,
         moving: NDArray[np.bool_] | None = None, C: Array | None = None,
     ) -> None:  # fmt: skip
-        """J: against the world-axes rates, of these rows of the workspace; wishes: gradients of
-        rates that stay as they are; moving: rates that there are; C: `roots`, where the nearest
-        is that in the metric of M."""
+        """rows: those of the workspace that count; wishes: gradients of rates that stay as they
+        are; moving: rates that there are; C: `roots`, where the nearest is that in the metric of
+        M."""
+        J = all_rows(work, y)[rows]
         self.work, self.y, self.rows = work, y.copy(), rows
         self.moving = np.ones(J.shape[1], bool) if moving is None else moving
         self.scale = weights(work)[self.moving]

@@ -92,9 +92,8 @@ def nearby(
     rng = np.random.default_rng(0)
     rows = np.array(geometric, np.int64)
     scale = weights(model)[keep]
-    whole = jacobian(model, 0.0, y)[2][rows]
-    J = whole[:, keep]
-    branches = Branches(work, y, whole, geometric, moving=keep)
+    J = jacobian(model, 0.0, y)[2][rows][:, keep]
+    branches = Branches(work, y, geometric, moving=keep)
     size = np.tile([model.size] * 3 + [1.0] * 3, model.n - 1)[keep]
     ways = [SPREAD * rng.normal(size=size.size) * size for _ in range(SAMPLES)]
     for along, way in ((True, begun(model, y, keep, size)), *((False, way) for way in ways)):

@@ -105,7 +105,7 @@ def self_stress(
 ) -> Stress:
     """Null spaces of J^T as drawn (where that is not singular) and at perturbed positions."""
     rows = all_rows(instances)
-    full, y6 = as_drawn(scenario, at, instances, rows)
+    full, y6 = as_drawn(at, instances, rows)
     inside = np.flatnonzero(in_solve(full, jacobian(full, 0.0, y6)[2], mechanism.planar)).tolist()
     keep = moves(full, mechanism.planar)
     geometric = [r for r in inside if instances[rows[r].instance].section == "joints"]

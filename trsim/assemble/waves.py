@@ -14,7 +14,7 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.elements.prescribed import began
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
-from trsim.kernels.signatures import A1, f8, float64
+from trsim.kernels.signatures import A2, f8, float64
 from trsim.laws.functions import slots_of
 from trsim.laws.waves import pulses, swing
 
@@ -30,27 +30,30 @@ class Swinging(NamedTuple):
 
 
 Found = Sequence[Swinging]
-SWINGS = float64(SCENE, f8, f8, A1, A1, A1, A1)
+#                scene  t   s   shown
+SWINGS = float64(SCENE, f8, f8, A2)
 call_swings = caller(SWINGS)
 
 
 @compiled(SWINGS)
-def swings(s, t, length, S0, rate0, S1, rate1):
-    """The fastest wave, rad/s, from t on: what the sensors show, and its rate, at t and `length`
-    later."""
-    return fastest_of(s, s.wave, 1, (t, length), (S0, rate0), (S1, rate1))
+def swings(s, t, length, shown):
+    """The fastest wave, rad/s, in `length` s from t on.
+
+    shown: (4, n_s), what the sensors show when that begins, and its rates, and the same at its end.
+    """
+    return fastest_of(s, s.wave, 1, (t, length), shown)
 
 
 @compiled(SWINGS)
-def beats(s, t, length, S0, rate0, S1, rate1):
+def beats(s, t, length, shown):
     """The same of pulses in loads and drives."""
-    return fastest_of(s, s.pulse, 0, (t, length), (S0, rate0), (S1, rate1))
+    return fastest_of(s, s.pulse, 0, (t, length), shown)
 
 
 @internal
-def fastest_of(s, table, waves, stretch, before, behind):
+def fastest_of(s, table, waves, stretch, shown):
     """The fastest of the functions in force; waves: 0 where pulses alone count."""
-    most = 0.0
+    most, before, behind = 0.0, (shown[0], shown[1]), (shown[2], shown[3])
     for k in range(table.shape[0]):
         since = began(s, table[k, DRIVE], table[k, AT])
         if since >= 0.0:

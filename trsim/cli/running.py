@@ -32,7 +32,7 @@ def ran(
     from trsim.assemble.assemble import assemble
     from trsim.scenario.lint import lint
     from trsim.solve.simulate import simulate
-    from trsim.store.hdf5 import write
+    from trsim.store.hdf5 import Around, write
 
     try:
         mechanism = assemble(scenario)
@@ -44,8 +44,8 @@ def ran(
             answer.say(f"{source}: spatial motion: {told}")
         running = simulate(scenario, mechanism, kept.state if kept else None)
         blocks = watched(running, answer, source, scenario.solver.end)
-        called = shlex.join(["trsim", *sys.argv[1:]])
-        summary = write(target, scenario, mechanism, blocks, called, every, kept, closing)
+        around = Around(shlex.join(["trsim", *sys.argv[1:]]), every, kept, closing)
+        summary = write(target, scenario, mechanism, blocks, around)
         summary["resumed_from"] = kept.time if kept else None
     except TrsimError as error:
         raise placed(error, scenario) from None

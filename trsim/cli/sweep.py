@@ -4,7 +4,7 @@ import re
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
@@ -53,6 +53,19 @@ class Share(click.ParamType):
         return i, n
 
 
+class Wanted(NamedTuple):
+    """How the cases of a sweep are to be run, as the command line says."""
+
+    dry_run: bool
+    explain: bool
+    jobs: int | None
+    shard: tuple[int, int] | None
+    address: str | None  # of a Dask scheduler
+    time_limit: float  # s of wall time for a case, 0: any
+    memory: int  # bytes for a case, 0: any
+    retries: int
+
+
 @click.command("sweep")
 @click.argument("scenario", type=click.Path())
 @click.option("-o", "--output", type=NAMED, help="Folder of the sweep.  [default: runs/NAME]")
@@ -84,10 +97,8 @@ class Share(click.ParamType):
 )  # fmt: skip
 @framed
 def command(
-    answer: Answer, scenario: str, output: str | None, sets: tuple[str, ...], dry_run: bool,
-    explain: bool, jobs: int | None, shard: tuple[int, int] | None, address: str | None,
-    time_limit: float, memory: int, retries: int,
-) -> None:  # fmt: skip
+    answer: Answer, scenario: str, output: str | None, sets: tuple[str, ...], **options: Any
+) -> None:
     """Run all cases of a SCENARIO with a `sweep:` or `cases:` block, or with --set KEY=[...].
 
     Writes FOLDER/cases/NAME.h5, a result file for each case, and FOLDER/index.csv, one row for
@@ -97,22 +108,23 @@ def command(
     from trsim.sweep.plan import plan
     from trsim.sweep.slot import Limits
 
-    identity = engine()
+    wanted, identity = Wanted(**options), engine()
     with Doing(answer, scenario) as doing:
         doing("making the cases")
         planned = plan(scenario, sets, identity)
         doing(f"checking {len(planned.cases)} cases")
         checked(planned)
     folder = Path(output or f"runs/{Path(scenario).stem}")
-    part = Shard(*shard) if shard else Shard()
+    part = Shard(*wanted.shard) if wanted.shard else Shard()
     answer.data |= {"folder": str(folder), "cases": len(planned.cases), "ran": 0, "counts": {}}
-    if explain or dry_run:
+    if wanted.explain or wanted.dry_run:
         told = needs(planned, folder, identity, part)
-        reasons(answer, planned, folder, told, explain)
-    if dry_run:
+        reasons(answer, planned, folder, told, wanted.explain)
+    if wanted.dry_run:
         assembled(answer, planned, part)
         return
-    run = runner(answer, planned, Limits(time_limit, memory, retries), jobs, address)
+    limits = Limits(wanted.time_limit, wanted.memory, wanted.retries)
+    run = runner(answer, planned, limits, wanted.jobs, wanted.address)
     ran(answer, planned, folder, identity, part, run)
 
 

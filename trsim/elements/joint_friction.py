@@ -394,7 +394,7 @@ def part(scene, e, c, speed):
     v, w = slides(scene, e, c)
     f = own.friction
     if own.law == STICKING:
-        return part_of_bristle(1.0, v, speed, w, f[0], f[1], f[2], f[3], f[4])
+        return part_of_bristle(1.0, v, speed, w, f)
     whole, _ = friction_force(own.law, 1.0, speed, 0.0, f)
     return (whole * v / speed if speed > 0.0 else 0.0), 0.0
 

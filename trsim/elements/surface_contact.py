@@ -364,8 +364,8 @@ def friction_of(scene, e, F_n, n, v_t, speed):
     if own.shape == PLANE:
         t = arm(scene.X, own.i, own.u_i)
     w_t, w_z = scene.z[own.state], scene.z[own.state + 1]
-    F_1, rate_1 = part_of_bristle(F_n, dot(t, v_t), speed, w_t, f[0], f[1], f[2], f[3], f[4])
-    F_2, rate_2 = part_of_bristle(F_n, dot(z, v_t), speed, w_z, f[0], f[1], f[2], f[3], f[4])
+    F_1, rate_1 = part_of_bristle(F_n, dot(t, v_t), speed, w_t, f)
+    F_2, rate_2 = part_of_bristle(F_n, dot(z, v_t), speed, w_z, f)
     return plus(scaled(F_1, t), scaled(F_2, z)), rate_1, rate_2
 
 

@@ -38,9 +38,9 @@ CURVATURES = {"exact": EXACT, "gerstmayr": GERSTMAYR, "paper": PAPER}
 
 STRAIGHT = 1e-6  # rad, bend of an element below which it counts as straight, for damping alone
 
-# three Gauss points -+n and the middle, with their weights
-BENDING, BENDING_WEIGHT = 0.3872983346207417, 5.0 / 18.0
-MIDDLE_OF_3 = 4.0 / 9.0
+# three Gauss points for the bend: n and weight
+BEFORE, MIDDLE = (-0.3872983346207417, 5.0 / 18.0), (0.0, 4.0 / 9.0)
+BEHIND = (0.3872983346207417, 5.0 / 18.0)
 
 
 @internal
@@ -111,14 +111,16 @@ def bend(a, b, c, curvature):
 
 
 @internal
-def flexed(p, p_dot, n, l, EI, beta, curvature):
-    """EI times the derivatives of kappa^2 / 2 at n, damped: of r'.r', 2 r'.r'' / l, r''.r'' / l^2.
+def flexed(p, p_dot, point, bar, beta):
+    """EI l times the derivatives of kappa^2 / 2 at a Gauss point, damped and weighed: of r'.r',
+    2 r'.r'' / l, r''.r'' / l^2.
 
     Each twice: they are what r' feels of r', r' of r'' and r'' of r''.
     """
-    u = 1.0 / l
+    n, weight = point
+    u, EI = 1.0 / bar.length, weight * bar.length * bar.EI
     a, b, c = invariants(p, n, u)
-    kk, k_a, k_b, k_c = bend(a, b, c, curvature)
+    kk, k_a, k_b, k_c = bend(a, b, c, bar.curvature)
     if beta > 0.0:
         a_dot, b_dot, c_dot = invariants(p_dot, n, u)
         k0 = STRAIGHT * u
@@ -127,13 +129,12 @@ def flexed(p, p_dot, n, l, EI, beta, curvature):
 
 
 @internal
-def bent(p, p_dot, l, EI, beta, curvature):
+def bent(p, p_dot, bar, beta):
     """What the bend adds to M: m00, m01, m02, m11, m12, m22, N*m."""
-    i, j = BENDING_WEIGHT * l * EI, MIDDLE_OF_3 * l * EI
-    n = BENDING
-    x0, y0, z0 = flexed(p, p_dot, -n, l, i, beta, curvature)
-    x, y, z = flexed(p, p_dot, 0.0, l, j, beta, curvature)
-    x1, y1, z1 = flexed(p, p_dot, n, l, i, beta, curvature)
+    n = BEHIND[0]
+    x0, y0, z0 = flexed(p, p_dot, BEFORE, bar, beta)
+    x, y, z = flexed(p, p_dot, MIDDLE, bar, beta)
+    x1, y1, z1 = flexed(p, p_dot, BEHIND, bar, beta)
     m02 = n * (n * (x0 + x1) + 2.0 * (y1 - y0))
     return (
         x + (x0 + x1),
@@ -146,19 +147,20 @@ def bent(p, p_dot, l, EI, beta, curvature):
 
 
 @internal
-def straight_resistance(P, P_dot, n, l, EI_beta, curvature):
+def straight_resistance(P, P_dot, point, bar):
     """Forces on r' and r'' of the damping that straight places have alone, N and N*m."""
-    u = 1.0 / l
+    n, weight = point
+    u, EI_beta = 1.0 / bar.length, weight * bar.length * bar.EI * bar.beta
     r1, r2 = mixed((1.0, n, n * n), P), mixed((0.0, u, 2.0 * n * u), P)
     v1, v2 = mixed((1.0, n, n * n), P_dot), mixed((0.0, u, 2.0 * n * u), P_dot)
     a, b = dot(r1, r1), dot(r1, r2)
-    kk, _, _, half = bend(a, b, dot(r2, r2), curvature)
+    kk, _, _, half = bend(a, b, dot(r2, r2), bar.curvature)
     k0 = STRAIGHT * STRAIGHT * u * u
     m = 2.0 * half * EI_beta * k0 / (kk + k0)
     s = b / a
     along = (dot(r1, v2) - s * dot(r1, v1)) / a
     grown = 0.0
-    if curvature == PAPER:  # its kappa counts what r'' has along the tangent too
+    if bar.curvature == PAPER:  # its kappa counts what r'' has along the tangent too
         grown = m * (dot(r1, v2) + dot(r2, v1)) / a
     f2 = mixed((m, -m * s, -m * along), (v2, v1, r1))
     f1 = mixed((-s, grown, 0.0), (f2, r2, r2))
@@ -186,10 +188,11 @@ def add_to_ends(G, l, F):
 
 
 @internal
-def add_straight_damping(P, P_dot, n, l, EI_beta, curvature, F):
-    """F += what straight places add to the damping, at n."""
+def add_straight_damping(P, P_dot, point, bar, F):
+    """F += what straight places add to the damping, at a Gauss point."""
+    n, l = point[0], bar.length
     u = 1.0 / l
-    f1, f2 = straight_resistance(P, P_dot, n, l, EI_beta, curvature)
+    f1, f2 = straight_resistance(P, P_dot, point, bar)
     G = f1, mixed((n, u, 0.0), (f1, f2, f2)), mixed((n * n, 2.0 * n * u, 0.0), (f1, f2, f2))
     add_to_ends(G, l, F)
 
@@ -217,18 +220,17 @@ def add_force(e, v, bar, beta, F):
     -----
     Three Gauss points for the bend.  Where r' vanishes F is not finite.
     """
-    l, EI, curvature = bar.length, bar.EI, bar.curvature
+    l = bar.length
     P = parabola(e, l)
     p = p_dot = products(P, P)
     if beta > 0.0:
         P_dot = parabola(v, l)
         p_dot = products(P, P_dot)
-        side, middle = BENDING_WEIGHT * l * EI * beta, MIDDLE_OF_3 * l * EI * beta
-        add_straight_damping(P, P_dot, -BENDING, l, side, curvature, F)
-        add_straight_damping(P, P_dot, 0.0, l, middle, curvature, F)
-        add_straight_damping(P, P_dot, BENDING, l, side, curvature, F)
-    x = pulled(p, p_dot, l, bar.EA, beta, bar.strain, bar.stretching)
-    y = bent(p, p_dot, l, EI, beta, curvature)
+        add_straight_damping(P, P_dot, BEFORE, bar, F)
+        add_straight_damping(P, P_dot, MIDDLE, bar, F)
+        add_straight_damping(P, P_dot, BEHIND, bar, F)
+    x = pulled(p, p_dot, bar, beta)
+    y = bent(p, p_dot, bar, beta)
     m00, m01, m02 = x[0] + y[0], x[1] + y[1], x[2] + y[2]
     m11, m12, m22 = x[3] + y[3], x[4] + y[4], x[5] + y[5]
     G = mixed((m00, m01, m02), P), mixed((m01, m11, m12), P), mixed((m02, m12, m22), P)
@@ -243,9 +245,8 @@ def energies(e, bar):
     p = products(P, P)
     u = 1.0 / l
     a, b, c = invariants(p, 0.0, u)
-    flexed = MIDDLE_OF_3 * bend(a, b, c, curvature)[0]
-    for n in (-BENDING, BENDING):
+    flexed = MIDDLE[1] * bend(a, b, c, curvature)[0]
+    for n, weight in (BEFORE, BEHIND):
         a, b, c = invariants(p, n, u)
-        flexed += BENDING_WEIGHT * bend(a, b, c, curvature)[0]
-    stretched = stretching_energy(p, l, bar.EA, bar.strain, bar.stretching)
-    return stretched, 0.5 * bar.EI * l * flexed
+        flexed += weight * bend(a, b, c, curvature)[0]
+    return stretching_energy(p, bar), 0.5 * bar.EI * l * flexed

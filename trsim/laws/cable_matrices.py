@@ -64,15 +64,16 @@ def add_form(M, aa, ab, ac, bb, G):
 @internal
 def add_units(M, h, c, d):
     """M += h (c_k d_m + d_k c_m) times a unit matrix in each of the blocks k, m of nodes."""
-    add_unit_row(M, 0, h, c[0], d[0], c, d)
-    add_unit_row(M, 3, h, c[1], d[1], c, d)
-    add_unit_row(M, 6, h, c[2], d[2], c, d)
-    add_unit_row(M, 9, h, c[3], d[3], c, d)
+    add_unit_row(M, 0, h, (c[0], d[0]), c, d)
+    add_unit_row(M, 3, h, (c[1], d[1]), c, d)
+    add_unit_row(M, 6, h, (c[2], d[2]), c, d)
+    add_unit_row(M, 9, h, (c[3], d[3]), c, d)
 
 
 @internal
-def add_unit_row(M, row, h, x, y, c, d):
-    """The three rows of one node in `add_units`."""
+def add_unit_row(M, row, h, own, c, d):
+    """The three rows of one node in `add_units`; own: its c and d."""
+    x, y = own
     for i in range(3):
         M[row + i, i] += h * (x * d[0] + y * c[0])
         M[row + i, i + 3] += h * (x * d[1] + y * c[1])

@@ -74,10 +74,11 @@ def forces(a, b, c, d):
 
 
 @internal
-def pulled(p, p_dot, l, EA, beta, strain, stretching):
+def pulled(p, p_dot, bar, beta):
     """What the stretch adds to M of `cable.add_force`: m00, m01, m02, m11, m12, m22, N*m."""
-    if stretching == FULL:
-        return pulled_everywhere(p, p_dot, EA * l, beta, strain)
+    EAl, strain = bar.EA * bar.length, bar.strain
+    if bar.stretching == FULL:
+        return pulled_everywhere(p, p_dot, EAl, beta, strain)
     x = sampled(p)
     if beta > 0.0:
         v = sampled(p_dot)
@@ -91,7 +92,6 @@ def pulled(p, p_dot, l, EA, beta, strain, stretching):
         c, turn_c = stretch(x[2], strain)
         d, turn_d = stretch(x[3], strain)
     f_a, f, f_d = forces(a, b, c, d)
-    EAl = EA * l
     f_a, f_b, f_c, f_d = EAl * f_a * turn_a, EAl * f * turn_b, EAl * f * turn_c, EAl * f_d * turn_d
     ends, between = 0.25 * (f_a + f_d), 0.05 * (f_b + f_c)
     skew, aside = 0.5 * (f_d - f_a), INSIDE * (f_c - f_b)
@@ -130,10 +130,11 @@ def gauss(k):
 
 
 @internal
-def stretching_energy(p, l, EA, strain, stretching):
+def stretching_energy(p, bar):
     """Energy of the stretch from `cable.products`, J."""
+    l, EA, strain = bar.length, bar.EA, bar.strain
     total = 0.0
-    if stretching == FULL:
+    if bar.stretching == FULL:
         for k in range(5):
             n, weight = gauss(k)
             total += weight * stretch(squared(p, n), strain)[0] ** 2

@@ -12,10 +12,10 @@ semidefinite.  What the damping force gains when e changes at fixed rates is not
 
 from trsim.kernels.lazy import internal
 from trsim.laws.cable import (
-    BENDING,
-    BENDING_WEIGHT,
+    BEFORE,
+    BEHIND,
     EXACT,
-    MIDDLE_OF_3,
+    MIDDLE,
     PAPER,
     STRAIGHT,
     bend,
@@ -51,15 +51,16 @@ def bend_again(a, b, c, curvature):
 
 
 @internal
-def add_axial(n, P, l, EA, strain, G, K):
-    """K += stiffness of the stretch at n; EA with the weight of the point."""
-    u = 1.0 / l
-    c = slopes(n, u)
+def add_axial(P, point, bar, G, K):
+    """K += stiffness of the stretch at a Gauss point."""
+    n, weight = point
+    EA = weight * bar.length * bar.EA
+    c = slopes(n, 1.0 / bar.length)
     r1 = mixed((1.0, n, n * n), P)
     a = dot(r1, r1)
-    eps, turn = stretch(a, strain)
+    eps, turn = stretch(a, bar.strain)
     again = 1.0
-    if strain == ENGINEERING:
+    if bar.strain == ENGINEERING:
         again = turn * turn * turn
     fill(G[0], c, r1, c, r1)
     add_square(K, 0.25 * EA * again, G[0])
@@ -67,22 +68,22 @@ def add_axial(n, P, l, EA, strain, G, K):
 
 
 @internal
-def elongation(n, P, l, strain, row):
+def elongation(P, n, bar, row):
     """row <- 2 d eps / de at n; eps, and 2 d eps / da there."""
     r1 = mixed((1.0, n, n * n), P)
-    eps, turn = stretch(dot(r1, r1), strain)
-    c = slopes(n, 1.0 / l)
+    eps, turn = stretch(dot(r1, r1), bar.strain)
+    c = slopes(n, 1.0 / bar.length)
     s = mixed((turn, 0.0, 0.0), (r1, r1, r1))
     fill(row, c, s, c, s)
     return eps, turn
 
 
 @internal
-def add_second(n, l, f, turn, strain, row, K):
+def add_second(n, f, turn, bar, row, K):
     """K += f d2 eps / de2 at n; row: 2 d eps / de."""
-    c = slopes(n, 1.0 / l)
+    c = slopes(n, 1.0 / bar.length)
     add_units(K, 0.5 * f * turn, c, c)
-    if strain == ENGINEERING:
+    if bar.strain == ENGINEERING:
         add_square(K, -0.25 * f * turn, row)
 
 
@@ -99,25 +100,27 @@ def add_products(EAl, G, K):
 
 
 @internal
-def add_assumed(P, l, EA, strain, G, K):
+def add_assumed(P, bar, G, K):
     """K += stiffness of the assumed stretch."""
-    a, turn_a = elongation(-0.5, P, l, strain, G[0])
-    b, turn_b = elongation(-INSIDE, P, l, strain, G[1])
-    c, turn_c = elongation(INSIDE, P, l, strain, G[2])
-    d, turn_d = elongation(0.5, P, l, strain, G[3])
+    a, turn_a = elongation(P, -0.5, bar, G[0])
+    b, turn_b = elongation(P, -INSIDE, bar, G[1])
+    c, turn_c = elongation(P, INSIDE, bar, G[2])
+    d, turn_d = elongation(P, 0.5, bar, G[3])
     f_a, f, f_d = forces(a, b, c, d)
-    EAl = EA * l
-    add_second(-0.5, l, EAl * f_a, turn_a, strain, G[0], K)
-    add_second(-INSIDE, l, EAl * f, turn_b, strain, G[1], K)
-    add_second(INSIDE, l, EAl * f, turn_c, strain, G[2], K)
-    add_second(0.5, l, EAl * f_d, turn_d, strain, G[3], K)
+    EAl = bar.EA * bar.length
+    add_second(-0.5, EAl * f_a, turn_a, bar, G[0], K)
+    add_second(-INSIDE, EAl * f, turn_b, bar, G[1], K)
+    add_second(INSIDE, EAl * f, turn_c, bar, G[2], K)
+    add_second(0.5, EAl * f_d, turn_d, bar, G[3], K)
     add_products(EAl, G, K)
 
 
 @internal
-def add_bending(n, P, l, EI, curvature, G, K):
-    """K += stiffness of the bend at n; EI with the weight of the point."""
-    u = 1.0 / l
+def add_bending(P, point, bar, G, K):
+    """K += stiffness of the bend at a Gauss point."""
+    n, weight = point
+    l, curvature = bar.length, bar.curvature
+    u, EI = 1.0 / l, weight * l * bar.EI
     c1, c2 = slopes(n, u), bends(n, u)
     r1, r2 = mixed((1.0, n, n * n), P), mixed((0.0, u, 2.0 * n * u), P)
     a, b, c = dot(r1, r1), dot(r1, r2), dot(r2, r2)
@@ -143,43 +146,45 @@ def add_stiffness(e, bar, G, K):
     G : (4, 12)          workspace
     K : (12, 12)         added to
     """
-    l, EI, curvature = bar.length, bar.EI, bar.curvature
-    P = parabola(e, l)
+    P = parabola(e, bar.length)
     if bar.stretching == FULL:
         for k in range(5):
-            n, weight = gauss(k)
-            add_axial(n, P, l, weight * l * bar.EA, bar.strain, G, K)
+            add_axial(P, gauss(k), bar, G, K)
     else:
-        add_assumed(P, l, bar.EA, bar.strain, G, K)
-    add_bending(-BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
-    add_bending(0.0, P, l, MIDDLE_OF_3 * l * EI, curvature, G, K)
-    add_bending(BENDING, P, l, BENDING_WEIGHT * l * EI, curvature, G, K)
+        add_assumed(P, bar, G, K)
+    add_bending(P, BEFORE, bar, G, K)
+    add_bending(P, MIDDLE, bar, G, K)
+    add_bending(P, BEHIND, bar, G, K)
 
 
 @internal
-def add_axial_damping(n, P, l, EA_beta, strain, G, C):
-    """C += damping of the stretch at n."""
-    c = slopes(n, 1.0 / l)
+def add_axial_damping(P, point, bar, G, C):
+    """C += damping of the stretch at a Gauss point."""
+    n, weight = point
+    EA_beta = weight * bar.length * bar.beta * bar.EA
+    c = slopes(n, 1.0 / bar.length)
     r1 = mixed((1.0, n, n * n), P)
-    _, turn = stretch(dot(r1, r1), strain)
+    _, turn = stretch(dot(r1, r1), bar.strain)
     fill(G[0], c, r1, c, r1)
     add_square(C, 0.25 * EA_beta * turn * turn, G[0])
 
 
 @internal
-def add_assumed_damping(P, l, EA_beta, strain, G, C):
+def add_assumed_damping(P, bar, G, C):
     """C += damping of the assumed stretch."""
-    elongation(-0.5, P, l, strain, G[0])
-    elongation(-INSIDE, P, l, strain, G[1])
-    elongation(INSIDE, P, l, strain, G[2])
-    elongation(0.5, P, l, strain, G[3])
-    add_products(EA_beta * l, G, C)
+    elongation(P, -0.5, bar, G[0])
+    elongation(P, -INSIDE, bar, G[1])
+    elongation(P, INSIDE, bar, G[2])
+    elongation(P, 0.5, bar, G[3])
+    add_products(bar.beta * bar.EA * bar.length, G, C)
 
 
 @internal
-def add_bending_damping(n, P, l, EI_beta, curvature, G, C):
-    """C += damping of the bend at n."""
-    u = 1.0 / l
+def add_bending_damping(P, point, bar, G, C):
+    """C += damping of the bend at a Gauss point."""
+    n, weight = point
+    l, curvature = bar.length, bar.curvature
+    u, EI_beta = 1.0 / l, weight * (bar.beta * l * bar.EI)
     c, d = slopes(n, u), bends(n, u)
     r1, r2 = mixed((1.0, n, n * n), P), mixed((0.0, u, 2.0 * n * u), P)
     a, b = dot(r1, r1), dot(r1, r2)
@@ -212,15 +217,12 @@ def add_damping(e, bar, G, C):
     G : (4, 12)          workspace
     C : (12, 12)         added to
     """
-    l, beta, curvature = bar.length, bar.beta, bar.curvature
-    P = parabola(e, l)
-    y = beta * l * bar.EI
+    P = parabola(e, bar.length)
     if bar.stretching == FULL:
         for k in range(5):
-            n, weight = gauss(k)
-            add_axial_damping(n, P, l, weight * l * beta * bar.EA, bar.strain, G, C)
+            add_axial_damping(P, gauss(k), bar, G, C)
     else:
-        add_assumed_damping(P, l, beta * bar.EA, bar.strain, G, C)
-    add_bending_damping(-BENDING, P, l, BENDING_WEIGHT * y, curvature, G, C)
-    add_bending_damping(0.0, P, l, MIDDLE_OF_3 * y, curvature, G, C)
-    add_bending_damping(BENDING, P, l, BENDING_WEIGHT * y, curvature, G, C)
+        add_assumed_damping(P, bar, G, C)
+    add_bending_damping(P, BEFORE, bar, G, C)
+    add_bending_damping(P, MIDDLE, bar, G, C)
+    add_bending_damping(P, BEHIND, bar, G, C)

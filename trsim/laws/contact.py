@@ -310,14 +310,15 @@ def damping_factor(law, c_r):
     return 0.0 if c_r == 1.0 else LAWS[law](c_r)
 
 
-def _compliance(E_i, nu_i, E_j, nu_j):
+def _compliance(of_i, of_j):
     """s_i + s_j = 1 / E*, 1/Pa."""
+    (E_i, nu_i), (E_j, nu_j) = of_i, of_j
     if E_i <= 0.0 or E_j <= 0.0:
         raise ValueError(f"Young's moduli must be positive, got {E_i} and {E_j}")
     return (1.0 - nu_i * nu_i) / E_i + (1.0 - nu_j * nu_j) / E_j
 
 
-def hertz_stiffness(R_i, R_j, E_i, nu_i, E_j, nu_j, form="internal"):
+def hertz_stiffness(R_i, R_j, of_i, of_j, form="internal"):
     """Hertz stiffness K of F = K d^1.5 between a bearing i and a journal j.
 
         K = 4 / (3 (s_i + s_j)) sqrt(R_i R_j / (R_i -+ R_j)),     s = (1 - nu^2) / E
@@ -325,8 +326,7 @@ def hertz_stiffness(R_i, R_j, E_i, nu_i, E_j, nu_j, form="internal"):
     Parameters
     ----------
     R_i, R_j : float     radius of bearing and journal, m; R_i > R_j for 'internal'
-    E_i, E_j : float     Young's modulus, Pa
-    nu_i, nu_j : float   Poisson's ratio
+    of_i, of_j           E, nu of each: Young's modulus, Pa, and Poisson's ratio
     form : str           'internal' (R_i - R_j) or 'paper' (R_i + R_j, as often printed)
 
     Returns
@@ -343,10 +343,10 @@ def hertz_stiffness(R_i, R_j, E_i, nu_i, E_j, nu_j, form="internal"):
     if R_j <= 0.0 or R_i <= (R_j if form == "internal" else 0.0):
         raise ValueError(f"radii {R_i} m of the bearing and {R_j} m of the journal do not fit")
     R = R_i - R_j if form == "internal" else R_i + R_j
-    return 4.0 / (3.0 * _compliance(E_i, nu_i, E_j, nu_j)) * sqrt(R_i * R_j / R)
+    return 4.0 / (3.0 * _compliance(of_i, of_j)) * sqrt(R_i * R_j / R)
 
 
-def cylinder_stiffness(width, E_i, nu_i, E_j, nu_j):
+def cylinder_stiffness(width, of_i, of_j):
     """Stiffness K of the cylinder law F = K d sqrt(d / (d + c)).
 
         K = pi L E* / (2 sqrt 2),     1 / E* = s_i + s_j,     s = (1 - nu^2) / E
@@ -356,7 +356,7 @@ def cylinder_stiffness(width, E_i, nu_i, E_j, nu_j):
     Parameters
     ----------
     width : float        bearing width L, m
-    E, nu                of bearing i and journal j, as in `hertz_stiffness`
+    of_i, of_j           E, nu of bearing and journal, as in `hertz_stiffness`
 
     Returns
     -------
@@ -364,20 +364,21 @@ def cylinder_stiffness(width, E_i, nu_i, E_j, nu_j):
     """
     if width <= 0.0:
         raise ValueError(f"the bearing width must be positive, got {width} m")
-    return pi * width / (2.0 * sqrt(2.0) * _compliance(E_i, nu_i, E_j, nu_j))
+    return pi * width / (2.0 * sqrt(2.0) * _compliance(of_i, of_j))
 
 
-def ball_stiffness(radius, curvature, E_i, nu_i, E_j, nu_j):
+def ball_stiffness(radius, curvature, of_i, of_j):
     """Hertz stiffness K of F = K d^1.5 of a ball on a surface that is alike in all directions.
 
         K = 4 / (3 (s_i + s_j)) / sqrt(1 / R + curvature)
 
-    curvature: of the surface, 1/m: 0 of a plane, 1 / R_i of a ball, -1 / R_i of a hollow one.
+    curvature: of the surface, 1/m: 0 of a plane, 1 / R_i of a ball, -1 / R_i of a hollow one; of_i,
+    of_j: E and nu of both.
     Raises ValueError where the ball does not fit.
     """
     if radius <= 0.0 or 1.0 / radius + curvature <= 0.0:
         raise ValueError(f"a ball of radius {radius:g} m does not fit there")
-    return 4.0 / (3.0 * _compliance(E_i, nu_i, E_j, nu_j)) / sqrt(1.0 / radius + curvature)
+    return 4.0 / (3.0 * _compliance(of_i, of_j)) / sqrt(1.0 / radius + curvature)
 
 
 def hertz_peak(m, K, n, v):

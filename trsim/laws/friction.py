@@ -119,7 +119,7 @@ def neighbour(branch, v_t, v0, v1):
 
 
 @internal
-def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
+def bristle(F_n, v_t, w, par):
     """Load-proportional bristle friction, which sticks.                   [CanudasDeWit1995]
 
     Parameters
@@ -127,10 +127,11 @@ def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     F_n : float          normal force, N
     v_t : float          sliding velocity, m/s
     w : float            bristle deflection, m; a state of the run
-    mu_s, mu_k : float   static and kinetic coefficient; mu_s >= mu_k > 0
-    v_s : float          Stribeck speed, m/s; > 0
-    sigma0 : float       bristle stiffness per normal force, 1/m
-    sigma1 : float       bristle damping per normal force, s/m
+    par                  parameters of the law, in this order:
+        mu_s, mu_k : float   static and kinetic coefficient; mu_s >= mu_k > 0
+        v_s : float          Stribeck speed, m/s; > 0
+        sigma0 : float       bristle stiffness per normal force, 1/m
+        sigma1 : float       bristle damping per normal force, s/m
 
     Returns
     -------
@@ -152,13 +153,14 @@ def bristle(F_n, v_t, w, mu_s, mu_k, v_s, sigma0, sigma1):
     """
     if F_n <= 0.0:
         return 0.0, 0.0
-    return part_of_bristle(F_n, v_t, abs(v_t), w, mu_s, mu_k, v_s, sigma0, sigma1)
+    return part_of_bristle(F_n, v_t, abs(v_t), w, par)
 
 
 @internal
-def part_of_bristle(F_n, v_t, s, w, mu_s, mu_k, v_s, sigma0, sigma1):
+def part_of_bristle(F_n, v_t, s, w, par):
     """`bristle` in one direction of a surface on which the body slides at the speed s, v_t of it in
     this direction: bristles bend in each, and what they hold together is that of one."""
+    mu_s, mu_k, v_s, sigma0, sigma1 = par[0], par[1], par[2], par[3], par[4]
     x = s / v_s
     g = mu_k + (mu_s - mu_k) * exp(-x * x)
     F = -F_n * (sigma0 * w + sigma1 * v_t) / (1.0 + sigma1 * s / g)  # = -F_n (sigma0 w + s1 w')
@@ -184,7 +186,7 @@ def friction_force(code, F_n, v_t, w, par):
     if code == 2:
         return modified_coulomb(F_n, v_t, par[0], par[1], par[2]), 0.0
     if code == 3:
-        return bristle(F_n, v_t, w, par[0], par[1], par[2], par[3], par[4])
+        return bristle(F_n, v_t, w, par)
     if code == 1:
         return coulomb(F_n, v_t, par[0]), 0.0
     return 0.0, 0.0

@@ -95,6 +95,13 @@ class ContactLaw(Spec):
                 raise ScenarioError(f"{key} is no number of normal {self.normal}", "", (key,))
         return self
 
+    @property
+    def materials(self) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
+        """Young's modulus and Poisson's ratio of the bearing, or surface, and of the journal."""
+        E_i, nu_i = self.youngs_modulus, self.poisson
+        nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
+        return (E_i, nu_i), (self.journal_youngs_modulus or E_i, nu_j)
+
     def on_surface(self, radius: float, curvature: float | None) -> Normal:
         """The numbers of a ball on a surface; curvature: as of `ball_stiffness`, None where it is
         not the same in all directions."""
@@ -107,10 +114,7 @@ class ContactLaw(Spec):
             what = "stiffness hertz is that of a ball on a plane or on another ball"
             raise ScenarioError(what, "give a number, in N/m^1.5", ("contact",))
         else:
-            E_i, nu_i = self.youngs_modulus, self.poisson
-            E_j = self.journal_youngs_modulus or E_i
-            nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
-            K, exponent = ball_stiffness(radius, curvature, E_i, nu_i, E_j, nu_j), 1.5
+            K, exponent = ball_stiffness(radius, curvature, *self.materials), 1.5
         if self.normal == "impact":
             return Normal(K, exponent, 0.0, float(self.damping or 0.0), float(self.ramp or 0.0))
         return Normal(K, exponent, damping_factor(self.normal, self.restitution), 0.0, 0.0)
@@ -123,9 +127,7 @@ class ContactLaw(Spec):
         if self.normal == "impact":
             what = "normal impact is no law of a clearance joint"
             raise ScenarioError(what, "take one with a restitution", ("contact",))
-        E_i, nu_i = self.youngs_modulus, self.poisson
-        E_j = self.journal_youngs_modulus or E_i
-        nu_j = nu_i if self.journal_poisson is None else self.journal_poisson
+        bearing, journal = self.materials
         chi = damping_factor(self.normal, self.restitution)
         if self.stiffness == "hertz":
             what = "stiffness hertz is that of a ball on a surface"
@@ -133,8 +135,8 @@ class ContactLaw(Spec):
         if isinstance(self.stiffness, float):
             return self.stiffness, self.exponent, 0, chi, self.stiffness
         if self.stiffness == "cylinder":
-            K = cylinder_stiffness(self.width, E_i, nu_i, E_j, nu_j)
+            K = cylinder_stiffness(self.width, bearing, journal)
             return K, 1.5, 1, chi, K / c**0.5
         R_i: Any = self.bearing_radius
-        K = hertz_stiffness(R_i, R_i - c, E_i, nu_i, E_j, nu_j, self.stiffness)
+        K = hertz_stiffness(R_i, R_i - c, bearing, journal, self.stiffness)
         return K, self.exponent, 0, chi, K

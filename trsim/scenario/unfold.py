@@ -98,8 +98,11 @@ def _put(
     own = {entry: f"{name}_{entry}" for section in SECTIONS for entry in mapping(of, section)}
     here = {key: value for key, value in values.items() if key not in own} | local
     outer = whole.framed.frame if whole.framed else None
-    frame, faults = _frame(name, given, of, view, here, merge, outer)
-    yield from faults
+    frame = outer
+    if (written := _written(given, of, merge)) is not None:
+        view["frame"] = written
+        frame, faults = _frame(name, written, here, outer)
+        yield from faults
     whole.scopes[name] = Scope(here, frame, own)
     put: set[str] = set()
     for section in SECTIONS:
@@ -162,24 +165,19 @@ def _numbers(
     return found | others, faults
 
 
-def _frame(
-    name: str,
-    given: dict,
-    of: dict,
-    view: dict,
-    values: dict[str, float],
-    merge: Merge,
-    outer: Frame | None,
-) -> tuple[Frame | None, list[Fault]]:
-    """The frame of an instance, seen from that of the scenario; of its template where it says
-    nothing."""
+def _written(given: dict, of: dict, merge: Merge) -> Any:
+    """What an instance says of its frame, or its template where it says nothing; None: neither."""
     written = [one["frame"] for one in (of, given) if one.get("frame") is not None]
-    if not written:
-        return outer, []
     both = len(written) > 1 and all(isinstance(one, dict) for one in written)
-    view["frame"] = merge(written[0], written[1]) if both else written[-1]
+    return merge(written[0], written[1]) if both else written[-1] if written else None
+
+
+def _frame(
+    name: str, written: Any, values: dict[str, float], outer: Frame | None
+) -> tuple[Frame | None, list[Fault]]:
+    """The frame of an instance, seen from that of the scenario."""
     try:
         context = {"parameters": values, "frame": outer}
-        return Placement.model_validate(view["frame"], context=context).moved, []
+        return Placement.model_validate(written, context=context).moved, []
     except ValueError as error:  # as pydantic has it, or one of ours
         return None, [(error, ("instances", name, "frame"))]

@@ -139,7 +139,6 @@ def compiled(
     else:
         begun = start(scenario, mechanism, located)
     work, left_out = begun_with(mechanism, begun)
-    width = int(np.max(work.contact_width, initial=0))
     spanned = int(np.ceil(setting.fixed_step / setting.every))
     if setting.fixed_step > 0.0 and not scenario.solver.force and not checkpoint:
         from trsim.solve.diagnose.scales import scales
@@ -153,7 +152,7 @@ def compiled(
     rows = max(m.DENSE_ROWS if m.IMPLICIT else max(m.STAGES, m.DENSE_ROWS) for m in used)
     r = new_record(work, begun, left_out, rows, past_rows, len(switches.names))
     room = most_points(mechanism, setting)
-    b = fresh_buffers(work, r.y.size, stages, dense_rows, 2 + width, spanned, room)
+    b = fresh_buffers(work, r.y.size, stages, dense_rows, spanned, room)
     if driven:
         from trsim.solve.march.sides import keep_side, with_square
 
@@ -223,7 +222,7 @@ def compiled(
         if r.steps >= limit:
             reason = NO_STEPS_LEFT
             break
-    status, text = ended or ending(reason, limit, setting, scenario, mechanism, work, r)
+    status, text = ended or ending(reason, setting, scenario, mechanism, work, r)
     times = zip(switches.events, r.watch[:, rec.TIMES].astype(int).tolist(), strict=True)
     fired = {event.name: n for event, n in times if event.kind != "limit"}
     return Outcome(status, text, float(r.t), statistics(r, work, begun, cpu),
@@ -231,9 +230,8 @@ def compiled(
 
 
 def ending(
-    reason: int, limit: int, setting: Settings, scenario: Any, mechanism: Mechanism, work: Scene,
-    r: Record,
-) -> tuple[Ended, str]:  # fmt: skip
+    reason: int, setting: Settings, scenario: Any, mechanism: Mechanism, work: Scene, r: Record
+) -> tuple[Ended, str]:
     """Status and reason of a run that no event ended."""
     if reason == rec.DONE:
         text = collapsed(scenario, mechanism, float(r.t), r.y)
@@ -250,6 +248,7 @@ def ending(
         reason = STEP_TOO_LARGE
     elif reason == rec.NOT_FINITE and work.status[3] > 0:
         reason = CONTRADICTORY
+    limit = scenario.solver.max_steps
     text = REASONS[reason].format(limit) if reason in REASONS else runaway(mechanism, r)
     at = mechanism.in_stage(r.stage, r.left_out)
     if reason != NO_STEPS_LEFT:

@@ -10,7 +10,7 @@ import os
 import time
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 
@@ -38,24 +38,32 @@ Closing = Callable[[h5py.File], dict[str, Any]]
 HASTE = 1.0  # s: a checkpoint that takes longer is not begun after an interrupt
 
 
+class Around(NamedTuple):
+    """What belongs to a file besides the results of its run."""
+
+    command: str = ""  # line that began the run
+    every: float = 0.0  # s of wall time between two checkpoints, 0 for none
+    kept: Checkpoint | None = None  # where the run goes on
+    # adds to a complete file what its hash does not cover, and returns more for the summary
+    closing: Closing | None = None
+
+
+NOTHING_MORE = Around()
+
+
 @alone
 def write(
     path: str | os.PathLike, scenario: Any, mechanism: Any, blocks: Generator[Any, None, Any],
-    command: str = "", every: float = 0.0, kept: Checkpoint | None = None,
-    closing: Closing | None = None,
+    around: Around = NOTHING_MORE,
 ) -> dict[str, Any]:  # fmt: skip
     """Write what `blocks` yields to a result file; returns its summary.
-
-    every: s of wall time between two checkpoints, 0 for none.  kept: where `blocks` go on.
-    closing: adds to a complete file what its hash does not cover, and returns more for the summary.
 
     A solver that fails leaves a complete file with status `failed`, an interrupt a closed .part
     file with status `interrupted`, a run that never starts no file at all.
     """
-    run = Running(Path(path), scenario, mechanism, points.plan(scenario, mechanism), every, closing)
-    run.command = command
+    run = Running(Path(path), scenario, mechanism, around)
     clock, outcome, broken = describe.Clock.now(), None, None
-    run.go_on(kept)
+    run.go_on(around.kept)
     try:
         outcome = run.take_all(blocks)
         status, reason = outcome.status, outcome.reason
@@ -69,7 +77,7 @@ def write(
         run.save_last(status)
         broken = error
     try:
-        provenance = describe.provenance(command, clock, outcome, run.resumed)
+        provenance = describe.provenance(around.command, clock, outcome, run.resumed)
         summary = run.finish(status, reason, outcome, provenance)
     except FileError:
         run.abandon()
@@ -93,22 +101,20 @@ class Running:
     """A part file and its growing tables; the file is made when the first rows arrive."""
 
     def __init__(
-        self, final: Path, scenario: Any, mechanism: Any, planned: points.Plan, every: float,
-        closing: Closing | None = None,
-    ) -> None:  # fmt: skip
+        self, final: Path, scenario: Any, mechanism: Any, around: Around = NOTHING_MORE
+    ) -> None:
         self.final, self.part = final, final.with_name(final.name + ".part")
         self.fresh = final.with_name(final.name + ".part.new")  # of a resumed run
         self.checkpoint = checkpoints.beside(final)
-        self.scenario, self.mechanism, self.planned = scenario, mechanism, planned
+        self.scenario, self.mechanism = scenario, mechanism
+        self.planned = points.plan(scenario, mechanism)
         self.file: h5py.File | None = None
         self.magnitudes = peaks.Magnitudes(mechanism.columns)
         self.impacts = describe.Impacts(len(mechanism.instances))
         self.extremes = {"magnitudes": self.magnitudes.largest, "impacts": self.impacts.of}
-        self.every, self.saved, self.took = every, time.monotonic(), 0.0  # s of wall time
+        self.around, self.saved, self.took = around, time.monotonic(), 0.0  # s of wall time
         self.state: dict[str, Any] | None = None  # of the solver after the last block taken
         self.resumed: list[str] = []  # when
-        self.closing = closing
-        self.command = ""  # line that began the run
         self.time, self.kept, self.flushed = 0.0, 0.0, 0.0  # s simulated, in the file; s of wall
         with self.file_errors():
             final.parent.mkdir(parents=True, exist_ok=True)
@@ -234,7 +240,7 @@ class Running:
             self.recorded.append(block.recorded)
         self.time, self.state = block.time, block.state
         now = time.monotonic()
-        if self.every and self.state is not None and now - self.saved > self.every:
+        if self.around.every and self.state is not None and now - self.saved > self.around.every:
             self.save()
         elif now - self.flushed > FLUSHED:
             self.flush()
@@ -262,7 +268,8 @@ class Running:
 
     def save_last(self, status: str) -> None:
         """A checkpoint before an interrupt ends the run, if there is time for it."""
-        if status == INTERRUPTED and self.every and self.state is not None and self.took < HASTE:
+        every, state = self.around.every, self.state
+        if status == INTERRUPTED and every and state is not None and self.took < HASTE:
             with contextlib.suppress(FileError), self.file_errors():
                 self.save()
 
@@ -288,8 +295,8 @@ class Running:
                 if complete:
                     summary["content_sha256"] = content_hash(file)
                     file.attrs["content_sha256"] = summary["content_sha256"]
-                if complete and self.closing is not None:
-                    summary |= self.closing(file)
+                if complete and self.around.closing is not None:
+                    summary |= self.around.closing(file)
             synced(self.part)
             if complete:
                 os.replace(self.part, self.final)
@@ -300,7 +307,7 @@ class Running:
 
     def left(self, time: float) -> str:
         """What is there of a run that was broken off."""
-        return checkpoints.left(self.part, self.checkpoint, time, self.command)
+        return checkpoints.left(self.part, self.checkpoint, time, self.around.command)
 
     def abandon(self) -> None:
         """Let go of a file that cannot be written."""

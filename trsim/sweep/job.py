@@ -68,7 +68,7 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
     from trsim.assemble.assemble import assemble
     from trsim.scenario.load import loads
     from trsim.solve.simulate import simulate
-    from trsim.store.hdf5 import write
+    from trsim.store.hdf5 import Around, write
 
     target = Path(task["target"])
     scenario = loads(task["resolved"], (), f"{task['name']}/resolved")
@@ -83,7 +83,8 @@ def _ran(task: dict[str, Any], begun: Callable[[], None]) -> dict[str, Any]:
 
     blocks = _told(simulate(scenario, mechanism, kept.state if kept else None), begun)
     every = CHECKPOINT if METHODS[scenario.solver.method].marches else 0.0
-    return write(target, scenario, mechanism, blocks, task["command"], every, kept, closing)
+    around = Around(task["command"], every, kept, closing)
+    return write(target, scenario, mechanism, blocks, around)
 
 
 def _told(

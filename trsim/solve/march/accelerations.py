@@ -113,17 +113,18 @@ def stiffness(r, h):
 
 
 @internal
-def in_units(s, r, setting, h, off, most, mean, times):
+def in_units(s, r, setting, h, error, times):
     """An error of accelerations in units of what is allowed, none of it rounding.
 
-    most: the largest acceleration; mean: w^2 of what the error consists of; times: the tolerance.
-    Where accelerations are less than a FURTHEST of what speeds give at that, it is rounding as
-    well.
+    error: its size, that of the largest acceleration, and w^2 of what it consists of, 0 where that
+    is not known; times: the tolerance.  Where accelerations are less than a FURTHEST of what speeds
+    give at that, it is rounding as well.
     """
+    off, most, mean = error
     most = max(most, sqrt(mean) * r.speed / FURTHEST)
     allowed = times * setting.tolerance * most
-    error = off / allowed if allowed > 0.0 else 0.0
-    return error if error <= 1.0 else off / max(allowed, rounded(s, r, sqrt(mean) * h))
+    units = off / allowed if allowed > 0.0 else 0.0
+    return units if units <= 1.0 else off / max(allowed, rounded(s, r, sqrt(mean) * h))
 
 
 @internal
@@ -136,11 +137,13 @@ def share(s, setting, h, one):
 
 
 @internal
-def doubted(s, r, setting, h, off, most, w):
+def doubted(s, r, setting, h, error):
     """Note what accelerations may be off by where that is more than is allowed and no rounding.
 
-    w: rad/s, how fast what the error consists of turns, 0 where it is not known.
+    error: see `in_units`.
     """
+    off, most, mean = error
+    w = sqrt(mean)
     if off > ALLOWED * setting.tolerance * most and off > rounded(s, r, w * h):
         r.blur, r.blur_w = off, w
 

@@ -5,8 +5,8 @@ STEP        b.y1 <- one step of size h from r.y, with b.K[0] = y'(t, y); returns
             where no step was found, b.y1 is then nothing)
             Row 1 of K is scratch of the march once the step is made: DENSE of an explicit method
             does not read it, that of an implicit one is made before
-DENSE       fills P so that INTERPOLATE gives the solution inside the step; K[-1] of the method
-            is y'(t + h, y1) with y1 as finally accepted, projected
+DENSE       fills P so that INTERPOLATE gives the solution inside the step; `ends` are y and y1,
+            K[-1] of the method is y'(t + h, y1) with y1 as finally accepted, projected
 INTERPOLATE y <- solution at t + theta h
 RATE        rate <- y' of what is slow, theta of a step h: that of its dense output P, or at the end
             of the step just made (AT_END of settle.py) that of its stages
@@ -34,8 +34,8 @@ NO_STEP = 10.0
 
 #                    scene  record  buffers  settings  t   h
 STEP = types.float64(SCENE, RECORD, BUFFERS, SETTINGS, f8, f8)
-#                  scene  K   t   y   h   y1  P
-DENSE = types.void(SCENE, A2, f8, A1, f8, A1, A2)
+#                  scene  K   t   h   ends P
+DENSE = types.void(SCENE, A2, f8, f8, A2, A2)
 #                        P   y   theta out
 INTERPOLATE = types.void(A2, A1, f8, A1)
 #                 K   P   h   theta rate

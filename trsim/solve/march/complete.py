@@ -144,7 +144,7 @@ def complete(s, r, b, setting, method):
                 call_interpolate(b.interpolate, b.P, r.y, theta, b.y2)
                 copy_to(b.y1, b.y2)
                 b.t1 = reached(setting, b.t + theta * h)
-                b.projected = call_land(b.land, s, r, b, b.t1, b.y1, b.K[last], 0)
+                b.projected = call_land(b.land, s, r, b, b.t1, b.K[last], 0)
     if method[POLES_AT] > 0 and call_search(method[POLES_AT], s, r, b, setting, method) < NONE:
         return undone(r, worst, worst_rate, AT_POLE if r.pole > 0 else STRAYED)
     t1 = b.t1
@@ -164,22 +164,24 @@ def complete(s, r, b, setting, method):
     if inside and loose(s, r, b, setting, method):
         return undone(r, worst, worst_rate, LOOSE)
     if b.halved > 0:
-        b.firm[0], b.halved = b.firm[2], 0
-        call_sample(method[SAMPLE_AT], s, r, b, setting, method, b.t + 0.5 * b.h, b.middle)
+        b.firm[0], b.halved, b.sampled_t = b.firm[2], 0, b.t + 0.5 * b.h
+        call_sample(method[SAMPLE_AT], s, r, b, setting, method, b.middle)
     if due(r, setting, t1):
         first = r.rows
         if not rows_until(s, r, b, setting, method):
             return undone(r, worst, worst_rate, AT_ROW) if b.until > 0.0 else WORTHLESS
         for k in range(first, r.rows):
-            row, b.firm[0] = b.rows[k], b.row_firm[k]
-            call_sample(method[SAMPLE_AT], s, r, b, setting, method, row[0], row[1:])
+            row = b.rows[k]
+            b.firm[0], b.sampled_t = b.row_firm[k], row[0]
+            call_sample(method[SAMPLE_AT], s, r, b, setting, method, row[1:])
     if looks:
         for k in range(1, parts):
             at = b.t + k / parts * (t1 - b.t)
             measure_inside(s, r, b, at, (at - b.t) / b.h)
-            call_sample(method[SAMPLE_AT], s, r, b, setting, method, at, s.out)
-    b.firm[0] = b.firm[1]
-    call_sample(method[SAMPLE_AT], s, r, b, setting, method, t1, b.out)
+            b.sampled_t = at
+            call_sample(method[SAMPLE_AT], s, r, b, setting, method, s.out)
+    b.firm[0], b.sampled_t = b.firm[1], t1
+    call_sample(method[SAMPLE_AT], s, r, b, setting, method, b.out)
     if event or corner or last_of_its_kind(s, r, b, setting, method):
         call_finish(method[FINISH_AT], s, r, b, setting, method)
     if method[SECTIONS_AT] > 0:
@@ -203,7 +205,7 @@ def complete(s, r, b, setting, method):
         met = call_meet(method[MEET_AT], s, r, b, b.t, t1)
         outcome = AT_INSTANT if met > 0 and not event else outcome
         if method[TURN_AT] > 0:
-            turned = call_turn(method[TURN_AT], s, r, b, setting, method, t1, met + int(event))
+            turned = call_turn(method[TURN_AT], s, r, b, setting, method, met + int(event))
             outcome = WITH_CORNER if turned > 0 and not event else outcome
     return outcome
 
@@ -211,7 +213,7 @@ def complete(s, r, b, setting, method):
 @internal
 def landed(s, r, b, method, t, h):
     """`land` of the end of a step of length h that was just made."""
-    done = call_land(b.land, s, r, b, t, b.y1, b.K[method[LAST_AT]], b.rate)
+    done = call_land(b.land, s, r, b, t, b.K[method[LAST_AT]], b.rate)
     if method[BOOK_AT] > 0:
         call_book(method[BOOK_AT], s, r, b, h)
     return done
@@ -351,7 +353,7 @@ def exact(s, r, b, setting, method, theta):
         near = h1 - late <= h and abs(late) <= SLIDE * sqrt(setting.step_error) * h1
         if near and gap_of < s.contact.size:
             move_end(b, last, late)
-            projected += call_land(b.land, s, r, b, t + h1 - late, b.y1, b.K[last], 0)
+            projected += call_land(b.land, s, r, b, t + h1 - late, b.K[last], 0)
             if abs(b.gap1[gap_of, 0]) <= close:
                 return h1, -late, projected
             b.moved = 0

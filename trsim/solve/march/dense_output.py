@@ -42,14 +42,16 @@ def fill(s, r, b, method):
     Where its end was moved on along its tangent it is that of the end as it was before: no stage
     has moved with it.
     """
+    copy_to(b.ends[0], r.y)
+    copy_to(b.ends[1], b.unmoved[0] if b.moved > 0 else b.y1)
     if b.moved > 0:
         last = b.K[method[LAST_AT]]
         copy_to(b.unmoved[2], last)
         copy_to(last, b.unmoved[1])
-        call_dense(method[DENSE_AT], s, b.K, b.t, r.y, b.h, b.unmoved[0], b.P)
+        call_dense(method[DENSE_AT], s, b.K, b.t, b.h, b.ends, b.P)
         copy_to(last, b.unmoved[2])
     else:
-        call_dense(method[DENSE_AT], s, b.K, b.t, r.y, b.h, b.y1, b.P)
+        call_dense(method[DENSE_AT], s, b.K, b.t, b.h, b.ends, b.P)
 
 
 @internal
@@ -123,5 +125,6 @@ def measure_at(s, r, b, step, at, theta):
     if b.rate == 0 and moved:
         answered(s, r, b.rough[0], b.rough[2])
     if b.rate > 0 and theta > 0.0:
-        at_rest(s, r, b, P, (at - start) / theta, theta, at, b.y2, b.rough[0])
+        place = (P, (at - start) / theta, theta)
+        at_rest(s, r, b, place, (at, b.y2, b.rough[0]))
     measure(s, at, b.y2, work + theta * projected, r.energy_0)

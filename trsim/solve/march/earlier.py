@@ -61,8 +61,8 @@ def keep_step(r, b, method):
 @internal
 def build_earlier(s, r, b, method):
     """The dense output of the step that was kept, in the place of its stages."""
-    e, t, h = r.earlier, r.earlier_t, r.earlier_h
-    call_dense(method[DENSE_AT], s, r.stages, t, e[0], h, e[1], b.P_earlier)
+    t, h = r.earlier_t, r.earlier_h
+    call_dense(method[DENSE_AT], s, r.stages, t, h, r.earlier, b.P_earlier)
     copy_table(r.stages, b.P_earlier)
     r.earlier_built = 1
     r.dense_built += 1

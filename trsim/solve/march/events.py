@@ -20,7 +20,7 @@ from trsim.assemble.travel import ANGLE, RATE_OF, TWIST
 from trsim.elements.contract import FLIGHT, UNLOCATED, Memory
 from trsim.kernels.lazy import internal
 from trsim.solve.march.corners import NONE, any_left, corner_root, show
-from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.illinois import TRIALS, between, is_narrow, narrowed
 from trsim.solve.march.spread import spread, spread_at_stages
 
 SAME = 1e-12  # roots closer than this part of a step are one event
@@ -111,8 +111,8 @@ def bracketed_root(s, r, b, c, low, high):
         return high[0]
     rising = high[1] > 0.0
     bracket = (low[0], low[1], high[0], high[1], 0.0)
-    for k in range(200):
-        if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
+    for k in range(TRIALS):
+        if is_narrow(bracket):
             break
         middle = between(bracket, k)
         f, _ = inside(s, r, b, c, middle)
@@ -133,20 +133,26 @@ def hidden_depth(s, r, setting, kind):
 
 
 @internal
-def hides(s, r, setting, c, M, length):
-    """Whether a part of a step is so short that what it may hide does not count."""
-    depth = hidden_depth(s, r, setting, s.travel[c, 0])
+def hides(M, length, depth):
+    """Whether a part of a step is so short that what it may hide is no deeper than what counts."""
     return M >= 0.0 and 0.125 * M * length**2 < depth
 
 
 @internal
-def fall(s, r, b, setting, c, way, start, end):
-    """Where f = sign * gap, positive at the start, first falls through zero to below -beyond.
+def way_of(s, r, setting, c, sign, beyond):
+    """What is looked for of gap c: f = sign * gap, how far it is to go beyond zero, and how deep it
+    may go unseen."""
+    return c, sign, beyond, hidden_depth(s, r, setting, s.travel[c, 0])
 
-    way: sign, beyond; start: theta, f and its rate there.  A theta in (low, end]; NONE where it
+
+@internal
+def fall(s, r, b, way, start, end):
+    """Where f, positive at the start, first falls through zero to below -beyond.
+
+    way: see `way_of`; start: theta, f and its rate there.  A theta in (low, end]; NONE where it
     does not.
     """
-    (sign, beyond), (low, f0, r0) = way, start
+    (c, sign, beyond, depth), (low, f0, r0) = way, start
     at_low, f_at_low = low, f0  # the last place where it was seen to be positive
     high = end
     for _ in range(LOOKS):
@@ -156,7 +162,7 @@ def fall(s, r, b, setting, c, way, start, end):
         f1, r1, length = sign * g1, sign * rate, (high - low) * b.h
         L, M = spread(s, r, b, s.travel[c], sign, (low, high))
         short = high - low < FINEST or (
-            hides(s, r, setting, c, M, length) and not through(f0, f1, L, length, s.kink[c])
+            hides(M, length, depth) and not through(f0, f1, L, length, s.kink[c])
         )
         least = 0.0 if high >= end else beyond  # at an end what comes after is not known
         if f1 < -least or (f1 == 0.0 and least == 0.0 and r1 < 0.0):
@@ -186,12 +192,12 @@ def noise(s, f0):
 
 
 @internal
-def leaves(s, r, b, setting, c, way, start, end):
+def leaves(s, r, b, way, start, end):
     """A place behind the start, where f is about zero, at which it is above `beyond`; -1 for none.
 
     way, start: see `fall`.
     """
-    (sign, beyond), (low, f0, r0) = way, start
+    (c, sign, beyond, depth), (low, f0, r0) = way, start
     at, rate = low, r0
     for trial in range(2):
         if rate > 0.0 or trial == 0:
@@ -218,7 +224,7 @@ def leaves(s, r, b, setting, c, way, start, end):
         if at > low or f0 >= 0.0:
             break
         # below zero: where it rises through zero, if it does
-        at = fall(s, r, b, setting, c, (-sign, 0.0), (low, -f0, -r0), end)
+        at = fall(s, r, b, (c, -sign, 0.0, depth), (low, -f0, -r0), end)
         if at >= end:
             break
         _, rate = inside(s, r, b, c, at)
@@ -230,10 +236,11 @@ def leaves(s, r, b, setting, c, way, start, end):
 def change(s, r, b, setting, c, end):
     """Where contact c first changes its phase up to `end`, as theta; NONE if it does not."""
     sign = -1.0 if Memory(r, s.contact[c]).phase == FLIGHT else 1.0
+    way = way_of(s, r, setting, c, sign, 0.0)
     low, f0, r0 = 0.0, sign * r.gap[c, 0], sign * r.gap[c, 1]
     if f0 <= 0.0:
         # it begins on the event just handled, and first moves away
-        low = leaves(s, r, b, setting, c, (sign, 0.0), (0.0, f0, r0), end)
+        low = leaves(s, r, b, way, (0.0, f0, r0), end)
         if low < 0.0:
             # a step that other events make short may end while it is still on its way
             g, _ = inside(s, r, b, c, end)
@@ -242,7 +249,7 @@ def change(s, r, b, setting, c, end):
         f0, r0 = sign * g, sign * rate
     if low >= end:
         return NONE
-    return fall(s, r, b, setting, c, (sign, 0.0), (low, f0, r0), end)
+    return fall(s, r, b, way, (low, f0, r0), end)
 
 
 @internal

@@ -89,7 +89,7 @@ def meet(s, r, b, t, t1):
     first = r.event_rows
     if jumped:
         jolt(s, r, b, t, t1)
-    done = call_land(b.land, s, r, b, t1, b.y1, r.yd, 0)
+    done = call_land(b.land, s, r, b, t1, r.yd, 0)
     copy_to(r.y, b.y1)
     if jumped and s.jumps >= 0:
         set_poses(s, r.y)

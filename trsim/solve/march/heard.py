@@ -23,8 +23,10 @@ BESIDE = 1e-4  # of a step: where the rate at a root is taken
 
 @internal
 def parts_in(s, r, b, last):
-    """In how many parts the step is looked at."""
-    return max(parts_of(s, r, b, last), waves_of(s, r, b))
+    """In how many parts the step is looked at, the same for all events."""
+    if b.parts == 0:
+        b.parts = max(parts_of(s, r, b, last), waves_of(s, r, b))
+    return b.parts
 
 
 @compiled(SOUND)

@@ -6,6 +6,9 @@ values halved where the same end moved twice, and which end moved last (-1 low, 
 
 from trsim.kernels.lazy import internal
 
+TRIALS = 200  # in one search
+RESOLUTION = 4e-16  # of a step
+
 
 @internal
 def between(bracket, k):
@@ -17,6 +20,12 @@ def between(bracket, k):
         if low < secant < high:
             middle = secant
     return middle
+
+
+@internal
+def is_narrow(bracket):
+    """Whether its ends are as near to each other as places of a step can be."""
+    return bracket[2] - bracket[0] <= RESOLUTION * max(1.0, bracket[2])
 
 
 @internal

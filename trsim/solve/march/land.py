@@ -40,21 +40,21 @@ UNKNOWN = 1e-15  # of the diagonal: rounding of a pivot
 NOTHING = 1e-60  # m, rad, m/s, rad/s, J: far below the rounding of anything it is added to
 
 
-#                    scene  record  buffers  t   y   y'  rest
-LAND = types.float64(SCENE, RECORD, BUFFERS, f8, A1, A1, i8)
+#                    scene  record  buffers  t   y'  rest
+LAND = types.float64(SCENE, RECORD, BUFFERS, f8, A1, i8)
 call_land = caller(LAND)
 
 
 @compiled(LAND)
-def land(s, r, b, t, y, yd, rest):
-    """Bring y to the constraints and evaluate y' there; gaps into b.gap1.
+def land(s, r, b, t, yd, rest):
+    """Bring y, which is b.y1, to the constraints and evaluate y' there; gaps into b.gap1.
 
     Returns the work done by the projection (J): the change of kinetic energy, and minus the work
     of the applied forces on the small displacement.  Where no position is found y and y' are not
     finite.  rest: more than 0 at the end of the step just made by a method that knows what is
     stiff, which comes to rest then.
     """
-    done = 0.0
+    y, done = b.y1, 0.0
     normalise(s, y)
     if s.stabilisation == PROJECTION and s.m > 0:
         copy_to(b.y2, y)
@@ -87,7 +87,7 @@ def land(s, r, b, t, y, yd, rest):
     evaluate(s, t, y, yd)
     if rest > 0:
         T0 = kinetic(s, y)
-        at_rest(s, r, b, b.P, t - b.t, AT_END, t, y, yd)
+        at_rest(s, r, b, (b.P, t - b.t, AT_END), (t, y, yd))
         done += kinetic(s, y) - T0
     if s.near_rows > 0.0:
         keep_roots(s, s.root[2])

@@ -292,7 +292,7 @@ def next_step(s, r, b, setting, method):
         return left if left < setting.fixed_step * (1.0 + 1e-9) else setting.fixed_step
     looked_at = s.section.shape[0] + s.heard.size
     if s.wound.size + looked_at + s.looped.size + s.judged.shape[0] > 0:
-        most = min(most, longest_turn(s, r))
+        most = min(most, longest_turn(s, r, b))
     if method[STIFF_AT] > 0 and r.vibration > 0.0:
         most = min(most, longest_calm(r))
     if s.pulse.size > 0:

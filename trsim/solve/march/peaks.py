@@ -22,7 +22,7 @@ from trsim.elements.contract import SCENE, compiled
 from trsim.kernels import signatures as types
 from trsim.kernels.calls import caller
 from trsim.kernels.lazy import internal
-from trsim.kernels.packed import A1, I1, f8, i8
+from trsim.kernels.packed import A1, I1, i8
 from trsim.solve.march.calls import BETWEEN_AT
 from trsim.solve.march.dense_output import build, call_measure_in
 from trsim.solve.march.earlier import build_earlier, either_step, ends
@@ -49,8 +49,8 @@ TINY = 0.02  # of the mean step: in a shorter one nothing turns
 GUESSED = 0.02  # of what a channel changes by: how wrong the guess of its middle may be
 TRIES = 12  # evaluations for one extreme of one channel: a kink is approached slowly
 
-#                   scene  record  buffers  settings method at values
-SAMPLE = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, A1)
+#                   scene  record  buffers  settings method values
+SAMPLE = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1, A1)
 call_sample = caller(SAMPLE)
 #                   scene  record  buffers  settings method
 FINISH = types.void(SCENE, RECORD, BUFFERS, SETTINGS, I1)
@@ -61,9 +61,10 @@ call_between = caller(BETWEEN)
 
 
 @compiled(SAMPLE)
-def sample(s, r, b, setting, method, at, values):
-    """Take the channels at one time of the step at hand into their extremes, and what lies between
-    the two samples before it."""
+def sample(s, r, b, setting, method, values):
+    """Take the channels at one time of the step at hand, b.sampled_t, into their extremes, and what
+    lies between the two samples before it."""
+    at = b.sampled_t
     if s.sought.size == 0:  # no channel is told
         gather(s, b.full, values, b.inside[0])
         known_extremes(s, r, b, at)
@@ -136,9 +137,9 @@ def between(s, r, b, setting, method, ahead):
             b.n_found, b.laid = 0, NOT_LAID
             look_within(s, r, b, method, ahead, inner)
         if rises:
-            search(s, r, b, method, ahead, c, 1.0, enough)
+            search(s, r, b, method, ahead, (c, 1.0, enough))
         if falls:
-            search(s, r, b, method, ahead, c, -1.0, enough)
+            search(s, r, b, method, ahead, (c, -1.0, enough))
 
 
 @internal
@@ -179,13 +180,14 @@ def guessed(s, r, b, ahead, c):
 
 
 @internal
-def search(s, r, b, method, ahead, c, sign, enough):
-    """Look for an extreme of channel c between two neighbours, by its polynomial; the dense output
+def search(s, r, b, method, ahead, what):
+    """Look for an extreme of a channel between two neighbours, by its polynomial; the dense output
     is there.
 
-    sign: 1 for a maximum, -1 for a minimum; enough: what may be missed.  A polynomial that is much
-    surer than that is taken at its word.
+    what: the channel, 1 for a maximum or -1 for a minimum, and what may be missed.  A polynomial
+    that is much surer than that is taken at its word.
     """
+    c, sign, enough = what
     o, aside_before = s.sought[c], False
     for _ in range(TRIES):
         best = r.peak[PEAK_MAX, o] if sign > 0.0 else -r.peak[PEAK_MIN, o]

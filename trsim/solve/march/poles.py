@@ -24,11 +24,12 @@ from trsim.laws.waves import seen
 from trsim.solve.march.calls import LAST_AT, SEARCH
 from trsim.solve.march.corners import NONE, show
 from trsim.solve.march.dense_output import build
+from trsim.solve.march.illinois import TRIALS, between, is_narrow, narrowed
 
 BRIEF = 1e-9  # of a run: so near to a pole it ends
 SHORT = 1.0 / 256.0  # of a step: in a part so short u has one lowest point
 LOOKS = 4000  # parts of a step
-GOLDEN, TRIALS = 0.6180339887498949, 60
+GOLDEN, NARROWED = 0.6180339887498949, 60  # how often a part is, by the golden section
 NEAR = (1e-2, 1e-4, 1e-6)  # of a step: how far off a function is looked at
 ROUNDING, APART = 2.2e-16, 60.0  # roundings of the time: what those must be apart
 GROWS = 2.0 / 3.0  # from which power of 1/u on
@@ -70,15 +71,15 @@ def first_of(s, r, b, method, k):
         b.pole_last[c, 0], b.pole_last[c, 1] = b.branch1[c], b.turning1[c]
     t, low, high, last = b.t - since, 0.0, (b.t1 - b.t) / b.h, (b.t1 - b.t) / b.h
     for _ in range(LOOKS):
-        if not clear(s, b, k, t, (low, high)):
+        if not clear(s, b, (k, t), (low, high)):
             if b.built == 0:
                 build(s, r, b, method)
             if high - low > SHORT:
                 high = 0.5 * (low + high)
                 look(s, r, b, high)
                 continue
-            at = met(s, r, b, k, t, (low, high))
-            if at >= 0.0 and unbounded(s, r, b, k, t, at):
+            at = met(s, r, b, (k, t), (low, high))
+            if at >= 0.0 and unbounded(s, r, b, (k, t), at):
                 return at
             look(s, r, b, high)
         if high >= last:
@@ -98,11 +99,12 @@ def look(s, r, b, theta):
 
 
 @internal
-def clear(s, b, k, t, part):
+def clear(s, b, what, part):
     """Whether u stays where it may be in a part of a step, at whose ends the sensors are known.
 
-    t: s, when the step begins.
+    what: which u, and when the step begins by its own clock, s.
     """
+    k, t = what
     tab, o, box = s.tab, s.pole[k, AT], b.pole_box
     t0, t1 = t + part[0] * b.h, t + part[1] * b.h
     u0, u1 = value(tab, o, t0, b.pole_first), value(tab, o, t1, b.pole_last)
@@ -121,61 +123,62 @@ def clear(s, b, k, t, part):
 
 
 @internal
-def u_at(s, r, b, k, t, theta):
+def u_at(s, r, b, what, theta):
     """u at theta of the step."""
+    k, t = what
     show(s, r, b, theta)
     return value(s.tab, s.pole[k, AT], t + theta * b.h, s.S)
 
 
 @internal
-def met(s, r, b, k, t, part):
+def met(s, r, b, what, part):
     """Where u passes zero in a short part of the step, or comes nearest to it; -1: it has no lowest
     place inside and passes none."""
     low, high = part
-    before = u_at(s, r, b, k, t, low)
-    side = 1.0 if before >= 0.0 or s.pole[k, KIND] == DOMAIN else -1.0
-    after = u_at(s, r, b, k, t, high)
+    before = u_at(s, r, b, what, low)
+    side = 1.0 if before >= 0.0 or s.pole[what[0], KIND] == DOMAIN else -1.0
+    after = u_at(s, r, b, what, high)
     if side * after < 0.0:
-        return root(s, r, b, k, t, side, (low, high))
+        return root(s, r, b, what, (low, before), (high, after))
     if side * before < 0.0:
         return -1.0  # of a domain: it is outside, where the function has had a value
     a, c = low, high
     x, y = c - GOLDEN * (c - a), a + GOLDEN * (c - a)
-    f_x, f_y = side * u_at(s, r, b, k, t, x), side * u_at(s, r, b, k, t, y)
-    for _ in range(TRIALS):
+    f_x, f_y = side * u_at(s, r, b, what, x), side * u_at(s, r, b, what, y)
+    for _ in range(NARROWED):
         if f_x < 0.0 or f_y < 0.0:
-            return root(s, r, b, k, t, side, (low, x if f_x < 0.0 else y))
+            beyond = (x, side * f_x) if f_x < 0.0 else (y, side * f_y)
+            return root(s, r, b, what, (low, before), beyond)
         if f_x < f_y:
             c, y, f_y = y, x, f_x
             x = c - GOLDEN * (c - a)
-            f_x = side * u_at(s, r, b, k, t, x)
+            f_x = side * u_at(s, r, b, what, x)
         else:
             a, x, f_x = x, y, f_y
             y = a + GOLDEN * (c - a)
-            f_y = side * u_at(s, r, b, k, t, y)
+            f_y = side * u_at(s, r, b, what, y)
     lowest = 0.5 * (x + y)
     return lowest if low < a and c < high else -1.0
 
 
 @internal
-def root(s, r, b, k, t, side, part):
-    """Where u, on one side of zero at the beginning, has just passed it."""
-    low, high = part
-    for _ in range(TRIALS):
-        middle = 0.5 * (low + high)
-        if middle <= low or middle >= high:
+def root(s, r, b, what, low, high):
+    """Where u, on one side of zero or at it at the first of two places and beyond it at the other,
+    (theta, u) each, has just passed it."""
+    sign = 1.0 if high[1] > 0.0 else -1.0
+    bracket = (low[0], sign * low[1], high[0], sign * high[1], 0.0)
+    for n in range(TRIALS):
+        if is_narrow(bracket):
             break
-        if side * u_at(s, r, b, k, t, middle) < 0.0:
-            high = middle
-        else:
-            low = middle
-    return high
+        middle = between(bracket, n)
+        bracket = narrowed(bracket, middle, sign * u_at(s, r, b, what, middle), True)
+    return bracket[2]
 
 
 @internal
-def unbounded(s, r, b, k, t, at):
+def unbounded(s, r, b, what, at):
     """Whether the function grows as fast as 1/u towards a place, or has no number beside it."""
-    if s.pole[k, KIND] == DOMAIN and not isfinite(function_at(s, r, b, k, t, at)):
+    if s.pole[what[0], KIND] == DOMAIN and not isfinite(function_at(s, r, b, what, at)):
         return True
     last, nearest = (b.t1 - b.t) / b.h, APART * ROUNDING * abs(b.t1) / b.h
     far, near = max(NEAR[1], nearest), max(NEAR[2], nearest)
@@ -183,9 +186,9 @@ def unbounded(s, r, b, k, t, at):
     for side in (-1.0, 1.0):
         if not 0.0 <= at + side * NEAR[0] <= last:
             continue
-        f0 = function_at(s, r, b, k, t, at + side * NEAR[0])
-        f1 = function_at(s, r, b, k, t, at + side * far)
-        f2 = function_at(s, r, b, k, t, at + side * near)
+        f0 = function_at(s, r, b, what, at + side * NEAR[0])
+        f1 = function_at(s, r, b, what, at + side * far)
+        f2 = function_at(s, r, b, what, at + side * near)
         if not isfinite(f0 + f1 + f2):
             return True
         size = max(size, abs(f0))
@@ -194,7 +197,8 @@ def unbounded(s, r, b, k, t, at):
 
 
 @internal
-def function_at(s, r, b, k, t, theta):
+def function_at(s, r, b, what, theta):
     """What becomes of u: the function at theta of the step."""
+    k, t = what
     show(s, r, b, theta)
     return value(s.tab, s.pole[k, OF], t + theta * b.h, s.S)

@@ -152,12 +152,13 @@ def top(b, n, start, end, wanted):
         before, last = last, value[k]
     if best + 0.25 * bend < wanted:
         return place, best
-    return higher(b.node, n, start, end, place, best, b.doubt)
+    return higher(b, n, start, end, (place, best))
 
 
 @internal
-def higher(node, n, start, end, place, best, doubt):
-    """`top`, from the best of PARTS + 1 places on."""
+def higher(b, n, start, end, known):
+    """`top`, from the best of PARTS + 1 places on: known, the place and its value."""
+    node, doubt, (place, best) = b.node, b.doubt, known
     low, high, width = start, end, (end - start) / PARTS
     for _ in range(1, ROUNDS):
         low, high = max(start, place - width), min(end, place + width)

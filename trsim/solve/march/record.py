@@ -264,6 +264,7 @@ class Buffers(Packed):
     events: A2 = of("events", N_EVENT)
     points: A2 = of("points", N_POINT)  # of Poincare sections; empty without any
     K: A2 = of("stages", "n_y")  # stages of the integrator
+    ends: A2 = of(2, "n_y")  # both ends of a step whose dense output is made
     P: A2 = of("dense_rows", "n_y")  # dense output
     P_earlier: A2 = of("dense_rows", "n_y")  # that of the step before, while it is made
     y1: A1 = of("n_y")
@@ -297,6 +298,7 @@ class Buffers(Packed):
     corner_root: A1 = of("contact")  # and where it meets a corner
     branch1: A1 = of("angles")
     turning1: A1 = of("angles")
+    at_ends: A2 = of(4, "angles")  # what sensors show at both ends of a stretch, and rates turns.py
     net: A2 = of(9, "watched")  # control points of q, or of q and v, over a step  spread.py
     curve: T14 = of(9, 14)  # those of two frames on a part of it
     seen: A2 = of("seen", 4)  # ranges of sensors and of their rates, where they meet corners
@@ -312,6 +314,7 @@ class Buffers(Packed):
     h: F8  # s, its length; what its dense output is made with
     t1: F8  # s, its end
     projected: F8  # J, what the projection there gave
+    sampled_t: F8  # s, when the channels were measured that are sampled next     peaks.py
     until: F8  # s, after its start: the row that it is to end at, 0: none     output_rows.py
     doubt: F8  # what stands for the last divided difference in the error of a polynomial
     count: I1  # and the whole ones
@@ -321,6 +324,7 @@ class Buffers(Packed):
     land: I8  # of what brings an end to the rows                                 land.py
     measure_in: I8  # and of what measures channels inside a step        dense_output.py
     built: I8  # 1: P holds it
+    parts: I8  # in how many parts events look at channels in it, 0: not asked yet         heard.py
     halved: I8  # 1: middle holds the channels of this step
     restless: I8  # 1: what is stiff did not come to rest
     moved: I8  # 1: the end of the step was moved on along its tangent
@@ -332,9 +336,8 @@ SETTINGS, RECORD, BUFFERS = Settings.kind, Record.kind, Buffers.kind
 
 
 def fresh_buffers(
-    model: Model, n_y: int, stages: int, dense_rows: int, n_steps: int, step_rows: int = 0,
-    points: int = 0,
-) -> Buffers:  # fmt: skip
+    model: Model, n_y: int, stages: int, dense_rows: int, step_rows: int = 0, points: int = 0
+) -> Buffers:
     """Buffers for a model and a method.
 
     step_rows: output rows a fixed step may span; points: of sections, the most in one step.
@@ -346,7 +349,7 @@ def fresh_buffers(
         "rows": rows,
         "row": 1 + model.n_out,
         "steps": max(1024, 8 * contacts),
-        "step": n_steps,
+        "step": 2 + int(np.max(model.contact_width, initial=0)),
         "events": max(256, 8 * (contacts + watched)),
         "points": max(1024, 2 * points + 16) if points else 0,
         "stages": stages,

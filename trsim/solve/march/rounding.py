@@ -112,8 +112,10 @@ def stuck(r, h):
 
 
 @internal
-def jitter(s, r, b, setting, t, f, g):
-    """f <- f(y + d) + f(y - d) - 2 f(y): of the derivatives only rounding is left; g: scratch."""
+def jitter(s, r, b, setting, f, g):
+    """f <- f(y + d) + f(y - d) - 2 f(y) at the state of the record: of the derivatives only
+    rounding is left; g: scratch."""
+    t = r.t
     counted = (s.status[1], s.status[2], s.status[3])
     beside(s, r, setting, r.y, b.y1, 1.0)
     evaluate(s, t, b.y1, f)

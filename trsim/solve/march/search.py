@@ -47,6 +47,7 @@ def to_search(s, r, b, setting, stages):
 @internal
 def earliest(s, r, b, setting, method):
     """Fill b.root for contacts and user events; the first, corners of laws included."""
+    b.parts = 0
     for c in range(s.contact.size):
         b.root[c], b.corner_root[c] = NONE, NONE
     first = first_change(s, r, b, setting) if setting.locate > 0 else NONE

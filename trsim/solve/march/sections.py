@@ -262,7 +262,7 @@ def crossings(s, r, b, k, parts):
             side = 0.0
         new = side_of(high[1], side)
         if side * new < 0.0:
-            crossed(s, r, b, k, low, high, new)
+            crossed(s, r, b, k, (low, high), new)
             swung(r, k, abs(low[1]))
             r.section[k, FAR] = abs(high[1])
             before = (-1.0, 0.0)
@@ -271,9 +271,9 @@ def crossings(s, r, b, k, parts):
                 theta = dip(s, r, b, what, side, (before, low, high))
                 if theta >= 0.0:
                     bottom = (theta, value(s, r, b, what, theta))
-                    crossed(s, r, b, k, before, bottom, -side)
+                    crossed(s, r, b, k, (before, bottom), -side)
                     swung(r, k, before[1])
-                    crossed(s, r, b, k, bottom, high, side)
+                    crossed(s, r, b, k, (bottom, high), side)
                     swung(r, k, bottom[1])
             r.section[k, FAR] = max(r.section[k, FAR], abs(high[1]))
             before = low
@@ -291,7 +291,7 @@ def swung(r, k, f):
 
 
 @internal
-def crossed(s, r, b, k, low, high, to):
+def crossed(s, r, b, k, places, to):
     """The point of a crossing to the side `to` between two places, if it is asked for.
 
     Whether it jumps is judged by its swing until here: of a step that lasts an ulp, such as those
@@ -300,6 +300,7 @@ def crossed(s, r, b, k, low, high, to):
     want = s.section[k, DIRECTION]
     if want != 0 and want != to:
         return
+    low, high = places
     theta, jump = root(s, r, b, (s.section[k, WHEN], 0.0), low, high)
     if jump <= JUMP * max(r.section[k, FAR], abs(high[1] - low[1])):
         measure_inside(s, r, b, b.t + theta * b.h, theta)

@@ -59,7 +59,7 @@ from trsim.solve.march.corners import NONE, show
 from trsim.solve.march.dense_output import build
 from trsim.solve.march.events import FINEST, LOOKS, SAME, hidden_depth
 from trsim.solve.march.features import keep, other_side
-from trsim.solve.march.illinois import between, narrowed
+from trsim.solve.march.illinois import TRIALS, between, is_narrow, narrowed
 from trsim.solve.march.record import BUFFERS, RECORD, SETTINGS
 from trsim.solve.march.spread import fill_net, spread, spread_at_stages
 from trsim.solve.march.spread_rates import rate_at_stages, spread_of_rate
@@ -74,7 +74,7 @@ AHEAD = 1e-3  # of the next step: how far u is looked at behind a corner
 HALVINGS, LITTLE = 40, 0.05  # of the next step, by four; of the velocities
 OFTEN = 20  # corners met in a row within the error allowed: it is no longer located
 
-TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, f8, i8)
+TURN = types.int64(SCENE, RECORD, BUFFERS, SETTINGS, I1, i8)
 BEYOND = types.float64(SCENE, BUFFERS, f8)
 call_turn, call_beyond = caller(TURN), caller(BEYOND)
 
@@ -212,7 +212,7 @@ def roots(s, r, b, low, high):
             least, most = ends_of(s.tab, o, place)
             if least <= u <= most:
                 continue
-            at = root(s, r, b, n, place, u > most, (low, high))
+            at = root(s, r, b, (n, place), u > most, (low, high))
             if at < b.met[n, THETA]:
                 b.met[n, THETA], b.met[n, PLACE] = at, place
                 b.met[n, NEXT] = neighbour(s.tab, o, place, u > most)
@@ -240,9 +240,12 @@ def corner_at(s, n, place, t):
 
 
 @internal
-def root(s, r, b, n, place, above, part):
-    """Where u leaves its piece between two places of the step, just behind it."""
-    (low, high), t, h = part, b.t, b.h
+def root(s, r, b, corner, above, part):
+    """Where u leaves its piece between two places of the step, just behind it.
+
+    corner: the function, and where in tab its place is.
+    """
+    (n, place), (low, high), t, h = corner, part, b.t, b.h
     least, most = ends_of(s.tab, s.feature[n, OFFSET], place)
     end = most if above else least
     f_high = corner_at(s, n, place, t + high * h)[0] - end
@@ -251,8 +254,8 @@ def root(s, r, b, n, place, above, part):
     if (f_low > 0.0) == above and f_low != 0.0:
         return low  # outside as it begins: to rounding on the corner, and on its way out
     bracket = (low, f_low, high, f_high, 0.0)
-    for k in range(200):
-        if bracket[2] - bracket[0] <= 4e-16 * max(1.0, bracket[2]):
+    for k in range(TRIALS):
+        if is_narrow(bracket):
             break
         middle = between(bracket, k)
         show(s, r, b, middle)
@@ -280,13 +283,14 @@ def beyond(s, b, t):
 
 
 @compiled(TURN)
-def turn(s, r, b, setting, method, t1, changed):
-    """Go on from t1 behind the corners that sensors met there; whether the next step is shorter.
+def turn(s, r, b, setting, method, changed):
+    """Go on from the end of the step behind the corners that sensors met there; whether the next
+    step is shorter.
 
     changed: not 0 where what was held has changed already, by the time or by an event.
     """
     set_poses(s, r.y)
-    turned = 0
+    t1, turned = b.t1, 0
     for n in range(s.feature.shape[0]):
         if s.feature[n, SENSED] > 0:
             turned += released(s, r, n, t1)

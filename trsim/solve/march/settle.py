@@ -42,11 +42,13 @@ DF = DY + CHANGES_KEPT
 
 
 @internal
-def at_rest(s, r, b, P, h, theta, t, y, yd):
+def at_rest(s, r, b, place, state):
     """y, y' <- a state near y in which what is stiff is at rest, theta of a step h.
 
-    y' is that of y, evaluated last, and so it is again.  b.restless: 1 if it did not come to rest.
+    place: P, the dense output of the step, h and theta; state: the time, y and y', which is that of
+    y, evaluated last, and so it is again.  b.restless: 1 if it did not come to rest.
     """
+    (P, h, theta), (_, y, yd) = place, state
     b.restless = 0
     if not settles(s) or s.status[0] != SOUND:
         return
@@ -56,7 +58,7 @@ def at_rest(s, r, b, P, h, theta, t, y, yd):
     call_rate(b.rate, b.K, P, h, theta, K[SLOW])
     if not apart(s, yd, 1.0, K[SLOW]) > quiet or (s.m > 0 and not smallest_pivot(s) > DOUBTFUL):
         return
-    rest, known = solved(s, r, b, theta, t, y, yd, quiet)
+    rest, known = solved(s, r, b, theta, state, quiet)
     if rest > MORE * quiet and rest > rounding(s, K, y, known):
         b.restless = 1
         if rest > ALLOWED * s.tolerance * most:
@@ -88,10 +90,10 @@ def rounding(s, K, y, known):
 
 
 @internal
-def solved(s, r, b, theta, t, y, yd, quiet):
+def solved(s, r, b, theta, state, quiet):
     """y, y' <- the best state found.  Returns what it leaves of F, 0 if no more than rounding, less
     than 0 where nothing is stiff, and nothing was changed; and how many changes are known."""
-    K = b.tried
+    K, (t, y, yd) = b.tried, state
     left, change, n, fine = K[LEFT], K[CHANGE], 0, False
     remaining(s, K, y, yd, y, 0.0)
     copy_to(change, left)

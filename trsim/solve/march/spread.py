@@ -182,9 +182,12 @@ def turning(s, r, b, f, first, length):
 
 
 @internal
-def apart(s, b, n, i, j, first_j, length):
-    """A bound of |r_j'' - r_i''| from the control points in b.curve."""
-    worst, curve = 0.0, b.curve
+def apart(s, b, n, two, length):
+    """A bound of |r_j'' - r_i''| from n control points in b.curve.
+
+    two: the frames i and j, and the first column of j.
+    """
+    worst, curve, (i, j, first_j) = 0.0, b.curve, two
     for k in range(n - 2):
         square = 0.0
         for c in range(2 if s.d == 3 else 3):
@@ -231,7 +234,7 @@ def spread(s, r, b, what, sign, part):
         of_2 = turning(s, r, b, two.i_2, 0, length), turning(s, r, b, two.j_2, first_j, length)
         return of_train(s, e, of_angle(of_i, of_j), of_angle(of_2[0], of_2[1]))
     (spin_i, bend_i), (spin_j, bend_j) = of_i, of_j
-    away = apart(s, b, n, i, j, first_j, length)
+    away = apart(s, b, n, (i, j, first_j), length)
     _, p_i, _, p_j = two_points(s, e)
     round_i, round_j = bend_i + spin_i * spin_i, bend_j + spin_j * spin_j
     bend = away + round_i * sqrt(dot(p_i, p_i)) + round_j * sqrt(dot(p_j, p_j))

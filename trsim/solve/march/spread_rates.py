@@ -86,9 +86,12 @@ def turned(s, r, b, f, first, length):
 
 
 @internal
-def moved_apart(s, b, n, i, j, first_j, length):
-    """Bounds of |r_j'' - r_i''| and |r_j''' - r_i'''| from the control points in b.curve."""
-    curve, once, twice = b.curve, 0.0, 0.0
+def moved_apart(s, b, n, two, length):
+    """Bounds of |r_j'' - r_i''| and |r_j''' - r_i'''| from n control points in b.curve.
+
+    two: the frames i and j, and the first column of j.
+    """
+    curve, once, twice, (i, j, first_j) = b.curve, 0.0, 0.0, two
     for k in range(n - 1):
         a1 = a2 = 0.0
         for c in range(2 if s.d == 3 else 3):
@@ -127,7 +130,7 @@ def spread_of_rate(s, r, b, what, part):
         return turn, bend + w_i * turn, b_i + b_j + 2.0 * w_i * bend + bent_i * turn
     round_i = b_i + 3.0 * a_i * w_i + w_i**3
     round_j = b_j + 3.0 * a_j * w_j + w_j**3
-    bend, jerk = moved_apart(s, b, n, i, j, first_j, length)
+    bend, jerk = moved_apart(s, b, n, (i, j, first_j), length)
     _, p_i, _, p_j = two_points(s, e)
     arm_i, arm_j = sqrt(dot(p_i, p_i)), sqrt(dot(p_j, p_j))
     bend += bent_i * arm_i + (a_j + w_j * w_j) * arm_j

@@ -14,6 +14,7 @@ from math import sqrt
 
 from trsim.assemble.waves import call_swings
 from trsim.kernels.lazy import internal
+from trsim.kernels.vectors import copy_to
 from trsim.solve.march.spread import coordinates_of
 
 MOST, ASIDE = 2.0, 1.0  # rad; half a turn is 3.14
@@ -41,7 +42,20 @@ def too_far(s, r, b, h):
 
 
 @internal
-def longest_turn(s, r):
+def swings_in(address, s, b, stretch, before, behind):
+    """The fastest wave or pulse, rad/s, in a stretch of time, (t, length).
+
+    before, behind: what sensors show at its ends, and the rates of that.
+    """
+    copy_to(b.at_ends[0], before[0])
+    copy_to(b.at_ends[1], before[1])
+    copy_to(b.at_ends[2], behind[0])
+    copy_to(b.at_ends[3], behind[1])
+    return call_swings(address, s, stretch[0], stretch[1], b.at_ends)
+
+
+@internal
+def longest_turn(s, r, b):
     """The longest step that turns no joint by more than is sure to be counted, s.
 
     Nor is a turn passed over that is judged, as that of a bushing.  Where points of sections are
@@ -53,8 +67,9 @@ def longest_turn(s, r):
     if s.section.shape[0] + s.heard.size > 0:
         longest = WHOLE / max(fastest(s, r.y, r.yd), 1e-300)
     if s.wave.size > 0:
-        now = call_swings(s.swings_at, s, r.t, 0.0, r.branch, r.turning, r.branch, r.turning)
-        longest = min(longest, MOST_WAVES / max(now, 1e-300))
+        now = (r.branch, r.turning)
+        w = swings_in(s.swings_at, s, b, (r.t, 0.0), now, now)
+        longest = min(longest, MOST_WAVES / max(w, 1e-300))
     if s.looped.size > 0:
         longest = min(longest, IN_LOOPS / max(fastest_in_loops(s, r.y), 1e-300))
     for n in range(s.judged.shape[0]):
@@ -83,7 +98,8 @@ def before_pulses(s, r, b, h, most, brief):
     while h > brief:
         for k in range(r.branch.size):
             b.branch1[k] = r.branch[k] + h * r.turning[k]
-        w = call_swings(s.beats_at, s, r.t, h, r.branch, r.turning, b.branch1, r.turning)
+        now, then = (r.branch, r.turning), (b.branch1, r.turning)
+        w = swings_in(s.beats_at, s, b, (r.t, h), now, then)
         if h * w <= most:
             break
         h *= 0.5
@@ -93,8 +109,8 @@ def before_pulses(s, r, b, h, most, brief):
 @internal
 def beats_in(s, r, b):
     """How much of a pulse of a load may lie in the step that just landed, rad."""
-    w = call_swings(s.beats_at, s, b.t, b.h, r.branch, r.turning, b.branch1, b.turning1)
-    return b.h * w
+    now, then = (r.branch, r.turning), (b.branch1, b.turning1)
+    return b.h * swings_in(s.beats_at, s, b, (b.t, b.h), now, then)
 
 
 @internal
@@ -106,7 +122,8 @@ def pulse(implicit):
 @internal
 def waves_in(s, r, b, h):
     """The fastest wave, rad/s, in what makes channels swing in such a step."""
-    return call_swings(s.swings_at, s, b.t, h, r.branch, r.turning, b.branch1, b.turning1)
+    now, then = (r.branch, r.turning), (b.branch1, b.turning1)
+    return swings_in(s.swings_at, s, b, (b.t, h), now, then)
 
 
 @internal

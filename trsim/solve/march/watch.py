@@ -13,7 +13,7 @@ from trsim.assemble.equations import gaps
 from trsim.assemble.outputs import call_hear
 from trsim.assemble.travel import CLOCK
 from trsim.kernels.lazy import internal
-from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched
+from trsim.solve.march.events import NONE, SAME, fall, inside, leaves, stays, watched, way_of
 from trsim.solve.march.record import JUST_NOW, PEAK_MAX, PEAK_MIN, SIDE, TIMES
 from trsim.solve.march.spread import spread_at_stages
 
@@ -98,16 +98,17 @@ def may_cross(s, r, b, k, stages):
 
 
 @internal
-def departure(s, r, b, setting, c, way, end):
+def departure(s, r, b, way, end):
     """The side on which g first leaves the band it is in, and a place in the step beyond it.
 
-    way: the side it is on, and the band.  What rested on the value has a rate that is rounding, so
-    no side is to be taken from it.  The place is less than 0 where g stays in the band.
+    way: see `way_of`, with the side it is on and the band.  What rested on the value has a rate
+    that is rounding, so no side is to be taken from it.  The place is less than 0 where g stays in
+    the band.
     """
-    side, band = way
+    c, side, band, depth = way
     g, rate = side * r.gap[c, 0], side * r.gap[c, 1]
-    one = leaves(s, r, b, setting, c, way, (0.0, g, rate), end)
-    other = leaves(s, r, b, setting, c, (-side, band), (0.0, -g, -rate), end)
+    one = leaves(s, r, b, way, (0.0, g, rate), end)
+    other = leaves(s, r, b, (c, -side, band, depth), (0.0, -g, -rate), end)
     return (side, one) if other < 0.0 or 0.0 <= one <= other else (-side, other)
 
 
@@ -123,7 +124,7 @@ def crossing(s, r, b, setting, k, end):
     side, low = starting_side(r, c, k), 0.0
     g, rate = r.gap[c, 0], r.gap[c, 1]
     if r.watch[k, SIDE] == AT and abs(g) <= band:
-        side, low = departure(s, r, b, setting, c, (side, band), end)
+        side, low = departure(s, r, b, way_of(s, r, setting, c, side, band), end)
         if low < 0.0 or low >= end:
             return NONE
         g, rate = inside(s, r, b, c, low)
@@ -132,8 +133,8 @@ def crossing(s, r, b, setting, k, end):
             at = r.watch[k, SIDE] == AT or passed > 0
             left = -1.0
             if at or side * rate >= 0.0:
-                start = (low, side * g, side * rate)
-                left = leaves(s, r, b, setting, c, (side, band if at else 0.0), start, end)
+                way = way_of(s, r, setting, c, side, band if at else 0.0)
+                left = leaves(s, r, b, way, (low, side * g, side * rate), end)
             if left < 0.0:
                 # on the value, or inside its band, and on to the other side
                 ahead, _ = inside(s, r, b, c, end)
@@ -147,7 +148,8 @@ def crossing(s, r, b, setting, k, end):
             g, rate = inside(s, r, b, c, low)
         if low >= end:
             break
-        root = fall(s, r, b, setting, c, (side, band), (low, side * g, side * rate), end)
+        way = way_of(s, r, setting, c, side, band)
+        root = fall(s, r, b, way, (low, side * g, side * rate), end)
         if root > end or want == 0 or want == -side:
             return root
         side, low = -side, root

@@ -170,13 +170,13 @@ def of_accelerations(s, r, b, setting, h):
     mean = turned / moved
     inside = min(largest(s, K[11], largest(s, K[7], 0.0)), sqrt(mean) * r.top_speed)
     most = max(most, inside)
-    doubted(s, r, setting, h, off, most, sqrt(mean))
+    doubted(s, r, setting, h, (off, most, mean))
     part = share(s, setting, h, STEADY)
     exceeded(r, setting, off, most, part)
     if seen5 == 0.0:
         return 0.0
     off = h * sqrt(max(seen5 / (seen5 + 0.01 * seen3) * seen5, least) / bodies)
-    return in_units(s, r, setting, h, off, most, mean, part)
+    return in_units(s, r, setting, h, (off, most, mean), part)
 
 
 @internal
@@ -197,8 +197,8 @@ def of_works(scene, r, b, setting, h):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    scratch = P[0]
+def dense(scene, K, t, h, ends, P):
+    y, y1, scratch = ends[0], ends[1], P[0]
     for s in range(13, 16):
         stage(K, y, h, s, scratch)
         evaluate_stage(scene, t + C[s] * h, scratch, K[s])
@@ -237,8 +237,8 @@ def inside(scene, r, b, setting, t, h):
         return 0.0
     off = together(off, of_squares, EACH)
     most = r.top_acceleration
-    doubted(scene, r, setting, h, off, most, sqrt(ww))
-    return in_units(scene, r, setting, h, off, most, ww, share(scene, setting, h, STEADY))
+    doubted(scene, r, setting, h, (off, most, ww))
+    return in_units(scene, r, setting, h, (off, most, ww), share(scene, setting, h, STEADY))
 
 
 @compiled(INTERPOLATE)

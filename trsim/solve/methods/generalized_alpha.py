@@ -65,7 +65,7 @@ def step(s, r, b, setting, t, h):
         copy_to(r.past[FILTERED], r.yd)
     for attempt in range(2):
         if missing(r) or (attempt > 0 and r.jacobian == OLD):
-            jacobian(s, r, b, setting, t, K[SCRATCH], K[MOVE])
+            jacobian(s, r, setting, K[SCRATCH], K[MOVE])
             r.factored_h = 0.0
         elif attempt > 0:
             return HALVE
@@ -169,11 +169,11 @@ def estimate(s, r, b, setting, t, h):
     for c in range(r.y.size):
         if weight[c] > 0.0:
             moved = max(moved, abs(h / 12.0 * (K[NEW, c] - r.yd[c]) * weight[c]))
-    ratio = h / r.past_h if r.history > 0 else 0.0
+    ratio = grown(r, h)
     if ratio == 0.0 and held(s, r, h):
         halved(s, r, b, t, h)
     if ratio > 0.0 or held(s, r, h):
-        moved = max(moved, accelerated(s, r, b, setting, h, ratio, FURTHER * moved))
+        moved = max(moved, accelerated(s, r, b, setting, h, FURTHER * moved))
     worst = size = 0.0
     for c in range(first_work(s), first_work(s) + N_BOOK):
         bend = K[NEW, c] - r.yd[c]
@@ -195,7 +195,13 @@ def halved(s, r, b, t, h):
 
 
 @internal
-def accelerated(s, r, b, setting, h, ratio, further):
+def grown(r, h):
+    """How many times as long as the step before a step h is; 0: there was none."""
+    return h / r.past_h if r.history > 0 else 0.0
+
+
+@internal
+def accelerated(s, r, b, setting, h, further):
     """The error of accelerations, a 12th of the second difference of the derivative, in units of
     the tolerance times the largest one met; at most `further` where a step does not resolve them.
 
@@ -205,7 +211,7 @@ def accelerated(s, r, b, setting, h, ratio, further):
     a plain part of the largest acceleration.  Waves of bars are left to the speeds: steps are to
     pass over them.
     """
-    K, weight = b.K, b.weight
+    K, weight, ratio = b.K, b.weight, grown(r, h)
     most, bent, moved = largest(s, K[NEW], r.top_acceleration), 0.0, 0.0
     for c in range(s.n_q, s.n_q + s.v_node):
         by = K[NEW, c] - r.yd[c]
@@ -217,16 +223,16 @@ def accelerated(s, r, b, setting, h, ratio, further):
         moved = max(moved, abs(by) * weight[c])
     off, strict = setting.step_error * r.speed * bent / 12.0, 0.0
     if held(s, r, h):
-        doubted(s, r, setting, h, LEFT * off, most, 0.0)
+        doubted(s, r, setting, h, (LEFT * off, most, 0.0))
         if ratio == 0.0 or bent <= RESOLVED * moved or off > LOST * most:
-            units = in_units(s, r, setting, h, off, most, 0.0, share(s, setting, h, ONE))
+            units = in_units(s, r, setting, h, (off, most, 0.0), share(s, setting, h, ONE))
             strict = min(STRICT * units, FURTHEST * further)
     turned = max(most, r.speed**2 / r.length)  # at the largest speed
     return max(strict, min(off / (setting.step_error * turned), further)) if turned > 0.0 else 0.0
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    hermite.build(K[0], K[LAST], h, y, y1, P)
-    for c in range(y.size):  # not for the dense output: for the next step
+def dense(scene, K, t, h, ends, P):
+    hermite.build(K[0], K[LAST], h, ends, P)
+    for c in range(ends.shape[1]):  # not for the dense output: for the next step
         P[FILTERED, c], P[BEFORE, c] = K[B1, c], K[0, c]

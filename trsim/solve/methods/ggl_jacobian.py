@@ -29,9 +29,12 @@ from trsim.solve.methods.jacobian import PART
 
 
 @internal
-def sparse_jacobian(s, r, b, setting, t, trial, lam):
-    """The derivatives of `pull`, B and Phi_z at (t, r.y).  trial, lam: scratch (n_y)."""
-    tolerance = setting.step_error
+def sparse_jacobian(s, r, b, setting, trial, lam):
+    """The derivatives of `pull`, B and Phi_z at the state of the record.
+
+    trial, lam: scratch (n_y).
+    """
+    t, tolerance = r.t, setting.step_error
     evaluate(s, t, r.y, trial)
     copy_to(lam, s.lam)
     pull(s, t, r.y, lam, b.pull0)

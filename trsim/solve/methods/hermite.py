@@ -8,8 +8,9 @@ ROWS = 3
 
 
 @internal
-def build(start, end, h, y, y1, P):
-    """Fill P from the states y, y1 and their rates at both ends of a step."""
+def build(start, end, h, ends, P):
+    """Fill P from the states at both ends of a step and their rates there."""
+    y, y1 = ends[0], ends[1]
     for c in range(y.size):
         delta = y1[c] - y[c]
         P[0, c] = delta

@@ -27,13 +27,13 @@ def missing(r):
 
 
 @internal
-def jacobian(s, r, b, setting, t, trial, rates):
-    """Fill by_place and by_rate at (t, r.y), where y' is r.yd.  trial, rates: scratch (n_y).
+def jacobian(s, r, setting, trial, rates):
+    """Fill by_place and by_rate at the state of the record.  trial, rates: scratch (n_y).
 
     After a corner of friction only the columns of by_rate are new that belong to the bodies which
     rub there: the law has no jump, and what is left of the others is good enough.
     """
-    n_w, tolerance = active(s), setting.step_error
+    n_w, t, tolerance = active(s), r.t, setting.step_error
     places = r.jacobian != NO_RATES
     for k in range(s.n_v if places else 0):
         # the unit of a displacement is that of the velocity's partner: same arm, length for speed

@@ -68,7 +68,7 @@ def step(s, r, b, setting, t, h):
     middle, half = K[STATE], 0.5 * h
     predict(s, y, K[0], half, middle)
     copy_to(y1, y)
-    error = follow(s, b, y, t, h, middle, y1) if s.n_z > N_BOOK else 0.0
+    error = follow(s, b, y, t, h) if s.n_z > N_BOOK else 0.0
     nearly = close(s, t + half, middle, b.y2)
     if nearly < 0.0:
         return NO_STEP
@@ -79,7 +79,7 @@ def step(s, r, b, setting, t, h):
         copy_to(b.middle, s.out)
         b.halved = 1
     inside = sqrt(b.firm[2])
-    go_on(s, y, K[0], middle, K[MIDDLE], half, y1)
+    go_on(s, (y, K[0]), (middle, K[MIDDLE]), half, y1)
     corrected = close(s, t + h, y1, b.y2)
     if corrected < 0.0:
         return NO_STEP
@@ -131,8 +131,12 @@ def ahead(y0, yd0, y, yd, h, v):
 
 
 @internal
-def go_on(s, y0, yd0, y, yd, h, y1):
-    """Places and velocities of y1 <- those a time h after y, which is as much after y0."""
+def go_on(s, before, now, h, y1):
+    """Places and velocities of y1 <- those a time h after y, which is as much after y0.
+
+    before, now: these states, each with its derivative.
+    """
+    (y0, yd0), (y, yd) = before, now
     for f in range(1, s.n_r):
         v = s.n_q + s.d * (f - 1)
         if s.d == 3:
@@ -153,14 +157,14 @@ def go_on(s, y0, yd0, y, yd, h, y1):
 
 
 @internal
-def follow(s, b, y, t, h, middle, y1):
+def follow(s, b, y, t, h):
     """The places of drives with a prescribed velocity in the middle and at the end; their error, in
     units of what is allowed.
 
     The rates of these states depend on the time alone: the poses at hand do.
     """
     first, half, error = s.n_q + s.n_v, 0.5 * h, 0.0
-    whole = b.y2
+    whole, middle, y1 = b.y2, b.K[STATE], b.y1
     for k in range(N_BOOK, s.n_z):
         middle[first + k] = whole[first + k] = y[first + k]
     for n in range(NODE.size):
@@ -267,7 +271,8 @@ def beyond_simpson(powers, back):
 
 
 @compiled(DENSE)
-def dense(s, K, t, y, h, y1, P):
+def dense(s, K, t, h, ends, P):
+    y, y1 = ends[0], ends[1]
     for c in range(y.size):
         first, there, last = h * K[0, c], h * K[MIDDLE, c], h * K[LAST, c]
         up, down = 2.0 * (K[STATE, c] - y[c]), 2.0 * (y1[c] - K[STATE, c])

@@ -90,11 +90,11 @@ def step(s, r, b, setting, t, h):
     corner = r.jacobian == NO_RATES
     for attempt in range(2):
         if missing(r) or (attempt > 0 and r.jacobian == OLD):
-            jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
+            jacobian(s, r, setting, b.K[Z], b.K[W])
             r.contraction = 1.0
             r.factored_h = 0.0
         elif attempt > 0:  # no older matrix is to blame
-            return hidden(s, r, b, setting, t, h)
+            return hidden(s, r, b, setting, h)
         if r.factored_h != h and not factorised(s, r, h):
             r.factored_h = 0.0
             return HALVE
@@ -105,9 +105,9 @@ def step(s, r, b, setting, t, h):
         if converged < 0 and r.jacobian == FRESH:
             return np.inf
         if corner:  # the step is too long for the new branch, more often than its matrix too old
-            return hidden(s, r, b, setting, t, h)
+            return hidden(s, r, b, setting, h)
     else:
-        return hidden(s, r, b, setting, t, h)
+        return hidden(s, r, b, setting, h)
     at_stage(r, b, 2)
     error = estimate(s, r, b, setting, t, h)
     # a shorter step from the same state, to an event or after a rejection, begins on this one
@@ -119,10 +119,10 @@ def step(s, r, b, setting, t, h):
 
 
 @internal
-def hidden(s, r, b, setting, t, h):
+def hidden(s, r, b, setting, h):
     """HALVE: Newton failed.  If it is rounding that it could not go below, it is not asked to."""
     if to_look(r, h) and r.factored_h == h:
-        jitter(s, r, b, setting, t, b.K[F], b.K[F + 1])
+        jitter(s, r, b, setting, b.K[F], b.K[F + 1])
         corrected(s, r, b.K[F], b.K[DW], GAMMA / h)
         noted(s, r, setting, b.K[F], h)
     return HALVE
@@ -248,14 +248,14 @@ def newton(s, r, b, setting, t, h):
                 return 1
             near = True
         before = moved
-    return int(near and rustles(s, r, b, setting, t, changed, g))
+    return int(near and rustles(s, r, b, setting, changed, g))
 
 
 @internal
-def rustles(s, r, b, setting, t, changed, g):
+def rustles(s, r, b, setting, changed, g):
     """Whether rates that change so much do so by rounding of places and rates."""
     K = b.K
-    jitter(s, r, b, setting, t, K[F], K[F + 1])
+    jitter(s, r, b, setting, K[F], K[F + 1])
     corrected(s, r, K[F], K[DW], g)
     return changed <= MARGIN * g * largest(s, K[F], 0.0)
 
@@ -363,8 +363,8 @@ def of_accelerations(s, r, b, setting, h):
             by = ww * by + speed * bare * min(1.0, ww * (h / GAMMA) ** 2)
             off, of_squares = off + by, of_squares + by * by
     off, mean = together(off, of_squares, FEW), bent / moved
-    doubted(s, r, setting, h, LIKELY * off, most, sqrt(mean))
-    return in_units(s, r, setting, h, off, most, mean, share(s, setting, h, ONE))
+    doubted(s, r, setting, h, (LIKELY * off, most, mean))
+    return in_units(s, r, setting, h, (off, most, mean), share(s, setting, h, ONE))
 
 
 @internal
@@ -390,8 +390,8 @@ def norm(e, weight):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    collocation(K, y, y1, P)
+def dense(scene, K, t, h, ends, P):
+    collocation(K, ends[0], ends[1], P)
 
 
 @internal

@@ -101,7 +101,7 @@ def step(s, r, b, setting, t, h):
     stabilised = True
     for attempt in range(3):
         if missing(r) or (attempt > 0 and r.jacobian == OLD):
-            sparse_jacobian(s, r, b, setting, t, b.K[Z], b.K[W])
+            sparse_jacobian(s, r, b, setting, b.K[Z], b.K[W])
         elif not stabilised:
             return HALVE
         elif attempt > 0:
@@ -112,7 +112,7 @@ def step(s, r, b, setting, t, h):
             return HALVE
         guess(s, r, b, h)
         guess_multipliers(s, r, b, t, h)
-        converged = newton(s, r, b, setting, t, h, stabilised)
+        converged = newton(s, r, b, setting, h, stabilised)
         if converged > 0:
             break
         if converged < 0 and not stabilised:
@@ -186,12 +186,12 @@ def guess_multipliers(s, r, b, t, h):
 
 
 @internal
-def newton(s, r, b, setting, t, h, stabilised):
+def newton(s, r, b, setting, h, stabilised):
     """Simplified Newton on the stages.  1: converged, 0: not, -1: a value is not finite.
 
     stabilised: on the equations of ggl_equations.py; on those of equations.py otherwise.
     """
-    K, weight = b.K, b.weight
+    K, weight, t = b.K, b.weight, r.t
     floor = resolution(r, weight, h)
     strict = stabilised and b.turns > 0
     enough = max(KAPPA_FIXED if stabilised and not strict else KAPPA, floor)
@@ -295,9 +295,9 @@ def of_multipliers(s, r, b, setting, h):
     most = r.top_acceleration
     rounding = ROUNDED * furthest(s, r.y, s.size) * g.real**2
     if off <= rounding:  # of places, which mu takes for what joints are open by
-        doubted(s, r, setting, h, off, most, 0.0)
+        doubted(s, r, setting, h, (off, most, 0.0))
         return 0.0
-    return in_units(s, r, setting, h, off, most, 0.0, BY_MULTIPLIERS)
+    return in_units(s, r, setting, h, (off, most, 0.0), BY_MULTIPLIERS)
 
 
 @compiled(SOFTEN)
@@ -315,8 +315,8 @@ def soften(s, r, b, c):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
+def dense(scene, K, t, h, ends, P):
     """The collocation polynomial, and behind it lam of the stages for the next step."""
-    collocation(K, y, y1, P)
+    collocation(K, ends[0], ends[1], P)
     for i in range(3):
         copy_to(P[KEPT + i], K[LAM + i])

@@ -47,5 +47,5 @@ def step(scene, r, b, setting, t, h):
 
 
 @compiled(DENSE)
-def dense(scene, K, t, y, h, y1, P):
-    hermite.build(K[0], K[LAST], h, y, y1, P)
+def dense(scene, K, t, h, ends, P):
+    hermite.build(K[0], K[LAST], h, ends, P)

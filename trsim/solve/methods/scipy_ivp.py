@@ -9,7 +9,7 @@ nothing with the compiled methods.
 
 import time
 from collections.abc import Generator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,6 +86,16 @@ OWN = 4.0  # over h: what is slow beside it, and stiff
 RELATIVE = 1e-13  # scipy's smallest sensible rtol: tolerances are absolute, by the units of the run
 
 
+class Run(NamedTuple):
+    """What a run works with."""
+
+    method: str  # one of scipy's
+    s: Scene  # another where other rows are solved
+    r: Record
+    b: Buffers
+    setting: Settings
+
+
 @compiled(INTERPOLATE)
 def interpolate(P, y, theta, out):
     """The polynomial through the values P at the nodes, barycentric form."""
@@ -110,10 +120,9 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     begun = start(scenario, mechanism, located=setting.locate > 0)
     s, left_out = begun_with(mechanism, begun)
     r = new_record(s, begun, left_out, NODES.size)
-    b = fresh_buffers(
-        s, r.y.size, LAST + 1, NODES.size, 2 + int(np.max(s.contact_width, initial=0)),
-        points=most_points(mechanism, setting),
-    )  # fmt: skip
+    room = most_points(mechanism, setting)
+    b = fresh_buffers(s, r.y.size, LAST + 1, NODES.size, points=room)
+    run = Run(scenario.solver.method, s, r, b, setting)
     method = method_row(
         interpolate=interpolate.address(),
         complete=complete.address(),
@@ -136,7 +145,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
     limited = any(instance.row.limits for instance in mechanism.instances)
     limit, crawled = scenario.solver.max_steps or 2**62, 0
     finer = 1.0
-    solver = restarted(scenario, s, r, b, setting, finer)
+    solver = restarted(run, finer)
     while r.t < setting.t_end:
         reason = stopped(solver)
         if reason:
@@ -145,10 +154,10 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         h = solver.t - solver.t_old
         hand_over(solver, b)
         before = finer
-        finer = min(of_accelerations(scenario, s, r, b, setting, h, before), EASED * before)
+        finer = min(of_accelerations(run, h, before), EASED * before)
         if finer < TOO_LONG * before:
             r.h = 0.3 * h
-            solver = restarted(scenario, s, r, b, setting, finer)
+            solver = restarted(run, finer)
             continue
         b.h, b.built, b.halved = h, 1, 0
         outcome = complete(s, r, b, setting, method)
@@ -157,7 +166,7 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
             break
         if outcome in (STRAYED, WOUND):
             r.h = 0.3 * h
-            solver = restarted(scenario, s, r, b, setting, finer, float(r.h))
+            solver = restarted(run, finer, float(r.h))
             continue
         if outcome == AT_POLE or untrue(scenario, mechanism, r):
             status = "failed"
@@ -171,16 +180,17 @@ def simulate(scenario: Any, mechanism: Mechanism) -> Generator[Any, None, Any]:
         changed = s
         if r.weak:
             s = anew(mechanism, s, r, b, setting)
+            run = run._replace(s=s)
         if outcome == SMOOTH_STEP and s is changed:
             of_what_is_stiff(s, r, b, solver, h)
             nudge(solver, r)
             r.h = h
             solver.max_step = min(LONGER * solver.max_step, longest(setting, b))
             if r.speed_cap > 0.0:
-                solver.atol = allowed(scenario, s, r, b, setting, finer)
+                solver.atol = allowed(run, finer)
             solver.atol[books(s)] = unit_of_works(r, setting)
         elif r.t < setting.t_end:
-            solver = restarted(scenario, s, r, b, setting, finer)
+            solver = restarted(run, finer)
         if r.steps >= limit and r.t < setting.t_end:
             status, reason = "failed", f"more than {limit} steps"
             break
@@ -227,19 +237,18 @@ def longest(setting: Settings, b: Buffers) -> float:
     return float(min(setting.h_max, (b.rows.shape[0] // 2 - 2) * setting.every))
 
 
-def restarted(
-    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, finer: float,
-    most: float = np.inf,
-) -> Any:  # fmt: skip
+def restarted(run: Run, finer: float, most: float = np.inf) -> Any:
     """A scipy solver at the state of the record, with the error units in force there."""
     import scipy.integrate
+
+    method, s, r, b, setting = run
 
     def right_hand_side(t: float, y: Array) -> Array:
         yd = np.empty_like(y)
         derivative(s, t, np.ascontiguousarray(y), yd)
         return yd
 
-    atol = allowed(scenario, s, r, b, setting, finer)
+    atol = allowed(run, finer)
     # scipy's own differences begin at 1e-8 of an entry or of its error: far below rounding where
     # a body is 50 m from the origin and entries of its quaternion are zero
     step = PART / np.where(b.weight > 0.0, b.weight * setting.step_error, PART)
@@ -252,7 +261,6 @@ def restarted(
             J[:, c] = (right_hand_side(t, x) - f) / (x[c] - y[c])
         return J
 
-    method = scenario.solver.method
     make = getattr(scipy.integrate, method.split(":", 1)[1])
     more = {} if METHODS[method].explicit else {"jac": jacobian}
     t = float(r.t)
@@ -263,28 +271,26 @@ def restarted(
                 max_step=most, rtol=RELATIVE, atol=atol, **more)  # fmt: skip
 
 
-def allowed(
-    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, finer: float
-) -> Array:
+def allowed(run: Run, finer: float) -> Array:
     """The error allowed to every entry of y in the next step; finer: see of_accelerations."""
+    method, s, r, b, setting = run
     weigh(s, r, b, setting)
     outside = 1e6 * setting.step_error * max(r.largest_energy, 1.0)
     absolute = np.where(b.weight > 0.0, 1.0 / np.maximum(b.weight, 1e-300), outside)
-    absolute *= ADDING.get(scenario.solver.method, 1.0) * finer
+    absolute *= ADDING.get(method, 1.0) * finer
     absolute[books(s)] = unit_of_works(r, setting)
     return absolute
 
 
 @np.errstate(over="ignore", invalid="ignore")  # what is not finite is told as such
-def of_accelerations(
-    scenario: Any, s: Scene, r: Record, b: Buffers, setting: Settings, h: float, finer: float
-) -> float:
+def of_accelerations(run: Run, h: float, finer: float) -> float:
     """What part of the error allowed to places and velocities keeps accelerations to their share of
     the tolerance, 1 at most: see accelerations.py.
 
     w^2 of the fastest that is seen is |d3 v/dt3| / |d2 x/dt2|, by the polynomial of the step h in
     b.P; a solver outside keeps its estimates to itself.
     """
+    method, s, r, b, setting = run
     if s.contact.size > 0 or not settles.python(s):  # units of contacts are enough here
         return 1.0
     places, rates = slice(0, s.n_q), slice(s.n_q, s.n_q + s.v_node)
@@ -293,7 +299,7 @@ def of_accelerations(
     weight = b.weight * setting.step_error
     x = length * float(np.linalg.norm(SECOND @ b.P[:, places] * weight[places]))
     third = speed * float(np.linalg.norm(THIRD @ b.P[:, rates] * weight[rates]))
-    allowed = ADDING.get(scenario.solver.method, 1.0) * finer * setting.step_error
+    allowed = ADDING.get(method, 1.0) * finer * setting.step_error
     mine = float(share.python(s, setting, h, ONE)) * most
 
     def made(unseen: float) -> tuple[float, float]:
@@ -308,15 +314,16 @@ def of_accelerations(
     if made(0.0)[1] <= mine:
         return 1.0
     # neither steps nor Newton's method of scipy end on what is rounding
-    rounding = of_rounding(s, r, b, setting)
+    rounding = of_rounding(run)
     turns, off = made(NOISE * h * rounding)
     mine = max(mine, max(turns, 1.0) * rounding)
     finest = RELATIVE / setting.step_error  # below it only rounding is left
     return min(1.0, max(finest, mine / off)) if off > 0.0 else 1.0
 
 
-def of_rounding(s: Scene, r: Record, b: Buffers, setting: Settings) -> float:
+def of_rounding(run: Run) -> float:
     """What rounding makes of accelerations, m/s^2: f(y + d) + f(y - d) - 2 f(y), as rounding.py."""
+    _, s, r, b, setting = run
     used = b.weight > 0.0
     unit = np.divide(1.0, b.weight * setting.step_error, where=used, out=np.zeros_like(r.y))
     signs = np.where(np.arange(r.y.size) % 2 > 0, 1.0, -1.0)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trsim.laws.cable import BENDING, BENDING_WEIGHT, EXACT, MIDDLE_OF_3, PAPER
+from trsim.laws.cable import BEFORE, BEHIND, EXACT, MIDDLE, PAPER
 from trsim.laws.cable_matrices import bends, slopes
 from trsim.laws.cable_stretch import ENGINEERING, GREEN, INNER, INSIDE, OUTER
 from trsim.laws.cable_tangent import bend_again
@@ -18,7 +18,6 @@ from trsim.laws.cable_tangent import bend_again
 Array = NDArray[np.float64]
 
 LOBATTO = (-0.5, -INSIDE, INSIDE, 0.5)
-FLEXURAL = ((-BENDING, BENDING_WEIGHT), (0.0, MIDDLE_OF_3), (BENDING, BENDING_WEIGHT))
 
 
 def assumed_weights() -> Array:
@@ -59,8 +58,8 @@ def system(e: Array, l: float, law: Law, strain: Array) -> tuple[Array, Array]:
     m, width = len(e), e.shape[2]
     F, K = np.zeros((m, 4, width)), np.zeros((m, 4, width, 4, width))
     add_stretch(e, l, law, strain, F, K)
-    for n, weight in FLEXURAL:
-        add_bend(e, n, l, weight * l * law.EI, law.curvature, F, K)
+    for point in (BEFORE, MIDDLE, BEHIND):
+        add_bend(e, point, l, law, F, K)
     return F.reshape(m, -1), K.reshape(m, 4 * width, 4 * width)
 
 
@@ -91,21 +90,22 @@ def stretched(a: Array, strain: int) -> tuple[Array, Array]:
     return s - 1.0, 1.0 / s
 
 
-def add_bend(e: Array, n: float, l: float, EI: float, curvature: int, F: Array, K: Array) -> None:
-    """F += dU/de, K += d2U/de2 of the bend at n; EI with the weight of the point."""
+def add_bend(e: Array, point: tuple[float, float], l: float, law: Law, F: Array, K: Array) -> None:
+    """F += dU/de, K += d2U/de2 of the bend at a Gauss point."""
+    n, weight = point
     u, unit = 1.0 / l, np.eye(e.shape[2])
     c, d = np.array(slopes.python(n, u)), np.array(bends.python(n, u))
     r1, r2 = np.einsum("k,nkd->nd", c, e), np.einsum("k,nkd->nd", d, e)
     a, b, q = (np.einsum("nd,nd->n", x, y) for x, y in ((r1, r1), (r1, r2), (r2, r2)))
-    ones = EI * np.ones_like(a)
+    ones = weight * l * law.EI * np.ones_like(a)
     x, y = c[:, None] * r1[:, None], d[:, None] * r2[:, None]
     gradients = 2.0 * x, c[:, None] * r2[:, None] + d[:, None] * r1[:, None], 2.0 * y
     cd = np.outer(c, d)
     constant = 2.0 * np.outer(c, c), cd + cd.T, 2.0 * np.outer(d, d)
-    for k, g, outer in zip(bent(a, b, q, curvature), gradients, constant, strict=True):
+    for k, g, outer in zip(bent(a, b, q, law.curvature), gradients, constant, strict=True):
         F += (k * ones)[:, None, None] * g
         K += np.einsum("n,km,df->nkdmf", k * ones, outer, unit)
-    aa, ab, ac, bb = bend_again.python(a, b, q, curvature)
+    aa, ab, ac, bb = bend_again.python(a, b, q, law.curvature)
     for k, i, j in ((aa, 0, 0), (ab, 0, 1), (ab, 1, 0), (ac, 0, 2), (ac, 2, 0), (bb, 1, 1)):
         K += np.einsum("n,nkd,nmf->nkdmf", k * ones, gradients[i], gradients[j])
 

@@ -17,7 +17,6 @@ from trsim.assemble.mechanism import Mechanism
 from trsim.assemble.onward import Branches
 from trsim.assemble.projection import project_velocities
 from trsim.assemble.reduce import (
-    all_rows,
     in_solve_axes,
     jacobian,
     moves,
@@ -127,9 +126,7 @@ def nearest(
     if ideal.beams or not len(J):
         return np.asarray(v)
     rows = list(range(model.m + len(model.redundant)))
-    branches = Branches(
-        model, y_ideal, all_rows(model, y_ideal), rows, J[model.m :], moves(model, planar), C
-    )
+    branches = Branches(model, y_ideal, rows, J[model.m :], moves(model, planar), C)
     return branches.onward(np.asarray(v))
 
 

@@ -11,7 +11,7 @@ from trsim.studies.thrust_reverser.figures.drawing import Drawn
 from trsim.studies.thrust_reverser.numbers import Number
 
 MU, V0, V1 = 0.3, 1e-4, 1e-3  # -, m/s, m/s: of the study
-RADIUS, YOUNG, POISSON, RESTITUTION = 0.010, 207e9, 0.29, 0.9  # m, Pa: of the study
+RADIUS, STEEL, RESTITUTION = 0.010, (207e9, 0.29), 0.9  # m; Pa, -: of the study
 CLEARANCES = (0.1e-3, 0.3e-3, 0.5e-3)  # m
 SPEEDS = (0.1, 0.3)  # m/s, of the impacts drawn
 MASS = 1.25  # kg: of the door at its hinge, ours
@@ -68,7 +68,7 @@ def stiffnesses(axes: Any) -> None:
     depth = np.linspace(0.0, 25e-6, 200)
     for k, c in enumerate(CLEARANCES):
         for form, dash in (("internal", "-"), ("paper", "--")):
-            K = hertz_stiffness(RADIUS, RADIUS - c, YOUNG, POISSON, YOUNG, POISSON, form)
+            K = hertz_stiffness(RADIUS, RADIUS - c, STEEL, STEEL, form)
             force = [1e-3 * elastic(d, Pair(K, 1.5, c, 0)) for d in depth]
             label = f"{1e3 * c:g} mm" if form == "internal" else None
             axes.plot(1e6 * depth, force, dash, color=colour(k), label=label, lw=1.2)
@@ -85,7 +85,7 @@ def loops(axes: Any) -> None:
     from trsim.laws.contact import Pair, damping_factor, hertz_stiffness, normal_force
 
     c = CLEARANCES[1]
-    K = hertz_stiffness(RADIUS, RADIUS - c, YOUNG, POISSON, YOUNG, POISSON, "internal")
+    K = hertz_stiffness(RADIUS, RADIUS - c, STEEL, STEEL, "internal")
     pair = Pair(K, 1.5, c, 0, damping_factor("lankarani_nikravesh", RESTITUTION))
     for k, start in enumerate(SPEEDS):
         d, v, h = 0.0, start, 2e-8  # semi-implicit steps of a fraction of the contact time
