@@ -69,11 +69,11 @@ def test_the_elastic_force_is_minus_the_gradient_of_its_energy(shape):
     check_gradient(pressed(shape), rel=1e-6)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("friction", [RAMP, BRISTLES])
+@pytest.mark.parametrize("shape, friction", [
+    *((shape, RAMP) for shape in SHAPES),
+    *((shape, BRISTLES) for shape in SHAPES if shape not in ("sphere", "bowl")),
+])  # fmt: skip
 def test_action_is_reaction_and_the_book_is_right(shape, friction):
-    if "bowl sphere".count(shape) and friction == BRISTLES:
-        pytest.skip("refused")
     more = "" if friction == BRISTLES else ", rolling_resistance: 0.01, spinning_friction: 0.02"
     for seed in range(3):
         b = pressed(shape, friction, more, seed=seed)

@@ -242,9 +242,11 @@ def change(s, r, b, setting, c, end):
         # it begins on the event just handled, and first moves away
         low = leaves(s, r, b, way, (0.0, f0, r0), end)
         if low < 0.0:
-            # a step that other events make short may end while it is still on its way
-            g, _ = inside(s, r, b, c, end)
-            return NONE if r0 > 0.0 and sign * g >= -noise(s, f0) else 0.0
+            # a step that other events make short may end while it is still on its way; so may the
+            # first one of what begins at rest just where it touches
+            g, rate = inside(s, r, b, c, end)
+            away = r0 > 0.0 or (r0 >= -ROUNDING * r.speed and sign * rate > 0.0)
+            return NONE if away and sign * g >= -noise(s, f0) else 0.0
         g, rate = inside(s, r, b, c, low)
         f0, r0 = sign * g, sign * rate
     if low >= end:
