@@ -91,7 +91,7 @@ def scalar_channel(run: Run, name: str) -> Array:
     """
     found = run.channel(name)
     if found.ndim > 1:
-        raise UsageError(f"'{name}' has {found.shape[1]} components", f"Say '{name}.x'.")
+        raise UsageError(f"'{name}' has {found.shape[1]} components", f"Say '{name}.x', or '|{name}|'.")
     return np.asarray(found)
 
 
