@@ -68,7 +68,7 @@ def test_magnitude_of_a_vector(run):
     assert scalar(run, "rms:|B.force|") == (pytest.approx(np.sqrt(np.mean(size**2))), "N")
     assert scalar(run, "mean:|stroke|")[0] == pytest.approx(np.mean(np.abs(run.channel("stroke"))))
     assert scalar(run, "mean:|B.force.x|")[0] == pytest.approx(np.mean(np.abs(force[:, 0])))
-    with pytest.raises(UsageError, match="no channel named 'B.farce'"):
+    with pytest.raises(UsageError, match=r"no channel named 'B\.farce'"):
         scalar(run, "mean:|B.farce|")
 
 
@@ -86,7 +86,7 @@ def test_the_peak_of_a_vector_is_that_of_its_magnitude(run):
     part = scalar(run, f"peak:A.reaction{late}")[0]
     assert part == rows[run.time >= 1.01 * kept.time].max()
     for word in ("least:A.reaction", "range:A.reaction", "peak:B.force", "peak:|B.force|"):
-        with pytest.raises(UsageError, match="magnitude of '.*' is not kept"):
+        with pytest.raises(UsageError, match=r"magnitude of '.*' is not kept"):
             scalar(run, word)
 
 

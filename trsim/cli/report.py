@@ -15,6 +15,9 @@ PAPERS = ("thrust-reverser",)
 @click.command("report")
 @click.argument("runs", nargs=-1, required=True, type=click.Path())
 @click.option("-o", "--output", type=NAMED, help="Folder of the figures.")
+@click.option("--plot", multiple=True, metavar="'Y, Y2 : X'",
+              help="Channels over any other one, or over time.")  # fmt: skip
+@click.option("--window", default="", metavar="A..B", help="Of X in --plot: 0..110deg.")
 @click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
               help="A Poincare section that was not declared, with its errors.")  # fmt: skip
 @click.option("--portrait", multiple=True, metavar="X:Y",
@@ -27,7 +30,7 @@ PAPERS = ("thrust-reverser",)
 @click.option("--against", default="", metavar="CHANNEL",
               help="In place of the time in --compare and --overlay.")  # fmt: skip
 @click.option("--overlay", multiple=True, metavar="FILE.csv:CHANNEL",
-              help="The runs over the curve of a table.")  # fmt: skip
+              help="The runs over the curve of a table; with --plot FILE.csv.")  # fmt: skip
 @click.option("--table", multiple=True, metavar="WORD,...",
               help="Numbers, such as peak:B.contact_force@0.3..0.9.")  # fmt: skip
 @click.option("--bifurcation", multiple=True, metavar="SECTION[:AXIS]",
