@@ -109,7 +109,7 @@ def test_what_was_drawn_is_its_own_reference(door, tmp_path):
 
 
 def test_largest_difference_to_an_analytical_curve(door, tmp_path):
-    """-I phi'' over phi is I w^2 phi, a straight line; one that is 2 % steeper is off at the end."""
+    """-I phi'' over phi is I w^2 phi, a straight line; one 2 % steeper is off at the end."""
     phi = np.linspace(-0.5, 0.5, 101)
     slope = 0.6 * (2.0 * np.pi) ** 2
     text = "\n".join(f"{float(np.degrees(a))!r},{-1.02e-3 * slope * a!r}" for a in phi.tolist())

@@ -37,6 +37,8 @@ PAPERS = ("thrust-reverser",)
               help="Points of a section over what was swept.")  # fmt: skip
 @click.option("--sobol", multiple=True, metavar="WORD", help="Sobol indices of a number.")
 @click.option("--map", multiple=True, metavar="WORD", help="A number over two swept keys.")
+@click.option("--bars", multiple=True, metavar="WORD,...",
+              help="Numbers of a sweep, a bar for each case.")  # fmt: skip
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
 @click.option("--paper", type=click.Choice(PAPERS), help="Judge a published study by its sweep.")
 @click.option("--animate", is_flag=True, help="The motion of one run: animation.glb, .html.")

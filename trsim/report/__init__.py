@@ -11,7 +11,7 @@ from trsim.errors import FileError, UsageError
 if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
 
-SWEEP = ("bifurcation", "sobol", "map")  # what only a study has
+SWEEP = ("bifurcation", "sobol", "map", "bars")  # what only a study has
 RUNS = (
     "plot",
     "section",
@@ -95,7 +95,11 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
     if asked.over and not studies:
         raise UsageError("--over is not for result files", "It is for a sweep.")
-    if asked.over and asked.sobol and not (asked.bifurcation or asked.table or asked.map):
+    if (
+        asked.over
+        and (asked.sobol or asked.bars)
+        and not (asked.bifurcation or asked.table or asked.map)
+    ):
         raise UsageError("--over goes with --bifurcation, --table or --map")
     if asked.window and not asked.plot:
         raise UsageError("--window goes with --plot", "Others take a window as WORD@BEGIN..END.")

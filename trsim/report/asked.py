@@ -26,6 +26,7 @@ class Asked(NamedTuple):
     bifurcation: tuple[str, ...] = ()  # SECTION[:AXIS][@WINDOW]
     sobol: tuple[str, ...] = ()  # words
     map: tuple[str, ...] = ()  # words
+    bars: tuple[str, ...] = ()  # WORD[, WORD ...], a figure each
     over: str | None = None  # swept key
 
 
