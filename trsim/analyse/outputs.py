@@ -25,12 +25,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.extremes import LARGEST, SMALLEST, extreme
 from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
 from trsim.analyse.window import Window, parted, rows_in, scalar_channel, window
 from trsim.arrays import Array
 from trsim.errors import UsageError, described, known
-from trsim.store.points import between_bars, split
 from trsim.store.read import Run
 
 Number = tuple[float, str]
@@ -66,58 +66,7 @@ def _of_rows(
 
 
 def _extreme(word: str, run: Run, channel: str, within: Window, part: bool) -> Number:
-    best: Any = {"largest": max, "smallest": min}[word]
-    vector, inside = _vector(run, channel), between_bars(channel)
-    if inside is not None and not vector:
-        return _of_size(word, run, inside, within, part)
-    if vector:
-        word, channel = _of_magnitude(run, word, vector), f"|{vector}|"
-    values = [best(rows_in(run, channel, within)[1].tolist())]
-    kept = [p for p in run.peaks if (p.channel, p.extreme) == (vector or channel, word)]
-    values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
-    values += _in_touch(run, channel, within)
-    return best(values), run.unit(channel)
-
-
-def _vector(run: Run, channel: str) -> str:
-    """The vector of three that a word asks the extreme of, as V or as |V|; empty of all else."""
-    name = between_bars(channel) or channel
-    return name if run.sizes.get(name) == 3 else ""
-
-
-def _of_size(word: str, run: Run, channel: str, within: Window, part: bool) -> Number:
-    """The extreme of the size of a number, from those of the number."""
-    high, unit = _extreme("largest", run, channel, within, part)
-    low, _ = _extreme("smallest", run, channel, within, part)
-    through = low <= 0.0 <= high
-    least = 0.0 if through else min(abs(low), abs(high))
-    return max(abs(low), abs(high)) if word == "largest" else least, unit
-
-
-def _of_magnitude(run: Run, word: str, vector: str) -> str:
-    """What the extreme of a vector is in the table of peaks.  Raises where none is kept."""
-    kept = any((p.channel, p.extreme) == (vector, "magnitude") for p in run.peaks)
-    if word == "largest" and kept:
-        return "magnitude"
-    what = "least" if word == "smallest" else "largest"
-    raise UsageError(
-        f"{run.path}: the {what} magnitude of '{vector}' is not kept in a run",
-        f"Ask for a component, '{vector}.x'; rms:|{vector}| is that of the rows.",
-    )
-
-
-def _in_touch(run: Run, channel: str, within: Window) -> list[float]:
-    """The values of a channel of a contact, or of a component, at its accepted steps."""
-    joint = max((n for n in run.contacts if channel.startswith(f"{n}.")), key=len, default="")
-    if not joint:
-        return []
-    steps = run.steps(joint)
-    sizes = {name: column.shape[1] if column.ndim == 2 else 1 for name, column in steps.items()}
-    name, component = split(channel.removeprefix(f"{joint}."), sizes)
-    if name not in steps:
-        return []
-    found = steps[name][within.of(steps["time"])]
-    return (found if component is None else found[:, component]).tolist()
+    return extreme(run, word, channel, within, part).value, run.unit(channel)
 
 
 def _range(run: Run, channel: str, within: Window, part: bool) -> Number:
@@ -208,8 +157,8 @@ def _unit_of(run: Run, path: str) -> str:
 SHARES = ("flight", "contact", "following", "impacts", "onsets")
 WHOLE = ("summary", "solver")
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
-    "peak": partial(_extreme, "largest"),
-    "least": partial(_extreme, "smallest"),
+    "peak": partial(_extreme, LARGEST),
+    "least": partial(_extreme, SMALLEST),
     "range": _range,
     "mean": partial(_of_rows, np.mean),
     "rms": partial(_of_rows, lambda x: np.sqrt(np.mean(x**2))),

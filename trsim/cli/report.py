@@ -39,6 +39,11 @@ PAPERS = ("thrust-reverser",)
 @click.option("--map", multiple=True, metavar="WORD", help="A number over two swept keys.")
 @click.option("--bars", multiple=True, metavar="WORD,...",
               help="Numbers of a sweep, a bar for each case.")  # fmt: skip
+@click.option("--envelope", is_flag=False, flag_value="forces", default="", metavar="[PATTERN,...]",
+              help="Extremes over the cases of a sweep, and what acted then.")  # fmt: skip
+@click.option("--at", default="", metavar="CHANNEL", help="Abscissa told by --envelope.")
+@click.option("--with", "along", multiple=True, metavar="CHANNEL,...",
+              help="What else --envelope tells.")  # fmt: skip
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
 @click.option("--paper", type=click.Choice(PAPERS), help="Judge a published study by its sweep.")
 @click.option("--animate", is_flag=True, help="The motion of one run: animation.glb, .html.")

@@ -11,7 +11,7 @@ from trsim.errors import FileError, UsageError
 if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
 
-SWEEP = ("bifurcation", "sobol", "map", "bars")  # what only a study has
+SWEEP = ("bifurcation", "sobol", "map", "bars", "envelope")  # what only a study has
 RUNS = (
     "plot",
     "section",
@@ -97,7 +97,7 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError("--over is not for result files", "It is for a sweep.")
     if (
         asked.over
-        and (asked.sobol or asked.bars)
+        and (asked.sobol or asked.bars or asked.envelope)
         and not (asked.bifurcation or asked.table or asked.map)
     ):
         raise UsageError("--over goes with --bifurcation, --table or --map")
@@ -105,6 +105,8 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError("--window goes with --plot", "Others take a window as WORD@BEGIN..END.")
     if asked.against and not (asked.compare or (asked.overlay and not asked.plot)):
         raise UsageError("--against goes with --compare or --overlay")
+    if not asked.envelope and (asked.at or asked.along):
+        raise UsageError(f"--{'at' if asked.at else 'with'} goes with --envelope")
     if asked.channels and not asked.compare:
         raise UsageError("--channels goes with --compare")
 

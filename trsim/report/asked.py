@@ -27,6 +27,9 @@ class Asked(NamedTuple):
     sobol: tuple[str, ...] = ()  # words
     map: tuple[str, ...] = ()  # words
     bars: tuple[str, ...] = ()  # WORD[, WORD ...], a figure each
+    envelope: str = ""  # patterns of quantities; `forces`: all forces and moments
+    at: str = ""  # abscissa that an envelope tells
+    along: tuple[str, ...] = ()  # channels whose values it tells as well
     over: str | None = None  # swept key
 
 

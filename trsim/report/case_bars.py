@@ -105,7 +105,8 @@ def figure(study: Any, one: Shown, of: list[Numbers]) -> Any:
 def filled(axes: Any, given: list[Bar], factor: float) -> None:
     """The bars of one unit; a cross where there is no number."""
     series = list(dict.fromkeys(bar.series for bar in given))
-    place, ticks, at, y = {}, {}, 0.0, []
+    place: dict[int, float] = {}
+    ticks, at = {}, 0.0
     for group in dict.fromkeys(bar.group for bar in given):
         own = [k for k, bar in enumerate(given) if bar.group == group]
         place |= {k: at + n for n, k in enumerate(own)}

@@ -20,7 +20,7 @@ from trsim.analyse.cases import (
 )
 from trsim.analyse.fluctuation import shows
 from trsim.errors import FileError, UsageError
-from trsim.report import case_bars, maps, style
+from trsim.report import case_bars, envelopes, maps, style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
 from trsim.report.asked import words as parted_words
 from trsim.report.diagrams import bifurcation
@@ -54,7 +54,7 @@ def units(study: Any) -> Units:
 def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
     """What was asked for of a study; its chosen numbers where nothing was."""
     one, found = shown(study), nothing()
-    if not (words or asked.bifurcation or asked.sobol or asked.map or asked.bars):
+    if not any((words, asked.bifurcation, asked.sobol, asked.map, asked.bars, asked.envelope)):
         words = usual(one)
     bars = [parted_words([text]) for text in asked.bars]
     of = numbers(study, dict.fromkeys([*words, *asked.sobol, *asked.map, *chain(*bars)]))
@@ -68,6 +68,8 @@ def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
         found.add(maps.drawn(study, one, of[word], asked.over, folder))
     for group in bars:
         found.add(case_bars.draw(study, one, [of[word] for word in group], folder))
+    if asked.envelope:
+        found.add(envelopes.draw(study, one, asked, folder))
     if bars:
         found.lines.extend(shorter(study))
     if words:
