@@ -12,7 +12,7 @@ import pytest
 
 from tests import small
 from tests.analyse.studies import Case, Study
-from trsim.analyse.envelope import Rows, envelope, lost
+from trsim.analyse.envelope import Quantity, Rows, envelope, lost
 from trsim.errors import UsageError
 from trsim.store.read import read
 
@@ -73,6 +73,18 @@ def test_where_extremes_are_met_and_what_acts_with_them(cases):
     y = 0.5 * G * (1.0 + 2.0 / K) + 0.5 * G * (1.0 - 1.0 / K)
     assert side.acting["y"] == pytest.approx(y, rel=1e-4)
     assert side.acting["x"] == pytest.approx(side.value, rel=1e-5)
+
+
+def test_which_case_counts(cases):
+    """The far end of each side; of equal cases the first, also where rounding tells them apart."""
+    found = named(envelope(cases, ["hinge.reaction.x"], "", []))
+    assert found["hinge.reaction.x", "largest"].worst == "load.2"
+    assert found["hinge.reaction.x", "smallest"].worst == "load.2"
+    met = found["hinge.reaction.x", "largest"].cases["load.2"]
+    for word, sign in (("largest", 1.0), ("smallest", -1.0)):
+        near = {"a": met._replace(value=sign), "b": met._replace(value=sign * (1.0 + 1e-12)),
+                "c": met._replace(value=-2.0 * sign)}  # fmt: skip
+        assert Quantity("F", word, "N", near, {}).worst == "a"
 
 
 def test_failed_and_missing_cases_do_not_count_and_what_lacks_is_told(cases):

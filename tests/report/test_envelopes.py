@@ -42,7 +42,8 @@ def test_tables_lines_and_pictures(cases, tmp_path):  # noqa: F811
     told = "\n".join(found.lines)
     parts = ("magnitude hinge.reaction in load.2 at", "bare: no hinge.reaction",
                  "did not end well and are left out: heavy", "no result and are left out: lost",
-                 "bare: no channel named 'angle'", "zero in every case: hinge.reaction.z")  # fmt: skip
+                 "bare: no channel named 'angle'",
+             "zero in every case: hinge.reaction.z")  # fmt: skip
     assert [text for text in parts if text not in told] == []
     assert found.values[0].unit in ("N", "rad")
 
