@@ -18,6 +18,7 @@ PAPERS = ("thrust-reverser",)
 @click.option("--plot", multiple=True, metavar="'Y, Y2 : X'",
               help="Channels over any other one, or over time.")  # fmt: skip
 @click.option("--window", default="", metavar="A..B", help="Of X in --plot: 0..110deg.")
+@click.option("--laws", is_flag=True, help="Every law as used, and the range that was visited.")
 @click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
               help="A Poincare section that was not declared, with its errors.")  # fmt: skip
 @click.option("--portrait", multiple=True, metavar="X:Y",

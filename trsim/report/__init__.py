@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 SWEEP = ("bifurcation", "sobol", "map", "bars", "envelope")  # what only a study has
 RUNS = (
     "plot",
+    "laws",
     "section",
     "portrait",
     "spectrum",
@@ -59,6 +60,7 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
     """The analyses of result files."""
     from trsim.report import compared as beside
     from trsim.report import exponents, numbers, plots, portraits, sections, spectra
+    from trsim.report import laws as of_laws
     from trsim.report.asked import nothing, words
     from trsim.report.display import compared
     from trsim.store.read import read
@@ -66,6 +68,8 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
     runs, found = compared([read(path) for path in paths]), nothing()
     for word in asked.plot:
         found.add(plots.draw(runs, word, asked.overlay, asked.window, folder))
+    if asked.laws:
+        found.add(of_laws.draw(runs, folder))
     if asked.section:
         found.files.extend(sections.draw(runs, asked.section, folder))
     for word in asked.portrait:

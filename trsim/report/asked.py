@@ -14,6 +14,7 @@ class Asked(NamedTuple):
 
     plot: tuple[str, ...] = ()  # Y, Y2 : X[@WINDOW]
     window: str = ""  # of the abscissa of plots
+    laws: bool = False
     section: tuple[str, ...] = ()  # when=CHANNEL,crosses=up,plot=X:Y
     portrait: tuple[str, ...] = ()  # X:Y[@WINDOW]
     spectrum: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
