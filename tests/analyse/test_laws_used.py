@@ -114,7 +114,51 @@ def test_force_over_depth_and_the_loss(tmp_path):
     assert out == pytest.approx(whole * (1 - 2 / 3 * chi * e), rel=1e-3)
 
 
-def test_a_stop(tmp_path):
+BLOCK = """\
+bodies:
+  block: {mass: 2, inertia: 1, at: [0, 0], velocity: [1, 0]}
+  bead: {mass: 1, inertia: 1, at: [0.1, 2], velocity: [1, 0]}
+joints:
+  slide: {type: prismatic, bodies: [ground, block], axis: [1, 0, 0]}
+  wire: {type: point_on_curve, bodies: [ground, bead], at: [0.1, 2],
+         curve: {at: [0, 2], points: [[0, 0], [0.2, 0], [1, 0]]}}
+forces:
+  wall: {type: limit_stop, joint: slide, upper: 0.1, stiffness: 1e4, damping: 20, ramp: 1e-4}
+  rub: {type: joint_friction, joint: slide, friction: {law: modified_coulomb, coefficient: 0.3,
+        v0: 0.01, v1: 0.1}}
+gravity: [0, -9.81, 0]
+solver: {end: 0.3 s, tolerance: 1e-9}
+output: {every: 10 ms}
+"""
+
+
+def test_stop_friction_and_curve_of_a_run(tmp_path):
+    """v^2 = 1 - 2 mu g 0.1 at the wall, then m x'' + c x' + k x = 0 with x = d + mu m g / k, but
+    for the ramp of the first 0.1 of 8 mm; the bead goes on at 1 m/s."""
+    small.run(tmp_path / "x.h5", text=BLOCK)
+    found, lost = laws(read(tmp_path / "x.h5"))
+    of = {law.name: law for law in found}
+    assert (lost, [*of]) == (
+        [], ["joints.wire.curve", "forces.rub.friction", "contact.wall"])  # fmt: skip
+    v = np.sqrt(1.0 - 2.0 * 0.3 * 9.81 * 0.1)
+    wall = of["contact.wall"]
+    x0, w, z = 0.3 * 2.0 * 9.81 / 1e4, np.sqrt(1e4 / 2.0), 20.0 / (2.0 * np.sqrt(2e4))
+    wd = w * np.sqrt(1.0 - z * z)
+    t = np.arctan2(wd * v, z * w * v + w * w * x0) / wd
+    x = np.exp(-z * w * t) * (x0 * np.cos(wd * t) + (v + z * w * x0) / wd * np.sin(wd * t))
+    assert wall.visited == (0.0, pytest.approx(x - x0, rel=0.01))
+    depth, force = wall.curves["impact"]
+    slower = np.sqrt(1.0 - (depth[200] / wall.visited[1]) ** 2)
+    assert force[200] == pytest.approx(1e4 * depth[200] + 20.0 * v * slower, rel=1e-6)
+    assert (wall.x_unit, wall.y_unit) == ("m", "N")
+    assert of["forces.rub.friction"].visited == (0.0, pytest.approx(1.0, rel=1e-6))
+    wire = of["joints.wire.curve"]
+    assert wire.visited == (pytest.approx(0.1), pytest.approx(0.4))
+    assert wire.curves["visited"][0][[0, -1]] == pytest.approx([0.1, 0.4], abs=1e-6)
+    np.testing.assert_allclose(wire.data, [[0.0, 0.2, 1.0], [0.0, 0.0, 0.0]])
+
+
+def test_a_stop():
     class Stop:
         stiffness, damping, ramp = 1e4, 20.0, 1e-3
 

@@ -155,6 +155,14 @@ def test_tables_that_say_too_little(door, tmp_path):
             analysed([door], tmp_path, asked)
 
 
+def test_words_of_the_same_letters_have_files_of_their_own(door, tmp_path):
+    both = ("door_angle : door_angle.rate", "door_angle, door_angle.rate")
+    found = analysed([door], tmp_path, Asked(plot=both))
+    assert len({*found.files}) == 4
+    assert columns(found.files[1])[0][0] == "door_angle.rate [rad/s]"
+    assert columns(found.files[3])[0][0] == "time [s]"
+
+
 def test_several_runs(paths, tmp_path):
     asked = Asked(plot=("B.contact_force, stroke.rate : stroke", "stroke"))
     found = analysed(paths, tmp_path, asked)

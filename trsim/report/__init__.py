@@ -67,7 +67,7 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
 
     runs, found = compared([read(path) for path in paths]), nothing()
     for word in asked.plot:
-        found.add(plots.draw(runs, word, asked.overlay, asked.window, folder))
+        found.add(plots.draw(runs, word, asked.overlay, asked.window, folder, found.files))
     if asked.laws:
         found.add(of_laws.draw(runs, folder))
     if asked.section:

@@ -1,6 +1,6 @@
 """Any channels over any other one, beside the curves of tables, and how far they are from these."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -41,7 +41,8 @@ class Apart(NamedTuple):
 
 
 def draw(
-    runs: list[Shown], word: str, tables: tuple[str, ...], text: str, folder: Path
+    runs: list[Shown], word: str, tables: tuple[str, ...], text: str, folder: Path,
+    taken: Sequence[Path] = (),
 ) -> Found:  # fmt: skip
     """The figure of a word `Y, Y2 : X`, its numbers, and the differences to tables.
 
@@ -54,6 +55,8 @@ def draw(
     others = [given(Path(file), of.x, units, first.unit(of.x)) for file in tables]
     apart = list(compared(every, others, of, within))
     found, name = nothing(), named(word, text)
+    while folder / f"{name}.png" in taken:  # another word of the same letters
+        name += "_too"
     path = folder / f"{name}.png"
     found.files.append(style.draw(path, figure, every, others, of, within, apart))
     for k, one in enumerate(every):
