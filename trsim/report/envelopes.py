@@ -23,7 +23,8 @@ def draw(study: Any, one: Shown, asked: Asked, folder: Path) -> Found:
     others = words(asked.along)
     patterns = words([asked.envelope])
     found, of = nothing(), envelope(study, patterns, asked.at, others)
-    there = [each for each in of if not each.zero]
+    drawn_names = {each.name for each in of if not each.zero}
+    there = [each for each in of if each.name in drawn_names]
     found.files.extend(pictures(one, there, folder))
     found.files.append(worst(one, of, asked.at, others, folder))
     found.files.append(every(study, of, folder))
@@ -33,7 +34,6 @@ def draw(study: Any, one: Shown, asked: Asked, folder: Path) -> Found:
         found.values.append(Value(each.worst, f"{each.name}: {each.extreme}", met.value, np.nan,
                                   each.unit))  # fmt: skip
         found.lines.append(f"{what}: {met.value:.6g} {each.unit}")
-    drawn_names = {each.name for each in there}
     zero = [name for name in dict.fromkeys(each.name for each in of) if name not in drawn_names]
     found.lines.extend([f"zero in every case: {', '.join(zero)}"] if zero else [])
     found.lines.extend(doubted(of))
