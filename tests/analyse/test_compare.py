@@ -1,4 +1,4 @@
-"""Differences of runs, and of runs and reference tables."""
+"""Differences of runs."""
 
 import numpy as np
 import pytest
@@ -11,9 +11,8 @@ from trsim.analyse.compare import (
     curve,
     difference,
     parting,
-    reference,
 )
-from trsim.errors import FileError, UsageError
+from trsim.errors import UsageError
 from trsim.store.read import read
 
 s = np.linspace(0.0, 1.0, 101)
@@ -98,58 +97,3 @@ def test_chance_parts_runs_of_one_scenario_alone(runs):
 )
 def test_alike(one, two, same):
     assert alike(one, two) is same
-
-
-# --- reference tables ------------------------------------------------------------------------
-
-
-def test_reference_with_units(tmp_path):
-    path = tmp_path / "old.csv"
-    path.write_text("# a remark\ntime [ms],stroke [mm],other\n1,2,9\n0,5,8\n2,3,7\n")
-    found = reference(path, "stroke", "", ("s", "m"))
-    np.testing.assert_allclose(found.s, [0.0, 1e-3, 2e-3])
-    np.testing.assert_allclose(found.x, [5e-3, 2e-3, 3e-3])
-
-
-def test_reference_of_two_columns_needs_no_names(tmp_path):
-    path = tmp_path / "old.csv"
-    path.write_text("a,b\n0,1\n1,2\n")
-    np.testing.assert_array_equal(reference(path, "stroke", "", ("s", "m")).x, [1.0, 2.0])
-
-
-@pytest.mark.parametrize("titles", ["time,stroke", "stroke,time", "stroke,other,time", "x,time"])
-def test_time_is_the_column_of_that_name(titles, tmp_path):
-    path = tmp_path / "old.csv"
-    rows = [[{"time": k, "other": 7}.get(name, 5 - k) for name in titles.split(",")]
-            for k in range(3)]  # fmt: skip
-    path.write_text("\n".join([titles, *(",".join(map(str, row)) for row in rows)]))
-    found = reference(path, "stroke", "", ("s", "m"))
-    np.testing.assert_array_equal(found.s, [0.0, 1.0, 2.0])
-    np.testing.assert_array_equal(found.x, [5.0, 4.0, 3.0])
-
-
-@pytest.mark.parametrize(
-    "text, kind, what",
-    [
-        ("stroke,b\n0,1\n1,2\n", UsageError, "'time' and 'stroke' at once"),
-        ("a,b,c\n0,1,2\n1,2,3\n", UsageError, "no column named 'stroke'"),
-        ("a,b\n0,1\n1,x\n", FileError, "no number in column 2"),
-        ("a,b\n0,1\n1\n", FileError, "no number in column 2"),
-        ("a,b\n0,nan\n1,2\n", FileError, "no number in column 2"),
-        ("a,b\n", FileError, "no table"),
-        ("a [s],b [kg]\n0,1\n1,2\n", UsageError, "is no unit of"),
-        ("a [s],b [qq]\n0,1\n1,2\n", UsageError, "unknown unit"),
-    ],
-)
-def test_tables_that_make_no_sense(text, kind, what, tmp_path):
-    (tmp_path / "old.csv").write_text(text)
-    with pytest.raises(kind, match=what):
-        reference(tmp_path / "old.csv", "stroke", "", ("s", "m"))
-
-
-def test_no_table(tmp_path):
-    with pytest.raises(FileError, match="no such file"):
-        reference(tmp_path / "old.csv", "stroke", "", ("s", "m"))
-    (tmp_path / "old.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(FileError, match="cannot be read"):
-        reference(tmp_path / "old.csv", "stroke", "", ("s", "m"))

@@ -59,6 +59,46 @@ def test_component_of_a_vector(run):
     )
 
 
+def test_magnitude_of_a_vector(run):
+    """A magnitude is a channel like any other; of a scalar it is the size."""
+    force = run.channel("B.force")
+    size = np.sqrt(force[:, 0] ** 2 + force[:, 1] ** 2 + force[:, 2] ** 2)
+    np.testing.assert_allclose(run.channel("|B.force|"), size, rtol=1e-15)
+    assert run.unit("|B.force|") == "N"
+    assert scalar(run, "rms:|B.force|") == (pytest.approx(np.sqrt(np.mean(size**2))), "N")
+    assert scalar(run, "mean:|stroke|")[0] == pytest.approx(np.mean(np.abs(run.channel("stroke"))))
+    assert scalar(run, "mean:|B.force.x|")[0] == pytest.approx(np.mean(np.abs(force[:, 0])))
+    with pytest.raises(UsageError, match=r"no channel named 'B\.farce'"):
+        scalar(run, "mean:|B.farce|")
+
+
+def test_the_peak_of_a_vector_is_that_of_its_magnitude(run):
+    """sqrt of the sum of squares at one time, which the peaks of the components are not."""
+    [kept] = [p for p in run.peaks if (p.channel, p.extreme) == ("A.reaction", "magnitude")]
+    rows = np.linalg.norm(run.channel("A.reaction"), axis=1)
+    assert kept.value > rows.max()
+    for word in ("peak:A.reaction", "peak:|A.reaction|"):
+        assert scalar(run, word) == (kept.value, "N")
+    sides = [max(abs(scalar(run, f"{kind}:A.reaction.{axis}")[0]) for kind in ("peak", "least"))
+             for axis in "xy"]  # fmt: skip
+    assert max(sides) < kept.value < np.hypot(*sides)
+    late = f"@{1.01 * kept.time!r}.."
+    part = scalar(run, f"peak:A.reaction{late}")[0]
+    assert part == rows[run.time >= 1.01 * kept.time].max()
+    for word in ("least:A.reaction", "range:A.reaction", "peak:B.force", "peak:|B.force|"):
+        with pytest.raises(UsageError, match=r"magnitude of '.*' is not kept"):
+            scalar(run, word)
+
+
+def test_the_peak_of_a_size_is_that_of_the_motion(run):
+    for channel in ("B.contact_force", "motor.force", "stroke"):
+        high, low = (scalar(run, f"{kind}:{channel}")[0] for kind in ("peak", "least"))
+        assert scalar(run, f"peak:|{channel}|")[0] == max(abs(high), abs(low))
+        least = 0.0 if low <= 0.0 <= high else min(abs(high), abs(low))
+        assert scalar(run, f"least:|{channel}|")[0] == least
+    assert scalar(run, "peak:|motor.force|")[0] > np.abs(run.channel("motor.force")).max()
+
+
 def test_dispersion_of_a_section(run):
     points = run.poincare["journal"]
     assert len(points.x) > 3

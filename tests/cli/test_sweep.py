@@ -103,3 +103,29 @@ def test_nothing_to_vary(scenario, trsim):
 def test_no_sweep_there(scenario, trsim):
     code, _, err = trsim("status", "nowhere")
     assert code == 7 and "no such folder" in err
+
+
+def test_bars_and_envelope(scenario, trsim, answer):
+    assert trsim("sweep", "crank.yaml", "--set", f"{B}=[0.4 mm, 0.5 mm]", *FAST)[0] == 0
+    code, told = answer("report", "sw", "--bars", "peak:A.reaction", "--envelope",
+                        "--at", "stroke", "--with", "motor.force,|A.reaction|")  # fmt: skip
+    assert code == 0
+    names = {name.rpartition("/")[2] for name in told["files"]}
+    assert {"bars_peak_A_reaction.png", "envelope.csv", "envelope_cases.csv"} <= names
+    head = (scenario.parent / "sw/figures/envelope.csv").read_text().splitlines()[0]
+    assert head.endswith("stroke [m],known from,in rows,x,y,z,motor.force [N*m],|A.reaction| [N]")
+    assert {value["run"] for value in told["values"]} <= {"clearance=0.4mm", "clearance=0.5mm"}
+    code, told = answer("report", "sw", "--envelope", "A.reaction.x, stroke")
+    assert {value["what"] for value in told["values"]} == {
+        f"{name}: {word}" for name in ("A.reaction.x", "stroke") for word in ("largest", "smallest")
+    }
+    assert answer("report", "sw", "--envelope", "A.action")[0] == 2
+    assert answer("report", "sw", "--at", "stroke")[0] == 2
+    assert answer("report", "sw", "--plot", "stroke")[0] == 2
+    case = "sw/cases/clearance=0.4mm.h5"
+    assert answer("report", case, "--envelope")[0] == 2
+    code, told = answer("report", case, "--laws", "--plot", "B.normal_force : stroke", "-o", "out")
+    assert code == 0 and any("visited depth" in line for line in told["told"])
+    code, told = answer("report", case, "--plot", "motor.force : stroke", "-o", "new",
+                        "--overlay", "out/none.csv")  # fmt: skip
+    assert code == 7

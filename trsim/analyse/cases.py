@@ -81,6 +81,10 @@ def numbers(study: Any, words: Iterable[str]) -> dict[str, Numbers]:
         values = {c.name: one.found.get(c.name, (np.nan, ""))[0] for c in study.cases}
         empty = {name: f"nothing to make {word} of" for name in one.found if np.isnan(values[name])}
         unit = next(iter(one.found.values()))[1]
+        for name, (_, own) in one.found.items():
+            if own != unit:
+                values[name] = np.nan
+                empty[name] = f"{word} is in {own}, not in {unit} as that of other cases"
         found[word] = Numbers(word, unit, values, {**one.why, **empty})
     return found
 
@@ -117,6 +121,21 @@ def unfinished(study: Any) -> list[str]:
         f"{len(names)} of {len(study.cases)} cases {kind} and are left out: {listed(names)}"
         for kind, names in kinds.items()
         if names
+    ]
+
+
+def shorter(study: Any) -> list[str]:
+    """Which runs ended well before others did: their numbers are of a shorter time."""
+    time = numbers(study, ["summary:time"])["summary:time"].values
+    last = max(t for t in time.values() if not np.isnan(t))
+    groups: dict[tuple[float, str], list[str]] = {}
+    for case in study.cases:
+        if time[case.name] < last * (1.0 - 1e-9):
+            groups.setdefault((time[case.name], case.status), []).append(case.name)
+    return [
+        f"{listed(names)}: {status} at {t:.6g} s, where others go on to {last:.6g} s: numbers are "
+        "of that time"
+        for (t, status), names in groups.items()
     ]
 
 

@@ -7,12 +7,8 @@ but the solver or by less than ALIKE of a number, ought to be the same: where th
 (apart.py, any position or velocity) it is chance that parts them, and from there single values mean
 nothing.  Largest difference and rms are then those before, and mean and rms of both runs stand for
 the rest.
-
-A reference is a table of numbers: the column named as the channel compared against, or time, or
-else its first one; another the values.
 """
 
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,10 +17,9 @@ from trsim.analyse.apart import APART, windows
 from trsim.analyse.growth import motions
 from trsim.analyse.window import scalar_channel
 from trsim.arrays import Array
-from trsim.errors import FileError, ScenarioError, UsageError, known, unreadable
-from trsim.scenario.table import Line, Table, lines, number
+from trsim.errors import ScenarioError, UsageError
 from trsim.store.read import Run
-from trsim.units import fits, quantity, titled, unit
+from trsim.units import quantity
 
 ALIKE = 1e-5  # relative
 # sections that have no influence on the motion
@@ -160,80 +155,3 @@ def _plain(value: Any) -> float | None:
             return None
         return found[0] if found else None
     return float(value) if isinstance(value, int | float) else None
-
-
-# --- reference tables ------------------------------------------------------------------------
-
-
-def reference(path: Path, column: str, against: str, si: tuple[str, str]) -> Curve:
-    """The curve of a CSV file with titles; si: units of abscissa and values.
-
-    Titles may carry a unit, `time [ms]`; numbers without one are SI.  The column is the one named
-    so, or the second of two.  Raises FileError, UsageError.
-    """
-    table = _table(path)
-    titles = table.titles or table.rows.pop(0)
-    table = table._replace(titles=titles)
-    if len(table.rows) < 2 or len(titles.cells) < 2:
-        what = f"{path} has no table of at least two columns and two rows"
-        raise FileError(what, "The first line names the columns.", file=str(path))
-    names = [_name(cell) for cell in titles.cells]
-    if column not in names and len(names) > 2:
-        raise UsageError(f"{path}: no column named '{column}'", known(column, names))
-    over = against or "time"
-    places = [names.index(over) if over in names else 0]
-    places.append(names.index(column) if column in names else 1 - places[0])
-    if places[0] == places[1]:
-        what = f"{path}: column '{names[places[0]]}' would be '{over}' and '{column}' at once"
-        raise UsageError(what, f"Name one column '{over}' and another one '{column}'.")
-    values = []
-    for place, text in zip(places, si, strict=True):
-        numbers = np.array([_number(table, line, place) for line in table.rows])
-        values.append(numbers * _factor(table, place, text))
-    order = np.argsort(values[0], kind="stable")
-    return Curve(values[0][order], values[1][order])
-
-
-def _table(path: Path) -> Table:
-    """The lines of a file."""
-    if (missing := unreadable(path)) is not None:
-        raise missing
-    try:
-        table = lines(path.read_bytes().decode("utf-8-sig"), str(path))
-    except (OSError, UnicodeDecodeError) as error:
-        raise FileError(f"{path} cannot be read as a table: {error}", file=str(path)) from None
-    except ScenarioError as error:
-        raise FileError(error.what, error.hint, place=error.place, file=str(path)) from None
-    if table.titles is None and not table.rows:
-        raise FileError(f"{path} has no table", "The first line names the columns.", file=str(path))
-    return table
-
-
-def _name(cell: str) -> str:
-    """The name in a title; of a title that makes no sense all of it."""
-    try:
-        return titled(cell)[0]
-    except ScenarioError:
-        return cell.partition("[")[0].strip()
-
-
-def _number(table: Table, line: Line, place: int) -> float:
-    found = number(line.cells[place]) if place < len(line.cells) else None
-    if found is None:
-        what = f"{table.file}: no number in column {place + 1} of the line {line.text[:60]}"
-        hint = "Every line has as many numbers as the first has names."
-        raise FileError(what, hint, place=table.place(line, place), file=table.file)
-    return found
-
-
-def _factor(table: Table, place: int, si: str) -> float:
-    """What the numbers of a column are multiplied by."""
-    assert table.titles is not None  # noqa: S101
-    where = table.place(table.titles, place)
-    try:
-        text = table.title(place)[1]
-    except ScenarioError as error:
-        raise UsageError(error.what, error.hint, place=where) from None
-    if not text or fits(text, si):
-        return float(unit(text)[0])
-    raise UsageError(f"{table.file}: '{text}' is no unit of what is in {si}", place=where)

@@ -6,7 +6,7 @@ all ask here.  A word is KIND:OF, and @WINDOW behind it where only a stretch of 
 
     peak, least          largest and smallest value: of the motion for the whole run; in a
                          window of rows, of the steps of a contact, and of the extremes of the run
-                         that lie in it
+                         that lie in it.  The peak of a vector is that of its magnitude
     range                peak - least
     mean, rms, std       of the rows, each counting alike: sums over n rows by n, no integral over
                          time, in which the first and the last row count half
@@ -25,12 +25,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from trsim.analyse.extremes import LARGEST, SMALLEST, extreme
 from trsim.analyse.fluctuation import WIDTH, fluctuation, shows
 from trsim.analyse.shares import shares
 from trsim.analyse.window import Window, parted, rows_in, scalar_channel, window
 from trsim.arrays import Array
 from trsim.errors import UsageError, described, known
-from trsim.store.points import split
 from trsim.store.read import Run
 
 Number = tuple[float, str]
@@ -66,26 +66,7 @@ def _of_rows(
 
 
 def _extreme(word: str, run: Run, channel: str, within: Window, part: bool) -> Number:
-    best: Any = {"largest": max, "smallest": min}[word]
-    values = [best(rows_in(run, channel, within)[1].tolist())]
-    kept = [p for p in run.peaks if (p.channel, p.extreme) == (channel, word)]
-    values += [p.value for p in kept if not part or within.begin <= p.time <= within.end]
-    values += _in_touch(run, channel, within)
-    return best(values), run.unit(channel)
-
-
-def _in_touch(run: Run, channel: str, within: Window) -> list[float]:
-    """The values of a channel of a contact, or of a component, at its accepted steps."""
-    joint = max((n for n in run.contacts if channel.startswith(f"{n}.")), key=len, default="")
-    if not joint:
-        return []
-    steps = run.steps(joint)
-    sizes = {name: column.shape[1] if column.ndim == 2 else 1 for name, column in steps.items()}
-    name, component = split(channel.removeprefix(f"{joint}."), sizes)
-    if name not in steps:
-        return []
-    found = steps[name][within.of(steps["time"])]
-    return (found if component is None else found[:, component]).tolist()
+    return extreme(run, word, channel, within, part).value, run.unit(channel)
 
 
 def _range(run: Run, channel: str, within: Window, part: bool) -> Number:
@@ -176,8 +157,8 @@ def _unit_of(run: Run, path: str) -> str:
 SHARES = ("flight", "contact", "following", "impacts", "onsets")
 WHOLE = ("summary", "solver")
 KINDS: dict[str, Callable[[Run, str, Window, bool], Number]] = {
-    "peak": partial(_extreme, "largest"),
-    "least": partial(_extreme, "smallest"),
+    "peak": partial(_extreme, LARGEST),
+    "least": partial(_extreme, SMALLEST),
     "range": _range,
     "mean": partial(_of_rows, np.mean),
     "rms": partial(_of_rows, lambda x: np.sqrt(np.mean(x**2))),

@@ -51,12 +51,11 @@ def window(run: Run, text: str = "", rows: bool = True) -> Window:
     if not text:
         return whole
     channel, equals, limits = text.rpartition("=")
-    begin, dots, end = limits.partition("..")
-    if not dots or (equals and not channel):
+    if equals and not channel:
         raise UsageError(f"no window: {described('@' + text)}", FORM)
     x = scalar_channel(run, channel) if equals else time
     si = run.unit(channel) if equals else "s"
-    low, high = _value(begin, -np.inf, si, text), _value(end, np.inf, si, text)
+    low, high = ends(limits, si, described("@" + text))
     found = Window(max(low, whole.begin), min(high, whole.end))
     if equals:
         found = _passed(run, channel, x, whole, low, high)
@@ -69,18 +68,29 @@ def window(run: Run, text: str = "", rows: bool = True) -> Window:
     return found
 
 
-def _value(text: str, absent: float, si: str, whole: str) -> float:
+def ends(text: str, si: str, told: str, form: str = FORM) -> tuple[float, float]:
+    """The ends of BEGIN..END in an SI unit; one that is left out is infinite.
+
+    told: the window in words.  Raises UsageError for what makes no sense.
+    """
+    begin, dots, end = text.partition("..")
+    if not dots:
+        raise UsageError(f"no window: {told}", form)
+    return _value(begin, -np.inf, si, told, form), _value(end, np.inf, si, told, form)
+
+
+def _value(text: str, absent: float, si: str, told: str, form: str) -> float:
     """One end in SI units; absent: where it is left out."""
     if not text.strip():
         return absent
     try:
         found = quantity(text)
     except ScenarioError as error:
-        raise UsageError(f"window {described('@' + whole)}: {error.what}", error.hint) from None
+        raise UsageError(f"window {told}: {error.what}", error.hint) from None
     if found is None:
-        raise UsageError(f"window {described('@' + whole)}: {described(text)} is no number", FORM)
+        raise UsageError(f"window {told}: {described(text)} is no number", form)
     if found[1] and unit(found[1])[1] != unit(si)[1]:
-        raise UsageError(f"window {described('@' + whole)}: {described(text)} is not in {si}", FORM)
+        raise UsageError(f"window {told}: {described(text)} is not in {si}", form)
     return found[0]
 
 
@@ -91,7 +101,9 @@ def scalar_channel(run: Run, name: str) -> Array:
     """
     found = run.channel(name)
     if found.ndim > 1:
-        raise UsageError(f"'{name}' has {found.shape[1]} components", f"Say '{name}.x'.")
+        raise UsageError(
+            f"'{name}' has {found.shape[1]} components", f"Say '{name}.x', or '|{name}|'."
+        )
     return np.asarray(found)
 
 

@@ -15,6 +15,10 @@ PAPERS = ("thrust-reverser",)
 @click.command("report")
 @click.argument("runs", nargs=-1, required=True, type=click.Path())
 @click.option("-o", "--output", type=NAMED, help="Folder of the figures.")
+@click.option("--plot", multiple=True, metavar="'Y, Y2 : X'",
+              help="Channels over any other one, or over time.")  # fmt: skip
+@click.option("--window", default="", metavar="A..B", help="Of X in --plot: 0..110deg.")
+@click.option("--laws", is_flag=True, help="Every law as used, and the range that was visited.")
 @click.option("--section", multiple=True, metavar="when=CHANNEL,crosses=up,plot=X:Y",
               help="A Poincare section that was not declared, with its errors.")  # fmt: skip
 @click.option("--portrait", multiple=True, metavar="X:Y",
@@ -27,13 +31,20 @@ PAPERS = ("thrust-reverser",)
 @click.option("--against", default="", metavar="CHANNEL",
               help="In place of the time in --compare and --overlay.")  # fmt: skip
 @click.option("--overlay", multiple=True, metavar="FILE.csv:CHANNEL",
-              help="The runs over the curve of a table.")  # fmt: skip
+              help="The runs over the curve of a table; with --plot FILE.csv.")  # fmt: skip
 @click.option("--table", multiple=True, metavar="WORD,...",
               help="Numbers, such as peak:B.contact_force@0.3..0.9.")  # fmt: skip
 @click.option("--bifurcation", multiple=True, metavar="SECTION[:AXIS]",
               help="Points of a section over what was swept.")  # fmt: skip
 @click.option("--sobol", multiple=True, metavar="WORD", help="Sobol indices of a number.")
 @click.option("--map", multiple=True, metavar="WORD", help="A number over two swept keys.")
+@click.option("--bars", multiple=True, metavar="WORD,...",
+              help="Numbers of a sweep, a bar for each case.")  # fmt: skip
+@click.option("--envelope", is_flag=False, flag_value="forces", default="", metavar="[PATTERN,...]",
+              help="Extremes over the cases of a sweep, and what acted then.")  # fmt: skip
+@click.option("--at", default="", metavar="CHANNEL", help="Abscissa told by --envelope.")
+@click.option("--with", "along", multiple=True, metavar="CHANNEL,...",
+              help="What else --envelope tells.")  # fmt: skip
 @click.option("--over", metavar="KEY", help="The swept key that figures of a sweep are over.")
 @click.option("--paper", type=click.Choice(PAPERS), help="Judge a published study by its sweep.")
 @click.option("--animate", is_flag=True, help="The motion of one run: animation.glb, .html.")

@@ -11,8 +11,17 @@ from trsim.errors import FileError, UsageError
 if TYPE_CHECKING:
     from trsim.report.asked import Asked, Found
 
-SWEEP = ("bifurcation", "sobol", "map")  # what only a study has
-RUNS = ("section", "portrait", "spectrum", "lyapunov", "compare", "overlay")  # what only runs have
+SWEEP = ("bifurcation", "sobol", "map", "bars", "envelope")  # what only a study has
+RUNS = (
+    "plot",
+    "laws",
+    "section",
+    "portrait",
+    "spectrum",
+    "lyapunov",
+    "compare",
+    "overlay",
+)  # what only runs have
 
 
 def report(paths: str | PathLike | Sequence[str | PathLike], folder: str | PathLike) -> list[Path]:
@@ -50,12 +59,17 @@ def analysed(paths: Sequence[str | PathLike], folder: str | PathLike, asked: "As
 def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "Found":
     """The analyses of result files."""
     from trsim.report import compared as beside
-    from trsim.report import exponents, numbers, portraits, sections, spectra
+    from trsim.report import exponents, numbers, plots, portraits, sections, spectra
+    from trsim.report import laws as of_laws
     from trsim.report.asked import nothing, words
     from trsim.report.display import compared
     from trsim.store.read import read
 
     runs, found = compared([read(path) for path in paths]), nothing()
+    for word in asked.plot:
+        found.add(plots.draw(runs, word, asked.overlay, asked.window, folder, found.files))
+    if asked.laws:
+        found.add(of_laws.draw(runs, folder))
     if asked.section:
         found.files.extend(sections.draw(runs, asked.section, folder))
     for word in asked.portrait:
@@ -66,7 +80,7 @@ def of_runs(paths: Sequence[str | PathLike], folder: Path, asked: "Asked") -> "F
         found.add(exponents.draw(runs, word, folder))
     if asked.compare:
         found.add(beside.draw(runs, asked, folder))
-    for word in asked.overlay:
+    for word in () if asked.plot else asked.overlay:
         found.add(beside.overlay(runs, word, asked.against, folder))
     if asked.table:
         found.add(numbers.draw(runs, words(asked.table), folder))
@@ -85,10 +99,18 @@ def check_asked(paths: Sequence[str | PathLike], asked: "Asked") -> None:
         raise UsageError(f"--{wrong[0]} is not for {of}", f"It is for {rather}.")
     if asked.over and not studies:
         raise UsageError("--over is not for result files", "It is for a sweep.")
-    if asked.over and asked.sobol and not (asked.bifurcation or asked.table or asked.map):
+    if (
+        asked.over
+        and (asked.sobol or asked.bars or asked.envelope)
+        and not (asked.bifurcation or asked.table or asked.map)
+    ):
         raise UsageError("--over goes with --bifurcation, --table or --map")
-    if asked.against and not (asked.compare or asked.overlay):
+    if asked.window and not asked.plot:
+        raise UsageError("--window goes with --plot", "Others take a window as WORD@BEGIN..END.")
+    if asked.against and not (asked.compare or (asked.overlay and not asked.plot)):
         raise UsageError("--against goes with --compare or --overlay")
+    if not asked.envelope and (asked.at or asked.along):
+        raise UsageError(f"--{'at' if asked.at else 'with'} goes with --envelope")
     if asked.channels and not asked.compare:
         raise UsageError("--channels goes with --compare")
 

@@ -12,6 +12,9 @@ from trsim.store.target import Kind, file_errors, fresh, headed
 class Asked(NamedTuple):
     """Analyses, by the words of their options."""
 
+    plot: tuple[str, ...] = ()  # Y, Y2 : X[@WINDOW]
+    window: str = ""  # of the abscissa of plots
+    laws: bool = False
     section: tuple[str, ...] = ()  # when=CHANNEL,crosses=up,plot=X:Y
     portrait: tuple[str, ...] = ()  # X:Y[@WINDOW]
     spectrum: tuple[str, ...] = ()  # CHANNEL[@WINDOW]
@@ -19,11 +22,15 @@ class Asked(NamedTuple):
     compare: bool = False
     channels: tuple[str, ...] = ()  # patterns of what is compared
     against: str = ""  # channel in place of the time
-    overlay: tuple[str, ...] = ()  # FILE.csv:CHANNEL
+    overlay: tuple[str, ...] = ()  # FILE.csv:CHANNEL; with plots FILE.csv
     table: tuple[str, ...] = ()  # words of analyse/outputs.py
     bifurcation: tuple[str, ...] = ()  # SECTION[:AXIS][@WINDOW]
     sobol: tuple[str, ...] = ()  # words
     map: tuple[str, ...] = ()  # words
+    bars: tuple[str, ...] = ()  # WORD[, WORD ...], a figure each
+    envelope: str = ""  # patterns of quantities; `forces`: all forces and moments
+    at: str = ""  # abscissa that an envelope tells
+    along: tuple[str, ...] = ()  # channels whose values it tells as well
     over: str | None = None  # swept key
 
 
@@ -67,15 +74,20 @@ def file_name(kind: str, word: str) -> str:
 
 
 def table(
-    path: Path, titles: Sequence[str], rows: Iterable[Sequence[Any]], kind: Kind | None = None
+    path: Path,
+    titles: Sequence[str],
+    rows: Iterable[Sequence[Any]],
+    kind: Kind | None = None,
+    given: Iterable[str] = (),
 ) -> Path:
     """Write rows as CSV, numbers in full.
 
     kind: of the older tables it may replace; those with the same first two titles unless given.
+    given: files that are read, and stay.
     """
     with (
         file_errors(path),
-        fresh(path, kind or headed(*titles[:2])) as unfinished,
+        fresh(path, kind or headed(*titles[:2]), given) as unfinished,
         unfinished.open("w", newline="", encoding="utf-8") as file,
     ):
         out = csv.writer(file)

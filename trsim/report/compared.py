@@ -13,8 +13,8 @@ from trsim.analyse.compare import (
     curve,
     difference,
     parting,
-    reference,
 )
+from trsim.analyse.reference import reference
 from trsim.errors import UsageError, known
 from trsim.report import style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table

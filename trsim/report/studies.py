@@ -1,6 +1,6 @@
 """The figures of a study: chosen numbers over what was swept, and what else is asked of it."""
 
-from itertools import groupby
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +13,16 @@ from trsim.analyse.cases import (
     numbers,
     numeric,
     reasons,
+    shorter,
     unfinished,
     varied,
     without,
 )
 from trsim.analyse.fluctuation import shows
 from trsim.errors import FileError, UsageError
-from trsim.report import maps, style
+from trsim.report import case_bars, envelopes, maps, style
 from trsim.report.asked import Asked, Found, Value, file_name, nothing, table
+from trsim.report.asked import words as parted_words
 from trsim.report.diagrams import bifurcation
 from trsim.report.display import Shown, compared
 from trsim.report.keys import Units, axis, in_words, named_value
@@ -52,9 +54,10 @@ def units(study: Any) -> Units:
 def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
     """What was asked for of a study; its chosen numbers where nothing was."""
     one, found = shown(study), nothing()
-    if not (words or asked.bifurcation or asked.sobol or asked.map):
+    if not any((words, asked.bifurcation, asked.sobol, asked.map, asked.bars, asked.envelope)):
         words = usual(one)
-    of = numbers(study, dict.fromkeys([*words, *asked.sobol, *asked.map]))
+    bars = [parted_words([text]) for text in asked.bars]
+    of = numbers(study, dict.fromkeys([*words, *asked.sobol, *asked.map, *chain(*bars)]))
     for word in asked.bifurcation:
         drawn = diagram(study, word, asked.over)
         found.add(bifurcation(one, drawn, folder))
@@ -63,6 +66,12 @@ def draw(study: Any, asked: Asked, words: list[str], folder: Path) -> Found:
         found.add(sobol(study, one, of[word], folder))
     for word in asked.map:
         found.add(maps.drawn(study, one, of[word], asked.over, folder))
+    for group in bars:
+        found.add(case_bars.draw(study, one, [of[word] for word in group], folder))
+    if asked.envelope:
+        found.add(envelopes.draw(study, one, asked, folder))
+    if bars:
+        found.lines.extend(shorter(study))
     if words:
         found.add(outputs(study, one, [of[word] for word in words], asked.over, folder))
     lines = [*found.lines, *unfinished(study)]

@@ -123,6 +123,11 @@ def split(channel: str, sizes: Any) -> tuple[str, int | None]:
     return channel, None
 
 
+def between_bars(name: str) -> str | None:
+    """V of `|V|`, the magnitude of a vector; None of any other name."""
+    return name[1:-1] if len(name) > 2 and name[0] == name[-1] == "|" else None
+
+
 def _found(channel: str, sizes: dict[str, int], path: tuple) -> str:
     stored, component = split(channel, sizes)
     if stored not in sizes:

@@ -19,7 +19,7 @@ from trsim.store.content import content_hash
 from trsim.store.grow import LONGEST
 from trsim.store.peaks import Peak
 from trsim.store.plain import SIGNATURE, Plain
-from trsim.store.points import Impacts, Points, plain, split, stored
+from trsim.store.points import Impacts, Points, between_bars, plain, split, stored
 from trsim.store.sound import Unsound, check_sound
 from trsim.store.tables import MAY_BE_NAN
 
@@ -77,7 +77,12 @@ class Run:
             return reached(file)
 
     def channel(self, name: str) -> Array:
-        """The rows of a channel, (n) or (n, size); `B.force.x` is one component."""
+        """The rows of a channel, (n) or (n, size).
+
+        `B.force.x` is one component, `|B.force|` the magnitude.
+        """
+        if (inside := between_bars(name)) is not None:
+            return self._magnitude(inside)
         stored, component = split(name, self.sizes)
         if not self.stores(name):
             raise UsageError(f"{self.path}: no channel named '{name}'", known(name, self.names))
@@ -85,16 +90,28 @@ class Run:
             found = torn.rows(file[stored], 0, self.rows)
         return found if component is None else found[:, component]
 
+    def _magnitude(self, name: str) -> Array:
+        """The rows of the length of a vector; of a number those of its size without the sign."""
+        found = self.channel(name)
+        if found.ndim > 1 and found.shape[1] != 3:
+            what = f"{self.path}: '{name}' has {found.shape[1]} components and no magnitude"
+            raise UsageError(what, "Vectors of three have one.")
+        return np.abs(found) if found.ndim == 1 else np.sqrt(np.sum(found * found, axis=1))
+
     def stores(self, name: str) -> bool:
-        """Whether there are rows of a channel or of a component."""
-        return name == "time" or split(name, self.sizes)[0] in self.units
+        """Whether there are rows of a channel, of a component or of a magnitude."""
+        return name == "time" or self._stored(name) in self.units
 
     def unit(self, name: str) -> str:
-        return "s" if name == "time" else self.units[split(name, self.sizes)[0]]
+        return "s" if name == "time" else self.units[self._stored(name)]
 
     def meaning(self, name: str) -> str:
         with opened(self.path) as file:
-            return str(file[split(name, self.sizes)[0]].attrs["long_name"])
+            return str(file[self._stored(name)].attrs["long_name"])
+
+    def _stored(self, name: str) -> str:
+        """The channel that a component or a magnitude is of."""
+        return split(between_bars(name) or name, self.sizes)[0]
 
     def steps(self, joint: str) -> dict[str, Array]:
         """`time` and the channels of a contact at every accepted step in touch."""

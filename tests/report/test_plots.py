@@ -1,0 +1,179 @@
+"""Plots of any channel over any other, beside tables: what is drawn, written and told."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from tests import small
+from tests.report.test_figures import drawn
+from trsim.analyse.plotted import Plotted, limits, plotted
+from trsim.errors import FileError, UsageError
+from trsim.report import analysed, plots
+from trsim.report.asked import Asked
+from trsim.report.display import compared
+from trsim.report.style import look
+from trsim.store.read import read
+
+DOOR = """\
+title: Door that swings
+bodies: {door: {mass: 2, inertia: 0.1, at: [0.5, 0]}}
+joints: {hinge: {type: revolute, bodies: [ground, door], at: [0, 0]}}
+drives: {handle: {joint: hinge, position: 0.6*sin(2*pi*t)}}
+sensors: {door_angle: {joint: hinge}}
+solver: {end: 0.5 s, tolerance: 1e-9}
+output: {every: 1 ms}
+"""
+
+
+@pytest.fixture(scope="module")
+def door(tmp_path_factory):
+    """phi = 0.6 sin(2 pi t) for half a turn: forth and back to where it was."""
+    path = tmp_path_factory.mktemp("plots") / "door.h5"
+    small.run(path, text=DOOR)
+    return path
+
+
+def columns(path):
+    with path.open(newline="") as file:
+        titles, *rows = csv.reader(file)
+    return titles, np.array([[float(x) for x in row] for row in rows])
+
+
+def lines(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_words():
+    assert plotted("a") == Plotted(("a",), "time", "")
+    assert plotted(" a.rate , b : c @0.1..0.2") == Plotted(("a.rate", "b"), "c", "0.1..0.2")
+    assert plotted("|F|:t.x") == Plotted(("|F|",), "t.x", "")
+    for word in ("", ":a", "a:", "a:b:c", "a,:b", "a,b:c,d", "a,a:b"):
+        with pytest.raises(UsageError):
+            plotted(word)
+    assert limits("90deg..", "rad") == (pytest.approx(np.pi / 2), np.inf)
+    for text in ("1", "2..1", "1kg..2kg", "a..b"):
+        with pytest.raises(UsageError, match="window"):
+            limits(text, "rad")
+
+
+def test_figure_and_rows(door, tmp_path):
+    """Rows of the closed form, SI, the abscissa first; the figure in the units of the scenario."""
+    found = analysed([door], tmp_path, Asked(plot=("door_angle.rate, handle.force : door_angle",)))
+    picture, rows = found.files
+    assert picture.name == "plot_door_angle_rate_handle_force_door_angle.png"
+    assert 0.005 < drawn(picture) < 0.5
+    titles, values = columns(rows)
+    assert titles == ["door_angle [rad]", "time [s]", "door_angle.rate [rad/s]",
+                      "handle.force [N*m]"]  # fmt: skip
+    w, t = 2.0 * np.pi, values[:, 1]
+    np.testing.assert_allclose(values[:, 0], 0.6 * np.sin(w * t), atol=1e-9)
+    np.testing.assert_allclose(values[:, 2], 0.6 * w * np.cos(w * t), atol=1e-8)
+    inertia = 0.1 + 2.0 * 0.5**2
+    np.testing.assert_allclose(values[:, 3], -inertia * 0.6 * w**2 * np.sin(w * t), atol=1e-6)
+    with look():
+        shown = compared([read(door)])
+        of = plotted("door_angle.rate, handle.force : door_angle")
+        every = [plots.Curves(shown[0], plots.rows(shown[0].run, of))]
+        made = plots.figure(every, [], of, (-np.inf, np.inf), [])
+    upper, lower = made.axes
+    assert upper.get_ylabel() == "door angle, rate\n(deg/s)"
+    assert lower.get_ylabel() == "handle, force\n(N·m)"
+    assert lower.get_xlabel() == "door angle (deg)"
+    assert upper.lines[0].get_xdata().max() == pytest.approx(np.degrees(0.6), abs=1e-3)
+    assert "dot: begin" in made.get_suptitle()
+
+
+def test_time_unless_an_abscissa_is_named(door, tmp_path):
+    found = analysed([door], tmp_path, Asked(plot=("|door.position|@0.1..0.2",)))
+    titles, values = columns(found.files[1])
+    assert titles == ["time [s]", "|door.position| [m]"]
+    assert (values[0, 0], values[-1, 0]) == (pytest.approx(0.1), pytest.approx(0.2))
+    np.testing.assert_allclose(values[:, 1], 0.5, rtol=1e-9)
+
+
+def test_what_was_drawn_is_its_own_reference(door, tmp_path):
+    """Read back it differs by nothing, forth and back, and the second time it is replaced."""
+    word = "handle.force : door_angle"
+    first = analysed([door], tmp_path, Asked(plot=(word,))).files[1]
+    with pytest.raises(UsageError, match="made of it"):
+        analysed([door], tmp_path, Asked(plot=(word,), overlay=(str(first),)))
+    old = first.rename(tmp_path / "old.csv")
+    for _ in range(2):
+        found = analysed([door], tmp_path, Asked(plot=(word,), overlay=(str(old),)))
+    up, down = lines(found.files[2])
+    assert up["compared"] == "branch 1 of 2, rising"
+    assert [float(one["largest difference"]) for one in (up, down)] == [0.0, 0.0]
+    assert (up["rows"], up["unit"], up["unit of at"]) == ("251", "N*m", "rad")
+
+
+def test_largest_difference_to_an_analytical_curve(door, tmp_path):
+    """-I phi'' over phi is I w^2 phi, a straight line; one 2 % steeper is off at the end."""
+    phi = np.linspace(-0.5, 0.5, 101)
+    slope = 0.6 * (2.0 * np.pi) ** 2
+    text = "\n".join(f"{float(np.degrees(a))!r},{-1.02e-3 * slope * a!r}" for a in phi.tolist())
+    reference = tmp_path / "line.csv"
+    reference.write_text(f"door_angle [deg],handle.force [kN*m]\n{text}\n")
+    asked = Asked(plot=("handle.force : door_angle",), overlay=(str(reference),))
+    found = analysed([door], tmp_path, asked)
+    up, down = lines(tmp_path / "plot_handle_force_door_angle_difference.csv")
+    for one in (up, down):
+        assert float(one["largest difference"]) == pytest.approx(0.02 * slope * 0.5, rel=1e-4)
+        assert float(one["at"]) == pytest.approx(0.5)
+        assert (one["rows"], one["rows in the window"]) == ("51", "101")
+    assert "compared at 51 of 101 rows" in found.lines[0]
+    assert found.values[0].value == float(up["largest difference"])
+    found = analysed([door], tmp_path, asked._replace(window="-1deg..20deg"))
+    [name] = [path for path in found.files if path.name.endswith("difference.csv")]
+    for one in lines(name):
+        assert float(one["at"]) == pytest.approx(0.34)  # the last row below 20 deg
+    assert 0.005 < drawn(found.files[0]) < 0.5
+
+
+def test_tables_that_say_too_little(door, tmp_path):
+    (tmp_path / "a.csv").write_text("door_angle,door_angle.rate\n0.1,1\n0.2,2\n0.3,1\n")
+    asked = Asked(plot=("door_angle.rate, handle.force : door_angle",))
+    found = analysed([door], tmp_path, asked._replace(overlay=(str(tmp_path / "a.csv"),)))
+    assert any("no column handle.force: not compared" in line for line in found.lines)
+    assert any("door_angle, door_angle.rate without a unit" in line for line in found.lines)
+    (tmp_path / "b.csv").write_text("door_angle,other,third\n0.1,1,1\n0.2,2,2\n")
+    (tmp_path / "c.csv").write_text("0.1,1\n0.2,2\n")
+    (tmp_path / "d.csv").write_text("a,a\n0.1,1\n0.2,2\n")
+    (tmp_path / "e.csv").write_text("door_angle [mm],handle.force [N*m]\n0.1,1\n0.2,2\n")
+    for name, kind, what in (("b", UsageError, "no column named"), ("c", FileError, "no table"),
+                             ("d", FileError, "two columns named 'a'"),
+                             ("e", UsageError, "no unit of what is in rad"),
+                             ("f", FileError, "no such file")):  # fmt: skip
+        with pytest.raises(kind, match=what):
+            analysed([door], tmp_path, asked._replace(overlay=(str(tmp_path / f"{name}.csv"),)))
+    for asked, what in ((Asked(window="0..1", portrait=("stroke:stroke",)), "goes with --plot"),
+                        (Asked(plot=("door.position : door_angle",)), "3 components"),
+                        (Asked(plot=("door_angle",), against="door_angle"), "--against"),
+                        (Asked(plot=("nothing",)), "no channel named 'nothing'")):  # fmt: skip
+        with pytest.raises(UsageError, match=what):
+            analysed([door], tmp_path, asked)
+
+
+def test_words_of_the_same_letters_have_files_of_their_own(door, tmp_path):
+    both = ("door_angle : door_angle.rate", "door_angle, door_angle.rate")
+    found = analysed([door], tmp_path, Asked(plot=both))
+    assert len({*found.files}) == 4
+    assert columns(found.files[1])[0][0] == "door_angle.rate [rad/s]"
+    assert columns(found.files[3])[0][0] == "time [s]"
+
+
+def test_several_runs(paths, tmp_path):
+    asked = Asked(plot=("B.contact_force, stroke.rate : stroke", "stroke"))
+    found = analysed(paths, tmp_path, asked)
+    assert len(found.files) == 6
+    assert all(0.005 < drawn(path) < 0.5 for path in found.files if path.suffix == ".png")
+    assert columns(found.files[2])[0][0] == "stroke [m]"
+    with look():
+        shown = compared([read(path) for path in paths])
+        of = plotted(asked.plot[0])
+        every = [plots.Curves(one, plots.rows(one.run, of)) for one in shown]
+        made = plots.figure(every, [], of, (-np.inf, np.inf), [])
+    [legend] = made.legends
+    names = [text.get_text() for text in legend.get_texts()]
+    assert len(names) == 4 == len({*names})
