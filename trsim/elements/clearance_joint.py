@@ -63,6 +63,7 @@ from trsim.laws.friction import (
     friction_force,
     neighbour,
     on_branch,
+    part_of_bristle,
 )
 
 
@@ -177,8 +178,11 @@ def contact_forces(scene, e):
     c_i, c_j, n, tangent, depth, rate, v_t = sliding(scene, e)
     if own.phase == FLIGHT or depth <= 0.0:
         # at the touch itself nothing presses yet, and the journal slides as it will right behind it
-        v_t = v_t if own.phase == CONTACT else 0.0
-        return 0.0, 0.0, v_t, 0.0, c_i, c_j, n, tangent, depth, rate
+        v_t, w_dot = v_t if own.phase == CONTACT else 0.0, 0.0
+        if own.phase == CONTACT and own.state >= 0:  # whatever rounding makes of no depth
+            w = scene.z[own.state]
+            _, w_dot = part_of_bristle(0.0, v_t, abs(v_t), w, own.friction)
+        return 0.0, 0.0, v_t, w_dot, c_i, c_j, n, tangent, depth, rate
     first = own.impact_speed
     if first == 0.0:  # not latched yet (UNLOCATED): this approach is the impact
         first = max(rate, own.slowest_impact)
@@ -206,13 +210,13 @@ def force(t, scene, e):
     F_n, F_t, v_t, w_dot, c_i, c_j, n, tangent, depth, rate = contact_forces(scene, e)
     if own.friction_law == CORNERED and own.branch != WHOLE:
         left[e] = max(left[e], beyond(own.branch, v_t, own.friction[1], own.friction[2]))
+    if own.state >= 0:
+        zd[own.state] = w_dot
     if depth <= 0.0:
         return
     push_apart(scene.F, own.i, c_i, own.j, c_j, on_journal(F_n, F_t, n, tangent))
     zd[IMPACTS] -= (F_n - elastic(depth, own)) * rate
     zd[FRICTION] += F_t * v_t
-    if own.state >= 0:
-        zd[own.state] = w_dot
 
 
 @kernel

@@ -393,8 +393,9 @@ def force(t, scene, e):
     c_i, c_j, n, depth, rate, v_t, speed = slides(scene, e)
     if own.friction_law == CORNERED and own.branch != WHOLE:
         left[e] = max(left[e], beyond(own.branch, speed, own.friction[1], own.friction[2]))
-    if depth <= 0.0:
+    if depth <= 0.0 and own.phase != CONTACT:
         return
+    # in contact bristles bend whatever rounding makes of a depth of nothing
     F_n = normal_of(own, depth, rate)
     F_t, rate_t, rate_z = friction_of(scene, e, F_n, n, v_t, speed)
     push_apart(scene.F, own.i, c_i, own.j, c_j, plus(scaled(F_n, n), F_t))

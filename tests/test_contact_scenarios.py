@@ -1,0 +1,93 @@
+"""The validation scenarios of contacts against the answers that stand in their first lines."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from trsim.scenario.load import load
+from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, SEPARATION
+
+from .runs import run
+
+VALIDATION = Path(__file__).parents[1] / "scenarios" / "validation"
+
+
+def go(name, *sets):
+    return run(load(VALIDATION / f"{name}.yaml", ["output.channels=['*']", *sets]))
+
+
+def test_a_ball_slides_and_then_rolls():
+    r = go("ball_slides_and_rolls")
+    end = 2 / (7 * 0.3 * 9.81)
+    assert end == pytest.approx(0.09708, abs=1e-5)
+    rolls = r.t > 1.02 * end
+    assert r["ball.velocity"][rolls, 0] == pytest.approx(5 / 7, rel=1e-3)
+    assert r["energy.kinetic"][-1] / r["energy.kinetic"][0] == pytest.approx(5 / 7, rel=1e-3)
+
+
+@pytest.mark.parametrize("mu, a", [(0.2, 3.50357), (0.1, 4.05543)])
+def test_a_ball_on_an_incline(mu, a):
+    r = go("ball_on_an_incline", f"parameters.mu={mu}")
+    speed, late = np.linalg.norm(r["ball.velocity"], axis=1), r.t > 0.1
+    assert np.polyfit(r.t[late], speed[late], 1)[0] == pytest.approx(a, rel=1e-3)
+
+
+def test_three_balls_in_a_row():
+    r = go("three_balls")
+    v = [r[f"{n}_ball.velocity"][-1, 0] for n in ("first", "second", "third")]
+    assert v == pytest.approx([-0.0710, 0.0764, 0.9945], abs=1e-4)
+
+
+def test_a_roller_over_a_box():
+    r = go("roller_over_a_box")
+    x, y, _ = r["roller.position"].T
+    want = np.where(x < 0.08, 0.06, 0.01 + np.sqrt(0.05**2 - np.maximum(x - 0.08, 0.0) ** 2))
+    assert y == pytest.approx(want, abs=2e-5)
+    assert (x[-1], y[-1]) == pytest.approx((0.111, 0.04922), abs=1e-5)
+
+
+def test_a_cam_throws_its_roller_off():
+    r = go("cam_jump")
+    off = r.events[r.events[:, EVENT_KIND] == SEPARATION][:, EVENT_TIME]
+    off = off[off > 0.1][0]  # the start is where they touch
+    assert 29.8 + 0.1 * off == pytest.approx(30.0, abs=0.03)  # within a turn
+    assert r["follows.penetration"].min() < -1e-8
+
+
+def test_a_pin_in_a_slot():
+    r = go("pin_in_a_slot")
+    assert np.ptp(r["place"][r.t > 2]) == pytest.approx(0.099, abs=1e-5)
+
+
+def test_a_brick_on_its_edge():
+    r = go("brick_on_its_edge")
+    arm, balance = np.hypot(0.05, 0.1), np.arctan(0.5)
+    rate = 9.81 * arm / ((0.1**2 + 0.2**2) / 12 + arm**2)
+    fall = solve_ivp(lambda _, y: [y[1], rate * np.sin(y[0])], (0, 0.5),
+                     [np.deg2rad(28) - balance, 0.0], rtol=1e-10)  # fmt: skip
+    want = np.rad2deg(fall.y[0, -1] + balance)
+    assert want == pytest.approx(67.56, abs=0.01)
+    assert 28 - np.rad2deg(r["turned"][-1]) == pytest.approx(want, abs=0.3)
+    back = go("brick_on_its_edge", "parameters.tilt=25 deg")
+    assert np.rad2deg(back["turned"][-1]) > 20
+
+
+def test_a_block_on_a_belt():
+    r = go("block_on_a_belt", "output.every=2e-4")
+    A, w, V = 0.2 * 9.81 / 100, 10.0, 0.1
+    period = 2 * A / V + 2 * (np.pi - np.arctan(A * w / V)) / w
+    assert period == pytest.approx(0.80083, abs=1e-5)
+    slow = r["block.velocity"][:, 0] < 0.05
+    begins = r.t[1:][slow[1:] & ~slow[:-1]]
+    assert np.diff(begins) == pytest.approx(period, rel=1e-3)
+
+
+@pytest.mark.parametrize("half, stays", [(20, True), (24, False)])
+def test_a_wedge(half, stays):
+    r = go("wedge", f"parameters.half={half} deg")
+    deep = r["deep"]
+    at_load, end = deep[int(0.15 / r.t[1])], deep[-1]
+    assert at_load < -1e-4
+    assert (end == pytest.approx(at_load, rel=0.02)) if stays else (end > 1e-4)
