@@ -8,6 +8,7 @@ from trsim.scenario.cases import cases
 from trsim.scenario.expand import expand_text
 from trsim.scenario.load import load, loads, of_tree
 from trsim.solve.simulate import simulate
+from trsim.sweep.plan import faults, plan
 
 TEXT = """\
 bodies: {arm: {mass: 2, inertia: 0.1, at: [0.2, 0]}, tip: {mass: 1, inertia: 0.1, at: [0.6, 0]}}
@@ -78,33 +79,37 @@ def test_mistakes_have_a_line(old, new, line, what):
     assert f"a.yaml:{line}" in said and what in said
 
 
+SEVERAL = """\
+  - name: one
+    until:
+    - {when: angle, value: 10 deg}
+    - {when: t, value: 3 mm}"""
+
+
 def test_a_mistake_in_one_of_several_ends():
-    text = TEXT.replace(
-        "until: {when: angle, value: 10 deg}",
-        "until:\n    - {when: angle, value: 10 deg}\n    - {when: t, value: 3 m}",
-    ).replace("{name: one, drive: {motor: {velocity: 1 rad/s}},", "name: one\n   ")
-    text = text.replace(
-        "10 deg}\n    - {when: t, value: 3 m}}", "10 deg}\n    - {when: t, value: 3 m}"
-    )
-    assert "a.yaml:15:" in refused("3 m", "3 mm", text)
+    said = refused(ONE, SEVERAL)
+    assert "a.yaml:15:" in said and "wrong unit: 'mm'; 't' is in s" in said
+
+
+DRIVEN = """\
+bodies: {arm: {mass: 2, inertia: 0.1, at: [0.2, 0]}}
+joints: {hinge: {type: revolute, bodies: [ground, arm], at: [0, 0]}}
+drives: {motor: {joint: hinge, velocity: 0}}
+solver: {end: 1, method: METHOD}
+phases: [{drive: {motor: {velocity: 1}}, for: 0.1}, {release: [motor]}]
+"""
 
 
 @pytest.mark.parametrize(
-    "solver, what",
+    "method, line, what",
     [
-        ("{end: 1, method: kinematic}", "kinematic analysis"),
-        ("{end: 1, method: 'scipy:RK45'}", "knows no events"),
+        ("kinematic", 5, "kinematic analysis knows no phases"),
+        ("'scipy:RK45'", 4, "scipy:RK45 knows no events"),
     ],
 )
-def test_methods_without_phases_say_so(solver, what):
-    """The first that changes something is named."""
-    said = refused("{end: 1}", solver, TEXT.replace(
-        "bodies: [arm, tip]", "bodies: [arm, tip]").replace("revolute, bodies: [arm, tip], at: [0.4, 0]",
-        "fixed, bodies: [arm, tip], at: [0.4, 0]").replace(", lock: [elbow]", "").replace(
-        "  stop: {type: limit_stop, joint: elbow, upper: 1, stiffness: 1e4}\n", ""))  # fmt: skip
-    assert what in said
-    if "kinematic" in solver:
-        assert "a.yaml:11:" in said and "knows no phases" in said
+def test_methods_without_phases_say_so(method, line, what):
+    said = refused("METHOD", method, DRIVEN)
+    assert what in said and f"a.yaml:{line}:" in said
 
 
 def names(scenario):
@@ -145,8 +150,16 @@ def test_numbers_are_set_by_their_place():
     assert scenario.phases[0].until.value == 0.5 and scenario.phases[1].time == 2.0
 
 
+def test_a_sweep_reaches_numbers_of_phases(tmp_path):
+    text = TEXT + "sweep: {phases.0.until.value: [10 deg, 20 deg]}\n"
+    (tmp_path / "a.yaml").write_text(text)
+    planned = plan(str(tmp_path / "a.yaml"))
+    assert list(faults(planned)) == [] and len(planned.cases) == 2
+    (tmp_path / "a.yaml").write_text(text.replace("phases.0.u", "phases.7.u"))
+    with pytest.raises(TrsimError, match="phases: has no entry '7': it is a list of 2"):
+        plan(str(tmp_path / "a.yaml"))
+
+
 def test_the_first_phase_moves_the_drives_themselves():
-    scenario = loads(TEXT)
-    assert scenario.drives["motor"].velocity.value == 1.0
-    assert loads(TEXT.replace("phases", "cases").replace(ONE, "").replace(
-        "  " + TWO.strip(), "").replace("cases:", "")).drives["motor"].velocity.value == 0.0  # fmt: skip
+    assert loads(TEXT).drives["motor"].velocity.value == 1.0
+    assert loads(TEXT, ["phases=[]"]).drives["motor"].velocity.value == 0.0

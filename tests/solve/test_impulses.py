@@ -95,7 +95,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("method", ["dop853", "radau"])
+@pytest.mark.parametrize("method", ["dop853", "radau", "radau, formulation: ggl"])
 @pytest.mark.parametrize("far", [0.0, 1e3])
 @pytest.mark.parametrize("text, did", CASES.values(), ids=CASES)
 def test_every_body_gains_its_impulses(text, did, far, method):

@@ -1,13 +1,19 @@
 """Phases: what begins and ends each, against closed forms."""
 
-from math import log, pi, sqrt
+from math import acos, log, pi, sqrt
 
 import numpy as np
 import pytest
 
 from trsim.errors import ScenarioError
 from trsim.solve.diagnose.doubts import doubts
-from trsim.solve.march.record import EVENT_KIND, EVENT_TIME, EVENT_WORK, USER
+from trsim.solve.march.record import (
+    EVENT_KIND,
+    EVENT_SPEED,
+    EVENT_TIME,
+    EVENT_WORK,
+    USER,
+)
 
 from ..runs import energy_error, run
 
@@ -251,6 +257,36 @@ events: {off: {when: x, value: 50 mm, times: 1, do: {remove: [spring]}}}
     assert energy_error(r) < 1e-9
 
 
+def test_a_spring_that_is_applied_brings_its_energy_along():
+    """At x = 0.2 m a spring of 300 N/m acts that is free at 0: 6 J come with it, and it swings."""
+    r = run(PUSHED.replace("stiffness: 0", "stiffness: 300").replace(
+        "inertia: 1}", "inertia: 1, velocity: [1, 0]}") + """
+phases: [{until: {when: x, value: 0.2}}, {apply: [spring]}]
+""", "forces.push.force=0", "forces.pull.force=0")  # fmt: skip
+    assert told(r)[1][2] == pytest.approx(6.0, abs=1e-9)
+    t = r.t[r.t > 0.2] - 0.2
+    assert r["x"][r.t > 0.2] == pytest.approx(0.2 * np.cos(10 * t) + 0.1 * np.sin(10 * t), abs=1e-8)
+    assert np.all(r["energy.stored.springs"][r.t < 0.2] == 0.0) and energy_error(r) < 1e-9
+
+
+RESTING = {
+    "a pole": ('"0.01/(x - 0.3)"', 0.01 * log(0.7 / 0.3)),
+    "a table that ends": ("{table: [[0.5, 1], [2, 1]], of: x, outside: error}", 0.4),
+    "a logarithm": ('"log(x - 0.55)"', 0.45 * log(0.45) - 0.05 * log(0.05) - 0.4),
+    "corners": ('"3*(x > 0.2) - 5*(x > 0.3)"', -0.8),
+}
+
+
+@pytest.mark.parametrize("force, work", RESTING.values(), ids=RESTING)
+def test_a_load_that_rests_may_have_no_value(force, work):
+    """x = t passes where it has none, or where it jumps, before it acts from 0.6 to 1 m."""
+    text = PUSHED.replace("inertia: 1}", "inertia: 1, velocity: [1, 0]}").replace("6 N", force)
+    text += "phases: [{until: {when: x, value: 0.6}}, {apply: [push], until: {when: x, value: 1}}]"
+    r = run(text, "forces.pull.force=0", "solver.end=3")
+    assert r["x.rate"][r.t < 0.6] == pytest.approx(1.0, abs=1e-12)
+    assert r.events[-1, EVENT_SPEED] == pytest.approx(sqrt(1 + 2 * work / 3), abs=1e-8)
+
+
 def test_load_sets_act_in_phases():
     text = (
         PUSHED
@@ -284,6 +320,24 @@ phases: [{for: 1 s}, {apply: [side]}]
     before = r.t < 1.0
     assert r["angle"][before] == pytest.approx(-pi / 2, abs=1e-7)
     assert r["angle"][-1] == pytest.approx(-pi / 4, abs=1e-4)
+
+
+@pytest.mark.parametrize("rests", [True, False])
+def test_a_bushing_of_a_later_phase_takes_nothing_along_at_the_start(rests):
+    """A rate at the start is that of what holds together: one slider without it, both with it."""
+    text = """
+bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1, at: [0, 1]}}
+joints:
+  one: {type: prismatic, bodies: [ground, a], axis: [1, 0, 0]}
+  two: {type: prismatic, bodies: [ground, b], axis: [1, 0, 0], at: [0, 1]}
+forces: {rubber: {type: bushing, bodies: [a, b], at: [0, 0.5], stiffness: [1e3, 1e3, 0],
+         damping: [1, 1, 0]}}
+initial: {one.rate: 1 m/s}
+solver: {end: 0.1}
+phases: [{for: 0.05}, {}]
+"""
+    r = run(text, f"phases.{int(rests)}.apply=[rubber]")
+    assert r["b.velocity"][0, 0] == pytest.approx(0.0 if rests else 1.0, abs=1e-12)
 
 
 # --- parking ---------------------------------------------------------------------------------
@@ -328,6 +382,13 @@ def test_a_parked_body_stays_with_what_hangs_on_it(planar, far):
     assert energy_error(r) < 1e-7
 
 
+def test_what_an_earlier_phase_released_holds_nothing_any_more():
+    r = run(CHAIN.replace("name: all,", "name: all, release: [wrist],").replace(
+        "name: parted, release: [wrist],", "name: parted,"))  # fmt: skip
+    said = r.mechanism.stages.switches.events[1].said
+    assert "park arm, park rod" in said and "park door" not in said
+
+
 def test_what_is_joined_elsewhere_does_not_hang():
     """Without the release the door holds the rod as well, and nothing but the arm is parked."""
     r = run(CHAIN.replace("release: [wrist], ", "").replace(
@@ -335,6 +396,23 @@ def test_what_is_joined_elsewhere_does_not_hang():
     ).replace("unpark: [arm, rod]", "unpark: [arm]"))  # fmt: skip
     assert "park arm" in r.mechanism.stages.switches.events[1].said
     assert "park rod" not in r.mechanism.stages.switches.events[1].said
+
+
+def test_the_first_phase_may_lock_and_park_what_moves():
+    """At t = 0, with the energy of the start, and told in the table of events."""
+    text = THROWN.replace("drive: {push: {velocity: 2}}, until: {when: x, value: 0.3}", "WHAT")
+    text = text.replace("inertia: 1}", "inertia: 1, velocity: [2, 0]}")
+    text = text.replace("drives: {push: {joint: slide, velocity: 0}}\n", "")
+    text = text.replace("release: [push], ", "unlock: [slide], ")
+    r = run(text.replace("WHAT", "lock: [slide], for: 0.1"), "phases.1.until={when: t, value: 0.2}")
+    assert told(r)[0] == (0.0, "throw.begin", pytest.approx(-6.0, abs=1e-12))
+    assert np.all(np.abs(r["x"]) < 1e-12) and energy_error(r) < 1e-12
+    text = text.replace("unlock: [slide]", "unpark: [slider]")
+    r = run(
+        text.replace("WHAT", "park: [slider], for: 0.1"), "phases.1.until={when: t, value: 0.2}"
+    )
+    assert told(r)[0] == (0.0, "throw.begin", pytest.approx(-6.0, abs=1e-12))
+    assert np.all(np.abs(r["x"]) < 1e-12)
 
 
 # --- how a run ends --------------------------------------------------------------------------
@@ -378,10 +456,10 @@ joints: {{slide: {{type: prismatic, bodies: [ground, slider], axis: [1, 0, 0]}}}
 sensors: {{x: {{joint: slide}}}}
 forces: {{spring: {{type: spring_damper, bodies: [ground, slider], points: [[-1, 0], [0, 0]],
          stiffness: 200, free_length: 0.9}}}}
-solver: {{end: 3, tolerance: 1e-8}}
+solver: {{end: 12, tolerance: 1e-8}}
 phases: [{{until: {{when: x, value: 1}}, stall: {{energy: 0.1 J, for: {16 * period / per} s}}}}]
 """)
-    assert r.outcome.status == "done" and r.outcome.time == 3.0
+    assert r.outcome.status == "done" and r.outcome.time == 12.0
 
 
 def test_a_start_at_rest_is_not_stalled_before_its_time():
@@ -411,8 +489,6 @@ phases: [{name: hang, taut: [wire], for: 0.5 s}, {name: on}]
 
 def test_slack():
     """From 0.1 m below on a rope of 800 N/m: y = -0.025 - 0.075 cos 20 t meets 0 at cos = -1/3."""
-    from math import acos
-
     r = run(ROPE)
     assert r.outcome.status == "slack"
     assert r.outcome.time == pytest.approx(acos(-1 / 3) / 20, abs=1e-8)
