@@ -52,6 +52,7 @@ MISTAKES = {
     "key of until": ("crosses", "crossess", "12:", "unknown key"),
     "joint": ("[elbow], for", "[elbo], for", "13:", "no joint named 'elbo'"),
     "release": ("[motor], lock", "[moter], lock", "13:", "no joint or drive named 'moter'"),
+    "release of a force": ("[motor], lock", "[push], lock", "13:", "`remove: [push]` makes it act"),
     "body": ("lock: [elbow]", "park: [tipp]", "13:", "no body named 'tipp'"),
     "unpark": ("lock: [elbow]", "unpark: [tip]", "13:", "no event parks a body 'tip'"),
     "unlock": ("lock: [elbow]", "unlock: [elbow]", "13:", "no event locks the joint 'elbow'"),

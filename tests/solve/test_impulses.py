@@ -86,6 +86,14 @@ CASES = {
     "plane": (PLANAR, "lock: [A]"),
     "plane, park": (PLANAR, "park: [rod]"),
     "plane, a lock that adds nothing": (PLANAR, "lock: [O, A, B, C]"),
+    "plane, a body without mass": (
+        PLANAR.replace("mass: 3, inertia: 0.06", "mass: 0, inertia: 0"),
+        "lock: [A]",
+    ),
+    "plane, a drive goes on otherwise": (
+        PLANAR.replace("initial: {O.rate: 5 rad/s}", "drives: {m: {joint: O, velocity: 5}}"),
+        "set: {m: {velocity: -2}}",
+    ),
     "loop in space, redundant": (LOOP, "lock: [O]"),
     "loop in space, redundant locks": (LOOP, "lock: [O, A, B]"),
     "loop in space, park": (LOOP, "park: [ball]"),
@@ -99,6 +107,8 @@ CASES = {
 @pytest.mark.parametrize("far", [0.0, 1e3])
 @pytest.mark.parametrize("text, did", CASES.values(), ids=CASES)
 def test_every_body_gains_its_impulses(text, did, far, method):
+    if "ggl" in method and "mass: 0" in text:
+        pytest.skip("bodies without mass are not solved for with ggl")
     frame = f"frame: {{at: [{far}, {-far}, 0]}}\n" if far else ""
     text = text.replace("end: 0.1,", f"end: 0.1, method: {method},")
     r = run(frame + text + EVENTS % did)

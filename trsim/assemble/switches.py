@@ -428,6 +428,9 @@ class _Packing:
     def released(self, name: str, k: int, one: str) -> tuple[int, int]:
         path = (SECTION, name, "do", "release", k)
         joints, drives = self.scenario.joints, self.scenario.drives
+        if one in self.scenario.forces:
+            what = f"'{one}' is a force, and joints and drives are released"
+            raise ScenarioError(what, f"`remove: [{one}]` makes it act no more", path)
         check(one, [*joints, *drives], "joint or drive", path)
         if one in drives:
             return self.switch("drives", one, LOOSE)

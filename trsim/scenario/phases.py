@@ -2,7 +2,7 @@
 
     phases:
       - {name: lift, drive: {handle: {velocity: 5 deg/s}}, until: {when: latch, value: 60 deg}}
-      - {name: swing, release: [rod, wire], park: [arm], until: {when: latch, value: 110 deg}}
+      - {name: swing, release: [rod], park: [arm], until: {when: latch, value: 110 deg}}
       - {name: fall, lock: [latch], release: [handle], until: {when: door, value: 113 deg}}
       - {name: away, release: [hinge], for: 0.5 s}
 
