@@ -4,6 +4,7 @@ from math import acos, log, pi, sqrt
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from trsim.errors import ScenarioError
 from trsim.solve.diagnose.doubts import doubts
@@ -535,54 +536,59 @@ def test_released():
 # --- letting go ------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("motion", ["velocity: 0.4", 'position: "0.4*t"'])
-@pytest.mark.parametrize("mass", [0.5, 8.0])
-def test_let_go_where_the_force_changes_sign(motion, mass):
-    """A hand turns a crank at 0.4 rad/s against a spring over the dead centre and a roller's drag.
-
-    A spring from the crank pin (radius a, at angle phi from the line of centres) to a pin at a
-    distance d pulls with k (l - l0), l^2 = a^2 + d^2 - 2 a d cos phi, so its moment is
-    k (l - l0) a d sin phi / l: the hand holds it where l < l0 and is pulled along where l > l0.
-    Where l = l0 the force of the drive is zero: cos phi0 = (a^2 + d^2 - l0^2) / (2 a d).
-    """
-    a, d, l0, k, c = 0.3, 1.0, 0.95, 500.0, 0.6
-    phi0 = np.arccos((a**2 + d**2 - l0**2) / (2 * a * d))
-    text = f"""
-bodies: {{crank: {{mass: {mass}, inertia: 0.05}}}}
+A, D, FREE, K = 0.3, 1.0, 0.95, 500.0  # m, m, m, N/m
+HAND = f"""
+bodies: {{crank: {{mass: MASS, inertia: 0.05}}}}
 joints: {{hinge: {{type: revolute, bodies: [ground, crank], at: [0, 0]}}}}
-drives: {{hand: {{joint: hinge, {motion}}}}}
+drives: {{hand: {{joint: hinge, MOTION}}}}
 sensors: {{phi: {{joint: hinge}}}}
 forces:
-  spring: {{type: spring_damper, bodies: [ground, crank], points: [[{d}, 0], [{a}, 0]],
-            stiffness: {k}, free_length: {l0}}}
-  lag: {{type: torsion_spring, joint: hinge, stiffness: 0, damping: {c}}}
+  spring: {{type: spring_damper, bodies: [ground, crank], points: [[{D}, 0], [{A}, 0]],
+           stiffness: {K}, free_length: {FREE}}}
+  roller: {{type: torsion_spring, joint: hinge, stiffness: 0, damping: DRAG}}
 solver: {{end: 4, tolerance: 1e-10}}
 output: {{every: 5 ms}}
 """
-
-    def needed(phi):
-        length = np.sqrt(a * a + d * d - 2 * a * d * np.cos(phi))
-        return k * (length - l0) * a * d * np.sin(phi) / length + c * 0.4
-
-    low, high = 0.4, 3.0
-    assert needed(low) * needed(high) < 0
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if needed(low) * needed(middle) > 0 else (low, middle)
-    crosses = "up" if needed(0.4) < 0 else "down"
-    r = run(
-        text.replace("at: [0, 0]}}", "at: [0, 0]}}")
-        + f"""
+LET_GO = {
+    "phases": """
 phases:
-  - {{name: far, until: {{when: phi, value: 0.4}}}}
-  - {{name: hold, until: {{when: hand.force, crosses: {crosses}}}}}
-  - {{name: free, release: [hand], for: 0.05}}
-"""
-    )
-    time = told(r)[2][0]
-    assert 0.4 * time == pytest.approx(low, abs=1e-8)
-    assert abs(low - phi0) > 1e-4  # the drag counts
+  - {name: far, until: {when: phi, value: 0.4}}
+  - {name: hold, until: {when: hand.force, crosses: up}}
+  - {name: free, release: [hand], for: 0.05}
+""",
+    "an event": """
+events:
+  let_go: {when: hand.force, crosses: up, times: 1, do: {release: [hand]}}
+  over: {when: t, value: 3.9, do: {end: true}}
+""",
+}
+
+
+@pytest.mark.parametrize("how", LET_GO.values(), ids=LET_GO)
+@pytest.mark.parametrize("motion", ["velocity: 0.4", 'position: "0.4*t"'])
+@pytest.mark.parametrize("mass, drag", [(0.5, 0.0), (8.0, 0.0), (2.0, 0.6)])
+def test_let_go_where_the_force_changes_sign(how, motion, mass, drag):
+    """A hand turns a crank at 0.4 rad/s with a spring that is pressed at first, and a roller's drag.
+
+    A spring from the crank pin (radius a, phi from the line of centres) to a pin at a distance d
+    has the length l^2 = a^2 + d^2 - 2 a d cos phi, and the hand gives k (l - l0) a d sin phi / l
+    and the drag.  Without drag it changes sign where l = l0, cos phi = (a^2 + d^2 - l0^2)/(2 a d).
+    """
+
+    def given(phi):
+        length = np.sqrt(A * A + D * D - 2 * A * D * np.cos(phi))
+        return K * (length - FREE) * A * D * np.sin(phi) / length + drag * 0.4
+
+    phi = np.arccos((A**2 + D**2 - FREE**2) / (2 * A * D))
+    if drag:
+        phi = brentq(given, 0.4, phi, xtol=1e-14)
+    text = HAND.replace("MASS", str(mass)).replace("MOTION", motion).replace("DRAG", str(drag))
+    r = run(text + how)
+    time, _, work = next(line for line in told(r) if line[1] in ("hold.until", "let_go"))
+    assert time == pytest.approx(phi / 0.4, abs=1e-8)
     jump = r.jumps[r.jumps[:, 0] == time]
-    assert np.abs(jump[:, [6, 7, 8, 12, 13, 14]] - jump[:, [3, 4, 5, 9, 10, 11]]).max() < 1e-10
-    assert told(r)[2][2] == pytest.approx(0.0, abs=1e-10)
+    assert len(jump) == 1 and jump[0, 11] == pytest.approx(0.4, abs=1e-10)
+    assert jump[0, 9:12] == pytest.approx(jump[0, 12:15], abs=1e-10)
+    assert work == pytest.approx(0.0, abs=1e-10)
     assert np.all(r["hand.force"][r.t > time] == 0.0)
+    assert np.all(r["hand.force"][(r.t > 1.0) & (r.t < time)] < 0.0)
