@@ -568,7 +568,7 @@ events:
 @pytest.mark.parametrize("motion", ["velocity: 0.4", 'position: "0.4*t"'])
 @pytest.mark.parametrize("mass, drag", [(0.5, 0.0), (8.0, 0.0), (2.0, 0.6)])
 def test_let_go_where_the_force_changes_sign(how, motion, mass, drag):
-    """A hand turns a crank at 0.4 rad/s with a spring that is pressed at first, and a roller's drag.
+    """A hand turns a crank at 0.4 rad/s with a spring that is pressed at first, and a drag.
 
     A spring from the crank pin (radius a, phi from the line of centres) to a pin at a distance d
     has the length l^2 = a^2 + d^2 - 2 a d cos phi, and the hand gives k (l - l0) a d sin phi / l
