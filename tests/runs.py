@@ -26,6 +26,9 @@ class Run:
     steps: np.ndarray
     events: np.ndarray  # (n, 5) time, kind, row, speed, angle
     points: np.ndarray  # (n, 4) time, section, x, y
+    recorded: np.ndarray  # (n, 2 + n_out) time, event, channels
+    impulses: np.ndarray  # (n, 11) see solve/march/impulses.py
+    jumps: np.ndarray  # (n, 15)
 
     @property
     def t(self) -> np.ndarray:
@@ -89,7 +92,7 @@ def short_run(text: Any, *sets: str, fails: bool | None = False) -> Run:
         except StopIteration as stop:
             outcome = stop.value
             break
-        tables = (block.rows, block.steps, block.events, block.points)
+        tables = (block.rows, block.steps, block.events, block.points, block.recorded, *block.jump)
         blocks.append(tuple(table.copy() for table in tables))
     assert fails is None or (outcome.status == "failed") == fails, outcome.reason
     return Run(read, mechanism, outcome, *(np.vstack(part) for part in zip(*blocks, strict=True)))

@@ -313,6 +313,7 @@ FIXED = {
     "relative_angle": ANGLE,
     "marker": {"position": "m", "velocity": "m/s", "acceleration": "m/s^2", "rotation": "-"},
     "gravity": {},
+    "parked": {"force": "N", "moment": "N*m"},
     "actuator": {"force": "N", "reaction": "N", "stroke": "m", "stroke_rate": "m/s",
                  "position": "m", "velocity": "m/s", "power": "W"},
     "sync_shaft": {"torque_1": "N*m", "force_1": "N", "force_2": "N", "difference": "m"},

@@ -340,6 +340,20 @@ solver: {end: 1}
 """
 
 
+RESTS = """
+bodies: {rod: {mass: 1, inertia: 0.1}}
+joints: {hinge: {type: revolute, bodies: [ground, rod], at: [0, 0]}}
+forces: {rope: {type: spring, bodies: [ground, rod], points: [[0, 2], [0, 1]], tension_only: true,
+         elastic: "1e3*stretch", free_length: 1.5}}
+solver: {end: 1}
+"""
+ENDINGS = {
+    "stalled": RESTS + "phases: [{stall: {energy: 1e-3, for: 0.1 s}}]",
+    "slack": RESTS + "phases: [{drive: {}, taut: [rope]}]",
+    "released": RESTS + "phases: [{release: [hinge], for: 0.1 s}]",
+}
+
+
 def of_every_status(folder, monkeypatch):
     """Result files with every status there is; the one of a run that goes on is copied."""
     scenario = loads(small.SLIDER_CRANK, ["solver.end=20ms"])
@@ -359,7 +373,10 @@ def of_every_status(folder, monkeypatch):
     small.run(folder / "failed.h5", text=small.SLIDER_CRANK.replace(*WRONG[5]))
     small.run(folder / "jammed.h5", text=JAMS)
     small.run(folder / "leaps.h5", text=LEAPS)
+    for status, text in ENDINGS.items():
+        small.run(folder / f"{status}.h5", text=text)
     return {
+        **{status: f"{status}.h5" for status in ENDINGS},
         "done": "x.h5",
         "jammed": "jammed.h5",
         "painleve": "leaps.h5",

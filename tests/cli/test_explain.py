@@ -26,7 +26,7 @@ def test_example_runs_and_records_what_is_said(page):
     scenario = loads(page["example"], [f"output.channels={every}"])
     mechanism = assemble(scenario)
     [instance] = [i for i in mechanism.instances if i.element.key == page["word"]]
-    own = {c.name: c for c in mechanism.columns if c.name.split(".")[0] == instance.name}
+    own = {c.name: c for c in mechanism.columns if f"{c.name}.".startswith(f"{instance.name}.")}
     assert len(own) == len(page["channels"]) or not instance.section
     for channel in page["channels"]:
         column = own[channel["name"].replace("NAME", instance.name)]
@@ -52,6 +52,21 @@ def test_example_of_events_runs():
         except StopIteration as end:
             assert end.value.reason == "event 'over' ended the run"
             assert end.value.fired == {"jettison": 1, "over": 1}
+            break
+
+
+def test_example_of_phases_runs():
+    [page] = explained("phases")["sections"]
+    assert "load steps in their order" in page["law"]
+    places = {key["place"]: key for key in page["keys"]}
+    assert places["phases.for"]["unit"] == "s" and places["phases.stall.energy"]["required"]
+    scenario = loads(page["example"])
+    blocks = simulate(scenario, assemble(scenario))
+    while True:
+        try:
+            next(blocks)
+        except StopIteration as end:
+            assert end.value.status == "released"
             break
 
 

@@ -26,6 +26,16 @@ SECTIONS = (
     "plot: [B.eccentricity_x, rod.velocity.y]}, touch: {at_onset: B, plot: [stroke, crank_angle]}, "
     "beat: {every: 7 us, after: 3 us, plot: [stroke, stroke.rate]}}",
 )
+PHASES = (
+    "forces={wire: {type: spring, bodies: [ground, slider], points: [[-0.3, 0], [0, 0]], "
+    "elastic: 20*stretch, tension_only: true, free_length: 0.2}, "
+    "push: {type: applied_load, body: slider, direction: [1, 0], force: 5}}",
+    "phases=[{for: 0.3 ms, taut: [wire]}, "
+    "{drive: {motor: {velocity: 600 - 1e5*t}}, apply: [push], until: {when: stroke, value: -5 mm, "
+    "crosses: down}, for: 9 ms, stall: {energy: 1e-9, for: 0.4 ms}}, "
+    "{release: [motor], park: [crank], remove: [wire], record: true, for: 0.3 ms}, "
+    "{unpark: [crank], end: done, for: 9 ms, stall: {energy: 1e-9, for: 0.5 ms}}]",
+)
 HEARD = (
     "events={pressed: {when: B.contact_force, value: 20, crosses: both, do: {record: true}}, "
     "pulled: {when: O.reaction.x, crosses: both, do: {record: true}}}",
@@ -58,6 +68,8 @@ KINDS = [
     (*RK4, *EVENTS, "solver.end=1.2ms"),
     (*EVENTS, *SECTIONS),
     HEARD,
+    PHASES,
+    (*PHASES, "solver.method=radau"),
     PULSES,
     RATES,
     RUBS,

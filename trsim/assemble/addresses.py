@@ -326,7 +326,7 @@ class Addresses:
         """The joint along whose coordinate a drive, a force or a lock acts; of others none."""
         name, joints = instance.name, self.scenario.joints
         spec = getattr(self.scenario, instance.section, {}).get(name)
-        if instance.section == "events":  # a lock, by the coordinate it holds
+        if instance.section == "events" and instance.row.states:  # a lock, by what it holds
             return split(name.rpartition(".")[0], joints)[0]
         return split(getattr(spec, "joint", None) or "", joints)[0]
 

@@ -16,7 +16,7 @@ from trsim.assemble.features import features
 from trsim.assemble.hubs import hubs
 from trsim.assemble.instances import Column, Instance, RowName, Section
 from trsim.assemble.jumps import find_jumps, steep
-from trsim.assemble.layout import layout, no_outputs
+from trsim.assemble.layout import columns_of_forces, layout, no_outputs
 from trsim.assemble.least_norm import least_norm
 from trsim.assemble.light import lightened, unfit
 from trsim.assemble.loops import looped
@@ -42,8 +42,8 @@ from trsim.assemble.rows import (
 from trsim.assemble.rubbing import rubbing, rubs_with
 from trsim.assemble.rubbing import table as rubbing_table
 from trsim.assemble.sections import sections
-from trsim.assemble.stages import Choice, Stages
-from trsim.assemble.switches import SECTION, Switches, locks, switches
+from trsim.assemble.stages import Choice, Stages, silent
+from trsim.assemble.switches import SECTION, Switches, locks, parks, switches
 from trsim.assemble.tables import (
     contact_numbers,
     drawn,
@@ -108,6 +108,8 @@ def assemble(
     shown: tuple[Section, ...] = ()
     if drives is None and not stiff:  # nobody asks for channels of a start
         model, columns = layout(scenario, model, instances, at.switches)
+        at.switches = replace(at.switches, silent=columns_of_forces(columns, instances))
+        model = model.replaced(silent=silent(instances, at.switches))
         waves = swinging(at, instances, at.waves + at.shown)
         model, shown = sections(scenario, model, instances, columns, waves)
     names = [f"{r.element}.{r.axis}" for r in rows]
@@ -213,7 +215,8 @@ def pack(  # type: ignore[no-untyped-def]
     bodies = members(scenario, stiff)
     sections = {s: getattr(scenario, s) for s in ("points", "joints", "drives", "sensors")}
     sections |= {"bodies": bodies, "forces": scenario.forces}
-    sections |= {SECTION: locks(scenario)} if drives is None else {"drives": drives}
+    held = {} if drives is not None else locks(scenario) | parks(scenario)
+    sections |= {SECTION: held} if drives is None else {"drives": drives}
     for section, entries in sections.items():
         for name, spec in entries.items():
             key = spec.type
@@ -235,7 +238,8 @@ def pack(  # type: ignore[no-untyped-def]
     for key, section, name, spec in wanted:
         told, known = len(at.notes), len(at.packed_functions)
         try:
-            instance = Instance(section, name, kinds[key], kinds[key].pack(name, spec, at))
+            acts = section != "forces" or name not in scenario.resting
+            instance = Instance(section, name, kinds[key], kinds[key].pack(name, spec, at), acts)
         except ScenarioError as error:
             raise error.at(section, name) from None
         except ValueError as error:

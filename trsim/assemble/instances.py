@@ -52,6 +52,7 @@ class Instance:
     name: str
     element: Element
     row: Row
+    acts: bool = True  # False of a force that events have removed, or are still to apply
 
     @property
     def channels(self) -> tuple[Channel, ...]:

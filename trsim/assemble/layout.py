@@ -22,6 +22,7 @@ ALONG = {"N*m": "N", "rad": "m", "rad/s": "m/s", "rad/s^2": "m/s^2"}
 NATURAL = {"m": (0, 1, 0), "m/s": (0, 0, 1), "m/s^2": (0, -1, 2)}
 NATURAL |= {"N": (1, -1, 2), "J": (1, 0, 2), "W": (1, -1, 3)}
 UNKNOWN = (0, 0, 0)
+OF_FORCES = ("N", "N*m", "J", "W", "N/m")  # units of what is none where a force does not act
 WITH_PEAKS = ("joints", "drives", "forces", "sensors")  # sections whose channels' extremes are told
 
 
@@ -38,7 +39,7 @@ def no_outputs(rows: int) -> dict[str, Any]:
         **followed([]),
         "hear": 0,
         "heard": none,
-        **dict.fromkeys(("vector", "sought", "kin", "shared"), none),
+        **dict.fromkeys(("vector", "sought", "kin", "shared", "silent"), none),
         **dict.fromkeys(("lever", "least"), np.zeros(0)),
         "natural": none.reshape(0, 3),
     }
@@ -151,6 +152,20 @@ def watched(columns: list[Column], switches: Switches) -> dict[str, Any]:
         heard = event.kind == CHANNEL and stem in there
         found.append(there[stem] + place if heard else -1)
     return {"heard": np.array(found, np.int64), "hear": hear.address()}
+
+
+def columns_of_forces(
+    columns: list[Column], instances: Iterable[Instance]
+) -> dict[str, tuple[int, ...]]:
+    """Of every force the columns that are zero where it does not act."""
+    found: dict[str, tuple[int, ...]] = {}
+    names = {instance.name for instance in instances if instance.section == "forces"}
+    for column in columns:
+        name = column.name.split(".")[0]
+        if name in names and column.unit in OF_FORCES:
+            own = range(column.start, column.start + column.size)
+            found[name] = (*found.get(name, ()), *own)
+    return found
 
 
 def of_peaks(instances: Iterable[Instance]) -> set[str]:

@@ -49,6 +49,8 @@ def measured(s, t, y, work_projection, energy_0):
     if s.shared_out != 0:
         call_least_norm(s.shared_out, s)
     call_all(s, s.measure, t)
+    for k in range(s.silent.size):
+        s.out[s.silent[k]] = 0.0
     for k in range(s.joint_out.shape[0]):
         reaction(s, k)
     out, o = s.out, s.column_energy

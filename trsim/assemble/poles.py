@@ -22,7 +22,7 @@ from trsim.expressions import Node, names, parts, rebuilt, written
 from trsim.laws import functions
 from trsim.laws.functions import slots_of
 
-POLE, DOMAIN = 0, 1
+POLE, DOMAIN, RESTS = 0, 1, 2  # RESTS: of a force that does not act
 AT, OF, KIND, DRIVE, N_POLE = range(5)  # offsets of u and of the function, kind, row of a drive
 PIECES = 1024  # of a run, in each of which u is bounded
 ONE, TWO = ("number", 1.0), ("number", 2.0)
@@ -102,9 +102,17 @@ def guards(at: Any, node: Node, of: int, indices: dict[str, int]) -> list[Guard]
 
 def poles(at: Any, instances: list[Any]) -> dict[str, Any]:
     """The tables of a model; empty where every function has a value throughout."""
-    own = driven(at, instances) if at.guards else {}
-    rows = [(g.at, g.of, g.kind, own.get(g.of, NOBODY).e) for g in at.guards]
+    own, rest = driven(at, instances) if at.guards else {}, resting(at, instances)
+    rows = [
+        (g.at, g.of, RESTS if g.of in rest else g.kind, own.get(g.of, NOBODY).e) for g in at.guards
+    ]
     return {
         "pole": np.array(rows, np.int64).reshape(-1, N_POLE),
         "pole_slots": max((g.slots for g in at.guards), default=0),
     }
+
+
+def resting(at: Any, instances: list[Any]) -> set[int]:
+    """The functions of forces that do not act, by their offsets in tab."""
+    own = tuple(f"forces.{one.name}." for one in instances if not one.acts)
+    return {f.offset for f in at.packed_functions if f.name.startswith(own)} if own else set()

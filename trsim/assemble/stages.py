@@ -21,7 +21,16 @@ from trsim.assemble.better import better
 from trsim.assemble.instances import Instance, RowName
 from trsim.assemble.layout import no_outputs
 from trsim.assemble.rows import all_rows
-from trsim.assemble.switches import AS_DRAWN, HELD, LOOSE, MOST, Switches, lock_name
+from trsim.assemble.switches import (
+    AS_DRAWN,
+    HELD,
+    LOOSE,
+    MOST,
+    PHASE,
+    Switches,
+    lock_name,
+    park_name,
+)
 from trsim.elements.prescribed import AnyDrive
 from trsim.elements.scene import Model, Scene
 
@@ -58,10 +67,11 @@ class Stages:
         self.switches, self.instances, self.first = switches, instances, first.model
         self._build, self._rebuild, self._turning = build, rebuild, turning
         self._made = {(0,) * len(switches.names): first}
-        locks = [name for section, name in switches.names if section == "locks"]
-        every = all_rows(instances, [lock_name(name) for name in locks])
+        every = all_rows(instances, closed(dict.fromkeys(switches.names, HELD)))
+        self.every = tuple(f"{row.element}.{row.axis}" for row in every)
+        self._number = {key(row): k for k, row in enumerate(every)}
         may_depend = len(first.dropped) > 0 or len(switches.names) > 0
-        self._place = {key(row): k for k, row in enumerate(every)} if may_depend else {}
+        self._place = self._number if may_depend else {}
 
     def model(self, stage: NDArray[np.int64]) -> Model:
         """The model of a stage.  Raises ModelError where a lock or drive contradicts the rest."""
@@ -89,6 +99,11 @@ class Stages:
             self._made[position] = Choice(self._finished(model, stage), kept, dropped)
         return self._made[position]
 
+    def numbers(self, stage: NDArray[np.int64], left_out: NDArray[np.int64]) -> list[int]:
+        """Which of `every` the rows of a stage are: those of the solve, then those left out."""
+        choice = self.choice(stage, left_out)
+        return [self._number[key(row)] for row in (*choice.kept, *choice.dropped)]
+
     def anew(
         self, stage: NDArray[np.int64], left_out: NDArray[np.int64], work: Scene, y: Array
     ) -> NDArray[np.int64]:
@@ -111,10 +126,16 @@ class Stages:
         at = zip(self.switches.names, stage.tolist(), strict=True)
         held = {name for (section, name), to in at if (section, to) == ("locks", HELD)}
         held -= {angle.name for _, angle in self.without_hinge(stage)}
-        watch = model.watch.copy()
-        watch[[event.coordinate in held for event in self.switches.events], MOST] = 0
+        watch, phase = model.watch.copy(), dict(self._at(stage)).get(PHASE, 0)
+        for k, event in enumerate(self.switches.events):
+            if event.coordinate in held or event.phase not in (-1, phase):
+                watch[k, MOST] = 0
         outputs = {name: getattr(self.first, name) for name in no_outputs(0)}
+        outputs["silent"] = silent(self._switched(stage), self.switches)
         return model.replaced(watch=watch, **outputs)
+
+    def _at(self, stage: NDArray[np.int64]) -> list[tuple[tuple[str, str], int]]:
+        return list(zip(self.switches.names, stage.tolist(), strict=True))
 
     def without_hinge(
         self, stage: NDArray[np.int64]
@@ -149,8 +170,11 @@ def key(row: RowName) -> tuple[int, int]:
 
 
 def switched(instance: Instance, at: dict[tuple[str, str], int], switches: Switches) -> Instance:
-    """A drive with the motion its switch says; every other instance as it is."""
+    """A drive with the motion its switch says, a force that acts or does not; every other instance
+    as it is."""
     to = at.get((instance.section, instance.name), AS_DRAWN)
+    if instance.section == "forces" and to != AS_DRAWN:
+        return replace(instance, acts=to == HELD)
     if instance.section != "drives" or to == AS_DRAWN:
         return instance
     if to == LOOSE:
@@ -166,8 +190,21 @@ def in_force(
 
     gone: drives and locks (section, name) that hold nothing.
     """
-    closed = [name for (section, name), to in at.items() if (section, to) == ("locks", HELD)]
     loose = {key for key, to in at.items() if to == LOOSE} | gone
-    rows = all_rows(instances, [lock_name(name) for name in closed])
+    rows = all_rows(instances, closed(at))
     of = [(instances[r.instance].section, instances[r.instance].name) for r in rows]
     return [row for row, key in zip(rows, of, strict=True) if key not in loose]
+
+
+def closed(at: dict[tuple[str, str], int]) -> list[str]:
+    """The names of the locks that are closed, and of what holds parked bodies."""
+    named = {"locks": lock_name, "parks": park_name}
+    held = [(section, name) for (section, name), to in at.items() if to == HELD]
+    return [named[section](name) for section, name in held if section in named]
+
+
+def silent(instances: list[Instance], switches: Switches) -> NDArray[np.int64]:
+    """The columns of forces that do not act."""
+    resting = [one.name for one in instances if not one.acts]
+    columns = [column for name in resting for column in switches.silent.get(name, ())]
+    return np.array(columns, np.int64)

@@ -5,9 +5,12 @@ Whatever events may change has a switch, one whole number in the record of a run
     drives   0 the motion of the file, k the k-th motion an event sets, -1 let go
     joints   0 held together, -1 apart
     locks    0 free, 1 held
+    parks    0 free, 1 held: of bodies
+    forces   0 as at the start, 1 acts, -1 does not
+    phase    k, the k-th phase is in force: its events count, those of other phases do not
 
 Locks are drives of velocity 0 that stand among the instances from the beginning, with their rows
-left out while they are open.
+left out while they are open; so do the rows of bodies that are ever parked (elements/parked.py).
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,6 +19,7 @@ from typing import Any
 
 from trsim import elements
 from trsim.assemble.addresses import UNITS, Addresses
+from trsim.assemble.hanging import hanging
 from trsim.assemble.instances import Instance
 from trsim.assemble.outputs import energy_columns
 from trsim.elements.coordinates import called, named
@@ -25,6 +29,7 @@ from trsim.elements.scene import COMPONENTS
 from trsim.errors import ScenarioError, known
 from trsim.scenario.event import DIRECTIONS, Event
 from trsim.scenario.methods import METHODS
+from trsim.scenario.phases import OfPhase, forces_in, path_of
 from trsim.statuses import Ended
 from trsim.units import fits
 
@@ -32,6 +37,8 @@ BAND = 1e-9  # of the mechanism's size, and rad: how far a value must be left to
 ALWAYS = 2**62
 OF_RUN = ("energy.residual", "energy.work.projection")
 LOOSE, AS_DRAWN, HELD = -1, 0, 1
+PHASE = ("phase", "")  # the switch of the phases
+FAR = 1e300  # s: when a clock that does not run comes to its end
 # column of a model's `watch`: how often an event happens (tables.py, solve/march/watch.py)
 MOST = 2
 # what is watched that is no entry of S: t, and the gap of row e as LIMITS - e
@@ -58,19 +65,29 @@ class UserEvent:
     status: Ended = "done"  # of the run where it ends here
     unit: str = ""  # of the value, where the kind does not tell
     coordinate: str = ""  # of a joint, if one is watched
+    phase: int = -1  # in which it counts; -1: in all
+    role: str = ""  # of a phase: begin, until, for, stall, taut
+    leads: int = -1  # the phase that begins with it
+    lasts: float = 0.0  # s, of a clock that phases start
+    energy: float = 0.0  # J, of what counts as moving
 
     @property
     def rate(self) -> str:
         """The unit of the rate of what is watched."""
-        own = UNITS.get(self.kind, self.unit)
-        return f"{own}/s" if own != "s" else "-"
+        return f"{self.shown}/s" if self.shown != "s" else "-"
+
+    @property
+    def shown(self) -> str:
+        """The unit of what is watched."""
+        return UNITS.get(self.kind, self.unit)
 
     def sampled(self) -> str:
         """That it is not certain to be found, and how it is looked for; of others nothing."""
         if self.kind != CHANNEL:
             return ""
+        where = "phases" if self.role else "events"
         return (
-            f"events.{self.name}: '{self.when}' is sampled, not bounded: every step is looked at "
+            f"{where}.{self.name}: '{self.when}' is sampled, not bounded: every step is looked at "
             "in 8 parts, and 8 more for each 0.5 rad that a body turns or 2 rad of a sine or a "
             "pulse in a load; what passes the value and comes back between two of them may be "
             "passed over"
@@ -80,21 +97,41 @@ class UserEvent:
         """When it happens and what it does, in words."""
         if self.kind == "limit":
             return f"{self.when} {self.said} ({self.value:g} {self.unit}): the run is {self.status}"
-        way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
+        if self.role == "begin":
+            return f"at the start: {self.said}"
+        if self.lasts:
+            since = "the phase began" if self.role == "for" else "nothing moved"
+            return f"{self.lasts:g} s after {since}: {self.said}"
         often = "" if self.most == ALWAYS else f", {self.most} times" if self.most > 1 else ", once"
-        unit = UNITS.get(self.kind, self.unit)
-        return f"{self.when} {way} {self.value:g} {unit}{often}: {self.said}"
+        return f"{self.falls()}{often}: {self.said}"
+
+    def falls(self) -> str:
+        """What is watched, and which way it passes which value."""
+        way = {1: "rises through", -1: "falls through", 0: "passes"}[self.direction]
+        return f"{self.when} {way} {self.value:g} {self.shown}"
 
 
 @dataclass(frozen=True)
 class Switches:
     """All there is to switch, and the events that do."""
 
-    names: tuple[tuple[str, str], ...] = ()  # (drives, joints or locks; name)
+    names: tuple[tuple[str, str], ...] = ()  # (what is switched; name)
     # drive -> (state of z or -1, function in tab) of each motion that is set
     motions: Mapping[str, tuple[tuple[int, int], ...]] = field(default_factory=dict)
     events: tuple[UserEvent, ...] = ()
     jumps: int = -1  # entry of z with the work of the events
+    phases: tuple[str, ...] = ()  # their names
+    silent: Mapping[str, tuple[int, ...]] = field(default_factory=dict)  # columns of forces
+
+    @property
+    def phase(self) -> int:
+        """The switch of the phases; -1 where there are none."""
+        return self.names.index(PHASE) if self.phases else -1
+
+
+def park_name(body: str) -> str:
+    """The name of the instance that parks a body; no name a user can write."""
+    return f"{body}.park"
 
 
 def lock_name(coordinate: str) -> str:
@@ -107,9 +144,18 @@ def locks(scenario: Any) -> dict[str, Any]:
     found = {}
     for name, event in scenario.events.items():
         for k, joint in enumerate(event.do.lock):
-            own, *_ = named(joint, scenario.joints, path=(SECTION, name, "do", "lock", k))
+            path = path_of(scenario, event, (SECTION, name, "do", "lock", k))
+            own, *_ = named(joint, scenario.joints, path=path)
             found[lock_name(own)] = hold(own)
     return found
+
+
+def parks(scenario: Any) -> dict[str, Any]:
+    """What parks each rigid body, where some event parks one: others may hang on that."""
+    named = any(event.do.park for event in scenario.events.values())
+    spec: Any = elements.load(elements.PARKED).spec
+    rigid = [name for name, body in scenario.bodies.items() if body.flexible is None]
+    return {park_name(body): spec(body=body) for body in rigid} if named else {}
 
 
 def hold(joint: str) -> Any:
@@ -139,7 +185,8 @@ def switches(scenario: Any, at: Addresses, instances: list[Instance]) -> Switche
     events = tuple(of.event(name, spec) for name, spec in scenario.events.items())
     motions = {name: tuple(found) for name, found in of.motions.items()}
     jumps = at.state(0.0) if events else -1
-    return Switches(tuple(of.names), motions, (*events, *limited), jumps)
+    phases = tuple(phase.name or f"phase_{k + 1}" for k, phase in enumerate(scenario.phases))
+    return Switches(tuple(of.names), motions, (*events, *limited), jumps, phases)
 
 
 def limits(instances: Iterable[Instance]) -> tuple[UserEvent, ...]:
@@ -154,6 +201,11 @@ def limits(instances: Iterable[Instance]) -> tuple[UserEvent, ...]:
     )  # fmt: skip
 
 
+def spec_lasts(spec: Event) -> bool:
+    """Whether it is a clock that phases start."""
+    return bool(getattr(spec, "lasts", 0.0))
+
+
 class _Packing:
     """Switches while they are being collected."""
 
@@ -163,20 +215,102 @@ class _Packing:
         self.names: dict[tuple[str, str], int] = {}
         self.motions: dict[str, list[tuple[int, int]]] = {}
         self.states: dict[str, int] = {}  # of drives that had none
+        self.begun: dict[int, tuple[tuple[tuple[int, int], ...], str]] = {}  # of phases
 
     def event(self, name: str, spec: Event) -> UserEvent:
+        """One event.  Raises ScenarioError with its place in the file."""
+        try:
+            return self.packed(name, spec)
+        except ScenarioError as error:
+            error.path = path_of(self.scenario, spec, error.path)
+            raise
+
+    def packed(self, name: str, spec: Event) -> UserEvent:
         entry, kind, unit = self.watched(name, spec)
+        of: dict[str, Any] = {}
+        if isinstance(spec, OfPhase):
+            keys = ("phase", "role", "leads", "lasts", "energy")
+            of = {key: getattr(spec, key) for key in keys}
+        if of.get("role") == "begin":
+            self.switch(*PHASE, 0)
+            self.check_first()
+        turned, said = self.actions(name, spec)
+        most = 0 if of.get("role") == "begin" else spec.times or ALWAYS
+        return UserEvent(
+            name, entry, FAR if spec_lasts(spec) else spec.value, kind, DIRECTIONS[spec.crosses],
+            most, turned, spec.do.record, bool(spec.do.end), said, spec.when,
+            status=spec.do.status, unit=unit, coordinate=self.coordinate(spec.when), **of,
+        )  # fmt: skip
+
+    def actions(self, name: str, spec: Event) -> tuple[tuple[tuple[int, int], ...], str]:
+        """The switches that an event turns, and what it does in words."""
+        leads = getattr(spec, "leads", -1)
+        if leads in self.begun:
+            return self.begun[leads]
         turned = [self.motion(name, drive, motion) for drive, motion in spec.do.set.items()]
         turned += [self.released(name, k, one) for k, one in enumerate(spec.do.release)]
         turned += [
             self.switch("locks", called(x, self.scenario.joints), HELD) for x in spec.do.lock
         ]
         turned += [self.unlocked(name, k, one) for k, one in enumerate(spec.do.unlock)]
-        return UserEvent(
-            name, entry, spec.value, kind, DIRECTIONS[spec.crosses],
-            spec.times or ALWAYS, tuple(turned), spec.do.record, spec.do.end, spec.do.said(),
-            spec.when, unit=unit, coordinate=self.coordinate(spec.when),
-        )  # fmt: skip
+        parked = self.parked(name, spec)
+        turned += [self.switch("parks", body, HELD) for body in parked]
+        turned += [self.unparked(name, k, one) for k, one in enumerate(spec.do.unpark)]
+        for key, to in (("apply", HELD), ("remove", LOOSE)):
+            for k, one in enumerate(getattr(spec.do, key)):
+                path = (SECTION, name, "do", key, k)
+                turned += [self.force(force, to, path)
+                           for force in forces_in(self.scenario, one, path)]  # fmt: skip
+        said = spec.do.model_copy(update={"park": parked}).said()
+        if leads >= 0:
+            phases = self.scenario.phases
+            own = [phase.name or f"phase_{k + 1}" for k, phase in enumerate(phases)]
+            turned += [self.switch(*PHASE, leads)] if leads < len(own) else []
+            begins = f"phase {own[leads]} begins" if leads < len(own) else ""
+            said = ": ".join(filter(None, (begins, said)))
+            self.begun[leads] = (tuple(turned), said)
+        return tuple(turned), said
+
+    def check_first(self) -> None:
+        """Refuse units that do not fit what drives of the first phase move."""
+        for drive, motion in self.scenario.phases[0].drive.items():
+            self.motion_of(("phases", 0, "drive", drive), drive, motion)
+
+    def parked(self, name: str, spec: Event) -> tuple[str, ...]:
+        """The bodies that an event parks, with those that hang on them."""
+        frames = {}
+        for body, f in self.at.frames.items():
+            one = self.scenario.bodies.get(body)
+            if f and one is not None and one.flexible is None:
+                frames[body] = f
+        for k, body in enumerate(spec.do.park):
+            path = (SECTION, name, "do", "park", k)
+            check(body, self.scenario.bodies, "body", path)
+            if body not in frames:
+                what = f"'{body}' bends, and only rigid bodies are parked"
+                raise ScenarioError(what, "lock the joints that hold it", path)
+        if not spec.do.park:
+            return ()
+        apart = {*spec.do.release}
+        for before in self.scenario.phases[: max(getattr(spec, "leads", -1), 0)]:
+            apart |= {*before.release}
+        return hanging(spec.do.park, self.instances.values(), frames, apart)
+
+    def unparked(self, name: str, k: int, body: str) -> tuple[int, int]:
+        if (SECTION, park_name(body)) not in self.instances:
+            path = (SECTION, name, "do", "unpark", k)
+            raise ScenarioError(f"no event parks a body '{body}'", "", path)
+        return self.switch("parks", body, AS_DRAWN)
+
+    def force(self, name: str, to: int, path: tuple) -> tuple[int, int]:
+        """Switch a force; refused where something of it lasts that a force alone has not."""
+        row = self.instances["forces", name].row
+        kernels = self.instances["forces", name].element.kernels
+        if row.contact is not None or row.limits or row.rubs or "gaps" in kernels:
+            what = f"'{name}' is a contact, a limit or a friction, which is not switched"
+            hint = "release the joint it acts at, or keep it out of the way"
+            raise ScenarioError(what, hint, path)
+        return self.switch("forces", name, to)
 
     def watched(self, name: str, spec: Event) -> tuple[int, str, str]:
         """Entry of S, what kind of quantity it is, and its unit where that does not tell."""
@@ -186,7 +320,7 @@ class _Packing:
         elif spec.when != "t":
             kind, unit = CHANNEL, self.unit_of(spec.when, (SECTION, name, "when"))
         if kind != CHANNEL or unit:
-            self.check_value(name, spec.when, UNITS.get(kind, unit))
+            self.check_value(name, spec, UNITS.get(kind, unit))
         entry = TIME if kind in ("time", CHANNEL) else self.at.sensor(spec.when)
         return entry, kind, unit
 
@@ -225,11 +359,11 @@ class _Packing:
         sensor = self.scenario.sensors.get(when)
         return called(getattr(sensor, "joint", ""), self.scenario.joints)
 
-    def check_value(self, name: str, when: str, wanted: str) -> None:
+    def check_value(self, name: str, spec: Event, wanted: str) -> None:
         """Refuse a written unit that does not fit what is watched."""
-        written = self.scenario.quantity(SECTION, name, "value")
+        written = self.scenario.quantity(*path_of(self.scenario, spec, (SECTION, name, "value")))
         if written is not None and not fits(written[1], wanted):
-            what = f"wrong unit: '{written[1]}'; '{when}' is in {wanted}"
+            what = f"wrong unit: '{written[1]}'; '{spec.when}' is in {wanted}"
             raise ScenarioError(what, "", (SECTION, name, "value"))
 
     def switch(self, section: str, name: str, to: int) -> tuple[int, int]:
@@ -238,6 +372,22 @@ class _Packing:
     def motion(self, name: str, drive: str, motion: Any) -> tuple[int, int]:
         """Store a motion of a drive."""
         path = (SECTION, name, "do", "set", drive)
+        kind, entry, word, wanted = self.motion_of(path, drive, motion)
+        by_velocity = word == "velocity"
+        try:
+            offset = self.at.function(getattr(motion, word), word, time_only=True, wanted=wanted)
+        except ScenarioError as error:
+            raise error.at(*path) from None
+        state = self.state(drive, kind, entry) if by_velocity else -1
+        found = self.motions.setdefault(drive, [])
+        found.append((state, offset))
+        return self.switch("drives", drive, len(found))
+
+    def motion_of(self, path: tuple, drive: str, motion: Any) -> tuple[str, int, str, str]:
+        """Kind and entry of what a drive moves, whether by position or velocity, and the unit.
+
+        Raises ScenarioError where the motion does not fit the drive.
+        """
         check(drive, self.scenario.drives, "drive", path)
         by_velocity = motion.position is None
         spec = self.scenario.drives[drive]
@@ -254,20 +404,17 @@ class _Packing:
             kind, entry = x.kind, x.entry
         word = "velocity" if by_velocity else "position"
         units = ("rad/s", "m/s") if by_velocity else ("rad", "m")
-        wanted = units[0 if kind == "angle" else 1]
+        written = self.path_of_motion(path, word)
         try:
-            self.at.check_unit(kind, *units, *path, word)
+            self.at.check_unit(kind, *units, *written)
         except ScenarioError as error:
-            raise error.at(*path[:2]) from None
-        given = motion.velocity if by_velocity else motion.position
-        try:
-            offset = self.at.function(given, word, time_only=True, wanted=wanted)
-        except ScenarioError as error:
-            raise error.at(*path) from None
-        state = self.state(drive, kind, entry) if by_velocity else -1
-        found = self.motions.setdefault(drive, [])
-        found.append((state, offset))
-        return self.switch("drives", drive, len(found))
+            raise error.at(*written[:2]) from None
+        return kind, entry, word, units[0 if kind == "angle" else 1]
+
+    def path_of_motion(self, path: tuple, word: str) -> tuple:
+        """Where a motion is written: that of a phase stands in `drive`."""
+        spec = self.scenario.events.get(path[1])
+        return (*(path_of(self.scenario, spec, path) if spec else path), word)
 
     def state(self, drive: str, kind: str, entry: int) -> int:
         """The entry of z that holds the place of a drive with a velocity."""
@@ -281,6 +428,9 @@ class _Packing:
     def released(self, name: str, k: int, one: str) -> tuple[int, int]:
         path = (SECTION, name, "do", "release", k)
         joints, drives = self.scenario.joints, self.scenario.drives
+        if one in self.scenario.forces:
+            what = f"'{one}' is a force, and joints and drives are released"
+            raise ScenarioError(what, f"`remove: [{one}]` makes it act no more", path)
         check(one, [*joints, *drives], "joint or drive", path)
         if one in drives:
             return self.switch("drives", one, LOOSE)

@@ -22,8 +22,10 @@ Array = NDArray[np.float64]
 
 LIGHTEST, HEAVIEST = 1e-30, 1e30  # kg
 STATE_SCALES = {"angle": scales.ANGLE, "stroke": scales.LENGTH, "speed": scales.SPEED}
+VALUE_AT, BAND_AT = range(2)  # columns of `watch_at`
 UNEQUAL = 1e5  # with all else of one size S = J M^-1 J^T loses as many digits
 SMALLEST, LARGEST = 1e-12, 1e12  # m, radii of gyration and distances of a mechanism
+ACTING = ("force", "energy")  # kernels of what acts on bodies
 FARTHEST = 0.01  # of the mechanism with its anchors: the least that stands for the arm of a body
 
 
@@ -67,17 +69,21 @@ def judged(instances: Sequence[Instance]) -> NDArray[np.int64]:
 
 
 def kernels(instances: list[Instance]) -> dict[str, NDArray[np.int64]]:
-    """Per kind of kernel a table of (address, first row, end row)."""
-    spans: dict[str, list[int]] = {}
+    """Per kind of kernel a table of (address, first row, end row); forces that do not act are left
+    out of those in which they do."""
+    spans: dict[tuple[str, int], list[int]] = {}
     loaded: dict[str, Element] = {}
+    part = 0
     for e, instance in enumerate(instances):
         key = instance.element.key
-        spans.setdefault(key, [e, e])[1] = e + 1
+        part += int(e > 0 and instance.acts != instances[e - 1].acts)
+        spans.setdefault((key, part), [e, e])[1] = e + 1
         loaded[key] = instance.element
     tables: dict[str, list[tuple[int, int, int]]] = {kind: [] for kind in KINDS}
-    for key, (a, b) in spans.items():
+    for (key, _), (a, b) in spans.items():
         for kind, kernel in loaded[key].kernels.items():
-            tables[kind].append((kernel.address(), a, b))
+            if instances[a].acts or kind not in ACTING:
+                tables[kind].append((kernel.address(), a, b))
     return {kind: np.array(rows, np.int64).reshape(-1, 3) for kind, rows in tables.items()}
 
 

@@ -44,6 +44,7 @@ ELEMENTS = {
     "point_velocity": "sensors",
     "marker": "points",
     "gravity": "",  # the key `gravity` of the scenario
+    "parked": "",  # the key `park` of events and phases
     "applied_load": "forces",
     "wrench": "forces",
     "distributed_load": "forces",
@@ -69,6 +70,8 @@ ELEMENTS = {
 BECOMES = {"revolute": ("clearance", "clearance_joint")}
 # section -> what an entry is that names no type
 DEFAULT = {"bodies": "rigid_body", "drives": "drive", "sensors": "sensor", "points": "marker"}
+
+PARKED = "parked"  # what holds a body that an event parks
 
 
 def load(word: str) -> "Element":

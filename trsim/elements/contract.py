@@ -318,6 +318,8 @@ class Element:
     doubts: Callable[[str, Any, Callable], Iterable[str]] = lambda *_: ()
     # (spec) -> the expression of other sensors that a sensor is short for
     stands_for: Callable[[Any], tuple] | None = None
+    # (scene, e): remembers where its body is, as an event puts its rows in force
+    hold: Callable[[Scene, int], None] = lambda *_: None
     springs: Callable[[Row], Springs] | None = None  # what they hold is at rest at the start
     elastic: tuple[int, ...] = ()  # columns of par its elastic forces are proportional to
     viscous: tuple[int, ...] = ()  # and those of its material's damping

@@ -82,6 +82,11 @@ class Rope(Spec):
     through: tuple[Place, ...]
     length: Annotated[float, Gt(0), Unit("m")] | None = None
 
+    @property
+    def goes_slack(self):
+        """The channel that falls through a value where it goes slack, and the value."""
+        return "tension", 0.0
+
 
 class Own(Pair):
     """Of one instance; i and j are two of its bodies."""

@@ -112,6 +112,7 @@ class Model(Packed):
     contact_width: I1  # (n_contacts) its output columns
     contact_angle: I1  # (n_contacts) among them: first of the eccentricity's two, or -1
     wanted: I1  # (N) first output column of a row, or -1
+    silent: I1  # columns of forces that do not act
     vector: I1  # first columns of the vectors whose magnitudes have extremes
     sought: I1  # (n_k) columns, and behind all those such magnitudes, with extremes inside steps
     kin: I1  # (n_k) those of one kind have one number
@@ -287,6 +288,7 @@ def scene(model: Model) -> Scene:
         model,
         {name: shape for names, shape in shapes for name in names},
         tab=model.tab.copy(),  # scratch, and what functions are held on
+        watch_at=model.watch_at.copy(),  # clocks are started in it
         status=np.zeros(9, np.int64),
     )
     made.X[:, [3, 7, 11]] = 1.0
@@ -297,4 +299,5 @@ def scene(model: Model) -> Scene:
 
 def carried(work: Scene, model: Model) -> Scene:
     """A scene of another stage of the same run: memory, branches and counters go on in it."""
-    return Scene(scene(model), mem=work.mem, branch=work.branch, status=work.status)
+    kept = {name: getattr(work, name) for name in ("mem", "branch", "status", "watch_at")}
+    return Scene(scene(model), **kept)

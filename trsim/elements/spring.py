@@ -8,7 +8,7 @@ f is the elastic force, d the damper (sprung.py).  l_0 is the length as drawn un
 l = 0 the line has no direction and the force is zero.
 """
 
-from math import sqrt
+from math import dist, sqrt
 from typing import Annotated, ClassVar
 
 from annotated_types import Ge
@@ -47,6 +47,12 @@ class Spring(Sprung):
     damper: Function("N", of=RATE) | None = None
     free_length: Annotated[float, Ge(0), Unit("m")] | None = None
     tension_only: Flag = False
+
+    @property
+    def goes_slack(self):
+        """The channel that falls through a value where it goes slack, and the value."""
+        free = dist(*self.points) if self.free_length is None else self.free_length
+        return ("length", free) if self.tension_only else None
 
 
 class Own(Law):

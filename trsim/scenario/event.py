@@ -20,12 +20,12 @@ at a start on the value, and not for a touch that turns back.
       shut:        {when: stroke, crosses: down, do: {end: true}}
 """
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from annotated_types import Gt, Le
-from pydantic import model_validator
+from pydantic import BeforeValidator, model_validator
 
-from trsim.errors import ScenarioError
+from trsim.errors import ScenarioError, closest, described
 from trsim.fields import EMPTY, Flag, Function, Spec, Unit
 
 EXAMPLE = """
@@ -46,6 +46,20 @@ solver: {end: 1 s}
 WATCHED = ("rad", "m", "s", "rad/s", "m/s", "rad/s^2", "m/s^2", "N", "N*m", "J", "W", "N/m", "-")
 Crosses = Literal["up", "down", "both"]
 DIRECTIONS = {"up": 1, "down": -1, "both": 0}
+Ending = Literal["done", "stalled", "slack", "released"]
+ENDINGS = ("done", "stalled", "slack", "released")
+# of actions: what names things, in the order in which it is told
+NAMING = ("release", "lock", "unlock", "park", "unpark", "apply", "remove")
+AGAINST = (*(("set", "release"), ("lock", "unlock"), ("park", "unpark"), ("apply", "remove")),)
+
+
+def _ending(value: Any) -> Any:
+    if isinstance(value, bool) or value in ENDINGS:
+        return value
+    close = closest(str(value), ENDINGS)
+    hint = f"Did you mean '{close}'?" if close else ""
+    what = f"must be true, false or one of {', '.join(ENDINGS)}, got {described(value)}"
+    raise ScenarioError(what, hint)
 
 
 class Motion(Spec):
@@ -74,7 +88,11 @@ class Actions(Spec):
     release  ideal joints that come apart, and drives that let go
     lock     joints whose coordinate is held from then on; the force is NAME.lock.force
     unlock   joints that an event has locked
-    end      the run ends here, with status `done`
+    park     bodies that are held where they are, with what hangs on them alone
+    unpark   bodies that were parked
+    apply    forces and load sets that act from then on; what is first applied rests before
+    remove   forces and load sets that act no more
+    end      the run ends here: true, with status `done`, or with the status that is named
     """
 
     type: ClassVar[str] = "actions"
@@ -83,14 +101,18 @@ class Actions(Spec):
     release: tuple[str, ...] = ()
     lock: tuple[str, ...] = ()
     unlock: tuple[str, ...] = ()
-    end: Flag = False
+    park: tuple[str, ...] = ()
+    unpark: tuple[str, ...] = ()
+    apply: tuple[str, ...] = ()
+    remove: tuple[str, ...] = ()
+    end: Annotated[bool | Ending, BeforeValidator(_ending)] = False
 
     @model_validator(mode="after")
     def something(self):
         if not any(getattr(self, key) for key in type(self).model_fields):
             keys = ", ".join(type(self).model_fields)
             raise ScenarioError("nothing to do", f"Give one or more of {keys}.")
-        for one, other in (("set", "release"), ("lock", "unlock")):
+        for one, other in AGAINST:
             both = sorted({*getattr(self, one)} & {*getattr(self, other)})
             if both:
                 raise ScenarioError(f"'{both[0]}' stands under {one} and under {other}")
@@ -99,10 +121,16 @@ class Actions(Spec):
     def said(self) -> str:
         """The event in words, for the table of events."""
         told = [f"set {name}" for name in self.set]
-        for key in ("release", "lock", "unlock"):
+        for key in NAMING:
             told += [f"{key} {name}" for name in getattr(self, key)]
-        told += [key for key in ("record", "end") if getattr(self, key)]
+        told += ["record"] if self.record else []
+        told += [f"end {self.status}" if self.status != "done" else "end"] if self.end else []
         return ", ".join(told)
+
+    @property
+    def status(self) -> Ending:
+        """Of a run that ends here."""
+        return "done" if isinstance(self.end, bool) else self.end
 
 
 class Event(Spec):

@@ -16,7 +16,8 @@ from trsim.scenario.schema import schema
 SIGNS = {"minimum": ">=", "exclusiveMinimum": ">", "maximum": "<=", "exclusiveMaximum": "<"}
 TYPES = {"integer": "whole number", "string": "text", "boolean": "true or false", "null": ""}
 FUNCTION = "number, expression or table"
-LAWS = ("trsim.scenario.contact_law", "trsim.scenario.event")  # modules that tell one
+# modules that tell one
+LAWS = ("trsim.scenario.contact_law", "trsim.scenario.event", "trsim.scenario.phases")
 
 Page = dict[str, Any]
 
@@ -95,7 +96,7 @@ def _section(word: str, rule: dict[str, Any], of: dict[str, Any]) -> Page:
 
 
 def _tells_a_law(spec: type[Spec]) -> bool:
-    """Whether its module does: those of the elements, of contact laws and of events."""
+    """Whether its module does: those of the elements, of contact laws, of events and phases."""
     return spec.__module__ in LAWS or spec.__module__.startswith(f"{elements.__name__}.")
 
 

@@ -13,6 +13,7 @@ from trsim.scenario.vary import sweep
 # what stands beside the channels in a result file; `component` begins the names of their scales
 IN_FILES = {
     *("time", "component", "steps", "events", "recorded", "peaks", "summary", "solver", "phase"),
+    *("impulses", "velocity_jumps"),
     *("poincare", "impact", "orbit", "scenario", "mechanism", "provenance", "certificate"),
 }
 RESERVED = {"ground", "world", "t", "pi", "energy", *IN_FILES, *keyword.kwlist}

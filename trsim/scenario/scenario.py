@@ -23,6 +23,7 @@ from trsim.scenario.initial import Initial, initial_of
 from trsim.scenario.limits import Limits
 from trsim.scenario.load_sets import Level, LoadSet, scaled
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
+from trsim.scenario.phases import Phase, driven_first, events_of, resting
 from trsim.scenario.sections import PhasePortrait, PoincareSection
 from trsim.scenario.template import Instance, Placement, Template
 from trsim.scenario.text import Tree
@@ -234,7 +235,8 @@ class Scenario(Spec):
     loads            which load sets act: `{gust: ultimate}`, limit, ultimate or a factor
     totals           what several bodies weigh together, where one of them takes the rest
     limits           how many bodies, rows, nodes and entries there may be
-    phases           kept for load steps; not used yet
+    phases           load steps in their order: what is driven, locked and let go in each, and what
+                     ends it
     cases            named overrides, each a scenario of a sweep; not used by `run`
     sweep            values of keys to vary, by dotted path; not used by `run`
     report           units of figures and tables: `units: {angle: deg, length: mm}`
@@ -264,24 +266,35 @@ class Scenario(Spec):
     loads: dict[str, Level] | None = None
     totals: dict[str, Annotated[Total, _Scoped(Total)]] = EMPTY
     limits: Limits = Limits()
-    phases: Any = None
+    phases: tuple[Phase, ...] = ()
     cases: dict[str, Any] = EMPTY
     sweep: dict[str, Any] = EMPTY
     report: Annotated[dict[str, Any], AfterValidator(shown.report)] = EMPTY
 
     @model_validator(mode="after")
     def complete(self) -> "Scenario":
-        """Loads as their sets act; bodies that take the rest of a total as they are then."""
+        """Loads as their sets act; phases as events; bodies that take the rest of a total as they
+        are then."""
         self.forces.update(scaled(self.load_sets, self.loads, self.forces))
+        if self.phases:
+            self.drives.update(driven_first(self))
+            self.events.update(events_of(self))
+        self._resting = resting(self)
         if self.totals:
             from trsim.scenario.remainder import remainders  # needs numpy
 
             self.bodies.update(remainders(self.totals, self.bodies))
         return self
 
+    _resting: frozenset[str] = PrivateAttr(frozenset())
     _tree: Tree = PrivateAttr()
     _unfolded: Unfolded = PrivateAttr()
     _text: str = PrivateAttr()
+
+    @property
+    def resting(self) -> frozenset[str]:
+        """The forces that do not act at the start, see phases.py."""
+        return self._resting
 
     @property
     def source(self) -> Source:
@@ -308,6 +321,10 @@ class Scenario(Spec):
         own = scope.parameters if scope else self.parameters
         # 1/t is none per tonne
         return written(raw, {"t": None, **own}) if isinstance(raw, str) else None
+
+    def raw(self, path: tuple) -> Any:
+        """What is written at a path; None where nothing is."""
+        return self._unfolded.value(path)
 
     def points_at(self, *path: str) -> tuple[Any, ...]:
         """The points named at the path of an entry, a place or a list of them; None for numbers."""

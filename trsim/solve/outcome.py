@@ -18,6 +18,7 @@ from trsim.scenario.methods import METHODS
 from trsim.solve.diagnose.adrift import lost_its_way
 from trsim.solve.diagnose.poles import at_pole
 from trsim.solve.march import record as rec
+from trsim.solve.march.impulses import Jump, no_jump
 from trsim.solve.march.openings import held_to, look, opened
 from trsim.solve.march.record import Record, Settings
 from trsim.solve.march.sampled import MOST_PARTS
@@ -39,6 +40,7 @@ class Block(NamedTuple):
     n_events: int
     recorded: Array  # (n, 2 + n_out) time, user event, channels
     points: Array  # (n, N_POINT) of Poincare sections, see record.py
+    jump: Jump = no_jump()  # of velocities at user events, see impulses.py
     state: dict[str, NDArray[Any]] | None = None  # after it, see checkpoint.py; None: cannot go on
 
 
@@ -276,8 +278,11 @@ def new_record(
     return record
 
 
-def emptied(r: Record, b: rec.Buffers, recorded: Array | None = None) -> Block:
-    """What the buffers hold, and what user events recorded; they count as empty afterwards."""
+def emptied(
+    r: Record, b: rec.Buffers, recorded: Array | None = None, jump: Jump | None = None
+) -> Block:
+    """What the buffers hold, and what user events recorded and did; they count as empty
+    afterwards."""
     block = Block(
         b.rows[: r.rows],
         b.steps[: r.step_rows],
@@ -287,6 +292,7 @@ def emptied(r: Record, b: rec.Buffers, recorded: Array | None = None) -> Block:
         int(r.events),
         np.zeros((0, 1 + b.rows.shape[1])) if recorded is None else recorded,
         b.points[: r.point_rows],
+        jump or no_jump(),
     )
     r.rows = r.step_rows = r.event_rows = r.point_rows = 0
     return block

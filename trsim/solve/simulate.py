@@ -1,7 +1,7 @@
 """One run: from a mechanism and its start to blocks of results, and an outcome."""
 
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from importlib import import_module
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trsim.assemble.mechanism import Mechanism
+from trsim.assemble.switches import UserEvent
 from trsim.elements.scene import Scene, scene
 from trsim.errors import ScenarioError
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
@@ -17,11 +18,13 @@ from trsim.solve.diagnose.crossed import examine
 from trsim.solve.diagnose.mesh_error import Bends
 from trsim.solve.diagnose.no_number import refuse_no_number, unshown
 from trsim.solve.diagnose.strained import collapsed
+from trsim.solve.diagnose.unended import left
 from trsim.solve.march import record as rec
 from trsim.solve.march.act import act
 from trsim.solve.march.anew import anew, begun_with, resumed, stuck
 from trsim.solve.march.calls import FIELDS
 from trsim.solve.march.checkpoint import State, begun_at, put_back, state
+from trsim.solve.march.load_steps import clocks_of
 from trsim.solve.march.loop import begin, march, method_table
 from trsim.solve.march.record import Record, Settings, fresh_buffers
 from trsim.solve.outcome import (
@@ -173,6 +176,7 @@ def compiled(
         work = resumed(mechanism, work, r)
         b = sparse.buffers(b, mechanism, work) if sparse else b
         work.tab[work.held] = r.held  # functions, as the record says
+        clocks_of(work, r, switches.events)
     else:
         begin(work, r, b, setting)
         refuse_no_number(mechanism, b.rows[0, 1:])
@@ -187,13 +191,17 @@ def compiled(
     bends = Bends(mechanism)
     bends.look(float(r.t), r.y)
     ended = None  # by a user event
+    begins = bool(switches.phases) and not checkpoint
+    if begins:
+        r.watch[first_phase(switches.events), rec.JUST_NOW] = 1.0
     while True:
         most = min(visit, limit - int(r.steps))
-        reason = march(work, r, b, setting, methods, most)
+        reason = rec.ACT if begins else march(work, r, b, setting, methods, most)
+        begins = False
         examine(work, r, other_rows=reason == rec.ACT)
-        recorded = None
+        recorded = jump = None
         if reason == rec.ACT:
-            before, (work, recorded, ended) = work, act(mechanism, work, r, b, setting)
+            before, (work, recorded, ended, jump) = work, act(mechanism, work, r, b, setting)
             if work is not before:  # other equations
                 r.h = min(r.h, first_step(scenario, r))
             if r.weak and ended is None:
@@ -215,7 +223,7 @@ def compiled(
         if reason == rec.LOAD:  # what no scene needed so far is not loaded, or compiled
             methods[:] = [method_table(method, **called) for method in used]
             clock0 = time.process_time() - cpu
-        block = emptied(r, b, recorded)
+        block = emptied(r, b, recorded, jump)
         yield block._replace(state=state(r, work, begun, cpu)) if paused else block
         if not paused:
             break
@@ -224,9 +232,17 @@ def compiled(
             break
     status, text = ended or ending(reason, setting, scenario, mechanism, work, r)
     times = zip(switches.events, r.watch[:, rec.TIMES].astype(int).tolist(), strict=True)
-    fired = {event.name: n for event, n in times if event.kind != "limit"}
-    return Outcome(status, text, float(r.t), statistics(r, work, begun, cpu),
+    fired = {event.name: n for event, n in times if event.kind != "limit" and not event.role}
+    found = statistics(r, work, begun, cpu)
+    if many := left(mechanism, r, ended is not None):
+        found["phases_left"] = many
+    return Outcome(status, text, float(r.t), found,
                    r.peak.T.copy(), r, begun, fired, bends.states)  # fmt: skip
+
+
+def first_phase(events: Sequence[UserEvent]) -> int:
+    """The event with which the first phase begins."""
+    return next(k for k, event in enumerate(events) if event.role == "begin")
 
 
 def ending(

@@ -200,7 +200,8 @@ class Running:
         """Groups, names and attributes."""
         columns = [c for c in self.mechanism.columns if c.wanted or c.name in self.planned.columns]
         describe.begin(file, self.scenario, self.mechanism)
-        scales(file, {c.size for c in self.mechanism.columns})
+        turned = any(event.turned for event in self.mechanism.stages.switches.events)
+        scales(file, {c.size for c in self.mechanism.columns} | ({3} if turned else set()))
         time_field = Field("time", "s", "simulated time", 0)
         fields = [Field(c.name, c.unit, c.meaning, 1 + c.start, c.size) for c in columns]
         width = 1 + max((c.start + c.size for c in self.mechanism.columns), default=0)
@@ -216,7 +217,8 @@ class Running:
         self.force = {e: tables.force_column(table) for e, table in self.contacts.items()}
         self.events = tables.events(file, self.mechanism, time_field)
         self.recorded = tables.recorded(file, self.mechanism, [time_field, *fields])
-        self.tables = [self.rows, self.events, *self.contacts.values()]
+        self.jumps = tables.jumps(file, self.mechanism, time_field)
+        self.tables = [self.rows, self.events, *self.contacts.values(), *(self.jumps or ())]
         self.sections = points.declare(file, self.planned)
         self.tables += [*filter(None, [self.recorded]), *self.sections]
 
@@ -238,6 +240,8 @@ class Running:
         self.impacts.update(block.events)
         if self.recorded:
             self.recorded.append(block.recorded)
+        for table, lines in zip(self.jumps or (), block.jump, strict=False):
+            table.append(lines)
         self.time, self.state = block.time, block.state
         now = time.monotonic()
         if self.around.every and self.state is not None and now - self.saved > self.around.every:

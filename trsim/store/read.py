@@ -150,6 +150,18 @@ class Run:
             return table(file["recorded"]) if "recorded" in file else {}
 
     @property
+    def impulses(self) -> dict[str, Array]:
+        """`time`, `event`, `row`, `body` and impulses of user events; empty without any."""
+        with opened(self.path) as file:
+            return table(file["impulses"]) if "impulses" in file else {}
+
+    @property
+    def velocity_jumps(self) -> dict[str, Array]:
+        """`time`, `event`, `body` and velocities before and after user events; or empty."""
+        with opened(self.path) as file:
+            return table(file["velocity_jumps"]) if "velocity_jumps" in file else {}
+
+    @property
     def peaks(self) -> tuple[Peak, ...]:
         with opened(self.path) as file:
             there = "channel" in file["peaks"]

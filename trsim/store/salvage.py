@@ -12,7 +12,7 @@ from trsim.store.grow import AXES, scales
 from trsim.store.peaks import Peak, both_ways
 from trsim.store.peaks import store as store_peaks
 from trsim.store.read import reached
-from trsim.store.tables import MAY_BE_NAN
+from trsim.store.tables import AT_EVENTS, MAY_BE_NAN
 
 ROWS = 1 << 14  # rows handled together
 SECTIONS = {"joints", "drives", "forces", "sensors"}
@@ -45,7 +45,7 @@ class Salvage:
             source.copy(name, file)
         scales(file, {size for size, name in AXES.items() if name in source})
         self._table(source, file)
-        groups = ["events", *(["recorded"] if "recorded" in source else [])]
+        groups = ["events", *(name for name in AT_EVENTS if name in source)]
         groups += [f"{part}/{name}" for part in ("steps", "poincare") for name in source[part]]
         for group in groups:
             made, told = file.create_group(group), source[group].attrs.items()

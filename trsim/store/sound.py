@@ -13,6 +13,7 @@ import numpy as np
 from h5py import h5a, h5d, h5g, h5l, h5o, h5t
 
 from trsim.statuses import STATUSES
+from trsim.store.tables import AT_EVENTS
 
 ROOM = 1 << 26  # bytes a dataset may have without being in the file: rows that were made room for
 DEEPEST = 4  # groups in groups
@@ -24,6 +25,7 @@ AT_ROOT = ("format", "title", "status", "reason")
 OF_PARTS = {**dict.fromkeys(("name", "section", "type", "joint", "bodies"), TEXT),
             "clearance": NUMBERS}  # fmt: skip
 OF_CONTACT = ("impacts", "fastest_impact", "peak_force", "peak_time", "steps")
+WORDS = {"kind", "element", "did", *(word for words in AT_EVENTS.values() for word in words)}
 OF_EVENTS = {"time": NUMBERS, "kind": TEXT, "element": TEXT, "speed": NUMBERS, "angle": NUMBERS}
 OF_PEAKS = {**dict.fromkeys(("channel", "extreme", "unit"), TEXT),
             **dict.fromkeys(("value", "time", "stroke"), NUMBERS)}  # fmt: skip
@@ -236,17 +238,19 @@ def _tables(file: h5py.File, root: Group) -> None:
     if not isinstance(user, np.ndarray) or not all(isinstance(n, str) for n in user.flat):
         raise Unsound("events: its user is no list of names")
     tables = [events, *root["steps"].groups()]
-    if "recorded" in root:
-        if not isinstance(root["recorded"], Group):
-            raise Unsound("recorded is no group")
-        tables.append(root["recorded"])
-        root["recorded"].want("event", TEXT)
+    for name, words in AT_EVENTS.items():
+        if name in root:
+            if not isinstance(root[name], Group):
+                raise Unsound(f"{name} is no group")
+            tables.append(root[name])
+            for word in words:
+                root[name].want(word, TEXT)
     for table in tables:
         table.want("time", NUMBERS)
         for name, item in table.items():
             if not isinstance(item, Item) or not item.shape:
                 raise Unsound(f"{table.path}{printable(name)} has no rows")
-            if item.kind != NUMBERS and name not in ("kind", "element", "did", "event"):
+            if item.kind != NUMBERS and name not in WORDS:
                 raise Unsound(f"{table.path}{printable(name)} is not there as {NUMBERS}")
 
 

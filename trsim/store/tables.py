@@ -9,6 +9,12 @@ from trsim.store.grow import Field, Growing
 
 EVENT_COLUMNS = 7  # of a line of events, see solve/march/record.py
 EXPECTED = 256  # rows of the tables whose length nobody knows
+# groups of tables of user events -> their words
+AT_EVENTS = {
+    "recorded": ("event",),
+    "impulses": ("event", "row", "body"),
+    "velocity_jumps": ("event", "body"),
+}
 MAY_BE_NAN = {"angle"}  # of an event: a stop has none
 # of events, by their numbers in solve/march/record.py: ONSET = 1.0 and so on
 KINDS = ("", "onset", "separation", "to implicit", "to explicit", "user", "jump")
@@ -44,7 +50,8 @@ def events(file: h5py.File, mechanism: Any, time_field: Field) -> Growing:
         Field("angle", "rad", "of the contact point around the bearing", 4),
     ]
     if user:
-        file["events"].attrs["user"] = [event.name for event in user]
+        asked = [event.name for event in user if event.role not in ("stall", "taut")]
+        file["events"].attrs["user"] = asked
         fields.append(Field("did", "", "what a user event did", 2, words=did))
     if user or mechanism.stages.switches.jumps >= 0:
         fields.append(Field("work", "J", "done by it: change of kinetic and stored energy", 5))
@@ -82,3 +89,39 @@ def recorded(file: h5py.File, mechanism: Any, rows: list[Field]) -> Growing | No
     fields += [field._replace(start=field.start + 1) for field in rows[1:]]
     width = 2 + max((c.start + c.size for c in mechanism.columns), default=0)
     return Growing(file.create_group("recorded"), fields, width, EXPECTED)
+
+
+def jumps(file: h5py.File, mechanism: Any, time_field: Field) -> tuple[Growing, Growing] | None:
+    """The tables of impulses and of velocities at user events that change what holds; None where
+    none does."""
+    events, stages = mechanism.stages.switches.events, mechanism.stages
+    if not any(event.turned for event in events):
+        return None
+    which = Field("event", "", "at which event", 1, words=tuple(e.name for e in events))
+    bodies = [""] * (max(mechanism.frames.values(), default=0) + 1)
+    for name, frame in mechanism.frames.items():
+        bodies[frame] = bodies[frame] or name
+    words = tuple(name or "-" for name in bodies)
+    impulses = [
+        time_field,
+        which,
+        Field("row", "", "the constraint row that acts", 2, words=stages.every or ("-",)),
+        Field("body", "", "the body it acts on", 3, words=words),
+        Field("impulse", "N*s or N*m*s", "Lambda of the row: M (v+ - v-) = J^T Lambda", 4),
+        Field("force", "N*s", "impulse on the body, world axes", 5, 3),
+        Field("moment", "N*m*s", "its moment about the centre of mass; of the ground, the origin",
+              8, 3),
+    ]  # fmt: skip
+    velocities = [
+        time_field,
+        which,
+        Field("body", "", "whose velocities they are", 2, words=words),
+        Field("velocity", "m/s", "of the centre of mass just before", 3, 3),
+        Field("velocity_after", "m/s", "the same just after", 6, 3),
+        Field("angular_velocity", "rad/s", "just before, world axes", 9, 3),
+        Field("angular_velocity_after", "rad/s", "the same just after", 12, 3),
+    ]
+    return (
+        Growing(file.create_group("impulses"), impulses, 11, EXPECTED),
+        Growing(file.create_group("velocity_jumps"), velocities, 15, EXPECTED),
+    )

@@ -37,7 +37,8 @@ def blamed(mechanism: Mechanism, t: float, y: Array, mem: Array) -> Instance | N
         for place in PLACES:
             getattr(w, place)[:] = 0.0
         for word in ("force", "constraint"):
-            if (kernel := instance.element.kernels.get(word)) is not None:
+            kernel, table = instance.element.kernels.get(word), getattr(w, word)
+            if kernel and np.any((table[:, 1] <= e) & (e < table[:, 2])):  # not of what rests
                 kernel(t, w, e, e + 1)
         if not all(np.all(np.isfinite(getattr(w, place))) for place in PLACES):
             return instance

@@ -46,6 +46,7 @@ from trsim.solve.diagnose.sizes import of_sizes
 from trsim.solve.diagnose.skipped import unread
 from trsim.solve.diagnose.strained import of_bars
 from trsim.solve.diagnose.swings import of_sections
+from trsim.solve.diagnose.unended import of_phases
 from trsim.solve.diagnose.unhinged import of_hinges
 from trsim.solve.march.openings import apart
 from trsim.solve.march.record import Record
@@ -90,6 +91,7 @@ def doubts(scenario: Any, mechanism: Mechanism, outcome: Outcome) -> tuple[str, 
         *of_rows(mechanism, outcome),
         *of_hinges(mechanism, outcome.record),
         *of_events(outcome),
+        *of_phases(mechanism, outcome),
         *of_branches(mechanism, outcome.record),
         *of_sections(scenario, mechanism, outcome.record),
         *of_drift(scenario, mechanism, outcome.record),

@@ -11,7 +11,7 @@ from trsim.errors import some
 from trsim.fields import FunctionSpec
 from trsim.instants import peaked
 
-UNREAD = ("phases", "cases", "sweep")  # keys a scenario may have that `run` does not act on
+UNREAD = ("cases", "sweep")  # keys a scenario may have that `run` does not act on
 SHOWN = 4  # names of a list
 
 

@@ -13,12 +13,22 @@ from numpy.typing import NDArray
 from trsim.assemble.equations import kinetic, poses, stored_energy
 from trsim.assemble.light import check_determined, given_back_in_own, nearest_in_mass
 from trsim.assemble.projection import project_positions, project_velocities
-from trsim.assemble.switches import CHANNEL, HELD, LOOSE, SECTION, UserEvent, lock_name
+from trsim.assemble.switches import (
+    CHANNEL,
+    HELD,
+    LOOSE,
+    SECTION,
+    UserEvent,
+    lock_name,
+    park_name,
+)
 from trsim.elements.contract import Memory, Row
 from trsim.elements.prescribed import AnyDrive, rates_at
 from trsim.elements.scene import Scene, carried
 from trsim.errors import ModelError
 from trsim.solve.march import record as rec
+from trsim.solve.march.impulses import Jump, no_jump, together, told
+from trsim.solve.march.load_steps import counts, fastest, look, standing, started
 from trsim.solve.march.phases import settle
 from trsim.solve.march.record import Buffers, Record, Settings, note_event
 from trsim.statuses import Ended
@@ -35,6 +45,7 @@ class Acted(NamedTuple):
     work: Scene  # of the stage that follows
     recorded: Array  # (n, 2 + n_out) time, event, channels
     ended: tuple[Ended, str] | None  # status and reason, where the run ends here
+    jump: Jump  # of velocities
 
 
 def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -> Acted:
@@ -42,41 +53,95 @@ def act(mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings) -
 
     Leaves a line for each among the events; the channels are those before anything changed.
     """
-    recorded: list[Array] = []
-    ended: tuple[Ended, str] | None = None
-    t = float(r.t)
-    for k, event in enumerate(mechanism.stages.switches.events):
+    run = _Acting(mechanism, work, r, b, setting)
+    for k, event in enumerate(run.events):
         if not r.watch[k, rec.JUST_NOW]:
             continue
         r.watch[k, rec.JUST_NOW] = 0.0
-        row = len(mechanism.instances) + 1 + k
+        if event.phase >= 0 and (run.ended or not counts(mechanism, r, event)):
+            r.watch[k, rec.TIMES] -= 1.0  # another one has ended its phase
+            continue
+        while k >= 0 and not run.failed:
+            k = run.happen(k)
+        if run.failed:
+            break
+    r.fired = 0
+    found = np.array(run.recorded).reshape(-1, 2 + run.work.n_out)
+    return Acted(run.work, found, run.ended, together(run.jumps))
+
+
+class _Acting:
+    """What comes of the events of one instant, while it comes."""
+
+    def __init__(
+        self, mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings
+    ) -> None:
+        self.mechanism, self.work, self.r, self.b, self.setting = mechanism, work, r, b, setting
+        self.events = mechanism.stages.switches.events
+        self.recorded: list[Array] = []
+        self.jumps: list[Jump] = []
+        self.ended: tuple[Ended, str] | None = None
+        self.failed = False
+
+    def happen(self, k: int) -> int:
+        """Do what event k says; the event that ends at once the phase it begins, or -1."""
+        r, b, work, event = self.r, self.b, self.work, self.events[k]
+        if event.role == "stall" and not look(work, r, k, event):
+            return -1
+        row, t = len(self.mechanism.instances) + 1 + k, float(r.t)
         speed = r.watch[k, rec.SLOPE] if event.kind == CHANNEL else r.gap[len(work.contact) + k, 1]
         note_event.python(r, b, t, rec.USER, row, speed)
         if event.record:
-            recorded.append(np.array([t, k, *b.out[: work.n_out]]))
+            self.recorded.append(np.array([t, k, *b.out[: work.n_out]]))
+        if event.end and self.ended is None:
+            self.ended = event.status, why_ended(self.mechanism, work, r, b, event)
         try:
-            work, b.events[r.event_rows - 1, rec.EVENT_WORK] = turned(
-                mechanism, work, r, b, setting, event
+            self.work, b.events[r.event_rows - 1, rec.EVENT_WORK], jump = turned(
+                self.mechanism, work, r, b, self.setting, k
             )
         except ModelError as error:
-            ended = "failed", failure(event, error)
-            break
-        if event.end and ended is None:
-            ended = event.status, why_ended(mechanism, b, event, t)
-    r.fired = 0
-    return Acted(work, np.array(recorded).reshape(-1, 2 + work.n_out), ended)
+            self.failed, self.ended = True, ("failed", failure(event, error))
+            return -1
+        self.jumps.append(jump)
+        if event.leads < 0 or self.ended:
+            return -1
+        over = started(self.work, r, self.events, event.leads, event)
+        if over >= 0:
+            r.watch[over, rec.TIMES] += 1.0
+            r.watch[over, rec.AT_ONCE] = 1.0
+            r.watch[over, rec.JUST_NOW] = 0.0
+        return over
 
 
-def why_ended(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
-    """Of a limit what it was, when, and the forces of the actuators then, where they are told."""
-    if event.kind != "limit":
-        return f"event '{event.name}' ended the run"
-    told = {c.name: b.out[c.start] for c in mechanism.columns}
+def why_ended(mechanism: Any, work: Scene, r: Record, b: Buffers, event: UserEvent) -> str:
+    """Why an event ends the run, where and when; of a limit the forces of the actuators then."""
+    t = float(r.t)
+    if event.kind == "limit":
+        return of_limit(mechanism, b, event, t)
+    if event.phase < 0:
+        when = "" if event.status == "done" else f" at t = {t:.6g} s: {event.in_words()}"
+        return f"event '{event.name}' ended the run{when}"
+    phase = f"phase '{mechanism.stages.switches.phases[event.phase]}'"
+    if event.role == "taut":
+        rope = event.when.rpartition(".")[0]
+        return f"{phase}: '{rope}' went slack at t = {t:.6g} s: {event.falls()}"
+    if event.role == "stall":
+        began = t - event.lasts
+        found = f"{phase}: nothing has moved since t = {began:.6g} s: the kinetic energy is "
+        found += f"{kinetic(work, r.y):.3g} J, and {fastest(mechanism, work)}"
+        return "; ".join(filter(None, (found, standing(mechanism, work, r))))
+    how = f"{event.lasts:g} s after it began" if event.lasts else event.falls()
+    return f"{phase}, the last one, ended at t = {t:.6g} s: {how}"
+
+
+def of_limit(mechanism: Any, b: Buffers, event: UserEvent, t: float) -> str:
+    """What a limit was, when, and the forces of the actuators then, where they are told."""
+    there = {c.name: b.out[c.start] for c in mechanism.columns}
     forces = []
     for instance in mechanism.instances:
         if instance.row.length:  # an actuator: of a supply where there is one, that stalls
             of = (f"{instance.name}.{word}" for word in ("supply_force", "force"))
-            forces += [f"{name} {told[name]:.4g} N" for name in of if name in told][:1]
+            forces += [f"{name} {there[name]:.4g} N" for name in of if name in there][:1]
     said = f"{event.when} {event.said} ({event.value:g} {event.unit}) at t = {t:.6g} s"
     return f"{said}: {', '.join(forces)}" if forces else said
 
@@ -92,34 +157,38 @@ def failure(event: UserEvent, error: ModelError) -> str:
 
 
 def turned(
-    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings, event: UserEvent
-) -> tuple[Scene, float]:
-    """The scene of the stage an event leads to, with the record brought to it; the work done, J.
+    mechanism: Any, work: Scene, r: Record, b: Buffers, setting: Settings, k: int
+) -> tuple[Scene, float, Jump]:
+    """The scene of the stage event k leads to, with the record brought to it; the work done, J; how
+    velocities jumped.
 
     Raises ModelError where its constraints contradict each other or the positions, or leave the
     motion of a body without mass open.
     """
     before, stages = r.stage.copy(), mechanism.stages
+    event = stages.switches.events[k]
     for switch, to in event.turned:
         r.stage[switch] = to
     driven = [n for n, to in event.turned if stages.switches.names[n][0] == "drives" and to > 0]
     if not driven and np.array_equal(before, r.stage):
-        return work, 0.0
+        return work, 0.0, no_jump()
     t, y = float(r.t), r.y
-    energy = total_energy(work, t, y)
+    energy, twists = total_energy(work, t, y), work.V.copy()
     model = stages.model(r.stage)
     for n in driven:
         take_hold(mechanism, work, model, r, n, int(before[n]))
     close_locks(mechanism, work, r, before)
+    park(mechanism, work, r, before)
     r.left_out[:] = stages.left_out(r.stage)
     r.weak, r.weakest = 1, 1.0
     work = carried(work, model)
     project(mechanism, work, r)
+    jump = told(mechanism, work, r, k, twists)
     check_determined(mechanism, model, work, y)
     done = total_energy(work, t, y) - energy
     y[work.n_q + work.n_v + work.jumps] += done
     settle(work, r, b, setting)
-    return work, done
+    return work, done, jump
 
 
 def total_energy(work: Scene, t: float, y: Array) -> float:
@@ -183,6 +252,15 @@ def close_locks(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64
             _, lock = instance_of(mechanism, SECTION, lock_name(name))
             own = AnyDrive.of(lock.row)
             r.y[work.n_q + work.n_v + own.state] = work.S[own.coordinate, 0]
+
+
+def park(mechanism: Any, work: Scene, r: Record, before: NDArray[np.int64]) -> None:
+    """Bodies that are parked stay where they are."""
+    for n, (section, name) in enumerate(mechanism.stages.switches.names):
+        if section == "parks" and r.stage[n] == HELD and before[n] != HELD:
+            e, instance = instance_of(mechanism, SECTION, park_name(name))
+            poses(work, r.y)
+            instance.element.hold(work, e)
 
 
 def project(mechanism: Any, work: Scene, r: Record) -> None:

@@ -14,7 +14,7 @@ shorter until it begins just before, and then the run ends there.
 from math import isfinite
 
 from trsim.assemble.equations import evaluate, set_poses
-from trsim.assemble.poles import AT, DOMAIN, DRIVE, KIND, OF
+from trsim.assemble.poles import AT, DOMAIN, DRIVE, KIND, OF, RESTS
 from trsim.elements.contract import compiled
 from trsim.elements.prescribed import began
 from trsim.kernels.lazy import internal
@@ -62,7 +62,9 @@ def poles_ahead(s, r, b, setting, method):
 
 @internal
 def first_of(s, r, b, method, k):
-    """The same of one u; NONE too of a motion that no drive follows now."""
+    """The same of one u; NONE too of a motion that no drive follows, and of a load that rests."""
+    if s.pole[k, KIND] == RESTS:
+        return NONE
     since = began(s, s.pole[k, DRIVE], s.pole[k, OF])
     if since < 0.0:
         return NONE

@@ -49,7 +49,9 @@ POINTS = 6  # samples of every channel that are kept: see peaks.py
 PEAK_MAX, PEAK_MAX_T, PEAK_MIN, PEAK_MIN_T, N_PEAK = range(5)
 
 
-SIDE, TIMES, JUST_NOW, SLOPE, N_WATCH = range(5)  # SLOPE: at its root, of a channel
+# SLOPE: at its root, of a channel; DUE: s, when the clock of a phase comes to its end; AT_ONCE: 1
+# if it ended its phase as that began; LOOKED: looks in a row at which nothing moved
+SIDE, TIMES, JUST_NOW, SLOPE, DUE, AT_ONCE, LOOKED, N_WATCH = range(8)
 # side of zero `when` was on last; its value and rate at y, and whether they hold; its rate at the
 # end of the step; number of the next instant
 ON, LAST, RATE, KNOWN, END_RATE, NEXT, FAR, SWINGS = range(8)

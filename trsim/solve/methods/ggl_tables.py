@@ -168,7 +168,7 @@ def state_rows(mechanism: Mechanism, model: Model) -> list[tuple[int, int]]:
 
     found = []
     for e, instance in enumerate(mechanism.instances):
-        if instance.section in ("drives", "events"):
+        if instance.section == "drives" or (instance.section == "events" and instance.row.states):
             own = AnyDrive(model, e)
             if 0 <= own.row < model.m and own.state >= 0:
                 found.append((int(own.row), model.n_v + int(own.state) - N_BOOK))

@@ -38,6 +38,12 @@ def check_driven(scenario: Any, mechanism: Mechanism) -> None:
                 f"leave it out, {DYNAMIC}",
                 (instance.section, instance.name),
             )
+    if mechanism.stages.switches.phases:
+        raise ScenarioError(
+            f"{method} analysis knows no phases: what one lets go of would be free",
+            f"leave `phases` out, {DYNAMIC}",
+            ("phases",),
+        )
     for event in mechanism.stages.switches.events:
         if event.turned:
             raise ScenarioError(

@@ -197,7 +197,7 @@ def of_springs(mechanism: Mechanism, y: Array) -> list[Array]:
     w = posed(mechanism.model, y)
     found = []
     for instance in mechanism.instances:
-        if instance.element.springs is None:
+        if instance.element.springs is None or not instance.acts:
             continue
         i, j = instance.row.con[:2]
         axes, place, along, about = map(np.array, instance.element.springs(instance.row))
