@@ -3,8 +3,8 @@
 from typing import Literal
 
 # said by the solver, said by the writer of the file
-Ended = Literal["done", "jammed", "painleve", "failed"]
-WELL: tuple[Ended, ...] = ("done", "jammed")  # a run says what it was asked
+Ended = Literal["done", "jammed", "limit", "painleve", "failed"]
+WELL: tuple[Ended, ...] = ("done", "jammed", "limit")  # a run says what it was asked
 ILL: tuple[Ended, ...] = ("painleve", "failed")  # it does not
 Status = Literal["running", Ended, "interrupted", "recovered"]
 
@@ -12,6 +12,7 @@ STATUSES: dict[Status, str] = {
     "running": "goes on, or was killed: `trsim recover` copies what it left",
     "done": "reached its end, or an event of the scenario ended it",
     "jammed": "a drive reached what it can do, drives lost their synchronism, or a curve ended",
+    "limit": "a static path ended: no equilibrium is near ahead",
     "painleve": "the friction of a joint has no solution from there on, or several",
     "failed": "the solver could not go on; the file holds what was computed until then",
     "interrupted": "ended by a signal; the file was closed and is named .part",

@@ -108,6 +108,13 @@ def remark(answer: Answer, source: str, summary: dict[str, Any]) -> None:
         answer.warn(source, text)
     if summary["redundant"]:
         answer.say(f"{source}: {redundancy(summary)}")
+    numbers = summary["statistics"]
+    if "inertia_ratio" in numbers:
+        at = f"at t = {numbers['inertia_ratio_time']:.6g} s"
+        answer.say(
+            f"{source}: inertia ratio {numbers['inertia_ratio']:.3g} {at}: so much of the largest "
+            "force of a drive would inertia change"
+        )
     for name, times in summary["fired"].items():
         if times == 0 and summary["status"] == "done":
             answer.say(f"{source}: note: the event '{name}' never happened")

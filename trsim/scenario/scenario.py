@@ -122,7 +122,8 @@ class SolverSpec(Spec):
 
     method         auto takes dop853 and, where the motion is stiff, radau; generalized_alpha is for
                    two or three digits of stiff motion; rk4 has fixed steps; kinematic is
-                   for mechanisms driven in all their freedoms; scipy's are independent checks
+                   for mechanisms driven in all their freedoms; static_path balances forces at
+                   each place, without inertia; scipy's are independent checks
     formulation    equations that radau solves: index1 with projection, or for many bodies ggl, the
                    stabilised index 2 with sparse matrices; found out unless given
     end            time at which the run ends, at least 1e-20 s; needed by `run`, not by `check`
