@@ -78,6 +78,29 @@ def test_speed_changes_only_velocities():
     assert fast["motor.force"] == pytest.approx(3 * angle + 2 * G * 0.2 * np.cos(angle), abs=1e-9)
 
 
+def test_a_drive_that_gives_way():
+    """Its spring is all there is, whatever its damper and the speed."""
+    give = "position: {}*t, compliance: {{stiffness: 50, damping: 70}}"
+    for speed in (1.0, 100.0):
+        text = PENDULUM.format(x=0.2, x0=0, y=0, bodies="ground, rod", motion=give.format(speed))
+        r = path(text, end=1 / speed, every=0.02 / speed)
+        held = 50 * (speed * r.t - r["turn"])
+        assert held == pytest.approx(2 * G * 0.2 * np.cos(r["turn"]), abs=1e-9)
+        assert r["motor.force"] == pytest.approx(held, abs=1e-9)
+
+
+def test_dampers_and_friction_by_a_function_are_told():
+    """They are no part of a path: a run that would feel them says so."""
+    text = PENDULUM.format(x=0.2, x0=0, y=0, bodies="ground, rod", motion='position: "t"')
+    text += """
+forces:
+  oil: {type: applied_load, body: rod, torque: "-2*turn.rate/sqrt(turn.rate**2 + 1e-6)",
+        direction: [0, 0, 1]}
+"""
+    (told,) = [one for one in path(text).outcome.said if "dampers" in one]
+    assert "by up to 51 %" in told and told.startswith("drives.motor")
+
+
 WEDGE = """
 planar: true
 bodies:

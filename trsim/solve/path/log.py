@@ -10,7 +10,7 @@ from trsim.assemble.equations import poses
 from trsim.solve.march import record as rec
 from trsim.solve.path.changes import CONTACT, PIECE, RUB, SENSE, WATCH, Change, Looks
 from trsim.solve.path.place import Place
-from trsim.solve.path.results import Results
+from trsim.solve.path.results import DAMPERS, INERTIA, Results
 from trsim.statuses import Ended
 
 Array = NDArray[np.float64]
@@ -130,10 +130,12 @@ class Log:
         """What is worth knowing of the path."""
         for t, text in self.falls:
             yield f"solver.method: at t = {t:.9g} s {text}"
-        for name, ratio, when in self.results.ratios():
-            if ratio > TOLD:
-                yield (
-                    f"{name}: at this speed inertia would change its force by up to "
-                    f"{100 * ratio:.2g} % of the largest it has (at t = {when:.6g} s): the path is "
-                    "no picture of the motion there; go slower, or let the motion be computed"
-                )
+        for of, what in ((INERTIA, "inertia"), (DAMPERS, "dampers and functions of rates")):
+            for name, ratio, when in self.results.ratios(of):
+                if ratio > TOLD:
+                    yield (
+                        f"{name}: at this speed {what} would change its force by up to "
+                        f"{100 * ratio:.2g} % of the largest it has (at t = {when:.6g} s): the "
+                        "path is no picture of the motion there; go slower, or let the motion be "
+                        "computed"
+                    )

@@ -62,11 +62,14 @@ class Place:
 
 
 def sliding(mechanism: Mechanism) -> Any:
-    """The model whose friction is full as soon as something slides, in either direction."""
+    """The model whose friction is full as soon as something slides, in either direction, without
+    dampers of drives; and whether anything rubs."""
     model = mechanism.model
     con, par = model.con.copy(), model.par.copy()
     found = False
     for e, instance in enumerate(mechanism.instances):
+        if instance.section == "drives":  # whose motion has a rate, other than what it moves
+            par[e, AnyDrive.columns["damping"].at] = 0.0
         if not instance.element.slides:
             continue
         law, first = instance.element.slides

@@ -29,6 +29,7 @@ Array = NDArray[np.float64]
 AT_REST = ("N", "J", "Pa")  # in the unit of what is told as at rest
 DEPENDENT = 1e-10  # relative size of a row that is not independent
 APART = 1e-7  # of the time between rows: places that are nearer tell no acceleration
+INERTIA, DAMPERS, FORCE = range(3)  # of what is kept of drives
 NO_LOAD = 1e-9  # of the largest force: a drive that gives less gives none
 
 
@@ -57,7 +58,8 @@ class Results:
             for e, i in enumerate(mechanism.instances)
             if i.section == "drives" and AnyDrive(w, e).row >= 0
         ]
-        self.most = np.zeros((len(self.drives), 4))  # added, when, force, when
+        # of every drive: what inertia adds, what dampers do, its force; each with its time
+        self.most = np.zeros((len(self.drives), 3, 2))
         self.largest_energy = self.largest_residual = 0.0
 
     def out(self, place: Place, a: Array) -> Array:
@@ -155,11 +157,16 @@ class Results:
         inertia_forces(w, y, a, force)
         for f, lacking in zip(w.light.tolist(), w.lacking, strict=True):
             self.take_back(force, y, a, (f, lacking))
-        added = place.inverse @ -force
+        g = np.zeros((2, n + self.eq.m))
+        unbalanced(w, place.t, y, place.lam, g[0])
+        unbalanced(w, place.t, place.y, place.lam, g[1])
+        damped = np.zeros(n + self.eq.m)
+        damped[:n] = g[0, :n] - g[1, :n]
+        inertia, dampers = place.inverse @ -force, place.inverse @ damped
         for k, (_, row) in enumerate(self.drives):
-            for at, x in ((0, added[n + row]), (2, place.lam[row])):
-                if abs(x) > self.most[k, at]:
-                    self.most[k, at : at + 2] = abs(x), place.t
+            for at, x in enumerate((inertia[n + row], dampers[n + row], place.lam[row])):
+                if abs(x) > self.most[k, at, 0]:
+                    self.most[k, at] = abs(x), place.t
 
     def take_back(self, force: Array, y: Array, a: Array, light: tuple[int, Array]) -> None:
         """Take away the inertia that a body without mass does not have."""
@@ -173,16 +180,15 @@ class Results:
         force[o : o + 3] -= more[0] * a[o : o + 3]
         force[o + 3 : o + 6] -= I @ a[o + 3 : o + 6] + np.cross(omega, I @ omega)
 
-    def ratios(self) -> list[tuple[str, float, float]]:
-        """Of every rigid drive: its name, what inertia would add at most, of the largest force it
-        has, and when."""
+    def ratios(self, of: int = INERTIA) -> list[tuple[str, float, float]]:
+        """Of every rigid drive: its name, what inertia, or dampers, would add at most, of the
+        largest force it has, and when."""
         least = NO_LOAD * self.eq.load
         return [
-            (name, added / max(force, least) if added > least else 0.0, when)
-            for (name, _), (added, when, force, _) in zip(
-                self.drives, self.most.tolist(), strict=True
-            )
-        ]
+            (name, most[of, 0] / max(most[FORCE, 0], least) if most[of, 0] > least else 0.0,
+             float(most[of, 1]))
+            for (name, _), most in zip(self.drives, self.most, strict=True)
+        ]  # fmt: skip
 
 
 def slope(before: Place | None, place: Place, after: Place | None, least: float) -> Array:
