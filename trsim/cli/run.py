@@ -87,12 +87,18 @@ def one(answer: Answer, source: str, target: Path, wanted: Wanted) -> dict[str, 
     if scenario.solver.end is None:
         what = "field required: end (s)"
         raise placed(ScenarioError(what, "Write for example `end: 1 s`.", ("solver",)), scenario)
-    closing = None
+    closing, passes = None, None
+    if scenario.sizing is not None:
+        from trsim.cli.sizing import found
+
+        scenario, passes, closing = found(answer, source, target, scenario, wanted)
     if wanted.certify:
         from trsim.cli.certify import twin
 
         closing = twin(answer, source, target, scenario, wanted)
     summary = ran(answer, source, target, scenario, wanted, closing)
+    if passes is not None:
+        summary["sizing"] = passes
     answer.say(line(summary))
     remark(answer, source, summary)
     if "certificate" in summary:

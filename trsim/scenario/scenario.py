@@ -24,6 +24,7 @@ from trsim.scenario.limits import Limits
 from trsim.scenario.load_sets import Level, LoadSet, scaled
 from trsim.scenario.methods import GGL, INDEX_1, METHODS
 from trsim.scenario.sections import PhasePortrait, PoincareSection
+from trsim.scenario.sizing import Sizing
 from trsim.scenario.template import Instance, Placement, Template
 from trsim.scenario.text import Tree
 from trsim.scenario.totals import Total
@@ -234,6 +235,7 @@ class Scenario(Spec):
     load_sets        loads that act together, with factors of limit and ultimate load
     loads            which load sets act: `{gust: ultimate}`, limit, ultimate or a factor
     totals           what several bodies weigh together, where one of them takes the rest
+    sizing           a load that takes over what a drive gives, found by repeated runs
     limits           how many bodies, rows, nodes and entries there may be
     phases           kept for load steps; not used yet
     cases            named overrides, each a scenario of a sweep; not used by `run`
@@ -264,6 +266,7 @@ class Scenario(Spec):
     load_sets: dict[str, LoadSet] = EMPTY
     loads: dict[str, Level] | None = None
     totals: dict[str, Annotated[Total, _Scoped(Total)]] = EMPTY
+    sizing: Sizing | None = None
     limits: Limits = Limits()
     phases: Any = None
     cases: dict[str, Any] = EMPTY

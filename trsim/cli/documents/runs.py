@@ -137,6 +137,8 @@ class Ran(Results, Result):
     resumed_from    simulated time of the checkpoint it went on from, s; null without one
     identical       whether they are those of the result file that was run again
     certificate     what a twin says of it, with --certify
+    sizing          what each pass left of the force of the drive, of that without the load; with
+                    the key `sizing`
     """
 
     status: Ended
@@ -145,6 +147,7 @@ class Ran(Results, Result):
     resumed_from: Number
     identical: NotRequired[bool]
     certificate: NotRequired[Certified]
+    sizing: NotRequired[list[Number]]
 
 
 class Run(Document):

@@ -30,7 +30,7 @@ AT_REST = ("N", "J", "Pa")  # in the unit of what is told as at rest
 DEPENDENT = 1e-10  # relative size of a row that is not independent
 APART = 1e-7  # of the time between rows: places that are nearer tell no acceleration
 INERTIA, DAMPERS, FORCE = range(3)  # of what is kept of drives
-NO_LOAD = 1e-9  # of the largest force: a drive that gives less gives none
+NO_LOAD = 1e-6  # of the largest force, at the size: a drive that gives less gives none
 
 
 class Results:
@@ -54,7 +54,7 @@ class Results:
         self.turned = False
         self.zero = 0.0  # J, the energy at the start
         self.drives = [
-            (f"drives.{i.name}", int(AnyDrive(w, e).row))
+            (f"drives.{i.name}", int(AnyDrive(w, e).row), w.size if AnyDrive(w, e).rotates else 1.0)
             for e, i in enumerate(mechanism.instances)
             if i.section == "drives" and AnyDrive(w, e).row >= 0
         ]
@@ -163,7 +163,7 @@ class Results:
         damped = np.zeros(n + self.eq.m)
         damped[:n] = g[0, :n] - g[1, :n]
         inertia, dampers = place.inverse @ -force, place.inverse @ damped
-        for k, (_, row) in enumerate(self.drives):
+        for k, (_, row, _) in enumerate(self.drives):
             for at, x in enumerate((inertia[n + row], dampers[n + row], place.lam[row])):
                 if abs(x) > self.most[k, at, 0]:
                     self.most[k, at] = abs(x), place.t
@@ -183,12 +183,11 @@ class Results:
     def ratios(self, of: int = INERTIA) -> list[tuple[str, float, float]]:
         """Of every rigid drive: its name, what inertia, or dampers, would add at most, of the
         largest force it has, and when."""
-        least = NO_LOAD * self.eq.load
         return [
-            (name, most[of, 0] / max(most[FORCE, 0], least) if most[of, 0] > least else 0.0,
-             float(most[of, 1]))
-            for (name, _), most in zip(self.drives, self.most, strict=True)
-        ]  # fmt: skip
+            (name, most[of, 0] / most[FORCE, 0], float(most[of, 1]))
+            for (name, _, lever), most in zip(self.drives, self.most, strict=True)
+            if most[FORCE, 0] > NO_LOAD * lever * self.eq.load
+        ]
 
 
 def slope(before: Place | None, place: Place, after: Place | None, least: float) -> Array:
