@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipk
 
 from trsim.scenario.load import load
+from trsim.solve.sizing import sized
 
 from .runs import energy_error, run
 
@@ -415,3 +416,15 @@ def test_static_truss():
     assert (height, most) == pytest.approx((0.170712, 9.949917), abs=1e-6)
     assert 20 * r.outcome.time == pytest.approx(most, rel=1e-8)
     assert 0.3 + r["down"][-1] == pytest.approx(height, abs=1e-6)
+
+
+def test_handle_sizing():
+    found = sized(load(VALIDATION / "handle_sizing.yaml"))
+    assert found.relative[-1] < 1e-9 and len(found.left) == 5
+
+    def left(F):
+        return 0.4 * F - 0.4 * 9.81 - 0.009 * np.abs(2 * 9.81 - F)
+
+    assert found.x[0] == pytest.approx(0, abs=1e-12)
+    assert found.load[0] == pytest.approx(brentq(left, 0, 50), rel=1e-8)
+    assert found.load[0] == pytest.approx(10.025868, abs=1e-6)

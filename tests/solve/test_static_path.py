@@ -402,6 +402,45 @@ def test_as_slow_dynamics_and_the_ratio_explains_the_rest(speed, apart):
     assert np.abs(force)[1:].max() < apart * still["touch.normal_force"].max()
 
 
+SPACE = """
+planar: false
+bodies:
+  crank: {mass: 1 kg, inertia: [0.02, 0.03, 0.01], at: [0.05, 0.0, 0]}
+  rod: {mass: 2 kg, inertia: [0.01, 0.04, 0.03], at: [0.25, 0.1, 0.05]}
+  rocker: {mass: 1.5 kg, inertia: [0.02, 0.01, 0.02], at: [0.4, 0.1, 0.1]}
+joints:
+  a: {type: revolute, bodies: [ground, crank], at: [0, 0, 0], axis: [0, 0, 1]}
+  b: {type: spherical, bodies: [crank, rod], at: [0.1, 0, 0]}
+  c: {type: universal, bodies: [rocker, rod], at: [0.4, 0.2, 0.1], axis: [0, 0, 1],
+      second_axis: [1, 0, 0]}
+  d: {type: revolute, bodies: [ground, rocker], at: [0.4, 0, 0.1], axis: [0, 0.2, 1]}
+drives:
+  motor: {joint: a, velocity: 0.02}
+sensors: {swing: {joint: d}}
+forces:
+  rub: {type: joint_friction, joint: d, radius: 20 mm, thrust_radius: 15 mm, length: 0.1,
+        friction: {law: modified_coulomb, coefficient: 0.3, v0: 0, v1: 1e-5}}
+  ball: {type: joint_friction, joint: b, radius: 15 mm,
+         friction: {law: modified_coulomb, coefficient: 0.2, v0: 0, v1: 1e-5}}
+  stop: {type: limit_stop, joint: d, upper: 0.15, stiffness: 3000}
+  line: {type: spring_damper, bodies: [ground, rod], points: [[0.2, 0.6, 0.3], [0.25, 0.1, 0.05]],
+         stiffness: 300, free_length: 0.3}
+"""
+
+
+def test_in_space_as_slow_dynamics():
+    """A hinge and a ball that rub by their reactions, a stop met on the way: all but inertia."""
+    still, moving = (path(SPACE, 150, 2.5, method) for method in ("static_path", "radau"))
+    assert events(still, ONSET)[:, 0] == pytest.approx(events(moving, ONSET)[:, 0], abs=1e-6)
+    assert len(events(still, TURNS)) == 1
+    slides = np.abs(moving["rub.sliding_speed"]) > 2e-5  # above the ramp of the law
+    slides[0] = False
+    for name in ("motor.force", "rub.force", "ball.moment", "stop.normal_force", "c.reaction"):
+        off = np.abs(still[name] - moving[name])[slides].max()
+        assert off < 1e-3 * np.abs(moving[name]).max(), name
+    assert still["rod.velocity"] == pytest.approx(moving["rod.velocity"], abs=1e-9)
+
+
 def test_user_events():
     text = (
         STOPPED
@@ -456,3 +495,85 @@ def test_refused(more, said):
 def test_what_nothing_holds():
     with pytest.raises(ModelError, match="no static equilibrium"):
         path("bodies: {stone: {mass: 1 kg, inertia: 0.1}}")
+
+
+def test_what_friction_alone_does_not_hold_is_refused():
+    """A rod between two balls spins about itself: nothing holds that."""
+    text = """
+planar: false
+bodies:
+  rod: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0.5, 0, 0]}
+  end: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [1, 0, 0]}
+joints:
+  foot: {type: spherical, bodies: [ground, rod], at: [0, 0, 0]}
+  head: {type: spherical, bodies: [rod, end], at: [1, 0, 0]}
+  guide: {type: prismatic, bodies: [ground, end], axis: [1, 0, 0]}
+"""
+    with pytest.raises(ModelError, match="nothing holds 'rod'"):
+        path(text)
+
+
+THREAD = """
+planar: false
+bodies:
+  nut: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0]}
+  spindle: {mass: 1, inertia: [0.1, 0.1, 0.1], at: [0, 0, 0]}
+joints:
+  flank: {type: inplane, bodies: [ground, nut], at: [0.1, 0, 0], axis: [0, 0, 1]}
+  bearing: {type: revolute, bodies: [ground, spindle], at: [0, 0, 0], axis: [0, 1, 0]}
+  thread: {type: screw, bodies: [nut, spindle], at: [0, 0, 0], axis: [0, 1, 0], pitch: 6 mm}
+drives: {ram: {type: actuator, bodies: [ground, nut], points: [[0, -1, 0], [0, 0, 0]],
+               position: 0.01*t}}
+forces:
+  rub: {type: joint_friction, joint: thread, radius: 10 mm,
+        friction: {law: modified_coulomb, coefficient: MU, v0: 0, v1: 1e-6}}
+  twist: {type: torsion_spring, joint: bearing, stiffness: 1}
+"""
+LEAD = np.arctan(6e-3 / (2 * np.pi * 10e-3))
+
+
+def test_a_thread_that_is_pushed():
+    """F r tan(lead - rho) = T, as long as friction lets it: tan(rho) = mu."""
+    r = path(THREAD.replace("MU", "0.05"))
+    torque = 0.01 * r.t * 2 * np.pi / 6e-3
+    pushed = torque / (10e-3 * np.tan(LEAD - np.arctan(0.05))) + G
+    assert r["ram.force"][1:] == pytest.approx(pushed[1:], rel=1e-6)
+
+
+def test_a_thread_that_locks_itself():
+    r = path(THREAD.replace("MU", "0.15"))
+    assert np.tan(LEAD) < 0.15
+    assert r.outcome.status == "limit" and "friction lock" in r.outcome.reason
+    assert r.outcome.time < 1e-4
+
+
+def test_a_load_that_jumps():
+    text = """
+bodies: {arm: {mass: 1, inertia: 0.1, at: [0.3, 0]}}
+joints: {hinge: {type: revolute, bodies: [ground, arm], at: [0, 0]}}
+sensors: {turn: {joint: hinge}}
+forces:
+  back: {type: torsion_spring, joint: hinge, stiffness: 10}
+  push: {type: applied_load, body: arm, frame: arm, direction: [0, 1], force: "10*(t > 0.5)"}
+"""
+    r = path(text)
+    (told,) = r.outcome.said
+    assert "at t = 0.5 s the path jumps" in told
+    load = np.where(r.t > 0.505, 10.0, 0.0)
+    assert 10 * r["turn"] == pytest.approx(0.3 * (load - G * np.cos(r["turn"])), abs=1e-9)
+
+
+def test_unstable_from_the_beginning():
+    text = """
+bodies: {arm: {mass: 1, inertia: 0.1, at: [0, 0.3]}}
+joints: {hinge: {type: revolute, bodies: [ground, arm], at: [0, 0]}}
+forces: {back: {type: torsion_spring, joint: hinge, stiffness: 2}}
+"""
+    (told,) = path(text).outcome.said
+    assert "at t = 0 s the equilibrium is unstable" in told
+
+
+def test_a_force_without_a_number():
+    odd = '  odd: {type: applied_load, body: rod, direction: [0, 1], force: "t/(t < 0.503)"}\n'
+    r = path(STOPPED.replace("sensors:", f"{odd}sensors:"), fails=None)
+    assert r.outcome.status == "failed" and "not finite" in r.outcome.reason

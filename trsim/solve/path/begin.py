@@ -5,6 +5,7 @@ there is none as drawn, with friction that holds it there.
 """
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from trsim.assemble.mechanism import Mechanism
@@ -12,6 +13,7 @@ from trsim.errors import ModelError, ScenarioError
 from trsim.scenario.initial import Initial
 from trsim.solve.rest import standing, without_rates
 from trsim.solve.start.consistent import Start, positions, start
+from trsim.solve.start.statics import check_stable
 
 INSTEAD = "or let the motion be computed: leave `method` out"
 
@@ -56,9 +58,24 @@ def begin(scenario: Any, mechanism: Mechanism) -> Start:
     whole = Initial(tuple(still.joints), {}, True)
     try:
         settled = still.model_copy(update={"initial": whole})
-        begun = start(settled, mechanism, False, lambda *_: None)
+        begun = start(settled, mechanism, False, partial(judged, any_slides(mechanism)))
     except ModelError:
-        if not any(instance.element.slides for instance in mechanism.instances):
+        if not any_slides(mechanism):
             raise
         begun = start(still, mechanism, False)
     return replace(begun, y=without_rates(mechanism, begun.y))
+
+
+def any_slides(mechanism: Mechanism) -> bool:
+    """Whether anything may rub, and so hold what nothing else does."""
+    return any(instance.element.slides for instance in mechanism.instances)
+
+
+def judged(rubs: bool, *found: Any) -> None:
+    """Refuse an equilibrium in which nothing holds a motion; one that is unstable is told later."""
+    try:
+        check_stable(*found)
+    except ModelError as error:
+        if not rubs and "indifferent" in error.what:
+            hint = "add a spring, a stop, a drive or friction"
+            raise ModelError(error.what, hint, ("solver", "method")) from None

@@ -131,6 +131,8 @@ class Path:
         for k, (x, _) in enumerate(self.looks.values(place, out)):
             self.looks.side[k] = float(np.sign(x))
         self.judge(place)
+        if self.looks.sense == -1.0:
+            self.log.falls.append((0.0, f"the equilibrium is unstable{self.log.where(place)}"))
         return place
 
     def directed(self, place: Place) -> Place:
@@ -239,9 +241,9 @@ class Path:
             return None
         jump = self.way(place.y, found[0])
         if jump > BESIDE:
-            self.log.falls.append(
-                (place.t, f"the path jumps by {jump:.3g} of the mechanism's size")
-            )
+            text = f"the path jumps by {jump:.3g} of the mechanism's size"
+            self.log.falls.append((place.t, text))
+            self.results.jumped = True
         there = eq.place(place.t, *found)
         if there is not None:
             self.judge(there)

@@ -77,7 +77,7 @@ class Log:
     def unstable(self, place: Place, change: Change) -> None:
         """Tell where the balance loses its stability, or finds it."""
         if abs(change.to) > BOTH:
-            self.status = "failed"
+            self.status = "limit" if self.eq.rubs else "failed"
             self.reason = (
                 f"at t = {place.t:.9g} s{self.where(place)} rows of joints and drives depend on "
                 "each other, or friction locks them: behind it the path is not the only one"
@@ -124,7 +124,8 @@ class Log:
             )
         if turns:
             return f"dead end at {at}: the drives ask for places that joints do not reach"
-        return f"no equilibrium next to it behind {at}"
+        locks = ": does friction lock it?" if self.eq.rubs else ""
+        return f"no equilibrium next to it behind {at}{locks}"
 
     def said(self) -> Iterator[str]:
         """What is worth knowing of the path."""

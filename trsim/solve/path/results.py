@@ -51,7 +51,8 @@ class Results:
         self.recorded: list[Array] = []
         self.last: Place | None = None
         self.works = np.zeros(N_BOOK)
-        self.turned = False
+        self.turned = self.jumped = False
+        self.residual = 0.0
         self.zero = 0.0  # J, the energy at the start
         self.drives = [
             (f"drives.{i.name}", int(AnyDrive(w, e).row), w.size if AnyDrive(w, e).rotates else 1.0)
@@ -121,7 +122,10 @@ class Results:
         energies = out[self.w.column_energy :]
         if not self.rows:
             self.zero = energies[-1]
+        if self.jumped:  # what a jump loses is no error of the book
+            self.zero += energies[-1] - self.zero - self.residual
         energies[-1] -= self.zero
+        self.jumped, self.residual = False, float(energies[-1])
         self.largest_energy = max(self.largest_energy, float(np.abs(energies[:-1]).max()))
         self.largest_residual = max(self.largest_residual, abs(float(energies[-1])))
         squares = [np.linalg.norm(out[k : k + 3]) for k in self.w.vector.tolist()]
@@ -184,7 +188,7 @@ class Results:
         """Of every rigid drive: its name, what inertia, or dampers, would add at most, of the
         largest force it has, and when."""
         return [
-            (name, most[of, 0] / most[FORCE, 0], float(most[of, 1]))
+            (name, float(most[of, 0] / most[FORCE, 0]), float(most[of, 1]))
             for (name, _, lever), most in zip(self.drives, self.most, strict=True)
             if most[FORCE, 0] > NO_LOAD * lever * self.eq.load
         ]
