@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 AT_REST = 1e-6  # of the mechanism's size in the time of the path: a slower sliding is none
 FLAT = 1e-9  # of the largest eigenvalue: one that is rounding
+NEARLY = 0.01  # of an arch that a gap makes in a step: what its cubic may be wrong by
+FLATTEST = 1e-12  # of the mechanism's size: an arch that is rounding
 CONTACT, PIECE, RUB, WATCH, SENSE = "contact", "piece", "rub", "watch", "sense"
 
 
@@ -73,6 +75,10 @@ class Looks:
             return np.zeros(0)
         unbalanced(w, place.t, self.moving(place), place.lam, np.zeros(self.eq.n + self.eq.m))
         return np.array(w.loads[w.rubbing[:, 0], Load.columns["slip"].at])
+
+    def all_slide(self, place: Place) -> bool:
+        """Whether nothing that rubs sticks."""
+        return bool(np.all(np.abs(self.slips(place)) > self.slow))
 
     def values(self, place: Place, out: Array | None) -> list[tuple[float, float]]:
         """What user events watch, less its value, and its rate where it is known."""
@@ -162,7 +168,7 @@ class Looks:
         """Whether a contact may close and open again inside a step, or the other way round."""
         h, first, last = b.t - a.t, self.gaps(a), self.gaps(b)
         return any(
-            turns_through(first[e], last[e], h, -1.0 if inside else 1.0)
+            turns_through(first[e], last[e], h, -1.0 if inside else 1.0, self.work.size)
             for e, inside in self.closed.items()
         )
 
@@ -181,7 +187,7 @@ class Looks:
 
 
 def turns_through(
-    first: tuple[float, float], last: tuple[float, float], h: float, side: float
+    first: tuple[float, float], last: tuple[float, float], h: float, side: float, size: float
 ) -> bool:
     """Whether the cubic through a gap and its rates at both ends of a step passes zero inside.
 
@@ -189,9 +195,13 @@ def turns_through(
     g0, r0, g1, r1 = side * first[0], side * h * first[1], side * last[0], side * h * last[1]
     if g0 > 0.0 or g1 > 0.0 or r0 <= 0.0 or r1 >= 0.0:
         return False
-    x = np.linspace(0.0, 1.0, 17)
+    # g0 + x (r0 + x (a + x b)), at the roots of its slope
     a, b = 3.0 * (g1 - g0) - 2.0 * r0 - r1, 2.0 * (g0 - g1) + r0 + r1
-    return bool(np.any(g0 + x * (r0 + x * (a + x * b)) > 0.0))
+    root = np.sqrt(a * a - 3.0 * b * r0)  # the slope changes its sign inside: there is one
+    x = r0 / (root - a)
+    top = g0 + x * (r0 + x * (a + x * b))
+    arch = top - max(g0, g1)
+    return bool(arch > FLATTEST * size and top > -NEARLY * arch)
 
 
 def column_of(columns: dict[str, int], channel: str) -> int:

@@ -39,6 +39,7 @@ SAME = 1e-13  # of the path: where a change is, and whether it has been reached
 FIRST = 1e-4  # of the time between rows: how far ahead the direction of the start is taken
 SURE = 100.0  # times what full sliding takes, or further
 MOVED = SURE * RAMP  # of the size: way after which directions are taken from a new place
+SEEN = 0.01  # of the path: in that time what slides goes further than full sliding takes
 AGAIN = 50  # changes at one place: it is none
 BLOCK = 500  # rows
 
@@ -187,6 +188,8 @@ class Path:
         there = eq.place(t, *found)
         if there is None or self.looks.hidden(place, there):
             return None
+        if eq.turning and self.looks.all_slide(there):
+            return eq.along_itself(there, SEEN * self.end)
         return there
 
     def way(self, y: Array, y1: Array) -> float:

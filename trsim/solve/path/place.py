@@ -105,6 +105,8 @@ class Equations:
         self.unit = np.tile([w.size, w.size, 1.0] if w.d == 3 else [w.size] * 3 + [1.0] * 3,
                             w.n_r - 1)  # fmt: skip
         self.anchor = begun.y.copy()
+        # surfaces that slide in several ways at once, whose direction turns
+        self.turning = any(i.row.rubs and len(i.row.states) > 1 for i in mechanism.instances)
         self.stiffest = 0.0  # N*m, of the matrix made last
         self.frozen = False  # velocities of a state are as they are
         self.states = self.driven()
@@ -231,6 +233,16 @@ class Equations:
             return None
         x = inverse @ self.forcing(t, y, lam)
         return Place(t, y, lam, A, inverse, x[:n], x[n:]) if w.n_v == n else None
+
+    def along_itself(self, place: Place, dt: float) -> Place:
+        """A place with friction against its own velocities, not against its way in a time dt."""
+        y, w = place.y.copy(), self.work
+        y[w.n_q : w.n_q + self.n] = SLOW * dt * place.v
+        self.frozen = True
+        found = self.solved(place.t, y, place.lam, place.inverse)
+        there = self.place(place.t, *found) if found is not None else None
+        self.frozen = False
+        return there or place
 
     def forcing(self, t: float, y: Array, lam: Array) -> Array:
         """dg/dt at one place, and -Phi_t."""
